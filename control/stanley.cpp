@@ -1,0 +1,1 @@
+#include "roadbed/control/stanley.h"

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "roadbed/geometry/polyline.h"
+
+namespace roadbed::geometry {
+
+/// A closed ring of points, the last one not repeated.
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// A region with holes: the outer ring counter-clockwise, holes clockwise, all simple.
+struct Polygon {
+  Ring outer;
+  std::vector<Ring> holes;
+};
+
+/// Area inside the ring [m²], positive if it runs counter-clockwise.
+double signed_area_m2(const Ring& ring);
+
+/// Area of the region, holes taken out [m²].
+double area_m2(const Polygon& polygon);
+
+/// Whether the point is inside or on the ring. O(N).
+bool contains(const Ring& ring, const Eigen::Vector2d& point);
+bool contains(const Polygon& polygon, const Eigen::Vector2d& point);
+
+/// Whether no two edges meet except neighbours at their shared point. Exact predicates (CGAL).
+bool is_simple(const Ring& ring);
+
+/// The region that a ring winds around (non-zero rule) as simple polygons: a ring that folds over
+/// itself, as an inner border in a tight bend, loses its folds. Exact (CGAL).
+std::vector<Polygon> make_simple(const Ring& ring);
+
+/// Union of regions. Points within `weld_m` of each other are taken as one first, since roads of
+/// real files do not meet exactly; 0 welds nothing. Exact (CGAL); about 100 ms for 25,000 points.
+std::vector<Polygon> unite(std::span<const Polygon> polygons, double weld_m);
+
+}  // namespace roadbed::geometry

@@ -1,0 +1,37 @@
+#include "roadbed/map/input_error.h"
+
+#include <fmt/format.h>
+
+namespace roadbed::map {
+namespace {
+
+// Keeps the message on one line whatever bytes the input held.
+std::string printable(const std::string& text) {
+  constexpr std::size_t longest = 400;
+  std::string line;
+  for (const char c : text.substr(0, longest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      line += fmt::format("\\x{:02x}", byte);
+    } else {
+      line += c;
+    }
+  }
+  return text.size() > longest ? line + "…" : line;
+}
+
+std::string one_line(const InputError::Parts& parts) {
+  std::string message = printable(parts.file);
+  if (!parts.place.empty()) message += ":" + printable(parts.place);
+  if (!parts.element.empty()) message += ": " + printable(parts.element);
+  message += ": " + printable(parts.found);
+  if (!parts.needed.empty()) message += ", needs " + printable(parts.needed);
+  if (!parts.remedy.empty()) message += "; " + printable(parts.remedy);
+  return message;
+}
+
+}  // namespace
+
+InputError::InputError(const Parts& parts) : std::runtime_error(one_line(parts)) {}
+
+}  // namespace roadbed::map

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "roadbed/map/id.h"
+
+namespace roadbed::map {
+
+/// A lane beside another one, and whether the marking between them may be crossed.
+struct Neighbour {
+  LaneId lane;
+  bool same_direction = true;
+  bool change_allowed = false;
+};
+
+/// What one lane leads to.
+struct LaneLinks {
+  std::vector<LaneId> successors;    ///< lanes that begin where this one ends
+  std::vector<LaneId> predecessors;  ///< lanes that end where this one begins
+  std::optional<Neighbour> left;     ///< the next lane across the left border
+  std::optional<Neighbour> right;
+};
+
+/// How lanes connect. Links of lanes that a car may not drive on are there too.
+class LaneGraph {
+ public:
+  LaneGraph() = default;
+
+  /// @param links  one per lane, in order of LaneId.
+  /// @throws std::invalid_argument if a link names a lane that is not there.
+  explicit LaneGraph(std::vector<LaneLinks> links);
+
+  std::size_t size() const { return links_.size(); }
+  const LaneLinks& of(LaneId lane) const { return links_.at(lane.index); }
+
+ private:
+  std::vector<LaneLinks> links_;
+};
+
+}  // namespace roadbed::map

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "roadbed/map/road_map.h"
+
+namespace roadbed::map {
+
+struct LoadOptions {
+  double max_error_m = 1e-3;  ///< chord error of sampled borders and centrelines
+};
+
+/// Reads any readable map, a compiled one too; the format is told by content.
+/// @throws InputError if the file is missing, unreadable, of no known format or unusable.
+RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// The same from bytes; `name` stands for the file in messages.
+RoadMap parse_map(const std::string& bytes, const std::string& name,
+                  const LoadOptions& options = {});
+
+}  // namespace roadbed::map

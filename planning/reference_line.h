@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/polyline.h"
+#include "roadbed/map/road_map.h"
+#include "roadbed/planning/route.h"
+
+namespace roadbed::planning {
+
+/// The reference line at one station. Derivatives are with respect to arc length.
+struct ReferencePoint {
+  double s_m = 0.0;
+  Eigen::Vector2d in_map{0, 0};
+  double heading_rad = 0.0;          ///< continuous along the line, not wrapped
+  double curvature_per_m = 0.0;      ///< κ, positive to the left
+  double curvature_d1_per_m2 = 0.0;  ///< κ′, continuous
+  double curvature_d2_per_m3 = 0.0;  ///< κ″
+  double curvature_d3_per_m4 = 0.0;  ///< κ‴
+  double curvature_d4_per_m5 = 0.0;  ///< κ⁗
+};
+
+/// Room beside the line and what the map says there.
+struct Corridor {
+  double left_m = 0.0;   ///< distance to the left edge of the drivable road, ≥ 0
+  double right_m = 0.0;  ///< distance to the right edge, ≥ 0
+  double speed_limit_mps = 0.0;
+};
+
+struct ReferenceLineOptions {
+  double step_m = 0.5;                 ///< between support points
+  double max_smoothing_m = 0.5;        ///< largest move of a way-point off corners
+  double max_curvature_per_m = 0.2;    ///< the vehicle can steer
+  double lane_change_length_m = 40.0;  ///< a lane change takes, where there is room
+  double default_speed_mps = 50.0 / 3.6;
+  double extend_m = 30.0;  ///< how far the line goes on past the goal
+};
+
+/// A smooth line to drive along: position, heading, curvature and curvature rate are continuous.
+/// Immutable; `s` is true arc length.
+class ReferenceLine {
+ public:
+  /// Through way-points (not along a route): cubic spline, resampled, corners rounded by quintic
+  /// Bézier curves. The corridor is `half_width_m` on both sides.
+  /// @throws std::invalid_argument for fewer than two distinct way-points.
+  static ReferenceLine through(const std::vector<Eigen::Vector2d>& way_points_in_map,
+                               double half_width_m, double speed_limit_mps,
+                               const ReferenceLineOptions& options = {});
+
+  /// Along a route, lane changes included, from its start to `extend_m` past its goal.
+  static ReferenceLine along(const map::RoadMap& road_map, const Route& route,
+                             const ReferenceLineOptions& options = {});
+
+  double length_m() const;
+
+  /// Station of the route's goal, at most length_m().
+  double goal_s_m() const;
+
+  /// Point at `s_m`; before 0 and past the end the line goes on straight. O(log N).
+  ReferencePoint at(double s_m) const;
+
+  /// Room and speed limit at `s_m`, clamped to the line.
+  Corridor corridor_at(double s_m) const;
+
+  /// Foot of the perpendicular from a point, searched near `near_s_m` if given.
+  geometry::LinePosition project(const Eigen::Vector2d& point_in_map,
+                                 std::optional<double> near_s_m = std::nullopt) const;
+
+  /// Largest distance that smoothing moved a way-point [m].
+  double largest_move_m() const;
+
+ private:
+  struct Data;
+  explicit ReferenceLine(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace roadbed::planning

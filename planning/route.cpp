@@ -1,0 +1,1 @@
+#include "roadbed/planning/route.h"

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+namespace roadbed::tools {
+
+/// Exit status of the program.
+enum class Exit {
+  ok = 0,
+  failed = 1,  ///< the answer is bad: unusable input, no route, conflict, …
+  usage = 2,   ///< the command line is wrong
+};
+
+/// Options that every command has.
+struct CommonOptions {
+  bool quiet = false;
+  int threads = 1;
+};
+
+/// Where a command prints: results to `out`, everything else to `err`.
+struct Streams {
+  std::ostream& out;
+  std::ostream& err;
+};
+
+/// One command of the program. `declare` names options and touches no file; `run` does the work.
+class Command {
+ public:
+  virtual ~Command() = default;
+  virtual void declare(CLI::App& app) = 0;
+  virtual Exit run(const Streams& streams, const CommonOptions& common) = 0;
+};
+
+// One per command, each in a file of its own: NAME_command.cpp.
+std::unique_ptr<Command> make_import_command();
+std::unique_ptr<Command> make_info_command();
+std::unique_ptr<Command> make_validate_command();
+std::unique_ptr<Command> make_export_command();
+std::unique_ptr<Command> make_locate_command();
+std::unique_ptr<Command> make_route_command();
+std::unique_ptr<Command> make_reference_command();
+std::unique_ptr<Command> make_plan_command();
+std::unique_ptr<Command> make_control_command();
+std::unique_ptr<Command> make_simulate_command();
+std::unique_ptr<Command> make_occupancy_command();
+std::unique_ptr<Command> make_audit_command();
+
+}  // namespace roadbed::tools

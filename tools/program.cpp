@@ -1,0 +1,84 @@
+#include "roadbed/tools/program.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/command.h"
+
+namespace roadbed::tools {
+namespace {
+
+struct Entry {
+  const char* name;
+  std::unique_ptr<Command> (*make)();
+};
+
+// In the order in which --help lists them.
+constexpr Entry kCommands[] = {
+    {nullptr, nullptr},
+};
+
+struct Registered {
+  CLI::App* app;
+  std::unique_ptr<Command> command;
+};
+
+Exit run_guarded(Command& command, const CommonOptions& common) {
+  try {
+    return command.run({std::cout, std::cerr}, common);
+  } catch (const map::InputError& error) {
+    fmt::print(stderr, "roadbed: {}\n", error.what());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "roadbed: out of memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "roadbed: internal error: {}; please report it with the command line\n",
+               error.what());
+  }
+  return Exit::failed;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
+  app.name("roadbed");
+  app.set_version_flag("--version", "roadbed " ROADBED_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+
+  CommonOptions common;
+  app.add_flag("--quiet", common.quiet, "No progress and no notes; errors are still printed");
+  app.add_option("--threads", common.threads, "Threads to use; the output is the same for any")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+
+  std::vector<Registered> commands;
+  for (const Entry& entry : kCommands) {
+    if (entry.make == nullptr) continue;
+    CLI::App* sub = app.add_subcommand(entry.name);
+    commands.push_back({sub, entry.make()});
+    commands.back().command->declare(*sub);
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : static_cast<int>(Exit::usage);
+  }
+  for (const Registered& registered : commands) {
+    if (registered.app->parsed()) {
+      return static_cast<int>(run_guarded(*registered.command, common));
+    }
+  }
+  return static_cast<int>(Exit::usage);
+}
+
+}  // namespace roadbed::tools
