@@ -1,6 +1,6 @@
 #pragma once
 
-#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/pose2.h"
 #include "roadbed/geometry/vehicle_shape.h"
 
 namespace roadbed::control {
@@ -8,7 +8,7 @@ namespace roadbed::control {
 /// Kinematic single-track model at the rear axle, as CommonRoad's KS:
 /// ẋ = v cos ψ, ẏ = v sin ψ, ψ̇ = v tan(δ)/L, v̇ = a, δ̇ = limited steering rate.
 struct SingleTrackState {
-  geometry::Pose2 pose;  ///< map_from_vehicle
+  geometry::Pose2 pose{};  ///< map_from_vehicle
   double speed_mps = 0.0;
   double steering_rad = 0.0;
 };

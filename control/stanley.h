@@ -5,19 +5,26 @@
 
 namespace roadbed::control {
 
-/// Place on the path nearest to the centre of the front axle.
+/// How the front axle's centre lies to the path, the one sign convention of lateral control:
+///
+///            path ──────▶          e_fa > 0: the path is to the left of the front axle
+///                   │ e_fa > 0     θ_e  > 0: the path points further to the left than the vehicle
+///              ▭────o ▶            δ    > 0: the wheels point to the left
+///
+/// so that every positive error asks for a positive steering angle.
 struct TrackingError {
-  double cross_track_m = 0.0;  ///< e_fa: path minus front axle, positive if the path is to the left
-  double heading_rad = 0.0;    ///< θ_e: path heading minus vehicle heading, wrapped
+  double cross_track_m = 0.0;  ///< e_fa, along the normal of the path
+  double heading_rad = 0.0;    ///< θ_e: path heading minus vehicle heading, in (−π, π]
 };
 
-/// Look-forward distance L_x(v) of paper eq. 33 [m].
+/// Look-forward distance L_x(v) of paper eq. 33 [m]: 10, then 0.8 v, then 20.
 double look_forward_m(double speed_mps);
 
-/// Gain k_e(v) of paper eq. 34 and Fig. 13: min(1, 0.5 + 0.02 v).
+/// Gain k_e(v) of paper eq. 34 and Fig. 13: min(1, 0.5 + 0.02 v), from v = 0 (eq. 34 leaves speeds
+/// below 12.5 m/s out; Fig. 13 shows them).
 double cross_track_gain(double speed_mps);
 
-/// Errors of a vehicle against the path's pose nearest to its front axle.
+/// Errors of a vehicle against the pose of the path nearest to its front axle.
 TrackingError tracking_error(const geometry::Pose2& map_from_vehicle, double wheelbase_m,
                              const geometry::Pose2& path_pose_at_front);
 

@@ -1,0 +1,47 @@
+#include "roadbed/control/cruise_control.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace roadbed::control {
+namespace {
+
+constexpr double kMostInnovation = 30.66;  // χ², three degrees of freedom, 10⁻⁶ beyond
+
+}  // namespace
+
+CruiseControl::CruiseControl(const CruiseOptions& options)
+    : options_(options), design_(design_cruise(options)), innovation_weight_(design_.S.inverse()) {}
+
+double CruiseControl::update(double speed_mps, double acceleration_mps2, const SetSpeed& set,
+                             const std::optional<LeadMeasurement>& lead) {
+  const Eigen::Vector2d speed_error{set.speed_mps - speed_mps,
+                                    acceleration_mps2 - set.acceleration_mps2};
+  double command = set.acceleration_mps2 - design_.K_speed.dot(speed_error);
+  restarted_ = false;
+  if (lead) {
+    const double desired_gap_m = options_.headway_s * speed_mps + options_.standstill_gap_m;
+    filter({desired_gap_m - lead->gap_m, lead->relative_speed_mps, acceleration_mps2});
+    command = std::min(command, -design_.K.dot(*estimate_));
+  } else {
+    estimate_.reset();
+  }
+  last_command_mps2_ = std::clamp(command, -options_.max_command_mps2, options_.max_command_mps2);
+  return last_command_mps2_;
+}
+
+void CruiseControl::filter(const Eigen::Vector3d& measured) {
+  if (estimate_) {
+    const Eigen::Vector3d predicted =
+        design_.model.A * *estimate_ + design_.model.B * last_command_mps2_;
+    const Eigen::Vector3d innovation = measured - predicted;
+    if (innovation.dot(innovation_weight_ * innovation) <= kMostInnovation) {
+      estimate_ = predicted + design_.L * innovation;
+      return;
+    }
+  }
+  restarted_ = true;
+  estimate_ = measured;
+}
+
+}  // namespace roadbed::control

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+namespace roadbed::control {
+
+/// Parameters of paper section 3.3.
+struct CruiseOptions {
+  double headway_s = 1.5;                        ///< τ_h
+  double standstill_gap_m = 5.0;                 ///< d_0
+  double actuator_lag_s = 0.45;                  ///< T_L
+  double actuator_gain = 1.0;                    ///< K_L
+  double step_s = 0.1;                           ///< T, sampling time
+  Eigen::Vector3d state_weights{1.0, 1.0, 0.0};  ///< ρ1 … ρ3, diagonal of Q
+  double input_weight = 1.0;                     ///< r
+  Eigen::Vector3d measurement_noise_variance{0.25, 0.04, 0.01};
+  double lead_acceleration_variance = 1.0;  ///< of a_p, the disturbance [m²/s⁴]
+  double actuator_noise_variance = 1e-4;    ///< added to a_f in each step [m²/s⁴]
+  double max_command_mps2 = 0.25 * 9.81;    ///< paper: ±0.25 g
+};
+
+/// x_{k+1} = A x_k + B u_k + G a_p, x = [d_desire − d, v_p − v_f, a_f] (paper eq. 27–28).
+struct CruiseModel {
+  Eigen::Matrix3d A;
+  Eigen::Vector3d B;
+  Eigen::Vector3d G;  ///< of the lead's acceleration
+};
+
+/// Exact zero-order hold of the paper's continuous model, disturbance included:
+/// exp([A B Γ; 0 0 0] T) = [A_d B_d Γ_d; 0 I].
+/// @throws std::invalid_argument if a time is not positive and finite.
+CruiseModel discretise(const CruiseOptions& options);
+
+/// u = −K x̂; x̂ from a stationary Kalman filter with gain L, x̂ ← x̂ + L (y − x̂), y all three states.
+struct CruiseDesign {
+  CruiseModel model;
+  Eigen::RowVector3d K;
+  Eigen::Matrix3d P;                               ///< cost-to-go
+  Eigen::Matrix3d L;                               ///< filter form (not A·L, the prediction form)
+  Eigen::Matrix3d S;                               ///< covariance of the innovation y − x̂
+  Eigen::RowVector2d K_speed;                      ///< set-speed hold, on [v_set − v, a_f]
+  double riccati_residual = 0.0;                   ///< largest absolute entry, of P
+  double kalman_residual = 0.0;                    ///< the same of the filter's equation
+  std::vector<std::complex<double>> poles;         ///< of A − B K
+  std::vector<std::complex<double>> filter_poles;  ///< of A (I − L)
+};
+
+/// Linear-quadratic gain and Kalman gain for the model (paper eq. 29–30, Fig. 10).
+/// @throws std::invalid_argument if a weight or variance is unusable, or the pair is not
+///         controllable or observable; the message says which and the rank found.
+CruiseDesign design_cruise(const CruiseOptions& options);
+
+}  // namespace roadbed::control
