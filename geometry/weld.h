@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/geometry/polygon.h"
+
+namespace roadbed::geometry {
+
+/// Makes rings that nearly touch share their vertices, so that a union leaves no hairline gaps.
+///
+/// First, points within `weld_m` of a point that was kept become that point; points are kept in
+/// lexicographic order, so the result does not depend on the order of the rings. Then every edge
+/// that passes a kept point within `weld_m` gets it as a vertex:
+///
+///         ●────────────●                 ●────────────●
+///         ●──────╮                       │      ╱ ▔ ▔          ● kept points; the edge below
+///                ●─────● ≤ weld_m   ▶    └─────●──────●        now passes through the middle one
+///
+/// No point moves by more than `weld_m`, no edge by more than twice that. Repeated points are
+/// dropped; rings of fewer than three points become empty. 0 only drops repeated points.
+/// O(N log N) for rings whose edges are short against the whole.
+/// @throws std::invalid_argument if `weld_m` is negative or not finite.
+std::vector<Ring> weld(std::vector<Ring> rings, double weld_m);
+
+}  // namespace roadbed::geometry
