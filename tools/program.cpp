@@ -22,7 +22,7 @@ struct Entry {
 
 // In the order in which --help lists them.
 constexpr Entry kCommands[] = {
-    {nullptr, nullptr},
+    {"import", make_import_command},
 };
 
 struct Registered {
@@ -61,7 +61,6 @@ int run_program(int argc, char** argv) {
 
   std::vector<Registered> commands;
   for (const Entry& entry : kCommands) {
-    if (entry.make == nullptr) continue;
     CLI::App* sub = app.add_subcommand(entry.name);
     commands.push_back({sub, entry.make()});
     commands.back().command->declare(*sub);

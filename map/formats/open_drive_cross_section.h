@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadbed/geometry/plan_view.h"
+#include "roadbed/map/formats/open_drive_document.h"
+
+namespace roadbed::map::open_drive {
+
+/// One side of one lane section: its lanes from the middle of the road outwards.
+struct SectionSide {
+  double from_s_m = 0.0, to_s_m = 0.0;
+  int sign = 1;  ///< of the lanes' ids: +1 left, −1 right
+  std::vector<const LaneRecord*> lanes;
+};
+
+/// The lanes of a section's side, and how far that side reaches: to the next section that says
+/// something of it.
+SectionSide section_side(const RoadRecord& road, std::size_t section, int sign);
+
+/// Index of the next section that says something of that side, or the number of sections.
+std::size_t next_section(const RoadRecord& road, std::size_t section, int sign);
+
+/// All borders of a side at one station: border 0 is the lane offset, border i the outer one of
+/// lane i.
+struct CrossSection {
+  double s_m = 0.0;
+  std::vector<Eigen::Vector2d> border_in_map;
+  std::vector<double> z_m;
+};
+
+/// Borders along a whole side, at stations dense enough that a straight line between neighbouring
+/// points is nowhere more than `max_error_m` from the border (proven in plan view from bounds of
+/// its second derivative). Where records do not meet, a station occurs twice.
+///
+/// A border at offset t lies at reference(s) + t·cos(superelevation)·normal(s); its height is
+/// elevation + t·sin(superelevation) − |t|·tan(crossfall).
+std::vector<CrossSection> sample_side(const RoadRecord& road, const geometry::PlanView& plan_view,
+                                      const SectionSide& side, double max_error_m);
+
+}  // namespace roadbed::map::open_drive

@@ -1,0 +1,247 @@
+#include "roadbed/map/formats/open_drive_links.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "roadbed/map/formats/open_drive_cross_section.h"
+
+namespace roadbed::map::open_drive {
+namespace {
+
+// An end of a lane in the sense of the road's s, not of driving.
+struct LaneEnd {
+  LaneId lane;
+  ContactPoint at;
+};
+
+class Linker {
+ public:
+  Linker(const Document& document, const BuiltLanes& built, std::vector<ImportRemark>& remarks)
+      : document_(document), built_(built), remarks_(remarks), links_(built.lanes.size()) {
+    for (std::size_t i = 0; i < document.roads.size(); ++i) road_index_[document.roads[i].id] = i;
+  }
+
+  std::vector<LaneLinks> link() {
+    for (std::size_t road = 0; road < document_.roads.size(); ++road) {
+      link_sections(road);
+      link_road_end(road, document_.roads[road].predecessor, ContactPoint::start);
+      link_road_end(road, document_.roads[road].successor, ContactPoint::end);
+      for (std::size_t s = 0; s < document_.roads[road].sections.size(); ++s) {
+        link_neighbours(road, s);
+      }
+    }
+    for (const JunctionRecord& junction : document_.junctions) {
+      for (const JunctionConnection& connection : junction.connections) {
+        link_connection(junction, connection);
+      }
+    }
+    for (LaneLinks& links : links_) {
+      for (std::vector<LaneId>* list : {&links.successors, &links.predecessors}) {
+        std::sort(list->begin(), list->end());
+        list->erase(std::unique(list->begin(), list->end()), list->end());
+      }
+    }
+    return std::move(links_);
+  }
+
+ private:
+  const RoadRecord& road_at(std::size_t index) const { return document_.roads[index]; }
+
+  std::optional<LaneId> find(std::size_t road, std::size_t section, int lane) const {
+    const auto found = built_.ids.find({road, section, lane});
+    if (found == built_.ids.end()) return {};
+    return found->second;
+  }
+
+  // The lane at an end of a road. Single-sided sections: the last one that says something of it.
+  std::optional<LaneId> lane_at(std::size_t road, ContactPoint end, int lane) const {
+    const std::size_t sections = road_at(road).sections.size();
+    for (std::size_t i = 0; i < sections; ++i) {
+      const std::size_t section = end == ContactPoint::start ? i : sections - 1 - i;
+      if (const auto found = find(road, section, lane)) return found;
+      if (!road_at(road).sections[section].single_side) return {};
+    }
+    return {};
+  }
+
+  bool leaves_at(const LaneEnd& end) const {
+    return built_.forward[end.lane.index] == (end.at == ContactPoint::end);
+  }
+
+  void fault(const std::string& element, long line, const std::string& message) {
+    remarks_.push_back({"import.link", true, element, line, message});
+  }
+
+  // Two lane ends touch: whichever lane drives out of its end leads to the one that drives in.
+  void join(const LaneEnd& a, const LaneEnd& b, long line) {
+    if (leaves_at(a) == leaves_at(b)) {
+      if (!is_drivable(built_.lanes[a.lane.index].type)) return;
+      fault("lane " + built_.lanes[a.lane.index].name, line,
+            fmt::format("is linked to lane {} end to end against its direction; the link is left "
+                        "out, correct the contact points or lane ids",
+                        built_.lanes[b.lane.index].name));
+      return;
+    }
+    const LaneEnd& from = leaves_at(a) ? a : b;
+    const LaneEnd& to = leaves_at(a) ? b : a;
+    links_[from.lane.index].successors.push_back(to.lane);
+    links_[to.lane.index].predecessors.push_back(from.lane);
+  }
+
+  void link_sections(std::size_t road) {
+    const auto& sections = road_at(road).sections;
+    for (std::size_t s = 0; s < sections.size(); ++s) {
+      for (const auto& [id, lane] : sections[s].lanes) {
+        const std::size_t next = next_section(road_at(road), s, id);
+        if (id == 0 || next >= sections.size()) continue;
+        for (const int to : lane.successors) join_sections(road, s, id, next, to, lane.line);
+        for (const auto& [next_id, next_lane] : sections[next].lanes) {
+          const auto& back = next_lane.predecessors;
+          if (std::find(back.begin(), back.end(), id) != back.end()) {
+            join_sections(road, s, id, next, next_id, next_lane.line);
+          }
+        }
+      }
+    }
+  }
+
+  void join_sections(std::size_t road, std::size_t section, int lane, std::size_t next, int to,
+                     long line) {
+    const auto a = find(road, section, lane), b = find(road, next, to);
+    if (a && b) {
+      join({*a, ContactPoint::end}, {*b, ContactPoint::start}, line);
+    } else if (a) {
+      fault("lane " + built_.lanes[a->index].name, line,
+            fmt::format("is linked to lane {} of the next section, which is not there", to));
+    }
+  }
+
+  void link_road_end(std::size_t road, const std::optional<RoadLink>& link, ContactPoint end) {
+    if (!link || link->to_junction) return;
+    const RoadRecord& record = road_at(road);
+    const auto other = road_index_.find(link->element_id);
+    if (other == road_index_.end()) {
+      fault("road " + record.id, record.line,
+            fmt::format("is linked to road {}, which is not there", link->element_id));
+      return;
+    }
+    const std::size_t section = end == ContactPoint::start ? 0 : record.sections.size() - 1;
+    if (record.sections.empty()) return;
+    const ContactPoint contact =
+        link->contact.value_or(end == ContactPoint::end ? ContactPoint::start : ContactPoint::end);
+    for (const auto& [id, lane] : record.sections[section].lanes) {
+      const auto& targets = end == ContactPoint::start ? lane.predecessors : lane.successors;
+      for (const int target : targets) {
+        const auto a = find(road, section, id);
+        const auto b = lane_at(other->second, contact, target);
+        if (a && b) {
+          join({*a, end}, {*b, contact}, lane.line);
+        } else if (a) {
+          fault("lane " + built_.lanes[a->index].name, lane.line,
+                fmt::format("is linked to lane {} of road {}, which is not there", target,
+                            link->element_id));
+        }
+      }
+    }
+  }
+
+  void link_connection(const JunctionRecord& junction, const JunctionConnection& connection) {
+    const auto incoming = road_index_.find(connection.incoming_road);
+    const auto connecting = road_index_.find(connection.connecting_road);
+    if (incoming == road_index_.end() || connecting == road_index_.end()) {
+      fault("junction " + junction.id, connection.line,
+            fmt::format("connects road {} to road {}, one of which is not there",
+                        connection.incoming_road, connection.connecting_road));
+      return;
+    }
+    const auto end = incoming_end(junction, connection, incoming->second, connecting->second);
+    if (!end) {
+      fault("junction " + junction.id, connection.line,
+            fmt::format("no end of road {} leads to it", connection.incoming_road));
+      return;
+    }
+    for (const auto& [from, to] : connection.lane_links) {
+      const auto a = lane_at(incoming->second, *end, from);
+      const auto b = lane_at(connecting->second, connection.contact, to);
+      if (a && b) {
+        join({*a, *end}, {*b, connection.contact}, connection.line);
+      } else {
+        fault(
+            "junction " + junction.id, connection.line,
+            fmt::format("links lane {} of road {} to lane {} of road {}, one of which is not there",
+                        from, connection.incoming_road, to, connection.connecting_road));
+      }
+    }
+  }
+
+  // The end of the incoming road that touches the connecting one: as the connecting road says,
+  // else as the incoming road says.
+  std::optional<ContactPoint> incoming_end(const JunctionRecord& junction,
+                                           const JunctionConnection& connection,
+                                           std::size_t incoming, std::size_t connecting) const {
+    const RoadRecord& via = road_at(connecting);
+    const auto& link = connection.contact == ContactPoint::start ? via.predecessor : via.successor;
+    if (link && !link->to_junction && link->element_id == connection.incoming_road &&
+        link->contact) {
+      return link->contact;
+    }
+    const RoadRecord& road = road_at(incoming);
+    const auto leads = [&](const std::optional<RoadLink>& l) {
+      return l && l->to_junction && l->element_id == junction.id;
+    };
+    if (leads(road.successor)) return ContactPoint::end;
+    if (leads(road.predecessor)) return ContactPoint::start;
+    return {};
+  }
+
+  void link_neighbours(std::size_t road, std::size_t section) {
+    const LaneSection& record = road_at(road).sections[section];
+    std::optional<int> smaller;  // the lane with the next smaller id, 0 left out
+    for (const auto& [id, lane] : record.lanes) {
+      if (id == 0) continue;
+      if (smaller) set_beside(road, section, *smaller, id);
+      smaller = id;
+    }
+  }
+
+  // `right` has the smaller id: it lies to the right, seen towards growing s.
+  void set_beside(std::size_t road, std::size_t section, int right, int left) {
+    const auto a = find(road, section, right), b = find(road, section, left);
+    if (!a || !b) return;
+    const Crossing crossing = crossing_between(road, section, right, left);
+    const bool same = built_.forward[a->index] == built_.forward[b->index];
+    (built_.forward[a->index] ? links_[a->index].left : links_[a->index].right) =
+        Neighbour{*b, same, crossing.to_larger_id};
+    (built_.forward[b->index] ? links_[b->index].right : links_[b->index].left) =
+        Neighbour{*a, same, crossing.to_smaller_id};
+  }
+
+  Crossing crossing_between(std::size_t road, std::size_t section, int right, int left) const {
+    const RoadRecord& record = road_at(road);
+    const LaneSection& lanes = record.sections[section];
+    // The marking belongs to the lane whose outer border it is, the middle one to lane 0.
+    const int owner = right > 0 ? right : (left < 0 ? left : 0);
+    const auto found = lanes.lanes.find(owner);
+    if (found == lanes.lanes.end()) return {};
+    const SectionSide side = section_side(record, section, left > 0 ? 1 : -1);
+    return crossing(found->second.marks, owner, side.to_s_m - side.from_s_m);
+  }
+
+  const Document& document_;
+  const BuiltLanes& built_;
+  std::vector<ImportRemark>& remarks_;
+  std::vector<LaneLinks> links_;
+  std::map<std::string, std::size_t> road_index_;
+};
+
+}  // namespace
+
+std::vector<LaneLinks> link_lanes(const Document& document, const BuiltLanes& built,
+                                  std::vector<ImportRemark>& remarks) {
+  return Linker(document, built, remarks).link();
+}
+
+}  // namespace roadbed::map::open_drive

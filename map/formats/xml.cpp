@@ -1,0 +1,123 @@
+#include "roadbed/map/formats/xml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "roadbed/map/input_error.h"
+
+namespace roadbed::map {
+namespace {
+
+std::vector<std::size_t> find_line_starts(const std::string& bytes) {
+  std::vector<std::size_t> starts{0};
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] == '\n') starts.push_back(i + 1);
+  }
+  return starts;
+}
+
+long line_at(const std::vector<std::size_t>& starts, std::ptrdiff_t offset) {
+  if (offset < 0) return 0;
+  const auto after =
+      std::upper_bound(starts.begin(), starts.end(), static_cast<std::size_t>(offset));
+  return static_cast<long>(after - starts.begin());
+}
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+std::optional<double> parse_finite(std::string_view text) {
+  text = trim(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+}  // namespace
+
+XmlDocument::XmlDocument(const std::string& bytes, std::string name)
+    : name_(std::move(name)), line_starts_(find_line_starts(bytes)) {
+  const pugi::xml_parse_result result =
+      document_.load_buffer(bytes.data(), bytes.size(), pugi::parse_default);
+  if (!result) {
+    throw InputError({.file = name_,
+                      .place = std::to_string(line_at(line_starts_, result.offset)),
+                      .element = {},
+                      .found = fmt::format("not well-formed XML ({})", result.description()),
+                      .needed = "a whole XML document",
+                      .remedy = "check whether the file was cut off or is of another kind"});
+  }
+}
+
+long XmlDocument::line_of(pugi::xml_node node) const {
+  return line_at(line_starts_, node.offset_debug());
+}
+
+void XmlDocument::refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
+                         const std::string& remedy) const {
+  std::string element = fmt::format("<{}>", node.name());
+  for (pugi::xml_node up = node; up; up = up.parent()) {
+    const std::string_view kind = up.name();
+    if (kind == "road" || kind == "junction" || kind == "lane") {
+      element += fmt::format(" of {} {}", kind, up.attribute("id").value());
+    }
+  }
+  throw InputError({.file = name_,
+                    .place = std::to_string(line_of(node)),
+                    .element = element,
+                    .found = found,
+                    .needed = needed,
+                    .remedy = remedy});
+}
+
+double XmlDocument::number(pugi::xml_node node, const char* attribute) const {
+  const pugi::xml_attribute found = node.attribute(attribute);
+  if (!found) {
+    refuse(node, fmt::format("attribute {} is missing", attribute), "a finite number", "add it");
+  }
+  const std::optional<double> value = parse_finite(found.value());
+  if (!value) {
+    refuse(node, fmt::format("{}=\"{}\"", attribute, found.value()), "a finite number",
+           "correct the value");
+  }
+  return *value;
+}
+
+double XmlDocument::number_or(pugi::xml_node node, const char* attribute, double fallback) const {
+  return node.attribute(attribute) ? number(node, attribute) : fallback;
+}
+
+std::optional<double> XmlDocument::optional_number(pugi::xml_node node,
+                                                   const char* attribute) const {
+  if (!node.attribute(attribute)) return {};
+  return parse_finite(node.attribute(attribute).value());
+}
+
+int XmlDocument::integer(pugi::xml_node node, const char* attribute) const {
+  const std::string_view written = trim(node.attribute(attribute).value());
+  int value = 0;
+  const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), value);
+  if (error != std::errc() || end != written.data() + written.size() || written.empty()) {
+    refuse(node, fmt::format("{}=\"{}\"", attribute, written), "a whole number",
+           "correct the value");
+  }
+  return value;
+}
+
+std::string XmlDocument::text(pugi::xml_node node, const char* attribute) const {
+  const std::string value = node.attribute(attribute).value();
+  if (value.empty()) {
+    refuse(node, fmt::format("attribute {} is missing or empty", attribute), "a text", "add it");
+  }
+  return value;
+}
+
+}  // namespace roadbed::map

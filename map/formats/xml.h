@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadbed::map {
+
+/// An XML document that knows the line of each element, and reads attributes strictly.
+/// External entities are never fetched and entity definitions never expanded.
+class XmlDocument {
+ public:
+  /// @param name  stands for the file in messages.
+  /// @throws InputError if the bytes are not well-formed XML.
+  XmlDocument(const std::string& bytes, std::string name);
+
+  pugi::xml_node root() const { return document_.document_element(); }
+  const std::string& name() const { return name_; }
+
+  /// Line of an element, from 1.
+  long line_of(pugi::xml_node node) const;
+
+  /// A finite number.
+  /// @throws InputError if the attribute is missing or not a finite number.
+  double number(pugi::xml_node node, const char* attribute) const;
+
+  /// The same, `fallback` where the attribute is missing.
+  double number_or(pugi::xml_node node, const char* attribute, double fallback) const;
+  std::optional<double> optional_number(pugi::xml_node node, const char* attribute) const;
+
+  /// @throws InputError if the attribute is missing or not a whole number.
+  int integer(pugi::xml_node node, const char* attribute) const;
+
+  /// @throws InputError if the attribute is missing or empty.
+  std::string text(pugi::xml_node node, const char* attribute) const;
+
+  /// Throws InputError placed at the element.
+  [[noreturn]] void refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
+                           const std::string& remedy) const;
+
+ private:
+  std::string name_;
+  std::vector<std::size_t> line_starts_;
+  pugi::xml_document document_;
+};
+
+}  // namespace roadbed::map

@@ -1,0 +1,60 @@
+#include "roadbed/map/lane.h"
+
+#include <algorithm>
+#include <array>
+
+namespace roadbed::map {
+
+std::string_view name(LaneType type) {
+  static constexpr std::array<std::string_view, 23> names = {
+      "none",    "driving",        "bidirectional", "entry",  "exit",       "onRamp",
+      "offRamp", "connectingRamp", "shoulder",      "stop",   "parking",    "border",
+      "biking",  "sidewalk",       "curb",          "median", "restricted", "roadWorks",
+      "tram",    "rail",           "bus",           "taxi",   "other"};
+  return names.at(static_cast<std::size_t>(type));
+}
+
+bool is_drivable(LaneType type) {
+  switch (type) {
+    case LaneType::driving:
+    case LaneType::bidirectional:
+    case LaneType::entry:
+    case LaneType::exit:
+    case LaneType::on_ramp:
+    case LaneType::off_ramp:
+    case LaneType::connecting_ramp:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_surface(LaneType type) {
+  switch (type) {
+    case LaneType::shoulder:
+    case LaneType::stop:
+    case LaneType::parking:
+    case LaneType::bus:
+    case LaneType::taxi:
+      return true;
+    default:
+      return is_drivable(type);
+  }
+}
+
+Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
+  const auto& stations = line.station_m;
+  const auto& points = line.in_map.points();
+  const auto after = std::upper_bound(stations.begin(), stations.end(), station_m);
+  if (after == stations.begin()) return points.front();
+  if (after == stations.end()) return points.back();
+  const auto i = static_cast<std::size_t>(after - stations.begin());
+  const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return points[i - 1] + share * (points[i] - points[i - 1]);
+}
+
+double Lane::width_m(double s_m) const {
+  return (point_at(left, s_m) - point_at(right, s_m)).norm();
+}
+
+}  // namespace roadbed::map

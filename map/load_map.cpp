@@ -1,0 +1,48 @@
+#include "roadbed/map/load_map.h"
+
+#include <fmt/format.h>
+
+#include "roadbed/map/compiled_map.h"
+#include "roadbed/map/formats/open_drive.h"
+#include "roadbed/map/formats/open_drive_document.h"
+#include "roadbed/map/formats/xml.h"
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/read_file.h"
+
+namespace roadbed::map {
+namespace {
+
+bool looks_like_xml(const std::string& bytes) {
+  const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string::npos && bytes[first] == '<';
+}
+
+}  // namespace
+
+RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadOptions& options) {
+  if (is_compiled_map(bytes)) return read_compiled_map(bytes, name);
+  if (!looks_like_xml(bytes)) {
+    throw InputError({.file = name,
+                      .place = {},
+                      .element = {},
+                      .found = "neither XML nor a compiled map",
+                      .needed = "an OpenDRIVE file or a compiled map",
+                      .remedy = "check whether it is the right file"});
+  }
+  const XmlDocument xml(bytes, name);
+  if (!open_drive::is_open_drive(xml.root().name())) {
+    throw InputError({.file = name,
+                      .place = std::to_string(xml.line_of(xml.root())),
+                      .element = {},
+                      .found = fmt::format("root element <{}>", xml.root().name()),
+                      .needed = "<OpenDRIVE>",
+                      .remedy = "give an OpenDRIVE file or a compiled map"});
+  }
+  return RoadMap(open_drive::read(xml, options));
+}
+
+RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) {
+  return parse_map(read_file(file), file.string(), options);
+}
+
+}  // namespace roadbed::map

@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "roadbed/map/compiled_map.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tools/command.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+// A CRS of the user's own in place of the file's.
+map::RoadMap with_crs(map::RoadMap road_map, const std::string& crs) {
+  if (crs.empty()) return road_map;
+  map::RoadMapParts parts = road_map.parts();
+  parts.crs = crs;
+  return map::RoadMap(std::move(parts));
+}
+
+class ImportCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description("Read a digital road map and write it as a compiled map");
+    app.add_option("IN", input_, "Map file: OpenDRIVE (.xodr), or a compiled one")->required();
+    app.add_option("-o,--output", output_, "Compiled map to write (.rbm)")->required();
+    app.add_option("--crs", crs_,
+                   "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
+                   "the file gives none or a wrong one; nothing is reprojected");
+    app.add_option("--max-error", max_error_m_,
+                   "Largest distance between a sampled border and the true curve [m]")
+        ->check(CLI::Range(1e-6, 1.0))
+        ->capture_default_str();
+    app.add_flag("--force", force_, "Replace the output if it exists");
+    app.footer("Example:\n  roadbed import town.xodr -o town.rbm");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    check_writable(output_, force_);
+    const map::RoadMap road_map =
+        with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
+    write_output(output_, map::write_compiled_map(road_map));
+    if (!common.quiet) report(streams.err, road_map);
+    return Exit::ok;
+  }
+
+ private:
+  void report(std::ostream& err, const map::RoadMap& road_map) const {
+    const auto& remarks = road_map.remarks();
+    const auto faults = std::count_if(remarks.begin(), remarks.end(),
+                                      [](const map::ImportRemark& r) { return r.is_fault; });
+    fmt::print(err, "{}: {}, {} roads, {} lanes, {} junctions, {} signals\n", output_.string(),
+               road_map.format(), road_map.roads().size(), road_map.lanes().size(),
+               road_map.junctions().size(), road_map.signals().size());
+    if (road_map.crs().empty()) {
+      fmt::print(err, "note: the file names no CRS; give --crs if you know it\n");
+    }
+    if (faults > 0) {
+      fmt::print(err,
+                 "note: {} faults of the file were mended or left out; see: roadbed validate\n",
+                 faults);
+    }
+  }
+
+  std::filesystem::path input_, output_;
+  std::string crs_;
+  double max_error_m_ = 1e-3;
+  bool force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_import_command() { return std::make_unique<ImportCommand>(); }
+
+}  // namespace roadbed::tools
