@@ -1,0 +1,217 @@
+#include "roadbed/tools/simulation/scenario.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/read_file.h"
+#include "roadbed/tools/support/json_node.h"
+#include "roadbed/tools/support/vehicle_json.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr Range kCoordinate{-1e9, 1e9};
+constexpr Range kAngle{-1e3, 1e3};
+constexpr Range kSpeed{0.0, 100.0};
+constexpr Range kTime{0.0, 3600.0};
+constexpr Range kDuration{0.1, 3600.0};
+constexpr Range kSize{0.05, 100.0};
+constexpr Range kDeviation{0.0, 100.0};
+constexpr Range kOffset{-100.0, 100.0};
+constexpr double kLargestSeed = 9007199254740992.0;  // 2⁵³: every integer up to it is a double
+
+ScenarioPlace place(const JsonNode& node) { return {node.text(), node.pointer()}; }
+
+std::filesystem::path beside(const JsonNode& node, const std::filesystem::path& folder) {
+  return folder / node.text();  // an absolute path stays itself
+}
+
+std::vector<std::filesystem::path> occupancy_files(const JsonNode& node,
+                                                   const std::filesystem::path& folder) {
+  if (node.value().is_string()) return {beside(node, folder)};
+  std::vector<std::filesystem::path> files;
+  for (const JsonNode& element : node.elements()) files.push_back(beside(element, folder));
+  if (files.empty()) node.refuse("is an empty list", "at least one file", "remove the key");
+  return files;
+}
+
+geometry::Pose2 pose(const JsonNode& node) {
+  return {.x_m = node.at("x_m").number(kCoordinate),
+          .y_m = node.at("y_m").number(kCoordinate),
+          .heading_rad = node.at("heading_rad").number(kAngle)};
+}
+
+ParkedObstacle parked(const JsonNode& node) {
+  if (const auto text = node.find("place")) {
+    node.require_object({"place", "d_m"});
+    return {ParkedObstacle::Beside{place(*text), node.number_or("d_m", 0.0, kOffset)}};
+  }
+  node.require_object({"x_m", "y_m", "heading_rad", "place", "d_m"});
+  return {pose(node)};
+}
+
+/// Times of a list must increase, or what lies between them has no meaning.
+void require_later(const JsonNode& node, double t_s, double previous_s) {
+  if (t_s > previous_s) return;
+  node.refuse(fmt::format("is {} after {}", t_s, previous_s), "a later time", "sort the list");
+}
+
+std::vector<JsonNode> not_empty(const JsonNode& list) {
+  std::vector<JsonNode> nodes = list.elements();
+  if (nodes.empty()) list.refuse("is an empty list", "at least one entry", "add one");
+  return nodes;
+}
+
+ScriptedObstacle scripted(const JsonNode& list) {
+  ScriptedObstacle obstacle;
+  for (const JsonNode& node : not_empty(list)) {
+    node.require_object({"t_s", "x_m", "y_m", "heading_rad"});
+    const double t_s = node.at("t_s").number(kTime);
+    if (!obstacle.poses.empty()) require_later(node.at("t_s"), t_s, obstacle.poses.back().t_s);
+    obstacle.poses.push_back({t_s, pose(node)});
+  }
+  return obstacle;
+}
+
+std::vector<TimedSpeed> speeds(const JsonNode& list) {
+  std::vector<TimedSpeed> timed;
+  for (const JsonNode& node : not_empty(list)) {
+    node.require_object({"t_s", "speed_mps"});
+    const double t_s = node.at("t_s").number(kTime);
+    if (!timed.empty()) require_later(node.at("t_s"), t_s, timed.back().t_s);
+    timed.push_back({t_s, node.at("speed_mps").number(kSpeed)});
+  }
+  return timed;
+}
+
+TrafficObstacle traffic(const JsonNode& node) {
+  node.require_object({"start", "to", "speed_mps", "speeds"});
+  TrafficObstacle obstacle;
+  obstacle.start = place(node.at("start"));
+  if (const auto to = node.find("to")) obstacle.to = place(*to);
+  const auto profile = node.find("speeds");
+  if (profile && node.find("speed_mps")) {
+    profile->refuse("stands beside speed_mps", "one of the two", "remove one");
+  }
+  obstacle.speeds = profile ? speeds(*profile)
+                            : std::vector<TimedSpeed>{{0.0, node.at("speed_mps").number(kSpeed)}};
+  return obstacle;
+}
+
+ScenarioObstacle obstacle(const JsonNode& node) {
+  node.require_object({"id", "kind", "length_m", "width_m", "parked", "scripted", "traffic"});
+  ScenarioObstacle result;
+  result.id = node.at("id").text();
+  if (const auto kind = node.find("kind")) result.kind = kind->text();
+  result.length_m = node.number_or("length_m", result.length_m, kSize);
+  result.width_m = node.number_or("width_m", result.width_m, kSize);
+  const auto stands = node.find("parked");
+  const auto moves = node.find("scripted");
+  const auto drives = node.find("traffic");
+  if (stands.has_value() + moves.has_value() + drives.has_value() != 1) {
+    node.refuse("does not say how it moves", "exactly one of parked, scripted, traffic",
+                "keep one of them");
+  }
+  if (stands) result.motion = parked(*stands);
+  if (moves) result.motion = scripted(*moves);
+  if (drives) result.motion = traffic(*drives);
+  return result;
+}
+
+std::vector<ScenarioObstacle> obstacles(const JsonNode& list) {
+  std::vector<ScenarioObstacle> result;
+  std::map<std::string, std::string> pointer_of_id;
+  for (const JsonNode& node : list.elements()) {
+    result.push_back(obstacle(node));
+    const auto [other, is_new] = pointer_of_id.emplace(result.back().id, node.pointer());
+    if (!is_new) {
+      node.at("id").refuse(fmt::format("is \"{}\" again, as {}", result.back().id, other->second),
+                           "an id of its own", "rename one of the two");
+    }
+  }
+  return result;
+}
+
+ScenarioNoise noise(const JsonNode& node) {
+  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
+                       "heading_rad", "speed_mps"});
+  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
+          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
+          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
+          .position_m = node.number_or("position_m", 0.0, kDeviation),
+          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
+          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation)};
+}
+
+ScenarioOptions options(const JsonNode& node) {
+  node.require_object({"desired_speed_mps", "max_lateral_acceleration_mps2",
+                       "comfort_deceleration_mps2", "clearance_m"});
+  const ScenarioOptions otherwise;
+  return {
+      .desired_speed_mps =
+          node.number_or("desired_speed_mps", otherwise.desired_speed_mps, {0.5, 100.0}),
+      .max_lateral_acceleration_mps2 = node.number_or(
+          "max_lateral_acceleration_mps2", otherwise.max_lateral_acceleration_mps2, {0.1, 10.0}),
+      .comfort_deceleration_mps2 = node.number_or("comfort_deceleration_mps2",
+                                                  otherwise.comfort_deceleration_mps2, {0.1, 10.0}),
+      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0})};
+}
+
+geometry::VehicleShape vehicle(const JsonNode& node) {
+  return parse_vehicle_json(node.value().dump(), node.file() + ":" + node.pointer());
+}
+
+std::uint64_t seed(const JsonNode& node) {
+  const double number = node.number({0.0, kLargestSeed});
+  if (number != std::floor(number)) {
+    node.refuse(fmt::format("is {}", number), "a whole number", "round it");
+  }
+  return static_cast<std::uint64_t>(number);
+}
+
+void read_ego(const JsonNode& node, Scenario& scenario) {
+  node.require_object({"start", "speed_mps"});
+  scenario.start = place(node.at("start"));
+  scenario.start_speed_mps = node.number_or("speed_mps", 0.0, kSpeed);
+}
+
+void read_optional_parts(const JsonNode& root, Scenario& scenario) {
+  if (const auto node = root.find("name")) scenario.name = node->text();
+  if (const auto node = root.find("occupancy")) {
+    scenario.occupancy_files = occupancy_files(*node, scenario.file.parent_path());
+  }
+  if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle(*node);
+  if (const auto node = root.find("seed")) scenario.seed = seed(*node);
+  if (const auto node = root.find("noise")) scenario.noise = noise(*node);
+  if (const auto node = root.find("options")) scenario.options = options(*node);
+  if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
+}
+
+}  // namespace
+
+Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
+  const nlohmann::json document = parse_json_strictly(bytes, file.string());
+  const JsonNode root(document, file.string());
+  root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "vehicle",
+                       "duration_s", "seed", "noise", "options", "obstacles"});
+  root.at("roadbed_scenario").number({1.0, 1.0});
+  Scenario scenario;
+  scenario.file = file;
+  scenario.name = file.stem().string();
+  scenario.map_file = beside(root.at("map"), file.parent_path());
+  read_ego(root.at("ego"), scenario);
+  scenario.goal = place(root.at("goal"));
+  scenario.duration_s = root.at("duration_s").number(kDuration);
+  read_optional_parts(root, scenario);
+  return scenario;
+}
+
+Scenario read_scenario(const std::filesystem::path& file) {
+  return parse_scenario(map::read_file(file), file);
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "roadbed/geometry/pose2.h"
+#include "roadbed/geometry/vehicle_shape.h"
+
+namespace roadbed::tools {
+
+// A scenario file, as it is written: places are still texts and coordinates the source's raw ones.
+// The schema is in tools/simulation/README.md. make_world() turns it into what is driven.
+
+/// A place given on the map, and how it was called in the file, for messages.
+struct ScenarioPlace {
+  std::string text;     ///< "X,Y[,HEADING]" or "lane:NAME[@S]"
+  std::string pointer;  ///< JSON pointer of the text
+};
+
+/// Stands for the whole scenario.
+struct ParkedObstacle {
+  /// Pose of its centre in source coordinates, or a place on a lane with an offset to the left.
+  struct Beside {
+    ScenarioPlace place;
+    double d_m = 0.0;
+  };
+  std::variant<geometry::Pose2, Beside> at;
+};
+
+/// Pose of an obstacle's centre at a time, in source coordinates.
+struct TimedPose {
+  double t_s = 0.0;
+  geometry::Pose2 pose;
+};
+
+/// Moves as written; linear between the poses, resting before the first and after the last.
+struct ScriptedObstacle {
+  std::vector<TimedPose> poses;  ///< at least one, times increase
+};
+
+struct TimedSpeed {
+  double t_s = 0.0;
+  double speed_mps = 0.0;
+};
+
+/// Drives along the centres of lanes: along a route, or always straight on.
+struct TrafficObstacle {
+  ScenarioPlace start;
+  std::optional<ScenarioPlace> to;
+  std::vector<TimedSpeed> speeds;  ///< at least one, times increase; linear between
+};
+
+struct ScenarioObstacle {
+  std::string id;  ///< unique
+  std::string kind = "car";
+  double length_m = 4.5;
+  double width_m = 1.8;
+  std::variant<ParkedObstacle, ScriptedObstacle, TrafficObstacle> motion;
+};
+
+/// Standard deviations of what is measured; white and Gaussian.
+struct ScenarioNoise {
+  double gap_m = 0.0;
+  double relative_speed_mps = 0.0;
+  double acceleration_mps2 = 0.0;
+  double position_m = 0.0;  ///< of each coordinate
+  double heading_rad = 0.0;
+  double speed_mps = 0.0;
+};
+
+struct ScenarioOptions {
+  double desired_speed_mps = 130.0 / 3.6;
+  double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
+  double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
+  double clearance_m = 0.3;                    ///< to obstacles and occupied space
+};
+
+struct Scenario {
+  std::filesystem::path file;
+  std::string name;
+  std::filesystem::path map_file;                      ///< resolved against the scenario's folder
+  std::vector<std::filesystem::path> occupancy_files;  ///< the same; empty: no occupancy
+  ScenarioPlace start, goal;
+  double start_speed_mps = 0.0;
+  geometry::VehicleShape vehicle;
+  double duration_s = 60.0;
+  std::uint64_t seed = 1;
+  ScenarioNoise noise;
+  ScenarioOptions options;
+  std::vector<ScenarioObstacle> obstacles;
+};
+
+/// Reads and checks a scenario; files that it names are not opened.
+/// @throws InputError naming the file and the JSON pointer of the first fault.
+Scenario read_scenario(const std::filesystem::path& file);
+
+/// The same from bytes; `file` stands for the scenario in messages and gives the folder.
+Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
+
+}  // namespace roadbed::tools
