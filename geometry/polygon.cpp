@@ -183,11 +183,7 @@ std::vector<Ring> without_folds(const std::vector<Ring>& rings) {
 
 /// Mean width of what a ring encloses.
 double mean_width_m(const Ring& ring) {
-  double perimeter_m = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    perimeter_m += (ring[(i + 1) % ring.size()] - ring[i]).norm();
-  }
-  return 2.0 * std::abs(signed_area_m2(ring)) / perimeter_m;
+  return 2.0 * std::abs(signed_area_m2(ring)) / perimeter_m(ring);
 }
 
 /// Takes out pieces, and closes holes, that are thinner than the weld distance.
@@ -231,6 +227,14 @@ double area_m2(const Polygon& polygon) {
   double area_m2 = std::abs(signed_area_m2(polygon.outer));
   for (const Ring& hole : polygon.holes) area_m2 -= std::abs(signed_area_m2(hole));
   return area_m2;
+}
+
+double perimeter_m(const Ring& ring) {
+  double sum_m = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    sum_m += (ring[(i + 1) % ring.size()] - ring[i]).norm();
+  }
+  return sum_m;
 }
 
 bool contains(const Ring& ring, const Vector2d& point) {

@@ -23,6 +23,9 @@ double signed_area_m2(const Ring& ring);
 /// Area of the region, holes taken out [m²].
 double area_m2(const Polygon& polygon);
 
+/// Length of the closed ring [m].
+double perimeter_m(const Ring& ring);
+
 /// Whether the point is inside or on the ring. O(N).
 bool contains(const Ring& ring, const Eigen::Vector2d& point);
 bool contains(const Polygon& polygon, const Eigen::Vector2d& point);

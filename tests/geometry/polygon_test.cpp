@@ -115,6 +115,8 @@ TEST(PolygonArea, LeavesHolesOut) {
   EXPECT_DOUBLE_EQ(area_m2({kSquare, {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}}), 15.0);
 }
 
+TEST(RingPerimeter, ClosesTheRing) { EXPECT_DOUBLE_EQ(perimeter_m(kSquare), 16.0); }
+
 TEST(Contains, CountsTheBoundaryAsInside) {
   for (const Vector2d& point : {Vector2d(0, 0), Vector2d(2, 0), Vector2d(4, 1.5), Vector2d(0, 4)}) {
     EXPECT_TRUE(contains(kSquare, point));
