@@ -1,0 +1,138 @@
+#include "roadbed/geometry/fit_curve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "roadbed/geometry/spline_problem.h"
+
+namespace roadbed::geometry {
+namespace {
+
+constexpr int kLeastIterations = 4;  // until the parameters have settled
+constexpr int kMostIterations = 40;
+constexpr double kAim = 0.9;         // of the tolerance, so that the last bit does not take long
+constexpr double kMostWeight = 1e4;  // beyond it the equations lose their digits
+constexpr double kMostKnotsPerScale = 4.0;
+constexpr double kScales[] = {1.0, 0.8, 0.65, 0.5};  // tried in turn where the curve bends too much
+
+struct Sample {
+  double u;
+  Eigen::Vector2d point, along;
+  double weight = 1.0;
+};
+
+void check(const FitOptions& options) {
+  const bool fine = options.knot_distance_m > 0.0 && options.tolerance_m > 0.0 &&
+                    options.scale_m > 0.0 &&
+                    options.scale_m <= kMostKnotsPerScale * options.knot_distance_m;
+  if (!fine) {
+    throw std::invalid_argument(fmt::format(
+        "fit_curve: knot distance {} m, tolerance {} m and scale {} m must be positive and the "
+        "scale at most {} knot distances",
+        options.knot_distance_m, options.tolerance_m, options.scale_m, kMostKnotsPerScale));
+  }
+}
+
+std::vector<Sample> samples_along(const Polyline& line, std::size_t count) {
+  const double step_m = line.length_m() / static_cast<double>(count);
+  std::vector<Sample> samples;
+  samples.reserve(count + 1);
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double u = step_m * static_cast<double>(i);
+    const Eigen::Vector2d along = (line.at(u + step_m) - line.at(u - step_m)).normalized();
+    samples.push_back({u, line.at(u), along});
+  }
+  return samples;
+}
+
+// One smoothing spline through the points of a line, refined until it keeps the tolerance.
+class Fit {
+ public:
+  Fit(const Polyline& line, double scale_m, const FitOptions& options)
+      : length_m_(line.length_m()),
+        scale_m_(scale_m),
+        tolerance_m_(options.tolerance_m),
+        spans_(static_cast<std::size_t>(
+            std::max(1.0, std::ceil(length_m_ / options.knot_distance_m)))),
+        samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder))) {}
+
+  FittedCurve refined() {
+    for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+      solve();
+      measure();
+      if (largest_move_m_ <= tolerance_m_ && iteration >= kLeastIterations) break;
+    }
+    return {std::move(curve_), largest_move_m_, 0.0};
+  }
+
+ private:
+  double knot_distance() const { return length_m_ / static_cast<double>(spans_); }
+
+  void solve() {
+    const double step_m = length_m_ / static_cast<double>(samples_.size() - 1);
+    SplineProblem problem(spans_, knot_distance());
+    problem.smooth(std::pow(scale_m_, 6));
+    for (const Sample& sample : samples_) {
+      const Eigen::Vector2d normal(-sample.along.y(), sample.along.x());
+      const Eigen::Matrix2d weight =
+          sample.along * sample.along.transpose() + sample.weight * normal * normal.transpose();
+      problem.attract(sample.u, sample.point, step_m * weight);
+    }
+    curve_ = SmoothCurve(std::move(problem).solve(), knot_distance());
+  }
+
+  void measure() {
+    largest_move_m_ = 0.0;
+    const double u_per_s = length_m_ / curve_.length_m();
+    for (Sample& sample : samples_) {
+      const LinePosition foot = curve_.project(sample.point, sample.u / u_per_s);
+      sample.u = std::clamp(foot.s_m * u_per_s, 0.0, length_m_);
+      const double move_m = std::abs(foot.d_m);
+      largest_move_m_ = std::max(largest_move_m_, move_m);
+      const double excess = move_m / (kAim * tolerance_m_);
+      if (move_m > tolerance_m_) {
+        sample.weight = std::min(kMostWeight, sample.weight * excess * excess);
+      }
+    }
+  }
+
+  double length_m_, scale_m_, tolerance_m_;
+  std::size_t spans_;
+  std::vector<Sample> samples_;
+  SmoothCurve curve_;
+  double largest_move_m_ = 0.0;
+};
+
+double peak_curvature(const SmoothCurve& curve, double step_m) {
+  double peak = 0.0;
+  for (double s = 0.0; s < curve.length_m(); s += step_m) {
+    peak = std::max(peak, std::abs(curve.at(s).curvature_per_m[0]));
+  }
+  return peak;
+}
+
+}  // namespace
+
+FittedCurve fit_curve(std::span<const Eigen::Vector2d> points, const FitOptions& options) {
+  check(options);
+  const Polyline line({points.begin(), points.end()});
+  if (!(line.length_m() > 0.0)) {
+    throw std::invalid_argument("fit_curve: needs at least two distinct points");
+  }
+  FittedCurve best;
+  for (const double share : kScales) {
+    FittedCurve fitted = Fit(line, share * options.scale_m, options).refined();
+    fitted.peak_curvature_per_m = peak_curvature(fitted.curve, 0.25 * options.knot_distance_m);
+    const bool straighter = fitted.peak_curvature_per_m < best.peak_curvature_per_m;
+    if (share == kScales[0] || straighter) best = std::move(fitted);
+    if (best.peak_curvature_per_m <= options.max_curvature_per_m) break;
+  }
+  return best;
+}
+
+}  // namespace roadbed::geometry

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "roadbed/geometry/band_matrix.h"
+
+namespace roadbed::geometry {
+
+/// Normal equations for the control points of a uniform B-spline of degree seven that passes near
+/// points and bends little. Unknowns: x and y of each control point in turn.
+class SplineProblem {
+ public:
+  SplineProblem(std::size_t spans, double knot_distance);
+
+  /// Adds factor · ∫ |p‴(u)|² du.
+  void smooth(double factor);
+
+  /// Adds (p(u) − point)ᵀ weight (p(u) − point).
+  void attract(double u, const Eigen::Vector2d& point, const Eigen::Matrix2d& weight);
+
+  /// The control points of least cost; the problem is used up.
+  std::vector<Eigen::Vector2d> solve() &&;
+
+ private:
+  std::size_t spans_;
+  double knot_distance_;
+  BandMatrix matrix_;
+  std::vector<double> right_;
+};
+
+}  // namespace roadbed::geometry
