@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Makes scans/*.pcd, what a laser scanner would see on the way of drive.json, and
+scenarios/narrow_gap.pcd. Usage: data/make_scans.py
+
+A car with a scanner on its roof stands still every few metres along the way. Each scan is a binary
+PCD of float32 x y z in the map's coordinates, its VIEWPOINT the scanner's place. Rays meet the
+ground, house fronts, garden walls, lamp posts, traffic lights and parked cars: those of drive.json
+and some in the parking lane. Same seed, same bytes.
+"""
+
+import json
+import struct
+from math import atan2, cos, hypot, pi, radians, sin, sqrt
+from pathlib import Path
+from random import Random
+from xml.etree import ElementTree
+
+from road_borders import read_roads
+
+DATA = Path(__file__).parent
+SCANNER_HEIGHT = 1.8  # m
+REACH = 45.0  # m
+DOWN_TO_UP = [-25, -20, -16, -13, -10.5, -8.5, -7, -5.5, -4.2, -3, -2, -1, 0, 1.5, 4, 8]  # degrees
+AROUND = 360  # rays
+RANGE_NOISE = 0.01  # m, standard deviation
+THINNING = 0.2  # m: one point of a scan per cube of this size
+
+# (road, section, lane) one after the other, as route goes from drive.json's start to its goal.
+WAY = [
+    (1, 3, 1), (1, 2, 2), (1, 1, 2), (1, 0, 2), (1007, 0, -1),
+    (2, 0, -1), (2, 1, -1), (2, 2, -1), (2, 3, -1), (2201, 0, -1), (22, 0, -1), (2300, 0, -1),
+    (23, 0, -1), (2000, 0, -1), (20, 0, -1), (2102, 0, -1), (7, 0, 1),
+]
+
+
+class Box:
+    """Stands upright, turned by a heading."""
+
+    def __init__(self, x, y, heading, length, width, bottom, top):
+        self.x, self.y, self.bottom, self.top = x, y, bottom, top
+        self.half = length / 2, width / 2
+        self.c, self.s = cos(heading), sin(heading)
+        self.radius = hypot(*self.half)
+
+    def hit(self, ox, oy, oz, dx, dy, dz):
+        """Distance along the ray to where it enters, None where it misses."""
+        x, y = ox - self.x, oy - self.y
+        near, far = 0.0, 1e9
+        for place, step, low, high in (
+            (self.c * x + self.s * y, self.c * dx + self.s * dy, -self.half[0], self.half[0]),
+            (self.c * y - self.s * x, self.c * dy - self.s * dx, -self.half[1], self.half[1]),
+            (oz, dz, self.bottom, self.top),
+        ):
+            if abs(step) < 1e-12:
+                if not low <= place <= high:
+                    return None
+                continue
+            a, b = sorted(((low - place) / step, (high - place) / step))
+            near, far = max(near, a), min(far, b)
+        return near if near <= far else None
+
+
+class Post:
+    """An upright cylinder."""
+
+    def __init__(self, x, y, radius, top):
+        self.x, self.y, self.radius, self.top = x, y, radius, top
+
+    def hit(self, ox, oy, oz, dx, dy, dz):
+        x, y = ox - self.x, oy - self.y
+        a, b, c = dx * dx + dy * dy, x * dx + y * dy, x * x + y * y - self.radius**2
+        if b * b < a * c:
+            return None
+        distance = (-b - sqrt(b * b - a * c)) / a
+        return distance if distance > 0 and 0 <= oz + distance * dz <= self.top else None
+
+
+def car(x, y, heading, length=4.4, width=1.8):
+    cabin = -0.1 * length
+    return [
+        Box(x, y, heading, length, width, 0.15, 0.85),
+        Box(x + cabin * cos(heading), y + cabin * sin(heading), heading,
+            0.55 * length, width - 0.2, 0.85, 1.45),
+    ]
+
+
+def parked_cars(scenario):
+    boxes = []
+    for obstacle in scenario["obstacles"]:
+        if "parked" in obstacle:
+            pose = obstacle["parked"]
+            boxes += car(pose["x_m"], pose["y_m"], pose["heading_rad"],
+                         obstacle["length_m"], obstacle["width_m"])
+    return boxes
+
+
+def parking_lane(roads):
+    """Cars in the parking lane of Church Street."""
+    boxes = []
+    for s in (42.0, 49.0, 63.0, 70.0, 84.0):
+        x, y, heading = roads["3"].middle(1, -2, s)
+        boxes += car(x, y, heading)
+    return boxes
+
+
+def beside_pavement(road, section, lane, s, distance):
+    """A place `distance` behind a pavement, and the direction of the street."""
+    inner, outer = road.borders(section, lane, s)
+    x, y, heading = road.middle(section, lane, s)
+    width = hypot(outer[0] - inner[0], outer[1] - inner[1])
+    share = 1 + distance / width
+    return (inner[0] + share * (outer[0] - inner[0]), inner[1] + share * (outer[1] - inner[1]),
+            heading)
+
+
+def street_sides(road):
+    """Section, outermost lane (the pavement) and range of s along both sides of a street."""
+    for index, section in enumerate(road.sections):
+        lanes = road.lanes(section)
+        for lane in (max(lanes), min(lanes)):
+            if lanes[lane].get("type") == "sidewalk":
+                yield index, lane, *road.ranges[index]
+
+
+def street_front(road, random):
+    """Houses, or garden walls between them, and lamp posts in the pavement's outer half."""
+    things = []
+    for index, lane, start, end in street_sides(road):
+        s = start + 4.0
+        while s < end - 4.0:
+            length = min(random.uniform(8.0, 14.0), end - s)
+            middle = min(s + length / 2, end)
+            if random.random() < 0.65:
+                x, y, heading = beside_pavement(road, index, lane, middle, 5.5)
+                height = random.choice((3.0, 6.0, 9.0))
+                things.append(Box(x, y, heading, length - 1.0, 8.0, 0.0, height))
+            else:
+                x, y, heading = beside_pavement(road, index, lane, middle, 0.5)
+                things.append(Box(x, y, heading, length, 0.3, 0.0, 1.2))
+            x, y, _ = beside_pavement(road, index, lane, s, -0.4)
+            things.append(Post(x, y, 0.1, 5.0))
+            s += length + 1.0
+    return things
+
+
+def traffic_lights(roads):
+    posts = []
+    for road in roads.values():
+        for signal in road.node.findall("signals/signal"):
+            if signal.get("dynamic") == "yes":
+                sections = road.lanes(road.sections[0])
+                x, y, _ = beside_pavement(road, 0, max(sections), float(signal.get("s")), -0.5)
+                posts.append(Post(x, y, 0.12, 3.5))
+    return posts
+
+
+def town_things(roads, scenario):
+    random = Random(20261121)
+    things = parked_cars(scenario) + parking_lane(roads) + traffic_lights(roads)
+    for name in ("1", "2", "3", "7"):
+        things += street_front(roads[name], random)
+    things.append(Post(500.0, 200.0, 4.0, 3.0))  # the monument on the roundabout
+    return things
+
+
+def standing_places(roads, step):
+    """Every `step` metres along the way, its first place after half a step."""
+    to_go = step / 2
+    for name, index, lane in WAY:
+        road = roads[str(name)]
+        start, end = road.ranges[index]
+        while to_go < end - start:
+            x, y, _ = road.middle(index, lane, start + to_go if lane < 0 else end - to_go)
+            yield x, y
+            to_go += step
+        to_go -= end - start
+
+
+def first_hit(things, ox, oy, oz, dx, dy, dz):
+    """Distance to the nearest thing or the ground, None beyond reach."""
+    nearest = -oz / dz if dz < 0 else REACH
+    for thing in things:
+        distance = thing.hit(ox, oy, oz, dx, dy, dz)
+        if distance is not None and distance < nearest:
+            nearest = distance
+    return nearest if nearest < REACH else None
+
+
+def scan(things, x, y, random):
+    """Points [m] seen from a place, thinned; those nearest in angle come first."""
+    near = [t for t in things if hypot(t.x - x, t.y - y) < REACH + t.radius]
+    bearings = []  # of each thing: direction and half its angle of view
+    for thing in near:
+        distance = hypot(thing.x - x, thing.y - y)
+        half = pi if distance <= thing.radius else atan2(thing.radius, distance - thing.radius)
+        bearings.append((thing, atan2(thing.y - y, thing.x - x), half))
+    kept = {}
+    for k in range(AROUND):
+        turn = 2 * pi * (k + random.random()) / AROUND
+        ahead = [thing for thing, bearing, half in bearings
+                 if abs((turn - bearing + pi) % (2 * pi) - pi) <= half]
+        for degrees in DOWN_TO_UP:
+            up = radians(degrees)
+            ray = cos(turn) * cos(up), sin(turn) * cos(up), sin(up)
+            distance = first_hit(ahead, x, y, SCANNER_HEIGHT, *ray)
+            if distance is None:
+                continue
+            distance += random.gauss(0.0, RANGE_NOISE)
+            point = tuple(o + distance * d for o, d in zip((x, y, SCANNER_HEIGHT), ray))
+            kept.setdefault(tuple(int(v // THINNING) for v in point), point)
+    return list(kept.values())
+
+
+def write_pcd(file, points, sensor):
+    header = (
+        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\n"
+        f"TYPE F F F\nCOUNT 1 1 1\nWIDTH {len(points)}\nHEIGHT 1\n"
+        f"VIEWPOINT {sensor[0]:.3f} {sensor[1]:.3f} {sensor[2]:.3f} 1 0 0 0\n"
+        f"POINTS {len(points)}\nDATA binary\n"
+    )
+    file.write_bytes(header.encode() + b"".join(struct.pack("<3f", *p) for p in points))
+
+
+def narrow_gap():
+    """Two walls along the lane that leave 2.9 m between them, seen from in front of them."""
+    walls = [Box(170.0, y, 0.0, 12.0, 0.3, 0.0, 1.2) for y in (196.75, 199.95)]
+    return scan(walls, 155.0, 198.25, Random(20261121)), (155.0, 198.25, SCANNER_HEIGHT)
+
+
+def main():
+    roads = read_roads(ElementTree.parse(DATA / "town.xodr").getroot())
+    things = town_things(roads, json.loads((DATA / "drive.json").read_text()))
+    folder = DATA / "scans"
+    folder.mkdir(exist_ok=True)
+    for old in folder.glob("*.pcd"):
+        old.unlink()
+    random = Random(20261122)
+    for number, (x, y) in enumerate(standing_places(roads, 20.0)):
+        points = scan(things, x, y, random)
+        write_pcd(folder / f"scan_{number:02}.pcd", points, (x, y, SCANNER_HEIGHT))
+    write_pcd(DATA / "scenarios" / "narrow_gap.pcd", *narrow_gap())
+
+
+if __name__ == "__main__":
+    main()
