@@ -1,0 +1,81 @@
+// What only a browser can tell: the scripts' own tests, and that the page comes up.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "roadbed/map/read_file.h"
+#include "roadbed/tests/support/browser.h"
+#include "roadbed/tests/support/sample_report.h"
+#include "roadbed/tools/report/page_parts.h"
+#include "roadbed/tools/report/report.h"
+
+namespace roadbed::tools {
+namespace {
+
+using tests::page_after_scripts;
+
+// Not testing::HasSubstr, which would print the whole page.
+bool holds(const std::string& page, std::string_view part) {
+  return page.find(part) != std::string::npos;
+}
+
+// The page with a script at its end that writes down which files it asked for.
+std::string page_that_counts_requests(const ReportInput& input) {
+  std::string html = drive_report_html(input);
+  const std::string count =
+      "<script>document.documentElement.dataset.requests = "
+      "performance.getEntriesByType('resource').length;</script>";
+  return html.insert(html.rfind("</body>"), count);
+}
+
+std::string script_tests_page() {
+  const auto file = std::filesystem::path(ROADBED_TESTS) / "tools/report/page_test.js";
+  return "<!DOCTYPE html><meta charset=\"utf-8\"><body><script>" + std::string(kPageJs) +
+         map::read_file(file) + "</script></body>";
+}
+
+TEST(ReportInBrowser, ItsScriptsKeepTheirLaws) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  EXPECT_THAT(page_after_scripts(browser, script_tests_page(), ""),
+              testing::ContainsRegex("all [0-9][0-9] hold"));
+}
+
+TEST(ReportInBrowser, ShowsTheMomentOfItsLinkWithoutErrorOrRequest) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const std::string page =
+      page_after_scripts(browser, page_that_counts_requests(tests::sample_report()), "#t=9.5");
+  EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
+  EXPECT_FALSE(holds(page, "data-error")) << "data-error";
+  EXPECT_TRUE(holds(page, "data-requests=\"0\""));
+  EXPECT_TRUE(holds(page, ">9.50 s</output>"));
+  EXPECT_TRUE(holds(page, "<b class=\"\">pass</b> parked-1 narrows the lane"));
+}
+
+TEST(ReportInBrowser, ComesUpWithNothingToShow) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const std::string page = page_after_scripts(browser, drive_report_html({}), "");
+  EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
+  EXPECT_FALSE(holds(page, "data-error")) << "data-error";
+  EXPECT_TRUE(holds(page, "No drive"));
+}
+
+TEST(ReportInBrowser, RunsNoScriptOutOfANameInItsInput) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const std::string attack = "</script><img src=x onerror='document.title=\"broken in\"'>";
+  ReportInput input = tests::sample_report();
+  input.scenario = input.command = input.crs = attack;
+  input.lanes[0].name = input.obstacles[0].id = input.plans[0].note = attack;
+  input.decisions[0].state = input.decisions[0].reason = input.events[0].text = attack;
+  input.plots[0].title = input.plots[0].series[0].name = input.checks[0].name = attack;
+  input.checks[0].bound = input.sources[0].name = input.verdict.text = attack;
+  const std::string page = page_after_scripts(browser, drive_report_html(input), "#t=0");
+  EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
+  EXPECT_FALSE(holds(page, "<title>broken in")) << "<title>broken in";
+  EXPECT_FALSE(holds(page, "<img")) << "<img";
+}
+
+}  // namespace
+}  // namespace roadbed::tools

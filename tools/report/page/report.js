@@ -1,0 +1,41 @@
+// Starts the page: one clock, and all that listens to it.
+
+/** First and last time of the drive, else of the plots. */
+function timesOf(scene, plots) {
+  const all = [scene.drive.t, ...plots.map((plot) => decodeSeries(plot.t))].filter((t) => t.length > 0);
+  if (all.length === 0) return [0, 0];
+  const ranged = scene.drive.t.length > 0 ? all.slice(0, 1) : all;
+  return [Math.min(...ranged.map((t) => t[0])), Math.max(...ranged.map((t) => t[t.length - 1]))];
+}
+
+function addReading(list, name, value) {
+  addText(list, "dt", "", name);
+  addText(list, "dd", "", value);
+}
+
+/** The vehicle's state at the page's time, beside the map. */
+function showState(page) {
+  const hud = element("hud"), {drive, plans, planTimes} = page.map.scene;
+  hud.replaceChildren();
+  if (drive.t.length === 0) return void (hud.textContent = "No drive");
+  const state = stateAt(drive, page.clock.t), list = document.createElement("dl");
+  addReading(list, "speed", `${state.v.toFixed(2)} m/s (${(3.6 * state.v).toFixed(0)} km/h)`);
+  addReading(list, "acceleration", `${state.a.toFixed(2)} m/s²`);
+  addReading(list, "steering", `${(state.steering * 180 / Math.PI).toFixed(1)}°`);
+  const plan = plans[lastAtOrBefore(planTimes, page.clock.t + 1e-9)];
+  if (plan && plan.note !== "") addReading(list, "plan", plan.note);
+  hud.append(list);
+}
+
+function start() {
+  const data = JSON.parse(element("data").textContent), scene = decodeScene(data);
+  const clock = makeClock(...timesOf(scene, data.plots));
+  const page = {clock, map: makeMap(scene, clock), plots: []};
+  makePlots(data.plots, page);
+  makePlayer(data, page);
+  clock.listeners.push(() => showState(page));
+  setFollow(page.map, followInFragment(location.hash));
+  seek(clock, timeInFragment(location.hash) ?? clock.start);
+  playOn(clock);
+  document.documentElement.dataset.ready = "yes";
+}

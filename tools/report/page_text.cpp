@@ -1,0 +1,155 @@
+#include "roadbed/tools/report/page_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/tools/report/escape.h"
+
+namespace roadbed::tools {
+namespace {
+
+// "12.5", not "12.500": at most `decimals`, no zeros at the end, no minus zero.
+std::string short_number(double value, int decimals) {
+  if (!std::isfinite(value)) return value > 0 ? "∞" : (value < 0 ? "−∞" : "–");
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+std::string verdict_html(const ReportVerdict& verdict, std::string_view label) {
+  return fmt::format("<p class=\"verdict {}\"><span class=\"sign\">{}</span><span>{}{}</span></p>",
+                     verdict.good ? "good" : "bad", verdict.good ? "✔" : "✖", label,
+                     escape_markup(verdict.text));
+}
+
+double driven_m(const geometry::Trajectory& drive) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < drive.points().size(); ++i) {
+    const Eigen::Vector2d step =
+        drive.points()[i].pose().position() - drive.points()[i - 1].pose().position();
+    length_m += step.norm();
+  }
+  return length_m;
+}
+
+struct Fact {
+  std::string_view name;
+  std::string value;
+};
+
+std::vector<Fact> facts_of_drive(const geometry::Trajectory& drive) {
+  if (drive.empty()) return {};
+  double top_mps = 0.0, strongest_mps2 = 0.0, lateral_mps2 = 0.0;
+  for (const auto& p : drive.points()) {
+    top_mps = std::max(top_mps, p.speed_mps);
+    strongest_mps2 = std::max(strongest_mps2, std::abs(p.acceleration_mps2));
+    lateral_mps2 = std::max(lateral_mps2, std::abs(p.speed_mps * p.speed_mps * p.curvature_per_m));
+  }
+  return {{"duration", fmt::format("{:.1f} s", drive.end_s() - drive.start_s())},
+          {"driven", fmt::format("{:.1f} m", driven_m(drive))},
+          {"top speed", fmt::format("{:.1f} m/s", top_mps)},
+          {"largest acceleration", fmt::format("{:.2f} m/s²", strongest_mps2)},
+          {"largest lateral acceleration", fmt::format("{:.2f} m/s²", lateral_mps2)}};
+}
+
+std::string facts_html(const ReportInput& input) {
+  std::vector<Fact> facts = facts_of_drive(input.drive);
+  const auto passed = std::ranges::count_if(input.checks, &ReportCheck::passed);
+  if (!input.checks.empty()) {
+    facts.push_back({"checks passed", fmt::format("{} of {}", passed, input.checks.size())});
+  }
+  std::string html = "<dl class=\"facts\">";
+  for (const Fact& fact : facts) {
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", fact.name, fact.value);
+  }
+  return html + "</dl>";
+}
+
+std::string moment_link(double t_s) {
+  const std::string t = short_number(t_s, 2);
+  return fmt::format("<a href=\"#t={0}\" data-t=\"{0}\">{0} s</a>", t);
+}
+
+std::string check_row(const ReportCheck& check) {
+  const std::string value = check.value ? short_number(*check.value, 3) : "–";
+  return fmt::format(
+      "<tr><td>{}</td><td class=\"number\">{} {}</td><td class=\"number\">{}</td>"
+      "<td class=\"number\">{}</td><td class=\"{}\">{}</td></tr>\n",
+      escape_markup(check.name), value, escape_markup(check.unit), escape_markup(check.bound),
+      check.at_s ? moment_link(*check.at_s) : "", check.passed ? "passed" : "failed",
+      check.passed ? "✔ passed" : "✖ failed");
+}
+
+std::string_view sign_of(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "<span class=\"sign info\" title=\"note\">●</span>";
+    case Severity::warning:
+      return "<span class=\"sign warning\" title=\"warning\">▲</span>";
+    case Severity::fault:
+      return "<span class=\"sign fault\" title=\"fault\">✖</span>";
+  }
+  return {};
+}
+
+std::string foot_entry(std::string_view name, const std::string& html) {
+  return html.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html);
+}
+
+}  // namespace
+
+std::string page_head(const ReportInput& input) {
+  std::string html = fmt::format("<div class=\"name\"><h1>{}</h1><p class=\"scenario\">{}</p></div>\n",
+                                 escape_markup(input.title), escape_markup(input.scenario));
+  html += facts_html(input);
+  html += "<div class=\"verdicts\">" + verdict_html(input.verdict, "");
+  if (input.audit) html += verdict_html(*input.audit, "Occupancy: ");
+  return html + "</div>";
+}
+
+std::string page_checks(const ReportInput& input) {
+  std::string html = "<section class=\"card\"><h2>What was checked</h2>\n";
+  if (input.checks.empty()) return html + "<p class=\"none\">Nothing.</p></section>";
+  html +=
+      "<table id=\"checks\"><thead><tr><th>check</th><th class=\"number\">value</th>"
+      "<th class=\"number\">bound</th><th class=\"number\">at</th><th>result</th></tr></thead>"
+      "<tbody>\n";
+  for (const ReportCheck& check : input.checks) html += check_row(check);
+  return html + "</tbody></table></section>";
+}
+
+std::string page_events(const ReportInput& input) {
+  std::string html = "<section class=\"card\"><h2>What happened</h2>\n";
+  if (input.events.empty()) return html + "<p class=\"none\">Nothing of note.</p></section>";
+  html += "<ol class=\"events\">\n";
+  for (const ReportEvent& event : input.events) {
+    html += fmt::format("<li>{}{}<span>{}</span></li>\n", sign_of(event.severity),
+                        moment_link(event.t_s), escape_markup(event.text));
+  }
+  return html + "</ol></section>";
+}
+
+std::string page_foot(const ReportInput& input) {
+  std::string html = "<dl>\n";
+  const auto code = [](const std::string& text) {
+    return text.empty() ? text : "<code>" + escape_markup(text) + "</code>";
+  };
+  html += foot_entry("Made by", escape_markup(input.version));
+  html += foot_entry("Again with", code(input.command));
+  html += foot_entry("Coordinates",
+                     input.crs.empty() ? "as in the map; its CRS is unknown" : code(input.crs));
+  for (const ReportSource& source : input.sources) {
+    html += foot_entry(escape_markup(source.role),
+                       code(source.name) + " xxhash " + code(source.xxhash));
+  }
+  return html + "</dl>";
+}
+
+}  // namespace roadbed::tools
