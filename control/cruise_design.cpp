@@ -13,7 +13,7 @@ namespace roadbed::control {
 namespace {
 
 void require(bool holds, const char* rule, double found) {
-  if (!holds) throw std::invalid_argument(fmt::format("cruise design: {}, got {}", rule, found));
+  if (!holds) throw std::invalid_argument(fmt::format("{}, got {}", rule, found));
 }
 
 void require_positive(double value, const char* rule) {
@@ -41,7 +41,7 @@ void check(const CruiseOptions& options) {
 void require_rank(int rank, const char* what) {
   if (rank == 3) return;
   throw std::invalid_argument(
-      fmt::format("cruise design: {}: rank {} of 3; change the model or the weights", what, rank));
+      fmt::format("{}: rank {} of 3", what, rank));
 }
 
 void check_ranks(const CruiseModel& model, const CruiseOptions& options) {
@@ -57,8 +57,8 @@ RiccatiSolution solve_or_throw(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
                                const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R) {
   RiccatiSolution found = solve_riccati(A, B, Q, R);
   if (!found.converged) {
-    throw std::invalid_argument(fmt::format(
-        "cruise design: the Riccati equation was not solved in {} doublings", found.steps));
+    throw std::invalid_argument(
+        fmt::format("the Riccati equation was not solved in {} doublings", found.steps));
   }
   return found;
 }

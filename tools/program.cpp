@@ -23,6 +23,7 @@ struct Entry {
 // In the order in which --help lists them.
 constexpr Entry kCommands[] = {
     {"import", make_import_command},
+    {"control", make_control_command},
 };
 
 struct Registered {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "roadbed/control/string_gain.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::control {
@@ -72,6 +73,8 @@ TEST(CruiseDesign, AgreesWithSciPyOnAllDesigns) {
     expect_near(design.K * flip, vector(expected["K"]).transpose(), 1e-9);
     expect_near(flip * design.P * flip, matrix(expected["P"]), 1e-9);
     EXPECT_LT(design.riccati_residual, 1e-12 * design.P.cwiseAbs().maxCoeff());
+    EXPECT_NEAR(string_gain(design, options.step_s).gain,
+                expected["string_peak_gain"].get<double>(), 1e-6);
   }
 }
 
@@ -134,6 +137,22 @@ TEST(CruiseDesign, EveryPoleLiesInsideTheUnitCircle) {
   const auto product = design.poles[0] * design.poles[1] * design.poles[2];
   const double determinant = (design.model.A - design.model.B * design.K).determinant();
   EXPECT_NEAR(product.real(), determinant, 1e-12);
+}
+
+// The frequency response is what a sine drives the sampled loop to.
+TEST(CruiseDesign, StringGainIsTheAmplitudeOfASineThatSettled) {
+  const CruiseOptions options{.input_weight = 10.0};
+  const CruiseDesign design = design_cruise(options);
+  const StringGain largest = string_gain(design, options.step_s);
+  EXPECT_GT(largest.gain, 1.005);  // this design amplifies
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  double amplitude = 0.0;
+  for (int k = 0; k < 20'000; ++k) {
+    const double a_p = std::sin(largest.at_radps * options.step_s * k);
+    x = design.model.A * x - design.model.B * design.K.dot(x) + design.model.G * a_p;
+    if (k > 10'000) amplitude = std::max(amplitude, std::abs(x[2]));
+  }
+  EXPECT_NEAR(amplitude, largest.gain, 1e-4);
 }
 
 std::string message_of(const CruiseOptions& options) {
