@@ -48,7 +48,7 @@ TEST(ReportInBrowser, ShowsTheMomentOfItsLinkWithoutErrorOrRequest) {
   const std::string page =
       page_after_scripts(browser, page_that_counts_requests(tests::sample_report()), "#t=9.5");
   EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
-  EXPECT_FALSE(holds(page, "data-error")) << "data-error";
+  EXPECT_FALSE(holds(page, "data-error"));
   EXPECT_TRUE(holds(page, "data-requests=\"0\""));
   EXPECT_TRUE(holds(page, ">9.50 s</output>"));
   EXPECT_TRUE(holds(page, "<b class=\"\">pass</b> parked-1 narrows the lane"));
@@ -58,7 +58,7 @@ TEST(ReportInBrowser, ComesUpWithNothingToShow) {
   ROADBED_BROWSER_OR_SKIP(browser);
   const std::string page = page_after_scripts(browser, drive_report_html({}), "");
   EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
-  EXPECT_FALSE(holds(page, "data-error")) << "data-error";
+  EXPECT_FALSE(holds(page, "data-error"));
   EXPECT_TRUE(holds(page, "No drive"));
 }
 
@@ -73,8 +73,8 @@ TEST(ReportInBrowser, RunsNoScriptOutOfANameInItsInput) {
   input.checks[0].bound = input.sources[0].name = input.verdict.text = attack;
   const std::string page = page_after_scripts(browser, drive_report_html(input), "#t=0");
   EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
-  EXPECT_FALSE(holds(page, "<title>broken in")) << "<title>broken in";
-  EXPECT_FALSE(holds(page, "<img")) << "<img";
+  EXPECT_FALSE(holds(page, "<title>broken in"));
+  EXPECT_FALSE(holds(page, "<img"));
 }
 
 }  // namespace
