@@ -104,24 +104,25 @@ CubicSpline::CubicSpline(std::vector<double> knots, const std::vector<double>& v
 }
 
 CubicSpline CubicSpline::natural(std::vector<double> knots, std::vector<double> values) {
-  check(knots, values, 2);
-  Tridiagonal system(knots.size());
-  std::vector<double> right(knots.size(), 0.0);
-  set_inner_rows(system, right, knots, values);
-  const std::vector<double> m = solve(std::move(system), std::move(right));
-  return CubicSpline(std::move(knots), values, m);
+  return clamped(std::move(knots), std::move(values), std::nullopt, std::nullopt);
 }
 
 CubicSpline CubicSpline::clamped(std::vector<double> knots, std::vector<double> values,
-                                 double first_slope, double last_slope) {
+                                 std::optional<double> first_slope,
+                                 std::optional<double> last_slope) {
   check(knots, values, 2);
   const std::size_t last = knots.size() - 1;
   Tridiagonal system(knots.size());
   std::vector<double> right(knots.size(), 0.0);
   set_inner_rows(system, right, knots, values);
-  const double first_h = knots[1] - knots[0], last_h = knots[last] - knots[last - 1];
-  set_inner_row(system, right, 0, 0.0, first_h, slope(knots, values, 0) - first_slope);
-  set_inner_row(system, right, last, last_h, 0.0, last_slope - slope(knots, values, last - 1));
+  if (first_slope) {
+    const double change = slope(knots, values, 0) - *first_slope;
+    set_inner_row(system, right, 0, 0.0, knots[1] - knots[0], change);
+  }
+  if (last_slope) {
+    const double change = *last_slope - slope(knots, values, last - 1);
+    set_inner_row(system, right, last, knots[last] - knots[last - 1], 0.0, change);
+  }
   const std::vector<double> m = solve(std::move(system), std::move(right));
   return CubicSpline(std::move(knots), values, m);
 }

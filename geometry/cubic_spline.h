@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 namespace roadbed::geometry {
@@ -20,9 +21,9 @@ class CubicSpline {
   /// @throws std::invalid_argument if that is not so (the other two as well).
   static CubicSpline natural(std::vector<double> knots, std::vector<double> values);
 
-  /// Given first derivative at both ends.
+  /// Given first derivative at the ends; natural at an end without one.
   static CubicSpline clamped(std::vector<double> knots, std::vector<double> values,
-                             double first_slope, double last_slope);
+                             std::optional<double> first_slope, std::optional<double> last_slope);
 
   /// First and second derivative at the last knot are those at the first.
   /// @param knots   N ≥ 4.

@@ -57,19 +57,16 @@ SplineCurve::SplineCurve(CubicSpline x, CubicSpline y)
       y_(std::move(y)),
       arc_length_(subdivided(x_.knots()), [this](double u) { return derivative(u, 1).norm(); }) {}
 
-SplineCurve SplineCurve::through(std::span<const Eigen::Vector2d> points) {
-  const Chords c = chords_of(points, 2);
-  return SplineCurve(CubicSpline::natural(c.parameter, c.x),
-                     CubicSpline::natural(c.parameter, c.y));
-}
-
 SplineCurve SplineCurve::through(std::span<const Eigen::Vector2d> points,
-                                 const Eigen::Vector2d& first_direction,
-                                 const Eigen::Vector2d& last_direction) {
+                                 const std::optional<Eigen::Vector2d>& first_direction,
+                                 const std::optional<Eigen::Vector2d>& last_direction) {
   const Chords c = chords_of(points, 2);
-  const Eigen::Vector2d first = first_direction.normalized(), last = last_direction.normalized();
-  return SplineCurve(CubicSpline::clamped(c.parameter, c.x, first.x(), last.x()),
-                     CubicSpline::clamped(c.parameter, c.y, first.y(), last.y()));
+  const auto slope = [](const std::optional<Eigen::Vector2d>& direction, Eigen::Index axis) {
+    return direction ? std::optional(direction->normalized()(axis)) : std::nullopt;
+  };
+  return SplineCurve(
+      CubicSpline::clamped(c.parameter, c.x, slope(first_direction, 0), slope(last_direction, 0)),
+      CubicSpline::clamped(c.parameter, c.y, slope(first_direction, 1), slope(last_direction, 1)));
 }
 
 SplineCurve SplineCurve::closed_through(std::span<const Eigen::Vector2d> points) {

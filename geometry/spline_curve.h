@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,15 +15,14 @@ namespace roadbed::geometry {
 /// Position, tangent and curvature are continuous. Immutable.
 class SplineCurve {
  public:
-  /// Natural ends. Points nearer than 1 µm to the one before are dropped.
+  /// Points nearer than 1 µm to the one before are dropped.
+  /// @param first_direction  in which the curve leaves the first point, of any length; none:
+  /// natural.
+  /// @param last_direction   in which it reaches the last one.
   /// @throws std::invalid_argument if fewer than two points are left, or one is not finite.
-  static SplineCurve through(std::span<const Eigen::Vector2d> points);
-
-  /// Leaves the first point along `first_direction` and reaches the last one along
-  /// `last_direction`; both are vectors of any length.
   static SplineCurve through(std::span<const Eigen::Vector2d> points,
-                             const Eigen::Vector2d& first_direction,
-                             const Eigen::Vector2d& last_direction);
+                             const std::optional<Eigen::Vector2d>& first_direction = std::nullopt,
+                             const std::optional<Eigen::Vector2d>& last_direction = std::nullopt);
 
   /// Closed through at least three points, the first one not repeated.
   static SplineCurve closed_through(std::span<const Eigen::Vector2d> points);

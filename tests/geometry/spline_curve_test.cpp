@@ -90,7 +90,8 @@ TEST(SplineCurve, ClosedCurveThroughACircleIsNearlyOne) {
 
 TEST(SplineCurve, ClampedEndsHaveTheGivenDirections) {
   const std::vector<Eigen::Vector2d> points{{0, 0}, {10, 1}, {20, 0}};
-  const SplineCurve curve = SplineCurve::through(points, {0.0, 2.0}, {-3.0, -3.0});
+  const SplineCurve curve =
+      SplineCurve::through(points, Eigen::Vector2d(0.0, 2.0), Eigen::Vector2d(-3.0, -3.0));
   EXPECT_NEAR((curve.tangent(0.0) - Eigen::Vector2d(0, 1)).norm(), 0.0, 1e-12);
   const double root = std::sqrt(0.5);
   EXPECT_NEAR((curve.tangent(curve.length_m()) - Eigen::Vector2d(-root, -root)).norm(), 0.0, 1e-9);

@@ -1,0 +1,164 @@
+#include "roadbed/planning/way_point_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "roadbed/geometry/quintic_bezier.h"
+#include "roadbed/geometry/spline_curve.h"
+
+namespace roadbed::planning {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+
+constexpr double kSamePoint_m = 1e-6;
+constexpr double kCornerTurn_rad = std::numbers::pi / 6.0;
+constexpr double kLongLeg_m = 10.0;
+constexpr double kStraight_rad = 0.05;  // a leg goes on while it turns by less
+const double kMostRounding_m = geometry::kPaperGaps.total_m();
+
+bool same(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return (a - b).norm() <= kSamePoint_m;
+}
+
+Points distinct(std::span<const Eigen::Vector2d> way_points) {
+  Points points;
+  for (const Eigen::Vector2d& point : way_points) {
+    if (!point.allFinite()) throw std::invalid_argument("path_through: a way-point is not finite");
+    if (points.empty() || !same(point, points.back())) points.push_back(point);
+  }
+  if (points.size() < 2) {
+    throw std::invalid_argument(
+        fmt::format("path_through: needs at least two distinct way-points, got {}", points.size()));
+  }
+  return points;
+}
+
+double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+}
+
+double turn_at(const Points& points, std::size_t i) {
+  if (i == 0 || i + 1 >= points.size()) return 0.0;
+  return angle_between(points[i] - points[i - 1], points[i + 1] - points[i]);
+}
+
+bool is_corner(const Points& points, std::size_t i) {
+  const double turn = turn_at(points, i);
+  if (turn < kCornerTurn_rad) return false;
+  const auto alone = [&](std::size_t neighbour) {
+    return turn_at(points, neighbour) < 0.5 * turn ||
+           (points[neighbour] - points[i]).norm() >= kLongLeg_m;
+  };
+  return alone(i - 1) && alone(i + 1);
+}
+
+// A corner, and how far its legs are straight.
+struct Corner {
+  std::size_t at;
+  Eigen::Vector2d back, ahead;  // unit vectors away from the corner
+  double room_m;
+};
+
+// Length of the straight leg from a corner, `step` +1 or −1; half of it if it ends at a corner.
+double leg_m(const Points& points, const std::vector<bool>& corners, std::size_t at, int step) {
+  const auto next = [step](std::size_t i) { return step > 0 ? i + 1 : i - 1; };
+  std::size_t i = next(at);
+  const Eigen::Vector2d direction = (points[i] - points[at]).normalized();
+  while (!corners[i] && i > 0 && i + 1 < points.size() &&
+         angle_between(points[next(i)] - points[i], direction) < kStraight_rad) {
+    i = next(i);
+  }
+  const double length_m = (points[i] - points[at]).dot(direction);
+  return corners[i] ? 0.5 * length_m : length_m;
+}
+
+std::vector<Corner> corners_of(const Points& points) {
+  std::vector<bool> is(points.size(), false);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) is[i] = is_corner(points, i);
+  std::vector<Corner> corners;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    if (!is[i]) continue;
+    const double room_m = std::min(leg_m(points, is, i, -1), leg_m(points, is, i, +1));
+    corners.push_back({i, (points[i - 1] - points[i]).normalized(),
+                       (points[i + 1] - points[i]).normalized(),
+                       std::min(room_m, kMostRounding_m)});
+  }
+  return corners;
+}
+
+geometry::QuinticBezier curve_at(const Points& points, const Corner& corner) {
+  const Eigen::Vector2d& at = points[corner.at];
+  return geometry::QuinticBezier::corner(at + corner.room_m * corner.back, at,
+                                         at + corner.room_m * corner.ahead,
+                                         geometry::scaled_to(geometry::kGentleGaps, corner.room_m));
+}
+
+void append(Points& path, const Points& piece) {
+  for (const Eigen::Vector2d& point : piece) {
+    if (path.empty() || !same(point, path.back())) path.push_back(point);
+  }
+}
+
+Points sampled(const geometry::QuinticBezier& curve, double step_m) {
+  const int count = static_cast<int>(std::ceil(2.0 * curve.length_m() / step_m));
+  Points points;
+  for (int i = 0; i <= count; ++i) points.push_back(curve.at(static_cast<double>(i) / count));
+  return points;
+}
+
+// Way-points after one corner and before the next that neither of them replaces.
+Points between(const Points& points, const Corner* before, const Corner* after) {
+  const auto clear_of = [&](const Corner* corner, const Eigen::Vector2d& point) {
+    return corner == nullptr || (point - points[corner->at]).norm() > corner->room_m * (1.0 + 1e-9);
+  };
+  const std::size_t from = before == nullptr ? 0 : before->at + 1;
+  const std::size_t to = after == nullptr ? points.size() : after->at;
+  Points kept;
+  for (std::size_t i = from; i < to; ++i) {
+    if (clear_of(before, points[i]) && clear_of(after, points[i])) kept.push_back(points[i]);
+  }
+  return kept;
+}
+
+// The spline from one corner's curve (or the first way-point) to the next one's (or the last).
+void append_piece(WayPointPath& path, const Points& points, const Corner* before,
+                  const Corner* after, double step_m) {
+  Points piece = between(points, before, after);
+  path.way_points.insert(path.way_points.end(), piece.begin(), piece.end());
+  std::optional<Eigen::Vector2d> first, last;
+  if (before != nullptr) {
+    first = before->ahead;
+    piece.insert(piece.begin(), points[before->at] + before->room_m * before->ahead);
+  }
+  if (after != nullptr) {
+    last = -after->back;
+    piece.push_back(points[after->at] + after->room_m * after->back);
+  }
+  piece.erase(std::unique(piece.begin(), piece.end(), same), piece.end());
+  if (piece.size() < 2) return;
+  append(path.points, geometry::SplineCurve::through(piece, first, last).resample(step_m));
+}
+
+}  // namespace
+
+WayPointPath path_through(std::span<const Eigen::Vector2d> way_points, double step_m) {
+  const Points points = distinct(way_points);
+  WayPointPath path;
+  const Corner* before = nullptr;
+  const std::vector<Corner> corners = corners_of(points);
+  for (const Corner& corner : corners) {
+    append_piece(path, points, before, &corner, step_m);
+    append(path.points, sampled(curve_at(points, corner), step_m));
+    before = &corner;
+  }
+  append_piece(path, points, before, nullptr, step_m);
+  return path;
+}
+
+}  // namespace roadbed::planning
