@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadbed::tests {
+
+/// A folder of its own for a test, empty at first, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Writes a file in it. Returns its path.
+  std::string write(std::string_view name, std::string_view bytes) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What a run of the program left: its exit status (128 + signal if it was killed) and both
+/// streams.
+struct ProgramRun {
+  int status = 0;
+  std::string out, err;
+};
+
+/// Runs the `roadbed` program that was built beside the tests.
+ProgramRun run_roadbed(const std::vector<std::string>& arguments);
+
+/// The bytes of a file, as a test wants them.
+std::string bytes_of(const std::filesystem::path& file);
+
+/// Names of all files below a folder, relative to it, sorted; hidden ones too.
+std::vector<std::string> files_below(const std::filesystem::path& folder);
+
+}  // namespace roadbed::tests

@@ -1,0 +1,112 @@
+// Every command on input that it cannot use: exit status 1, one line on stderr that names the file,
+// nothing on stdout, nothing written.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+std::string town_bytes() { return bytes_of(data_folder() / "town.xodr"); }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << "'" << from << "' is not in the text";
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// Content that no reader of maps can use.
+struct BadMap {
+  std::string name;
+  std::string bytes;
+};
+
+std::vector<BadMap> bad_maps() {
+  const std::string town = town_bytes();
+  return {
+      {"empty.xodr", ""},
+      {"truncated.xodr", town.substr(0, town.size() / 2)},
+      {"not_xml.xodr", "lane,x,y\n1,2,3\n"},
+      {"wrong_format.xodr", "<?xml version=\"1.0\"?>\n<kml><Document/></kml>\n"},
+      {"nan.xodr", replaced(town, "hdg=\"3.141592653589793\"", "hdg=\"nan\"")},
+      {"zeros.rbm", std::string(4096, '\0')},
+  };
+}
+
+void expect_refused(const ProgramRun& run, const std::string& culprit) {
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_EQ(run.err.rfind("roadbed: ", 0), 0U) << run.err;
+  EXPECT_NE(run.err.find(culprit), std::string::npos) << run.err;
+  EXPECT_EQ(run.err.find("internal error"), std::string::npos) << run.err;
+  EXPECT_EQ(run.out, "");
+}
+
+TEST(BadInput, MapThatCannotBeUsedIsRefusedByImportAndLeavesNoOutput) {
+  for (const BadMap& map : bad_maps()) {
+    SCOPED_TRACE(map.name);
+    const TemporaryFolder folder;
+    const std::string file = folder.write(map.name, map.bytes);
+    expect_refused(run_roadbed({"import", file, "-o", folder / "out.rbm"}), map.name);
+    EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{map.name});
+  }
+}
+
+TEST(BadInput, MissingMapIsNamed) {
+  const TemporaryFolder folder;
+  expect_refused(run_roadbed({"import", folder / "no.xodr", "-o", folder / "out.rbm"}), "no.xodr");
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, DamagedCompiledMapIsRefusedWhereverItIsCutOrChanged) {
+  const TemporaryFolder folder;
+  const std::string good = folder / "town.rbm";
+  const std::string town = data_folder() / "town.xodr";
+  ASSERT_EQ(run_roadbed({"import", town, "-o", good, "--quiet"}).status, 0);
+  const std::string bytes = bytes_of(good);
+  for (const double share : {0.0, 0.001, 0.3, 0.7, 0.999}) {
+    SCOPED_TRACE(share);
+    const auto at = static_cast<std::size_t>(share * static_cast<double>(bytes.size()));
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    for (const std::string& damaged : {bytes.substr(0, at), changed}) {
+      const std::string file = folder.write("damaged.rbm", damaged);
+      expect_refused(run_roadbed({"import", file, "-o", folder / "out.rbm"}), "damaged.rbm");
+    }
+  }
+  EXPECT_EQ(files_below(folder.path()), (std::vector<std::string>{"damaged.rbm", "town.rbm"}));
+}
+
+TEST(BadInput, OutputThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  expect_refused(run_roadbed({"import", town, "-o", folder / "no/such/out.rbm"}), "out.rbm");
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, ExistingOutputStaysAsItIsWithoutForce) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  const std::string out = folder.write("out.rbm", "mine");
+  expect_refused(run_roadbed({"import", town, "-o", out}), "--force");
+  EXPECT_EQ(bytes_of(out), "mine");
+  EXPECT_EQ(run_roadbed({"import", town, "-o", out, "--force", "--quiet"}).status, 0);
+  EXPECT_NE(bytes_of(out), "mine");
+}
+
+TEST(BadInput, WrongUsageHasAStatusOfItsOwn) {
+  EXPECT_EQ(run_roadbed({}).status, 2);
+  EXPECT_EQ(run_roadbed({"no-such-command"}).status, 2);
+  EXPECT_EQ(run_roadbed({"import"}).status, 2);
+  EXPECT_EQ(run_roadbed({"import", "--no-such-option"}).status, 2);
+}
+
+}  // namespace
+}  // namespace roadbed::tests
