@@ -13,18 +13,23 @@
 namespace roadbed::map::open_drive {
 namespace {
 
+[[noreturn]] void refuse_road(const XmlDocument& xml, const RoadRecord& road,
+                              const std::string& found, const std::string& remedy) {
+  throw InputError({.file = xml.name(),
+                    .place = std::to_string(road.line),
+                    .element = "road " + road.id,
+                    .found = found,
+                    .needed = {},
+                    .remedy = remedy});
+}
+
 std::vector<geometry::PlanView> plan_views(const XmlDocument& xml, const Document& document) {
   std::vector<geometry::PlanView> views;
   for (const RoadRecord& road : document.roads) {
     try {
       views.emplace_back(road.plan_pieces);
     } catch (const std::invalid_argument& error) {
-      throw InputError({.file = xml.name(),
-                        .place = std::to_string(road.line),
-                        .element = "road " + road.id,
-                        .found = error.what(),
-                        .needed = {},
-                        .remedy = "correct its plan view"});
+      refuse_road(xml, road, error.what(), "correct its plan view");
     }
   }
   return views;
@@ -43,7 +48,7 @@ std::vector<Junction> build_junctions(const Document& document,
 
 // The reference line with a chord error of at most max_error_m, as its lanes are sampled.
 void sample_reference(const RoadRecord& record, const geometry::PlanView& view, double max_error_m,
-                      Road& road) {
+                      PointBudget& budget, Road& road) {
   std::vector<double> breaks{0.0, record.length_m};
   for (const auto& piece : view.pieces()) {
     if (piece.s_m > 1e-9 && piece.s_m < record.length_m - 1e-9) breaks.push_back(piece.s_m);
@@ -54,7 +59,8 @@ void sample_reference(const RoadRecord& record, const geometry::PlanView& view, 
     const double length_m = breaks[i + 1] - breaks[i];
     const double bound = view.bounds(breaks[i], breaks[i + 1]).second_derivative_per_m;
     const double steps = std::ceil(length_m * std::sqrt(bound / (8.0 * max_error_m)));
-    const int count = static_cast<int>(std::clamp(steps, 1.0, 1e5));
+    const int count = static_cast<int>(std::clamp(steps, 1.0, 1e6));
+    budget.spend(static_cast<std::size_t>(count), road.id.index);
     for (int k = i == 0 ? 0 : 1; k <= count; ++k) {
       const double s_m = breaks[i] + length_m * k / count;
       points.push_back(view.at(s_m, 0.5 * (breaks[i] + breaks[i + 1])).pose.position());
@@ -67,7 +73,7 @@ void sample_reference(const RoadRecord& record, const geometry::PlanView& view, 
 std::vector<Road> build_roads(const Document& document,
                               const std::vector<geometry::PlanView>& views,
                               const std::map<std::string, JunctionId>& junction_ids,
-                              double max_error_m) {
+                              double max_error_m, PointBudget& budget) {
   std::vector<Road> roads;
   for (std::size_t i = 0; i < document.roads.size(); ++i) {
     const RoadRecord& record = document.roads[i];
@@ -79,7 +85,7 @@ std::vector<Road> build_roads(const Document& document,
     if (const auto found = junction_ids.find(record.junction_id); found != junction_ids.end()) {
       road.junction = found->second;
     }
-    sample_reference(record, views[i], max_error_m, road);
+    sample_reference(record, views[i], max_error_m, budget, road);
     roads.push_back(std::move(road));
   }
   return roads;
@@ -153,9 +159,15 @@ RoadMapParts read(const XmlDocument& xml, const LoadOptions& options) {
 
   std::map<std::string, JunctionId> junction_ids;
   parts.junctions = build_junctions(document, junction_ids);
-  BuiltLanes built = build_lanes(document, views, junction_ids, options.max_error_m, parts.remarks);
+  BuiltLanes built;
+  PointBudget budget(xml.size_bytes());
+  try {
+    built = build_lanes(document, views, junction_ids, options.max_error_m, budget, parts.remarks);
+    parts.roads = build_roads(document, views, junction_ids, options.max_error_m, budget);
+  } catch (const RoadFault& fault) {
+    refuse_road(xml, document.roads[fault.road_index], fault.what(), fault.what_to_do);
+  }
   parts.links = link_lanes(document, built, parts.remarks);
-  parts.roads = build_roads(document, views, junction_ids, options.max_error_m);
   for (const Lane& lane : built.lanes) parts.roads[lane.road->index].lanes.push_back(lane.id);
   for (const Road& road : parts.roads) {
     if (road.junction) parts.junctions[road.junction->index].connecting_roads.push_back(road.id);

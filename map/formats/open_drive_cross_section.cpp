@@ -1,5 +1,7 @@
 #include "roadbed/map/formats/open_drive_cross_section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,9 +17,14 @@ constexpr double kShortestStepM = 1e-3;
 
 class SideSampler {
  public:
-  SideSampler(const RoadRecord& road, const geometry::PlanView& plan_view, const SectionSide& side,
-              double max_error_m)
-      : road_(road), plan_view_(plan_view), side_(side), max_error_m_(max_error_m) {}
+  SideSampler(const RoadRecord& road, std::size_t road_index, const geometry::PlanView& plan_view,
+              const SectionSide& side, double max_error_m, PointBudget& budget)
+      : road_(road),
+        road_index_(road_index),
+        plan_view_(plan_view),
+        side_(side),
+        max_error_m_(max_error_m),
+        budget_(budget) {}
 
   std::vector<CrossSection> sample() const {
     std::vector<CrossSection> rows;
@@ -26,6 +33,7 @@ class SideSampler {
       const double middle_s_m = 0.5 * (breaks[i] + breaks[i + 1]);
       for (const double s_m : stations(breaks[i], breaks[i + 1])) {
         CrossSection row = cross_section(s_m, middle_s_m);
+        check(row);
         if (rows.empty() || !same(rows.back(), row)) rows.push_back(std::move(row));
       }
     }
@@ -76,8 +84,22 @@ class SideSampler {
       }
       const bool at_end = to_s_m - s_m - step_m < kShortestStretchM;
       stations.push_back(at_end ? to_s_m : s_m + step_m);
+      budget_.spend(side_.lanes.size() + 1, road_index_);
     }
     return stations;
+  }
+
+  void check(const CrossSection& row) const {
+    constexpr double farthest_m = 1e8;
+    for (std::size_t i = 0; i < row.border_in_map.size(); ++i) {
+      // Written so that a value that is no number fails too.
+      if (!(row.border_in_map[i].cwiseAbs().maxCoeff() < farthest_m) ||
+          !(std::abs(row.z_m[i]) < farthest_m)) {
+        throw RoadFault(road_index_,
+                        fmt::format("at s = {} m a border lies more than 100,000 km off", row.s_m),
+                        "check its widths, offsets and elevations");
+      }
+    }
   }
 
   // |position″ + (t·normal)″| ≤ R″ + t″ + 2 t′θ′ + t (θ″ + θ′²), with t·cos(roll) for t; and the
@@ -144,9 +166,11 @@ class SideSampler {
   }
 
   const RoadRecord& road_;
+  std::size_t road_index_;
   const geometry::PlanView& plan_view_;
   const SectionSide& side_;
   double max_error_m_;
+  PointBudget& budget_;
 };
 
 }  // namespace
@@ -178,10 +202,11 @@ SectionSide section_side(const RoadRecord& road, std::size_t section, int sign) 
   return side;
 }
 
-std::vector<CrossSection> sample_side(const RoadRecord& road, const geometry::PlanView& plan_view,
-                                      const SectionSide& side, double max_error_m) {
-  if (side.lanes.empty() || side.to_s_m - side.from_s_m < kShortestStretchM) return {};
-  return SideSampler(road, plan_view, side, max_error_m).sample();
+std::vector<CrossSection> sample_side(const RoadRecord& road, std::size_t road_index,
+                                      const geometry::PlanView& plan_view, const SectionSide& side,
+                                      double max_error_m, PointBudget& budget) {
+  if (side.lanes.empty() || !(side.to_s_m - side.from_s_m > kShortestStretchM)) return {};
+  return SideSampler(road, road_index, plan_view, side, max_error_m, budget).sample();
 }
 
 }  // namespace roadbed::map::open_drive

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "roadbed/geometry/plan_view.h"
+#include "roadbed/map/formats/open_drive_budget.h"
 #include "roadbed/map/formats/open_drive_document.h"
 
 namespace roadbed::map::open_drive {
@@ -36,7 +37,10 @@ struct CrossSection {
 ///
 /// A border at offset t lies at reference(s) + t·cos(superelevation)·normal(s); its height is
 /// elevation + t·sin(superelevation) − |t|·tan(crossfall).
-std::vector<CrossSection> sample_side(const RoadRecord& road, const geometry::PlanView& plan_view,
-                                      const SectionSide& side, double max_error_m);
+/// @param road_index  of the road, for faults.
+/// @throws RoadFault if a border goes where no road can be, or the budget is spent.
+std::vector<CrossSection> sample_side(const RoadRecord& road, std::size_t road_index,
+                                      const geometry::PlanView& plan_view, const SectionSide& side,
+                                      double max_error_m, PointBudget& budget);
 
 }  // namespace roadbed::map::open_drive

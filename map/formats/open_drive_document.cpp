@@ -70,6 +70,26 @@ geometry::PlanCurve read_curve(const XmlDocument& xml, pugi::xml_node geometry, 
   return geometry::LineCurve{};
 }
 
+// Limits far beyond any road: a number past them is a slip, and would ask for endless points.
+constexpr double kFarthestM = 1e8, kLongestM = 1e6, kMostTurningRad = 100.0;
+
+void check_range(const XmlDocument& xml, pugi::xml_node node, const geometry::PlanPiece& piece) {
+  const auto turning = [&](double curvature) { return std::abs(curvature) * piece.length_m; };
+  double turning_rad = 0.0;
+  if (const auto* arc = std::get_if<geometry::ArcCurve>(&piece.curve)) {
+    turning_rad = turning(arc->curvature_per_m);
+  } else if (const auto* spiral = std::get_if<geometry::SpiralCurve>(&piece.curve)) {
+    turning_rad =
+        std::max(turning(spiral->start_curvature_per_m), turning(spiral->end_curvature_per_m));
+  }
+  if (std::abs(piece.start.x_m) > kFarthestM || std::abs(piece.start.y_m) > kFarthestM ||
+      std::abs(piece.start.heading_rad) > 1e6 || piece.length_m > kLongestM ||
+      turning_rad > kMostTurningRad) {
+    xml.refuse(node, "a place, length or curvature beyond that of any road",
+               "|x|, |y| ≤ 1e8 m, length ≤ 1e6 m, turning ≤ 100 rad", "correct the values");
+  }
+}
+
 // Shorter than this a piece has no direction of its own; leaving it out moves nothing.
 constexpr double kShortestPieceM = 1e-9;
 
@@ -88,6 +108,7 @@ void read_plan_view(const XmlDocument& xml, pugi::xml_node node, RoadRecord& roa
          length_m,
          {xml.number(geometry, "x"), xml.number(geometry, "y"), xml.number(geometry, "hdg")},
          read_curve(xml, geometry, length_m)});
+    check_range(xml, geometry, road.plan_pieces.back());
   }
   std::stable_sort(road.plan_pieces.begin(), road.plan_pieces.end(),
                    [](const auto& a, const auto& b) { return a.s_m < b.s_m; });
@@ -122,6 +143,10 @@ RoadRecord read_road(const XmlDocument& xml, pugi::xml_node node, Document& docu
   road.id = xml.text(node, "id");
   road.name = node.attribute("name").value();
   road.length_m = xml.number(node, "length");
+  if (road.length_m > kLongestM) {
+    xml.refuse(node, fmt::format("length {} m", road.length_m), "at most 1e6 m",
+               "correct the length");
+  }
   const std::string junction = node.attribute("junction").value();
   if (junction != "-1") road.junction_id = junction;
   road.left_hand_traffic = std::string_view(node.attribute("rule").value()) == "LHT";

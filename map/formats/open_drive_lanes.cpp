@@ -102,15 +102,19 @@ geometry::Ring lane_ring(const LaneLine& left, const LaneLine& right) {
 class LaneBuilder {
  public:
   LaneBuilder(const Document& document, const std::map<std::string, JunctionId>& junctions,
-              double max_error_m, std::vector<ImportRemark>& remarks)
-      : document_(document), junctions_(junctions), max_error_m_(max_error_m), remarks_(remarks) {}
+              double max_error_m, PointBudget& budget, std::vector<ImportRemark>& remarks)
+      : document_(document),
+        junctions_(junctions),
+        max_error_m_(max_error_m),
+        budget_(budget),
+        remarks_(remarks) {}
 
   void add_section(std::size_t road_index, std::size_t section_index,
                    const geometry::PlanView& plan_view) {
     for (const int sign : {1, -1}) {
       const RoadRecord& road = document_.roads[road_index];
       const SectionSide side = section_side(road, section_index, sign);
-      const auto rows = sample_side(road, plan_view, side, max_error_m_);
+      const auto rows = sample_side(road, road_index, plan_view, side, max_error_m_, budget_);
       for (std::size_t i = 0; i < side.lanes.size(); ++i) {
         if (rows.size() < 2) {
           remark_empty(road, *side.lanes[i]);
@@ -170,6 +174,7 @@ class LaneBuilder {
   const Document& document_;
   const std::map<std::string, JunctionId>& junctions_;
   double max_error_m_;
+  PointBudget& budget_;
   std::vector<ImportRemark>& remarks_;
   BuiltLanes built_;
 };
@@ -214,8 +219,8 @@ Crossing crossing(const std::vector<RoadMark>& marks, int lane_id, double sectio
 
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       std::vector<ImportRemark>& remarks) {
-  LaneBuilder builder(document, junctions, max_error_m, remarks);
+                       PointBudget& budget, std::vector<ImportRemark>& remarks) {
+  LaneBuilder builder(document, junctions, max_error_m, budget, remarks);
   for (std::size_t road = 0; road < document.roads.size(); ++road) {
     for (std::size_t section = 0; section < document.roads[road].sections.size(); ++section) {
       builder.add_section(road, section, plan_views[road]);

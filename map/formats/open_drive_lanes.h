@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "roadbed/map/formats/open_drive_budget.h"
 #include "roadbed/map/formats/open_drive_document.h"
 #include "roadbed/map/road_map.h"
 
@@ -20,9 +21,10 @@ struct BuiltLanes {
 };
 
 /// All lanes of all roads, sampled; lanes of no length are left out and remarked.
+/// @throws RoadFault as sample_side does.
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       std::vector<ImportRemark>& remarks);
+                       PointBudget& budget, std::vector<ImportRemark>& remarks);
 
 /// Whether the marking between a lane and the next one outwards (or, for lane 0, the marking in
 /// the middle) may be crossed, by travel towards growing or falling lane ids.

@@ -44,7 +44,7 @@ std::optional<double> parse_finite(std::string_view text) {
 }  // namespace
 
 XmlDocument::XmlDocument(const std::string& bytes, std::string name)
-    : name_(std::move(name)), line_starts_(find_line_starts(bytes)) {
+    : name_(std::move(name)), size_bytes_(bytes.size()), line_starts_(find_line_starts(bytes)) {
   const pugi::xml_parse_result result =
       document_.load_buffer(bytes.data(), bytes.size(), pugi::parse_default);
   if (!result) {

@@ -18,6 +18,7 @@ class XmlDocument {
 
   pugi::xml_node root() const { return document_.document_element(); }
   const std::string& name() const { return name_; }
+  std::size_t size_bytes() const { return size_bytes_; }
 
   /// Line of an element, from 1.
   long line_of(pugi::xml_node node) const;
@@ -42,6 +43,7 @@ class XmlDocument {
 
  private:
   std::string name_;
+  std::size_t size_bytes_;
   std::vector<std::size_t> line_starts_;
   pugi::xml_document document_;
 };

@@ -6,7 +6,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/made_open_drive.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {

@@ -14,10 +14,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 // A straight road along x: 3.5 m lanes 1 (left) and −1, −2 (right), a sidewalk −3.
-std::string straight_road(const std::string& id, double x_m, const std::string& link,
-                          const std::string& attributes = "",
-                          const std::string& middle_mark = R"(<roadMark sOffset="0" type="solid"/>)",
-                          const std::string& right_mark = R"(<roadMark sOffset="0" type="broken"/>)") {
+std::string straight_road(
+    const std::string& id, double x_m, const std::string& link, const std::string& attributes = "",
+    const std::string& middle_mark = R"(<roadMark sOffset="0" type="solid"/>)",
+    const std::string& right_mark = R"(<roadMark sOffset="0" type="broken"/>)") {
   return fmt::format(R"(
  <road id="{0}" length="100" junction="-1" {3}>
   <link>{2}</link>
@@ -49,8 +49,11 @@ const Lane& lane(const RoadMap& road_map, const std::string& name) {
 }
 
 RoadMap two_roads() {
-  return parse(straight_road("A", 0, R"(<successor elementType="road" elementId="B" contactPoint="start"/>)") +
-               straight_road("B", 100, R"(<predecessor elementType="road" elementId="A" contactPoint="end"/>)"));
+  return parse(
+      straight_road("A", 0,
+                    R"(<successor elementType="road" elementId="B" contactPoint="start"/>)") +
+      straight_road("B", 100,
+                    R"(<predecessor elementType="road" elementId="A" contactPoint="end"/>)"));
 }
 
 TEST(OpenDrive, RightLanesRunWithTheRoadAndLeftLanesAgainstIt) {
@@ -67,7 +70,8 @@ TEST(OpenDrive, LeftBorderIsLeftInDrivingDirection) {
   for (const char* name : {"A/0/1", "A/0/-1", "A/0/-2"}) {
     const Lane& item = lane(road_map, name);
     EXPECT_NEAR(item.centre.in_map.project(Lane::point_at(item.left, 50)).d_m, 1.75, 1e-9) << name;
-    EXPECT_NEAR(item.centre.in_map.project(Lane::point_at(item.right, 50)).d_m, -1.75, 1e-9) << name;
+    EXPECT_NEAR(item.centre.in_map.project(Lane::point_at(item.right, 50)).d_m, -1.75, 1e-9)
+        << name;
     EXPECT_NEAR(geometry::signed_area_m2(item.polygon), 350.0, 1e-9) << name;
   }
 }
@@ -134,8 +138,8 @@ TEST(OpenDrive, ALanesOwnSpeedLimitOverridesTheRoads) {
 }
 
 TEST(OpenDrive, ALinkToAMissingRoadIsRemarkedNotRefused) {
-  const RoadMap road_map =
-      parse(straight_road("A", 0, R"(<successor elementType="road" elementId="99" contactPoint="start"/>)"));
+  const RoadMap road_map = parse(straight_road(
+      "A", 0, R"(<successor elementType="road" elementId="99" contactPoint="start"/>)"));
   const auto fault = std::find_if(road_map.remarks().begin(), road_map.remarks().end(),
                                   [](const ImportRemark& r) { return r.is_fault; });
   ASSERT_NE(fault, road_map.remarks().end());
@@ -152,8 +156,9 @@ TEST(OpenDrive, FarCoordinatesAreKeptNearALocalOriginAndComeBackExactly) {
 
 TEST(OpenDrive, SuperelevationTurnsTheCrossSectionAboutTheReferenceLine) {
   std::string road = straight_road("A", 0, "");
-  road.insert(road.find("<lanes>"),
-              R"(<lateralProfile><superelevation s="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>)");
+  road.insert(
+      road.find("<lanes>"),
+      R"(<lateralProfile><superelevation s="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>)");
   const RoadMap road_map = parse(road);
   const Lane& item = lane(road_map, "A/0/-2");
   EXPECT_NEAR(Lane::point_at(item.right, 50).y(), -7.0 * std::cos(0.1), 1e-9);
@@ -170,8 +175,8 @@ std::string refusal(const std::string& bytes) {
 }
 
 TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
-  const std::string good =
-      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>" + straight_road("A", 0, "") + "</OpenDRIVE>";
+  const std::string good = "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>" +
+                           straight_road("A", 0, "") + "</OpenDRIVE>";
   const auto replaced = [&](const std::string& what, const std::string& with) {
     std::string changed = good;
     changed.replace(changed.find(what), what.size(), with);
@@ -184,7 +189,12 @@ TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
               HasSubstr("made.xodr:2: <road> of road A: length=\"1e999\""));
   EXPECT_THAT(refusal(replaced("<line/>", "<circle/>")), HasSubstr("no known curve"));
   EXPECT_THAT(refusal(replaced("id=\"-2\"", "id=\"-1\"")), HasSubstr("a second lane -1"));
-  EXPECT_THAT(refusal(replaced("x=\"0\"", "x=\"1e308\"")), HasSubstr("road A"));
+  EXPECT_THAT(refusal(replaced("x=\"0\"", "x=\"1e308\"")), HasSubstr("beyond that of any road"));
+  EXPECT_THAT(refusal(replaced("<line/>", "<arc curvature=\"1e3\"/>")),
+              HasSubstr("beyond that of any road"));
+  EXPECT_THAT(refusal(replaced("a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"",
+                               "a=\"3.5\" b=\"0\" c=\"0\" d=\"1e200\"")),
+              HasSubstr("made.xodr:2: road A: "));
   EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("not well-formed XML"));
   EXPECT_THAT(refusal("<osm/>"), HasSubstr("root element <osm>"));
   EXPECT_THAT(refusal("what?"), HasSubstr("neither XML nor a compiled map"));

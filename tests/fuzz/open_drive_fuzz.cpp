@@ -1,0 +1,15 @@
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    roadbed::map::parse_map(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+  } catch (const roadbed::map::InputError&) {
+    return 0;  // refused, as it should be
+  }
+  return 0;
+}
