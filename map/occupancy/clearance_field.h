@@ -10,7 +10,8 @@
 
 namespace roadbed::map {
 
-/// The heights that a vehicle's body takes; what is above or below does not touch it.
+/// The heights that a vehicle's body takes, in source coordinates; what is above or below, or only
+/// touches the band's end, does not count. Over ground at height g it is g + 0.2 … g + height.
 struct HeightBand {
   double from_m = 0.2;
   double to_m = 1.5;
@@ -21,35 +22,63 @@ struct Box2 {
   Eigen::Vector2d min_in_source, max_in_source;
 };
 
+/// The part of an occupancy that a field is made for: queries stay in `around`, and what is more
+/// than `horizon_m` away does not matter.
+struct FieldRegion {
+  Box2 around;
+  double horizon_m = 50.0;
+};
+
+/// What a distance is measured to.
+enum class ObstacleKind {
+  occupied,  ///< cells with a measured hit
+  unknown,   ///< columns of the band that were not measured over their whole height, and all
+             ///< space outside the measured bounds
+};
+
 /// Occupied and unknown space of one height band in plan view, with distances to it.
 ///
-/// Plan coordinates are source coordinates. Distances are between exact shapes: the vehicle's
-/// rectangle and the boxes of occupied cells.
+/// Plan coordinates are source coordinates. The grid has the octree's resolution; larger leaves are
+/// squares of several cells, so distances are between exact shapes: the vehicle's rectangle and the
+/// boxes of occupied cells.
 class ClearanceField {
  public:
-  ClearanceField(const OccupancyMap& occupancy, const HeightBand& band);
+  /// Memory: 6 bytes a cell, 10 once distances to unknown space are asked for. O(leaves + cells).
+  /// @throws InputError if the grid would have more than `kMostCells` cells.
+  /// @throws std::invalid_argument if the band is empty or not finite.
+  ClearanceField(const OccupancyMap& occupancy, const HeightBand& band,
+                 const std::optional<FieldRegion>& region = std::nullopt);
   ~ClearanceField();
   ClearanceField(ClearanceField&&) noexcept;
   ClearanceField& operator=(ClearanceField&&) noexcept;
 
-  /// A lower bound of the distance from a point to the nearest occupied box [m]; never above the
-  /// true one. O(1) inside the field; beyond `horizon_m` the horizon is returned.
-  double distance_bound_m(const Eigen::Vector2d& point_in_source) const;
+  static constexpr std::size_t kMostCells = 100'000'000;
+
+  /// A lower bound of the distance from a point to the nearest box [m]; never above the true one,
+  /// and among the boxes at most two cell diagonals below it. At most `horizon_m`. O(1).
+  double distance_bound_m(const Eigen::Vector2d& point_in_source,
+                          ObstacleKind kind = ObstacleKind::occupied) const;
 
   /// Distance beyond which the bound is not told apart.
   double horizon_m() const;
 
+  /// Whether any cell is occupied in the band.
+  bool has_occupied() const;
+
   struct Nearest {
-    double distance_m;  ///< 0 on overlap
-    Box2 witness;       ///< the nearest occupied box
+    double distance_m;  ///< 0 on overlap or touch
+    Box2 witness;       ///< the nearest box, of one cell; of equally near ones, the lower left
   };
 
-  /// Exact distance between the vehicle's rectangle at a pose and the nearest occupied box; none
-  /// where no box is within `within_m`.
+  /// Exact distance between the vehicle's rectangle at a pose and the nearest box; none where no
+  /// box is within `within_m` (or within the horizon, if that is less).
+  /// @throws std::invalid_argument if the rectangle leaves the field's region.
   std::optional<Nearest> nearest(const geometry::Pose2& source_from_vehicle,
-                                 const geometry::VehicleShape& shape, double within_m) const;
+                                 const geometry::VehicleShape& shape, double within_m,
+                                 ObstacleKind kind = ObstacleKind::occupied) const;
 
-  /// Share of the vehicle's rectangle at a pose that lies on cells never measured, 0 … 1.
+  /// Share of the space that the vehicle's rectangle at a pose takes in the band that was never
+  /// measured, 0 … 1. Exactly 0 only where nothing of it is unknown.
   double unknown_share(const geometry::Pose2& source_from_vehicle,
                        const geometry::VehicleShape& shape) const;
 

@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/map/occupancy/point_cloud.h"
@@ -13,6 +15,8 @@ namespace roadbed::map {
 
 struct OccupancyOptions {
   double resolution_m = 0.1;
+  /// Rays carve free space this far from the sensor; hits beyond count all the same.
+  double carve_range_m = std::numeric_limits<double>::infinity();
 };
 
 /// Measured at a cell: nothing, a way through, or a thing.
@@ -29,11 +33,18 @@ struct OccupancyCell {
 class OccupancyMap {
  public:
   /// Clouds with a sensor position carve free space along their rays; others only mark hits.
+  /// Cost: a step per cell that a ray crosses; of points in the same cell one ray is drawn.
+  /// @throws InputError if a point or sensor lies beyond OctoMap's ±32768 cells of the origin, or
+  ///         the rays cross too many cells to be kept.
+  /// @throws std::invalid_argument if there is no point or an option is not positive.
   static OccupancyMap build(std::span<const PointCloud> clouds, const OccupancyOptions& options);
 
   /// Reads `.bt` or `.ot`; the header, depth and node count are checked before OctoMap sees a byte.
   /// @throws InputError if the file is unusable.
   static OccupancyMap load(const std::filesystem::path& file);
+
+  /// The same from bytes; `name` stands for the file in messages.
+  static OccupancyMap parse(std::string_view bytes, const std::string& name);
 
   ~OccupancyMap();
   OccupancyMap(OccupancyMap&&) noexcept;
@@ -44,12 +55,14 @@ class OccupancyMap {
   const std::string& crs() const;
   std::size_t node_count() const;
 
+  /// State at a point; beyond the octree's range it is unknown. O(16).
   CellState at(const Eigen::Vector3d& in_source) const;
 
   /// All leaves with a state, in the octree's own order.
   std::vector<OccupancyCell> cells() const;
 
-  /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`.
+  /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`. Log-odds of an `.ot`
+  /// become free and occupied at OctoMap's threshold, 0.
   std::string to_bt() const;
 
  private:
@@ -57,5 +70,8 @@ class OccupancyMap {
   explicit OccupancyMap(std::unique_ptr<Tree> tree);
   std::unique_ptr<Tree> tree_;
 };
+
+/// Whether the bytes begin as a `.bt` or `.ot` does.
+bool is_occupancy_file(std::string_view bytes);
 
 }  // namespace roadbed::map

@@ -1,0 +1,119 @@
+#include "roadbed/map/occupancy/point_cloud.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "roadbed/map/occupancy/cloud_formats.h"
+#include "roadbed/map/read_file.h"
+
+namespace roadbed::map {
+namespace {
+
+constexpr double kNearZero = 4096.0;  // floats below it are exact to 0.25 mm
+
+using Parser = RawCloud (*)(std::string_view, const std::string&);
+
+bool begins_as_pcd(std::string_view bytes) {
+  TextScanner lines(bytes.substr(0, 4096));
+  while (!lines.done()) {
+    std::string_view line = lines.next_line();
+    if (line.starts_with("# .PCD")) return true;
+    const std::string word = lower(next_word(line));
+    if (word.empty() || word.starts_with('#')) continue;
+    return word == "version" || word == "fields" || word == "columns";
+  }
+  return false;
+}
+
+Parser parser_by_suffix(const std::string& name) {
+  const std::string suffix = lower(std::filesystem::path(name).extension().string());
+  if (suffix == ".pcd") return parse_pcd;
+  if (suffix == ".ply") return parse_ply;
+  if (suffix == ".las" || suffix == ".laz") return parse_las;
+  for (const char* text : {".xyz", ".csv", ".txt", ".asc", ".pts"}) {
+    if (suffix == text) return parse_xyz;
+  }
+  return nullptr;
+}
+
+Parser choose_parser(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("LASF")) return parse_las;
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply;
+  if (begins_as_pcd(bytes)) return parse_pcd;
+  if (const Parser parser = parser_by_suffix(name)) return parser;
+  refuse_cloud(name, "", "", "is of no known point cloud format", ".pcd, .ply, .las, .xyz or .csv",
+               "convert it, or rename it to what it is");
+}
+
+Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d least = points.front(), most = points.front();
+  for (const Eigen::Vector3d& point : points) {
+    least = least.cwiseMin(point);
+    most = most.cwiseMax(point);
+  }
+  Eigen::Vector3d origin(0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::max(-least[axis], most[axis]) > kNearZero) {
+      origin[axis] = std::round(0.5 * (least[axis] + most[axis]));
+    }
+  }
+  return origin;
+}
+
+PointCloud relative_to_origin(RawCloud raw) {
+  PointCloud cloud;
+  cloud.origin_in_source = choose_origin(raw.points_in_source);
+  cloud.points.reserve(raw.points_in_source.size());
+  for (const Eigen::Vector3d& point : raw.points_in_source) {
+    cloud.points.emplace_back((point - cloud.origin_in_source).cast<float>());
+  }
+  cloud.format = std::move(raw.format);
+  cloud.crs = std::move(raw.crs);
+  cloud.unit = raw.unit;
+  cloud.dropped_not_finite = raw.dropped_not_finite;
+  cloud.sensor_in_source = raw.sensor_in_source;
+  cloud.notes = std::move(raw.notes);
+  return cloud;
+}
+
+}  // namespace
+
+std::string_view name(LengthUnit unit) {
+  constexpr std::array<std::string_view, 5> names{"unknown", "metre", "foot", "US survey foot",
+                                                  "degree"};
+  return names[static_cast<std::size_t>(unit)];
+}
+
+Box3 bounds(const PointCloud& cloud) {
+  Box3 box{cloud.in_source(0), cloud.in_source(0)};
+  for (std::size_t i = 1; i < cloud.points.size(); ++i) {
+    const Eigen::Vector3d point = cloud.in_source(i);
+    box.min_in_source = box.min_in_source.cwiseMin(point);
+    box.max_in_source = box.max_in_source.cwiseMax(point);
+  }
+  return box;
+}
+
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
+  RawCloud raw = choose_parser(bytes, name)(bytes, name);
+  if (raw.points_in_source.empty()) {
+    refuse_cloud(name, "", "",
+                 raw.dropped_not_finite == 0
+                     ? "holds no point"
+                     : fmt::format("none of its {} points is finite", raw.dropped_not_finite),
+                 "at least one finite point", "check how the cloud was made");
+  }
+  PointCloud cloud = relative_to_origin(std::move(raw));
+  cloud.name = name;
+  return cloud;
+}
+
+PointCloud read_point_cloud(const std::filesystem::path& file) {
+  return parse_point_cloud(read_file(file), file.string());
+}
+
+}  // namespace roadbed::map
