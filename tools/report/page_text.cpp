@@ -106,8 +106,9 @@ std::string foot_entry(std::string_view name, const std::string& html) {
 }  // namespace
 
 std::string page_head(const ReportInput& input) {
-  std::string html = fmt::format("<div class=\"name\"><h1>{}</h1><p class=\"scenario\">{}</p></div>\n",
-                                 escape_markup(input.title), escape_markup(input.scenario));
+  std::string html =
+      fmt::format("<div class=\"name\"><h1>{}</h1><p class=\"scenario\">{}</p></div>\n",
+                  escape_markup(input.title), escape_markup(input.scenario));
   html += facts_html(input);
   html += "<div class=\"verdicts\">" + verdict_html(input.verdict, "");
   if (input.audit) html += verdict_html(*input.audit, "Occupancy: ");
