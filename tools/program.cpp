@@ -23,6 +23,8 @@ struct Entry {
 // In the order in which --help lists them.
 constexpr Entry kCommands[] = {
     {"import", make_import_command},
+    {"info", make_info_command},
+    {"export", make_export_command},
     {"control", make_control_command},
 };
 

@@ -1,0 +1,50 @@
+#include "roadbed/map/formats/write_csv.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace roadbed::map {
+namespace {
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string result = "\"";
+  for (const char c : field) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+/// The four columns that all rows of a lane share.
+std::string lane_columns(const RoadMap& road_map, const Lane& lane) {
+  const std::string road = lane.road ? road_map.road(*lane.road).source_id : "";
+  return fmt::format("{},{},{},{}", quoted(road), lane.origin.section,
+                     quoted(lane.origin.source_id), name(lane.type));
+}
+
+void add_line(const RoadMap& road_map, const std::string& columns, std::string_view which,
+              const LaneLine& line, std::string& text) {
+  const auto& points = line.in_map.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d in_source = road_map.to_source(points[i]);
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", columns, which,
+                   line.station_m[i], in_source.x(), in_source.y(), line.z_m[i]);
+  }
+}
+
+}  // namespace
+
+std::string write_csv(const RoadMap& road_map) {
+  std::string text = "road,section,lane,type,line,s_m,x_m,y_m,z_m\n";
+  for (const Lane& lane : road_map.lanes()) {
+    const std::string columns = lane_columns(road_map, lane);
+    add_line(road_map, columns, "left", lane.left, text);
+    add_line(road_map, columns, "right", lane.right, text);
+    add_line(road_map, columns, "centre", lane.centre, text);
+  }
+  return text;
+}
+
+}  // namespace roadbed::map

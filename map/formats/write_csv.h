@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "roadbed/map/road_map.h"
+
+namespace roadbed::map {
+
+/// The lines of all lanes as CSV, a row per vertex, lanes in order of id, per lane left, right and
+/// centre: `road,section,lane,type,line,s_m,x_m,y_m,z_m`. x and y are source coordinates; numbers
+/// are the shortest that read back as the same double; fields are quoted as in RFC 4180.
+std::string write_csv(const RoadMap& road_map);
+
+}  // namespace roadbed::map

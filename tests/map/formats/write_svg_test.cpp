@@ -1,0 +1,80 @@
+#include "roadbed/map/formats/write_svg.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "roadbed/tests/support/made_maps.h"
+
+namespace roadbed::map {
+namespace {
+
+pugi::xml_document parsed(const std::string& svg) {
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(svg.c_str()));
+  return document;
+}
+
+/// Path data of the first path with this fill.
+std::string data_filled(const pugi::xml_document& document, const std::string& colour) {
+  for (const auto& path : document.child("svg").children("path")) {
+    if (path.attribute("fill").value() == colour) return path.attribute("d").value();
+  }
+  return {};
+}
+
+int count_of(const std::string& text, char c) {
+  return static_cast<int>(std::count(text.begin(), text.end(), c));
+}
+
+TEST(WriteSvg, DrawsTheCarriagewayOfATwoLaneRoadAsOneRectangle) {
+  const auto document = parsed(write_svg(tests::straight_two_lane_road(100.0).build()));
+  const std::string data = data_filled(document, "#4d535c");
+  EXPECT_EQ(count_of(data, 'M'), 1);
+  EXPECT_EQ(count_of(data, 'L'), 4);  // back to the start, then closed
+  EXPECT_EQ(count_of(data, 'Z'), 1);
+}
+
+TEST(WriteSvg, SaysHowItsCoordinatesFollowFromTheSource) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  made.parts.origin_in_source = {1000, 2000};
+  const auto document = parsed(write_svg(made.build()));
+  double x0 = 0.0, y0 = 0.0;
+  const std::string words = document.child("svg").child("desc").text().get();
+  ASSERT_EQ(std::sscanf(words.c_str(), "metres; source x = %lf + x, source y = %lf - y", &x0, &y0),
+            2);
+  double x = 0.0, y = 0.0;  // the first corner of the carriageway, lexicographically the lowest
+  ASSERT_EQ(std::sscanf(data_filled(document, "#4d535c").c_str(), "M%lf %lfL", &x, &y), 2);
+  EXPECT_NEAR(x0 + x, 1000.0, 0.01);
+  EXPECT_NEAR(y0 - y, 1996.5, 0.01);
+}
+
+TEST(WriteSvg, TintsJunctionsAndPointsArrowsInDrivingDirection) {
+  const auto document = parsed(write_svg(tests::three_roads_in_a_row().build()));
+  EXPECT_EQ(count_of(data_filled(document, "#6e6660"), 'M'), 1);
+  const std::string arrows = data_filled(document, "#8fd3f4");
+  double tip_x = 0, tip_y = 0, wing_x = 0, wing_y = 0;
+  ASSERT_EQ(std::sscanf(arrows.c_str(), "M%lf %lfL%lf %lf", &tip_x, &tip_y, &wing_x, &wing_y), 4);
+  EXPECT_GT(tip_x, wing_x);  // eastwards
+  EXPECT_LT(wing_y, tip_y);  // the left wing is drawn first, and up is north
+}
+
+TEST(WriteSvg, EscapesNames) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  made.parts.crs = "<&\">";
+  const auto document = parsed(write_svg(made.build()));
+  std::string words;
+  for (const auto& text : document.child("svg").children("text")) words += text.text().get();
+  EXPECT_NE(words.find("<&\">"), std::string::npos);
+}
+
+TEST(WriteSvg, IsTheSameEveryTime) {
+  const RoadMap road_map = tests::three_roads_in_a_row().build();
+  EXPECT_EQ(write_svg(road_map), write_svg(road_map));
+}
+
+}  // namespace
+}  // namespace roadbed::map

@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "roadbed/map/components.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/surface.h"
+#include "roadbed/tools/command.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Bounds {
+  Eigen::Vector2d low, high;
+};
+
+/// Of all lane borders, in source coordinates; none for a map without lanes.
+std::optional<Bounds> bounds_of(const map::RoadMap& road_map) {
+  std::optional<Bounds> bounds;
+  for (const map::Lane& lane : road_map.lanes()) {
+    for (const map::LaneLine* line : {&lane.left, &lane.right}) {
+      for (const Eigen::Vector2d& point : line->in_map.points()) {
+        const Eigen::Vector2d in_source = road_map.to_source(point);
+        if (!bounds) bounds = Bounds{in_source, in_source};
+        bounds->low = bounds->low.cwiseMin(in_source);
+        bounds->high = bounds->high.cwiseMax(in_source);
+      }
+    }
+  }
+  return bounds;
+}
+
+double area_m2(const std::vector<geometry::Polygon>& polygons) {
+  double sum_m2 = 0.0;
+  for (const geometry::Polygon& polygon : polygons) sum_m2 += geometry::area_m2(polygon);
+  return sum_m2;
+}
+
+Json lane_counts(const map::RoadMap& road_map) {
+  std::map<map::LaneType, int> counts;
+  for (const map::Lane& lane : road_map.lanes()) ++counts[lane.type];
+  Json json = Json::object();
+  for (const auto& [type, count] : counts) json[std::string(name(type))] = count;
+  return json;
+}
+
+Json remark_counts(const map::RoadMap& road_map) {
+  std::map<std::string, int> counts;
+  for (const map::ImportRemark& remark : road_map.remarks()) ++counts[remark.rule];
+  Json json = Json::object();
+  for (const auto& [rule, count] : counts) json[rule] = count;
+  return json;
+}
+
+Json lengths_m(const map::RoadMap& road_map) {
+  double roads_m = 0.0, drivable_m = 0.0;
+  for (const map::Road& road : road_map.roads()) roads_m += road.length_m;
+  for (const map::Lane& lane : road_map.lanes()) {
+    if (is_drivable(lane.type)) drivable_m += lane.length_m();
+  }
+  return {{"roads_m", roads_m}, {"drivable_lanes_m", drivable_m}};
+}
+
+Json areas_m2(const map::RoadMap& road_map) {
+  double junctions_m2 = 0.0;
+  for (const map::Junction& junction : road_map.junctions()) {
+    junctions_m2 += area_m2(map::junction_surface(road_map, junction.id));
+  }
+  return {{"drivable_m2", area_m2(map::drivable_surface(road_map))},
+          {"junctions_m2", junctions_m2}};
+}
+
+Json bounds_json(const map::RoadMap& road_map) {
+  const std::optional<Bounds> bounds = bounds_of(road_map);
+  if (!bounds) return nullptr;
+  return {{"min_x_m", bounds->low.x()},
+          {"min_y_m", bounds->low.y()},
+          {"max_x_m", bounds->high.x()},
+          {"max_y_m", bounds->high.y()}};
+}
+
+Json component_sizes(const map::RoadMap& road_map) {
+  Json sizes = Json::array();
+  for (const auto& component : map::drivable_components(road_map)) {
+    sizes.push_back(component.size());
+  }
+  return sizes;
+}
+
+Json info_json(const map::RoadMap& road_map) {
+  Json info;
+  info["format"] = road_map.format();
+  info["crs"] = road_map.crs().empty() ? Json() : Json(road_map.crs());
+  info["roads"] = road_map.roads().size();
+  info["junctions"] = road_map.junctions().size();
+  info["signals"] = road_map.signals().size();
+  info["lanes"] = road_map.lanes().size();
+  info["lanes_by_type"] = lane_counts(road_map);
+  info["lengths"] = lengths_m(road_map);
+  info["areas"] = areas_m2(road_map);
+  info["bounds"] = bounds_json(road_map);
+  info["drivable_component_lanes"] = component_sizes(road_map);
+  info["remarks"] = remark_counts(road_map);
+  return info;
+}
+
+/// "12 driving, 3 sidewalk"
+std::string listed(const Json& counts) {
+  std::string text;
+  for (const auto& [key, count] : counts.items()) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), key);
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string bounds_text(const Json& bounds) {
+  if (bounds.is_null()) return "none";
+  const auto at = [&](const char* key) { return bounds.at(key).get<double>(); };
+  return fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", at("min_x_m"), at("max_x_m"),
+                     at("min_y_m"), at("max_y_m"));
+}
+
+std::string components_text(const Json& sizes) {
+  if (sizes.size() < 2) return fmt::format("{}", sizes.size());
+  return fmt::format("{}, the largest with {} lanes", sizes.size(), sizes.at(0).get<int>());
+}
+
+void print_info(std::ostream& out, const Json& info) {
+  const auto line = [&](const char* what, const std::string& value) {
+    fmt::print(out, "{:<22}{}\n", what, value);
+  };
+  const auto number = [](const Json& json) { return json.get<double>(); };
+  line("format", info.at("format").get<std::string>());
+  line("crs", info.at("crs").is_null() ? "unknown" : info.at("crs").get<std::string>());
+  line("bounds", bounds_text(info.at("bounds")));
+  line("roads", fmt::format("{}, {:.1f} m", info.at("roads").get<int>(),
+                            number(info.at("lengths").at("roads_m"))));
+  line("junctions", fmt::format("{}, {:.1f} m2", info.at("junctions").get<int>(),
+                                number(info.at("areas").at("junctions_m2"))));
+  line("signals", fmt::format("{}", info.at("signals").get<int>()));
+  line("lanes",
+       fmt::format("{}: {}", info.at("lanes").get<int>(), listed(info.at("lanes_by_type"))));
+  line("drivable lanes",
+       fmt::format("{:.1f} m, {:.1f} m2", number(info.at("lengths").at("drivable_lanes_m")),
+                   number(info.at("areas").at("drivable_m2"))));
+  line("connected components", components_text(info.at("drivable_component_lanes")));
+  line("remarks", listed(info.at("remarks")));
+}
+
+class InfoCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description("Say what a map holds: counts, lengths, areas, bounds, connectivity");
+    app.add_option("MAP", input_, "Any readable map")->required();
+    app.add_flag("--json", json_, "Print one JSON document");
+    app.footer("Example:\n  roadbed info town.xodr --json");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions&) override {
+    const Json info = info_json(map::load_map(input_));
+    if (json_) {
+      streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    } else {
+      print_info(streams.out, info);
+    }
+    return Exit::ok;
+  }
+
+ private:
+  std::filesystem::path input_;
+  bool json_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_info_command() { return std::make_unique<InfoCommand>(); }
+
+}  // namespace roadbed::tools
