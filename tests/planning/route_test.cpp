@@ -1,0 +1,379 @@
+#include "roadbed/planning/route.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::planning {
+namespace {
+
+using map::LaneId;
+using map::LanePlace;
+using map::RoadMap;
+
+// The documented rules as a plain graph, solved by Boost: nodes are (lane, changes so far in the
+// passage, whether the passage is the first one), and one more for the goal.
+class BoostOracle {
+ public:
+  BoostOracle(const RoadMap& road_map, const RouteOptions& options)
+      : road_map_(road_map), options_(options) {}
+
+  double cost(const LanePlace& from, const LanePlace& to) const {
+    const std::size_t lanes = road_map_.lanes().size();
+    const std::size_t goal = 2 * lanes * kChanges;
+    Graph graph(goal + 1);
+    for (const map::Lane& lane : road_map_.lanes()) {
+      for (int changes = 0; changes < kChanges; ++changes) {
+        for (const bool first : {false, true})
+          add_edges(graph, lane, changes, first, from, to, goal);
+      }
+    }
+    std::vector<double> distance(goal + 1);
+    boost::dijkstra_shortest_paths(
+        graph, node(from.lane, 0, true),
+        boost::distance_map(distance.data()).distance_inf(std::numeric_limits<double>::infinity()));
+    return distance[goal];
+  }
+
+ private:
+  static constexpr int kChanges = 6;
+  using Graph =
+      boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property,
+                            boost::property<boost::edge_weight_t, double>>;
+
+  static std::size_t node(LaneId lane, int changes, bool first) {
+    return (2 * lane.index + (first ? 1U : 0U)) * kChanges + static_cast<std::size_t>(changes);
+  }
+
+  bool usable(LaneId lane) const {
+    const bool closed =
+        std::find(options_.avoid.begin(), options_.avoid.end(), lane) != options_.avoid.end();
+    return is_drivable(road_map_.lane(lane).type) && !closed;
+  }
+
+  double travel(const map::Lane& lane, double length_m) const {
+    if (options_.cost == RouteCost::distance) return length_m;
+    const double limit = lane.speed_limit_mps.value_or(options_.default_speed_mps);
+    return length_m / std::min(limit, options_.max_speed_mps);
+  }
+
+  void add_edges(Graph& graph, const map::Lane& lane, int changes, bool first,
+                 const LanePlace& from, const LanePlace& to, std::size_t goal) const {
+    const double begin = first ? from.s_m / road_map_.lane(from.lane).length_m() : 0.0;
+    const double end = to.s_m / road_map_.lane(to.lane).length_m();
+    const double rest_m = (1.0 - begin) * lane.length_m();
+    const std::size_t here = node(lane.id, changes, first);
+    const map::LaneLinks& links = road_map_.graph().of(lane.id);
+    const auto fits = [&](int count, double room_m) {
+      return count == 0 || count * options_.least_lane_change_m <= room_m;
+    };
+    if (fits(changes, rest_m)) {
+      for (const LaneId next : links.successors) {
+        if (usable(next)) add_edge(here, node(next, 0, false), travel(lane, rest_m), graph);
+      }
+    }
+    for (const auto& next : {links.left, links.right}) {
+      if (!next || !next->same_direction || !next->change_allowed || !usable(next->lane)) continue;
+      if (changes + 1 >= kChanges || !fits(changes + 1, rest_m)) continue;
+      const double least = options_.cost == RouteCost::distance ? options_.lane_change_cost_m
+                                                                : options_.lane_change_cost_s;
+      const double room_m = rest_m / (changes + 1);
+      const double cost = least * std::max(1.0, options_.comfortable_lane_change_m / room_m);
+      add_edge(here, node(next->lane, changes + 1, first), cost, graph);
+    }
+    const double ahead_m = (end - begin) * lane.length_m();
+    if (lane.id == to.lane && ahead_m >= 0.0 && fits(changes, ahead_m)) {
+      add_edge(here, goal, travel(lane, ahead_m), graph);
+    }
+  }
+
+  const RoadMap& road_map_;
+  const RouteOptions& options_;
+};
+
+// Crossings in a grid, with roads of one to four lanes between neighbours, random limits, types,
+// markings and links; link ends do not meet, so straight lines are shorter than lanes are long.
+RoadMap random_grid(std::mt19937& random, int columns, int rows) {
+  tests::MadeMap made;
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<std::vector<LaneId>> in(static_cast<std::size_t>(columns * rows)), out(in.size());
+  const auto crossing = [&](int x, int y) { return static_cast<std::size_t>(y * columns + x); };
+  const auto add_road = [&](int x0, int y0, int x1, int y1) {
+    const Eigen::Vector2d from(120.0 * x0, 60.0 * y0), to(120.0 * x1, 60.0 * y1);
+    const Eigen::Vector2d along = (to - from).normalized(), right(along.y(), -along.x());
+    const auto road = made.add_road(std::to_string(made.parts.roads.size()));
+    const int lanes = 1 + static_cast<int>(4.0 * unit(random));
+    const double cut_m = 5.0 + 20.0 * unit(random);
+    std::vector<LaneId> added;
+    for (int i = 0; i < lanes; ++i) {
+      const Eigen::Vector2d left = from + cut_m * along + 3.5 * i * right;
+      const double length_m = (to - from).norm() - 2.0 * cut_m;
+      added.push_back(
+          made.add_lane(road, std::to_string(-1 - i), {left, left + length_m * along},
+                        {left + 3.5 * right, left + 3.5 * right + length_m * along},
+                        unit(random) < 0.95 ? map::LaneType::driving : map::LaneType::shoulder));
+      made.lane(added.back()).speed_limit_mps =
+          unit(random) < 0.9 ? std::optional(5.0 + 30.0 * unit(random)) : std::nullopt;
+      if (i > 0) made.put_beside(added[added.size() - 2], added.back(), unit(random) < 0.6);
+      out[crossing(x0, y0)].push_back(added.back());
+      in[crossing(x1, y1)].push_back(added.back());
+    }
+  };
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      if (x + 1 < columns) {
+        add_road(x, y, x + 1, y);
+        add_road(x + 1, y, x, y);
+      }
+      if (y + 1 < rows) {
+        add_road(x, y, x, y + 1);
+        add_road(x, y + 1, x, y);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    for (const LaneId from : in[i]) {
+      for (const LaneId to : out[i]) {
+        if (unit(random) < 0.3) made.link(from, to);
+      }
+    }
+  }
+  return made.build();
+}
+
+LanePlace random_place(std::mt19937& random, const RoadMap& road_map) {
+  std::uniform_int_distribution<std::size_t> lane(0, road_map.lanes().size() - 1);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (;;) {
+    const map::Lane& chosen = road_map.lanes()[lane(random)];
+    if (is_drivable(chosen.type)) return {chosen.id, share(random) * chosen.length_m(), 0.0};
+  }
+}
+
+// Every leg continues the one before: by a link, or beside it at the same share of the way.
+void expect_connected(const RoadMap& road_map, const Route& route, const LanePlace& from,
+                      const LanePlace& to, const RouteOptions& options) {
+  ASSERT_FALSE(route.legs.empty());
+  EXPECT_EQ(route.legs.front().lane, from.lane);
+  EXPECT_EQ(route.legs.back().lane, to.lane);
+  EXPECT_NEAR(route.legs.front().from_s_m, from.s_m, 1e-9);
+  EXPECT_NEAR(route.legs.back().to_s_m, to.s_m, 1e-9);
+  EXPECT_EQ(route.legs.back().exit, LegExit::goal);
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    const RouteLeg& leg = route.legs[i];
+    const map::Lane& lane = road_map.lane(leg.lane);
+    EXPECT_LE(leg.from_s_m, leg.to_s_m + 1e-9);
+    EXPECT_TRUE(is_drivable(lane.type));
+    if (i > 0) {
+      EXPECT_EQ(std::count(options.avoid.begin(), options.avoid.end(), leg.lane), 0);
+    }
+    if (i + 1 == route.legs.size()) break;
+    const RouteLeg& next = route.legs[i + 1];
+    const map::LaneLinks& links = road_map.graph().of(leg.lane);
+    if (leg.exit == LegExit::successor) {
+      EXPECT_EQ(std::count(links.successors.begin(), links.successors.end(), next.lane), 1);
+      EXPECT_NEAR(leg.to_s_m, lane.length_m(), 1e-9);
+      EXPECT_EQ(next.from_s_m, 0.0);
+    } else {
+      const auto& beside = leg.exit == LegExit::change_left ? links.left : links.right;
+      ASSERT_TRUE(beside && beside->change_allowed && beside->same_direction);
+      EXPECT_EQ(beside->lane, next.lane);
+      EXPECT_NEAR(leg.to_s_m / lane.length_m(), next.from_s_m / road_map.lane(next.lane).length_m(),
+                  1e-9);
+    }
+  }
+}
+
+struct Tally {
+  int found = 0, none = 0, with_changes = 0;
+};
+
+void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs,
+                        const RouteOptions& options, Tally& tally) {
+  const BoostOracle oracle(road_map, options);
+  for (int i = 0; i < pairs; ++i) {
+    const LanePlace from = random_place(random, road_map), to = random_place(random, road_map);
+    const RouteAnswer answer = find_route(road_map, from, to, options);
+    const double expected = oracle.cost(from, to);
+    ASSERT_EQ(answer.route.has_value(), std::isfinite(expected))
+        << road_map.lane(from.lane).name << " to " << road_map.lane(to.lane).name;
+    if (!answer.route) {
+      ++tally.none;
+      EXPECT_FALSE(answer.reason.empty());
+      continue;
+    }
+    ++tally.found;
+    tally.with_changes += answer.route->lane_changes > 0 ? 1 : 0;
+    const double cost =
+        options.cost == RouteCost::time ? answer.route->cost_s : answer.route->cost_m;
+    ASSERT_NEAR(cost, expected, 1e-9 * (1.0 + expected));
+    expect_connected(road_map, *answer.route, from, to, options);
+  }
+}
+
+TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRandomGrids) {
+  std::mt19937 random(20261121);
+  Tally tally;
+  for (int trial = 0; trial < 12; ++trial) {
+    const RoadMap road_map = random_grid(random, 3 + trial % 3, 2 + trial % 2);
+    RouteOptions options;
+    options.cost = trial % 2 == 0 ? RouteCost::time : RouteCost::distance;
+    if (trial % 3 == 1) options.lane_change_cost_s = options.lane_change_cost_m = 0.0;
+    if (trial % 3 == 2) options.least_lane_change_m = 45.0;
+    for (int i = 0; i < trial % 4; ++i)
+      options.avoid.push_back(random_place(random, road_map).lane);
+    compare_with_boost(road_map, random, 60, options, tally);
+  }
+  EXPECT_GT(tally.found, 300);
+  EXPECT_GT(tally.none, 30);
+  EXPECT_GT(tally.with_changes, 100);
+}
+
+TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  std::mt19937 random(20261121);
+  Tally tally;
+  for (const char* file :
+       {"BerkeleyLearnVerify+Scenic/Town10HD.xodr", "esmini+esmini/multi_intersections.xodr",
+        "esmini+esmini/highway_example_with_merge_and_split.xodr"}) {
+    const RoadMap road_map = map::load_map(folder / "opendrive" / file);
+    compare_with_boost(road_map, random, 40, {}, tally);
+  }
+  EXPECT_GT(tally.found, 60);
+}
+
+// Two lanes of 100 m eastwards, -1 left of -2, and one behind each.
+struct TwoLanes {
+  tests::MadeMap made;
+  LaneId left, right, after_left, after_right;
+
+  explicit TwoLanes(bool change_allowed = true) {
+    const auto road = made.add_road("1"), next = made.add_road("2");
+    left = made.add_lane(road, "-1", {{0, 0}, {100, 0}}, {{0, -4}, {100, -4}});
+    right = made.add_lane(road, "-2", {{0, -4}, {100, -4}}, {{0, -8}, {100, -8}});
+    after_left = made.add_lane(next, "-1", {{100, 0}, {200, 0}}, {{100, -4}, {200, -4}});
+    after_right = made.add_lane(next, "-2", {{100, -4}, {200, -4}}, {{100, -8}, {200, -8}});
+    made.link(left, after_left);
+    made.link(right, after_right);
+    made.put_beside(left, right, change_allowed);
+  }
+};
+
+TEST(FindRoute, ChangesLaneInTheMiddleOfThePassageAndCountsItsLengthOnce) {
+  const TwoLanes lanes;
+  const RoadMap road_map = lanes.made.build();
+  const RouteAnswer answer =
+      find_route(road_map, {lanes.left, 20.0, 0.0}, {lanes.after_right, 50.0, 0.0});
+  ASSERT_TRUE(answer.route);
+  ASSERT_EQ(answer.route->legs.size(), 3U);
+  EXPECT_EQ(answer.route->legs[0].exit, LegExit::change_right);
+  EXPECT_NEAR(answer.route->legs[0].to_s_m, 60.0, 1e-9);
+  EXPECT_NEAR(answer.route->legs[1].from_s_m, 60.0, 1e-9);
+  EXPECT_EQ(answer.route->legs[1].exit, LegExit::successor);
+  EXPECT_NEAR(answer.route->length_m, 130.0, 1e-9);
+  EXPECT_NEAR(answer.route->cost_s, 130.0 / 13.9 + 5.0, 1e-9);
+  EXPECT_EQ(answer.route->lane_changes, 1);
+}
+
+TEST(FindRoute, NeedsTheLengthOfALaneChange) {
+  const TwoLanes lanes;
+  const RoadMap road_map = lanes.made.build();
+  EXPECT_TRUE(find_route(road_map, {lanes.left, 89.9, 0.0}, {lanes.after_right, 50.0, 0.0}).route);
+  const RouteAnswer answer =
+      find_route(road_map, {lanes.left, 90.1, 0.0}, {lanes.after_right, 50.0, 0.0});
+  EXPECT_FALSE(answer.route);
+  ASSERT_TRUE(answer.obstacle);
+  EXPECT_TRUE(answer.obstacle->length);
+  EXPECT_FALSE(answer.obstacle->markings);
+}
+
+TEST(FindRoute, AGoalBehindTheStartOnTheSameLaneTakesALoopOrIsRefused) {
+  TwoLanes lanes;
+  const LanePlace start{lanes.left, 60.0, 0.0}, goal{lanes.left, 40.0, 0.0};
+  EXPECT_FALSE(find_route(lanes.made.build(), start, goal).route);
+  lanes.made.link(lanes.after_left, lanes.left);
+  const RouteAnswer answer = find_route(lanes.made.build(), start, goal);
+  ASSERT_TRUE(answer.route);
+  EXPECT_NEAR(answer.route->length_m, 40.0 + 100.0 + 40.0, 1e-9);
+  EXPECT_EQ(answer.route->legs.size(), 3U);
+}
+
+TEST(FindRoute, StartingAtTheGoalIsARouteOfNoLength) {
+  const TwoLanes lanes;
+  const LanePlace place{lanes.left, 60.0, 0.0};
+  const RouteAnswer answer = find_route(lanes.made.build(), place, place);
+  ASSERT_TRUE(answer.route);
+  EXPECT_EQ(answer.route->legs.size(), 1U);
+  EXPECT_EQ(answer.route->length_m, 0.0);
+}
+
+TEST(FindRoute, SaysWhatStandsBetween) {
+  const TwoLanes solid(false);
+  const RoadMap marked = solid.made.build();
+  const LanePlace start{solid.left, 10.0, 0.0}, goal{solid.after_right, 10.0, 0.0};
+  const RouteAnswer by_marking = find_route(marked, start, goal);
+  ASSERT_TRUE(by_marking.obstacle);
+  EXPECT_TRUE(by_marking.obstacle->markings);
+  EXPECT_FALSE(by_marking.obstacle->closed_lanes);
+  EXPECT_EQ(by_marking.obstacle->lanes_from_start, 2U);
+  EXPECT_EQ(by_marking.obstacle->lanes_to_goal, 2U);
+  EXPECT_NE(by_marking.reason.find("markings"), std::string::npos);
+
+  const TwoLanes open;
+  RouteOptions closed;
+  closed.avoid = {open.right};
+  const RouteAnswer by_closure = find_route(open.made.build(), start, goal, closed);
+  ASSERT_TRUE(by_closure.obstacle);
+  EXPECT_TRUE(by_closure.obstacle->closed_lanes);
+  EXPECT_NE(by_closure.reason.find("closed"), std::string::npos);
+
+  const RouteAnswer apart =
+      find_route(marked, {solid.after_left, 10.0, 0.0}, {solid.left, 10.0, 0.0});
+  ASSERT_TRUE(apart.obstacle && apart.obstacle->gap_from);
+  EXPECT_NEAR(apart.obstacle->gap_m, 200.0, 1e-9);
+  EXPECT_EQ(*apart.obstacle->gap_from, solid.after_left);
+}
+
+TEST(FindRoute, RefusesLanesThatACarMayNotDriveOn) {
+  TwoLanes lanes;
+  lanes.made.lane(lanes.right).type = map::LaneType::sidewalk;
+  const RoadMap road_map = lanes.made.build();
+  const RouteAnswer from = find_route(road_map, {lanes.right, 1, 0}, {lanes.left, 9, 0});
+  EXPECT_FALSE(from.route);
+  EXPECT_NE(from.reason.find("sidewalk"), std::string::npos);
+  EXPECT_FALSE(find_route(road_map, {lanes.left, 1, 0}, {lanes.right, 9, 0}).route);
+  EXPECT_FALSE(find_route(road_map, {lanes.left, 1, 0}, {lanes.after_right, 9, 0}).route);
+  EXPECT_THROW(find_route(road_map, {LaneId{99}, 1, 0}, {lanes.left, 9, 0}), std::invalid_argument);
+  EXPECT_THROW(find_route(road_map, {lanes.left, 101, 0}, {lanes.left, 9, 0}),
+               std::invalid_argument);
+}
+
+TEST(FindRoute, OfTwoEqualWaysTheLowerIdIsTakenEveryTime) {
+  tests::MadeMap made;
+  const auto road = made.add_road("1");
+  std::vector<LaneId> lanes;
+  for (int i = 0; i < 4; ++i) {
+    const double x = i == 0 ? 0.0 : i == 3 ? 200.0 : 100.0;
+    lanes.push_back(made.add_lane(road, std::to_string(-1 - i), {{x, 0}, {x + 100, 0}},
+                                  {{x, -4}, {x + 100, -4}}));
+  }
+  for (const std::size_t i : {2U, 1U}) {
+    made.link(lanes[0], lanes[i]);
+    made.link(lanes[i], lanes[3]);
+  }
+  const RouteAnswer answer = find_route(made.build(), {lanes[0], 0, 0}, {lanes[3], 50, 0});
+  ASSERT_TRUE(answer.route);
+  EXPECT_EQ(answer.route->legs[1].lane, lanes[1]);
+}
+
+}  // namespace
+}  // namespace roadbed::planning
