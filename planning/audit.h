@@ -11,42 +11,66 @@
 
 namespace roadbed::planning {
 
+/// What space that was never measured counts as. `report`: it is no obstacle, but a drive near it
+/// is not clear.
 enum class UnknownPolicy { free, occupied, report };
+
 enum class Verdict { clear, conflict, unknown, undecided };
 std::string_view name(Verdict verdict);
 
 struct AuditOptions {
-  double clearance_m = 0.0;  ///< less than this is a conflict
+  double clearance_m = 0.0;  ///< less than this is a conflict, an overlap always; < horizon / 2
   double inflate_m = 0.0;    ///< localisation margin added around the vehicle
   UnknownPolicy unknown = UnknownPolicy::report;
   double tolerance_m = 0.02;  ///< bound on the error of the least clearance
 };
 
+/// A part of the drive by time.
+struct Stretch {
+  double from_s = 0.0, to_s = 0.0;
+};
+
 /// A stretch of time in which the vehicle is too near to something.
 struct Conflict {
   double from_s = 0.0, to_s = 0.0;
-  double least_clearance_m = 0.0;
-  geometry::TrajectoryPoint at;  ///< state at the least clearance
-  map::Box2 witness;             ///< the occupied cell
+  double least_clearance_m = 0.0;  ///< within tolerance
+  geometry::TrajectoryPoint at;    ///< state at the least clearance; of equal ones, the first
+  map::Box2 witness;               ///< the nearest cell then
 };
 
 struct AuditReport {
   Verdict verdict = Verdict::undecided;
-  double least_clearance_m =
-      0.0;  ///< within tolerance_m of the true one, never above it + tolerance
+
+  /// Distance at `least_clearance_at_s`; no time of the drive has less than `proven_clearance_m`,
+  /// and the two are at most the tolerance apart.
+  double least_clearance_m = 0.0;
+  double proven_clearance_m = 0.0;
   double least_clearance_at_s = 0.0;
-  bool beyond_horizon = false;  ///< nothing within the field's horizon: a lower bound only
-  double unknown_share = 0.0;   ///< of the swept poses' area
-  std::vector<Conflict> conflicts;
+  std::optional<map::Box2> witness;  ///< the nearest cell then; none beyond the horizon
+  bool beyond_horizon = false;       ///< nothing within the field's horizon: a lower bound only
+
+  double unknown_share = 0.0;       ///< mean over poses half a metre apart
+  std::vector<Conflict> conflicts;  ///< in order of time
+  std::vector<Stretch> unknown;     ///< space within the clearance was not measured
+  std::vector<Stretch> undecided;   ///< nearer to the limit than the proof can tell (1 mm)
+
   struct Sample {
     double t_s, clearance_m;
   };
-  std::vector<Sample> profile;  ///< proven lower bounds along the drive
+  std::vector<Sample> profile;  ///< clearance at rows; beyond 5 m a lower bound of it
 };
 
 /// Whether a drive keeps clear of occupied space, at every time between its rows too: x, y and the
-/// unwrapped heading are linear between rows, and a motion bound covers every point of the body.
+/// unwrapped heading are linear between rows, and a motion bound (planning/README.md, "Audit")
+/// covers every point of the body. A `clear` is a proof; there is no sampling step.
+///
+/// Cost: some lookups a row where there is room, more where it is narrow.
+/// @throws std::invalid_argument if the drive is empty, an option is negative or not finite, or the
+///         vehicle leaves the region that the field was made for.
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                   const geometry::VehicleShape& vehicle, const AuditOptions& options = {});
+
+/// The vehicle's rectangle grown by a margin on every side.
+geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double margin_m);
 
 }  // namespace roadbed::planning

@@ -10,7 +10,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/plan_grid.h"
-#include "roadbed/map/occupancy/rectangle_distance.h"
+#include "roadbed/map/occupancy/rectangle_on_grid.h"
 
 namespace roadbed::map {
 namespace {
@@ -113,9 +113,10 @@ struct ClearanceField::Grid {
     return in_source - corner_in_source;
   }
 
-  Rectangle in_grid(const geometry::Pose2& pose, const geometry::VehicleShape& shape) const {
+  geometry::Rectangle in_grid(const geometry::Pose2& pose,
+                              const geometry::VehicleShape& shape) const {
     const Eigen::Vector2d position = in_grid(pose.position());
-    return {{position.x(), position.y(), pose.heading_rad}, shape};
+    return geometry::body_at({position.x(), position.y(), pose.heading_rad}, shape);
   }
 
   // How far a point lies outside the region that queries should stay in.
@@ -126,7 +127,7 @@ struct ClearanceField::Grid {
     return (in_source - inside).norm();
   }
 
-  void check_inside(const Rectangle& rectangle) const {
+  void check_inside(const geometry::Rectangle& rectangle) const {
     for (const Eigen::Vector2d& corner : rectangle.corners()) {
       const Eigen::Vector2d in_source = corner + corner_in_source;
       constexpr double rounding_m = 1e-6;
@@ -178,7 +179,7 @@ double ClearanceField::distance_bound_m(const Eigen::Vector2d& point_in_source,
 std::optional<ClearanceField::Nearest> ClearanceField::nearest(
     const geometry::Pose2& source_from_vehicle, const geometry::VehicleShape& shape,
     double within_m, ObstacleKind kind) const {
-  const Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
+  const geometry::Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
   grid_->check_inside(rectangle);
   const auto nearest = grid_->plan.nearest(rectangle, std::min(within_m, grid_->horizon_m), kind);
   if (!nearest) return std::nullopt;
@@ -187,23 +188,23 @@ std::optional<ClearanceField::Nearest> ClearanceField::nearest(
 
 double ClearanceField::unknown_share(const geometry::Pose2& source_from_vehicle,
                                      const geometry::VehicleShape& shape) const {
-  const Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
+  const geometry::Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
   const double cell_m = grid_->plan.cell_m();
   const auto cell = [&](double at_m) {
     return static_cast<std::int64_t>(std::floor(at_m / cell_m));
   };
-  const Eigen::Vector2d least = rectangle.centre() - rectangle.half_extent();
-  const Eigen::Vector2d most = rectangle.centre() + rectangle.half_extent();
+  const Eigen::Vector2d least = rectangle.centre - half_extent_m(rectangle);
+  const Eigen::Vector2d most = rectangle.centre + half_extent_m(rectangle);
   double unknown_m2 = 0.0;
   for (std::int64_t y = cell(least.y()); y <= cell(most.y()); ++y) {
     for (std::int64_t x = cell(least.x()); x <= cell(most.x()); ++x) {
       const double unmeasured = 1.0 - grid_->plan.measured_share({x, y});
       if (unmeasured == 0.0) continue;
       unknown_m2 +=
-          unmeasured * rectangle.overlap_with_square(grid_->plan.centre({x, y}), 0.5 * cell_m);
+          unmeasured * overlap_with_square_m2(rectangle, grid_->plan.centre({x, y}), 0.5 * cell_m);
     }
   }
-  return std::min(1.0, unknown_m2 / rectangle.area_m2());
+  return std::min(1.0, unknown_m2 / (4.0 * rectangle.half_length_m * rectangle.half_width_m));
 }
 
 }  // namespace roadbed::map

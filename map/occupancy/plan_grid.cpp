@@ -108,7 +108,8 @@ double PlanGrid::lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) 
 /// Goes row by row through the cells in reach, jumping as far as the distances allow.
 struct PlanGrid::Search {
   const PlanGrid& grid;
-  const Rectangle& rectangle;
+  const geometry::Rectangle& rectangle;
+  const Eigen::Vector2d half_extent = half_extent_m(rectangle);
   const std::vector<float>& distance;
   double reach_m;
   std::optional<Cell> best;
@@ -116,8 +117,8 @@ struct PlanGrid::Search {
   void run() {
     const auto [from_y, to_y] = span(1, grid.height_);
     for (std::int64_t y = from_y; y <= to_y; ++y) {
-      const double gap_m = std::abs(grid.centre({0, y}).y() - rectangle.centre().y()) -
-                           rectangle.half_extent().y() - 0.5 * grid.cell_m_;
+      const double gap_m = std::abs(grid.centre({0, y}).y() - rectangle.centre.y()) -
+                           half_extent.y() - 0.5 * grid.cell_m_;
       if (gap_m <= reach_m) search_row(y);
       if (best && reach_m == 0.0) return;
     }
@@ -134,7 +135,7 @@ struct PlanGrid::Search {
   }
 
   void consider(const Cell& cell) {
-    const double gap_m = rectangle.distance_to_square(grid.centre(cell), 0.5 * grid.cell_m_);
+    const double gap_m = distance_to_square_m(rectangle, grid.centre(cell), 0.5 * grid.cell_m_);
     if (gap_m < reach_m || (!best && gap_m <= reach_m)) {
       reach_m = gap_m;
       best = cell;
@@ -147,18 +148,21 @@ struct PlanGrid::Search {
       const double limit = static_cast<double>(count - 1);
       return static_cast<std::int64_t>(std::clamp(std::floor(at_m / grid.cell_m_), 0.0, limit));
     };
-    const double middle = rectangle.centre()[axis];
-    const double half = rectangle.half_extent()[axis] + reach_m + grid.cell_m_;
+    const double middle = rectangle.centre[axis];
+    const double half = half_extent[axis] + reach_m + grid.cell_m_;
     return {cell(middle - half), cell(middle + half)};
   }
 };
 
-std::optional<PlanGrid::NearestCell> PlanGrid::nearest_inside(const Rectangle& rectangle,
+std::optional<PlanGrid::NearestCell> PlanGrid::nearest_inside(const geometry::Rectangle& rectangle,
                                                               double within_m,
                                                               ObstacleKind kind) const {
   if (empty()) return std::nullopt;
-  Search search{*this, rectangle, distances(kind),
-                std::min(within_m, upper_bound_m(rectangle.centre(), kind)), std::nullopt};
+  Search search{.grid = *this,
+                .rectangle = rectangle,
+                .distance = distances(kind),
+                .reach_m = std::min(within_m, upper_bound_m(rectangle.centre, kind)),
+                .best = std::nullopt};
   for (const Eigen::Vector2d& corner : rectangle.corners()) {
     search.reach_m = std::min(search.reach_m, upper_bound_m(corner, kind));
   }
@@ -168,7 +172,7 @@ std::optional<PlanGrid::NearestCell> PlanGrid::nearest_inside(const Rectangle& r
 }
 
 // All space around the grid is unknown; the cell beside the nearest border stands for it.
-PlanGrid::NearestCell PlanGrid::nearest_outside(const Rectangle& rectangle) const {
+PlanGrid::NearestCell PlanGrid::nearest_outside(const geometry::Rectangle& rectangle) const {
   NearestCell least{std::numeric_limits<double>::infinity(), {0, 0}};
   const auto consider = [&](double inset_m, const Eigen::Vector2d& outside) {
     if (inset_m >= least.distance_m) return;
@@ -185,8 +189,8 @@ PlanGrid::NearestCell PlanGrid::nearest_outside(const Rectangle& rectangle) cons
   return least;
 }
 
-std::optional<PlanGrid::NearestCell> PlanGrid::nearest(const Rectangle& rectangle, double within_m,
-                                                       ObstacleKind kind) const {
+std::optional<PlanGrid::NearestCell> PlanGrid::nearest(const geometry::Rectangle& rectangle,
+                                                       double within_m, ObstacleKind kind) const {
   const auto inside = nearest_inside(rectangle, within_m, kind);
   if (kind == ObstacleKind::occupied) return inside;
   const NearestCell outside = nearest_outside(rectangle);

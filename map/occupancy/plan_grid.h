@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/rectangle_distance.h"
+#include "roadbed/map/occupancy/rectangle_on_grid.h"
 
 namespace roadbed::map {
 
@@ -54,7 +54,7 @@ class PlanGrid {
   double lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
 
   /// Exact distance from a rectangle; none if it is over `within_m`.
-  std::optional<NearestCell> nearest(const Rectangle& rectangle, double within_m,
+  std::optional<NearestCell> nearest(const geometry::Rectangle& rectangle, double within_m,
                                      ObstacleKind kind) const;
 
   /// Share of the cell's part of the band that was measured; 1 where a layer is occupied.
@@ -76,8 +76,8 @@ class PlanGrid {
   const std::vector<float>& distances(ObstacleKind kind) const;
   double bound_inside(const Eigen::Vector2d& point, ObstacleKind kind) const;
   double upper_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
-  NearestCell nearest_outside(const Rectangle& rectangle) const;
-  std::optional<NearestCell> nearest_inside(const Rectangle& rectangle, double within_m,
+  NearestCell nearest_outside(const geometry::Rectangle& rectangle) const;
+  std::optional<NearestCell> nearest_inside(const geometry::Rectangle& rectangle, double within_m,
                                             ObstacleKind kind) const;
 
   double cell_m_;

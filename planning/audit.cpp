@@ -1,0 +1,138 @@
+#include "roadbed/planning/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/least_clearance.h"
+#include "roadbed/planning/near_stretches.h"
+
+namespace roadbed::planning {
+namespace {
+
+using map::ObstacleKind;
+
+void check(const map::ClearanceField& field, const geometry::Trajectory& drive,
+           const geometry::VehicleShape& vehicle, const AuditOptions& options) {
+  vehicle.check();
+  if (drive.empty()) throw std::invalid_argument("audit: the drive needs at least 1 point, got 0");
+  const auto refuse = [](const char* option, double value) {
+    throw std::invalid_argument(fmt::format("audit: {} is out of range, got {} m", option, value));
+  };
+  const auto is_length = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  if (!(options.clearance_m < 0.5 * field.horizon_m())) refuse("clearance_m", options.clearance_m);
+  if (!is_length(options.clearance_m)) refuse("clearance_m", options.clearance_m);
+  if (!is_length(options.inflate_m)) refuse("inflate_m", options.inflate_m);
+  if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
+}
+
+std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
+  if (policy == UnknownPolicy::occupied) return {ObstacleKind::occupied, ObstacleKind::unknown};
+  return {ObstacleKind::occupied};
+}
+
+// Poses half a metre of motion apart, and at least one for each stand.
+double mean_unknown_share(const map::ClearanceField& field, const BodyProbe& probe,
+                          const geometry::VehicleShape& body) {
+  constexpr double least_apart_m = 0.5, most_poses = 20'000;
+  double whole_m = 0.0;
+  for (std::size_t i = 0; i < probe.segments(); ++i) whole_m += probe.motion_bound_m({i, 0.0, 1.0});
+  const double apart_m = std::max(least_apart_m, 2.0 * whole_m / most_poses);
+  double sum = field.unknown_share(probe.state_at(0, 0.0).pose(), body), moved_m = 0.0;
+  std::size_t poses = 1;
+  for (std::size_t segment = 0; segment < probe.segments(); ++segment) {
+    const double motion_m = 2.0 * probe.motion_bound_m({segment, 0.0, 1.0});
+    for (double at_m = apart_m - moved_m; at_m <= motion_m; at_m += apart_m) {
+      sum += field.unknown_share(probe.state_at(segment, at_m / motion_m).pose(), body);
+      ++poses;
+    }
+    moved_m = std::fmod(moved_m + motion_m, apart_m);
+  }
+  return sum / static_cast<double>(poses);
+}
+
+std::vector<AuditReport::Sample> clearance_at_rows(const BodyProbe& probe,
+                                                   const geometry::Trajectory& drive) {
+  constexpr double exact_below_m = 5.0;
+  constexpr std::size_t most_samples = 5000;
+  std::vector<AuditReport::Sample> profile;
+  const auto& rows = drive.points();
+  const std::size_t step = 1 + rows.size() / most_samples;
+  for (std::size_t i = 0; i < rows.size(); i += step) {
+    double clearance_m = probe.lower_bound_m(rows[i]);
+    if (clearance_m < exact_below_m) {
+      const auto nearest = probe.nearest(rows[i], exact_below_m);
+      clearance_m = nearest ? nearest->distance_m : std::min(exact_below_m, probe.horizon_m());
+    }
+    profile.push_back({rows[i].t_s, clearance_m});
+  }
+  return profile;
+}
+
+// Times that cannot be proven to be over measured space count as unknown.
+std::vector<Stretch> near_unknown(const map::ClearanceField& field,
+                                  const geometry::Trajectory& drive,
+                                  const geometry::VehicleShape& body, const AuditOptions& options) {
+  const BodyProbe probe(field, drive, body, {ObstacleKind::unknown});
+  const NearStretches found = find_near_stretches(probe, options.clearance_m, options.tolerance_m);
+  std::vector<Stretch> stretches = found.undecided;
+  for (const Conflict& near : found.near) stretches.push_back({near.from_s, near.to_s});
+  std::sort(stretches.begin(), stretches.end(),
+            [](const Stretch& a, const Stretch& b) { return a.from_s < b.from_s; });
+  return stretches;
+}
+
+Verdict judge(const AuditReport& report) {
+  if (!report.conflicts.empty()) return Verdict::conflict;
+  if (!report.unknown.empty()) return Verdict::unknown;
+  return report.undecided.empty() ? Verdict::clear : Verdict::undecided;
+}
+
+}  // namespace
+
+std::string_view name(Verdict verdict) {
+  constexpr std::array<std::string_view, 4> names{"clear", "conflict", "unknown", "undecided"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double margin_m) {
+  geometry::VehicleShape grown = vehicle;
+  grown.length_m += 2.0 * margin_m;
+  grown.width_m += 2.0 * margin_m;
+  grown.rear_overhang_m += margin_m;
+  return grown;
+}
+
+AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
+                  const geometry::VehicleShape& vehicle, const AuditOptions& options) {
+  check(field, drive_in_source, vehicle, options);
+  const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
+  const BodyProbe probe(field, drive_in_source, body, obstacles(options.unknown));
+
+  AuditReport report;
+  const LeastClearance least = find_least_clearance(probe, options.tolerance_m);
+  report.least_clearance_m = least.found_m;
+  report.proven_clearance_m = least.proven_m;
+  report.least_clearance_at_s = least.at.t_s;
+  report.witness = least.witness;
+  report.beyond_horizon = !least.witness;
+  if (least.proven_m <= 0.0 || least.proven_m < options.clearance_m) {
+    NearStretches found = find_near_stretches(probe, options.clearance_m, options.tolerance_m);
+    report.conflicts = std::move(found.near);
+    report.undecided = std::move(found.undecided);
+  }
+  if (options.unknown == UnknownPolicy::report) {
+    report.unknown = near_unknown(field, drive_in_source, body, options);
+  }
+  report.unknown_share = mean_unknown_share(field, probe, body);
+  report.profile = clearance_at_rows(probe, drive_in_source);
+  report.verdict = judge(report);
+  return report;
+}
+
+}  // namespace roadbed::planning

@@ -1,0 +1,85 @@
+#include "roadbed/planning/least_clearance.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+#include <vector>
+
+namespace roadbed::planning {
+namespace {
+
+struct Open {
+  Span span;
+  double lower_m;  // no time of the span has less
+
+  // For a queue that hands out the lowest bound first, ties in order of time.
+  friend bool operator<(const Open& a, const Open& b) {
+    return std::tie(b.lower_m, b.span.segment, b.span.from) <
+           std::tie(a.lower_m, a.span.segment, a.span.from);
+  }
+};
+
+class Search {
+ public:
+  Search(const BodyProbe& probe, double tolerance_m) : probe_(probe), tolerance_m_(tolerance_m) {
+    best_.found_m = best_.proven_m = probe.horizon_m();
+    best_.at = probe.state_at(0, 0.0);
+  }
+
+  LeastClearance run() {
+    for (std::size_t segment = 0; segment < probe_.segments(); ++segment) {
+      open({segment, 0.0, 1.0}, 0.0);
+    }
+    while (!queue_.empty() && !is_settled(queue_.top().lower_m)) {
+      const Open lowest = queue_.top();
+      queue_.pop();
+      examine(lowest);
+    }
+    if (!queue_.empty()) best_.proven_m = std::min(best_.proven_m, queue_.top().lower_m);
+    best_.proven_m = std::min(best_.proven_m, best_.found_m);
+    return best_;
+  }
+
+ private:
+  bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
+
+  // Puts a span aside for good, or into the queue.
+  void open(const Span& span, double known_lower_m) {
+    const double by_circles_m =
+        probe_.lower_bound_m(probe_.middle_of(span)) - probe_.motion_bound_m(span);
+    const double lower_m = std::max({0.0, known_lower_m, by_circles_m});
+    if (lower_m < best_.found_m) queue_.push({span, lower_m});
+  }
+
+  void examine(const Open& lowest) {
+    const geometry::TrajectoryPoint state = probe_.middle_of(lowest.span);
+    const auto nearest = probe_.nearest(state, best_.found_m);
+    const double distance_m = nearest ? nearest->distance_m : best_.found_m;
+    if (nearest && (distance_m < best_.found_m || !best_.witness)) {
+      best_.found_m = distance_m;
+      best_.at = state;
+      best_.witness = nearest->witness;
+    }
+    const double lower_m =
+        std::max(lowest.lower_m, distance_m - probe_.motion_bound_m(lowest.span));
+    if (is_settled(lower_m)) {
+      best_.proven_m = std::min(best_.proven_m, lower_m);
+      return;
+    }
+    open(lowest.span.first_half(), lower_m);
+    open(lowest.span.second_half(), lower_m);
+  }
+
+  const BodyProbe& probe_;
+  double tolerance_m_;
+  LeastClearance best_;
+  std::priority_queue<Open> queue_;
+};
+
+}  // namespace
+
+LeastClearance find_least_clearance(const BodyProbe& probe, double tolerance_m) {
+  return Search(probe, tolerance_m).run();
+}
+
+}  // namespace roadbed::planning
