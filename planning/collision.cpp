@@ -1,0 +1,230 @@
+#include "roadbed/planning/collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "roadbed/geometry/rectangle.h"
+#include "roadbed/planning/static_obstacles.h"
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::Rectangle;
+using geometry::TrajectoryPoint;
+
+// Nearer than this beyond the demanded clearance the exact distance is found; farther away a lower
+// bound from the circles will do.
+constexpr double kNear_m = 0.5;
+
+// The vehicle at one moment of a drive.
+struct Moment {
+  double t_s = 0.0;
+  geometry::Pose2 pose;
+  Rectangle body;
+  std::vector<Eigen::Vector2d> circle_centres;
+};
+
+// One section of a drive, between two of its points.
+struct Leg {
+  double length_m;  // straight
+  double motion_m;  // no point of the body moves farther
+  double duration_s;
+  double from_m;  // length of the drive before it
+};
+
+std::vector<Leg> legs_of(const std::vector<TrajectoryPoint>& drive, double reach_m) {
+  std::vector<Leg> legs;
+  legs.reserve(drive.size());
+  double from_m = 0.0;
+  for (std::size_t i = 0; i + 1 < drive.size(); ++i) {
+    const TrajectoryPoint &a = drive[i], &b = drive[i + 1];
+    const double length_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+    legs.push_back({length_m, length_m + reach_m * std::abs(b.heading_rad - a.heading_rad),
+                    b.t_s - a.t_s, from_m});
+    from_m += length_m;
+  }
+  return legs;
+}
+
+// A place on a drive: on a leg, a share of it from its start.
+struct Place {
+  std::size_t leg = 0;
+  double share = 0.0;
+};
+
+struct Mover {
+  const Obstacle& obstacle;
+  double rate_mps;  // no point of its body moves faster before the horizon
+};
+
+double fastest_mps(const Obstacle& obstacle, double from_s, double to_s) {
+  const double radius_m = 0.5 * std::hypot(obstacle.length_m, obstacle.width_m);
+  const auto& points = obstacle.motion.points();
+  double fastest = 0.0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const TrajectoryPoint &a = points[i], &b = points[i + 1];
+    if (b.t_s < from_s || a.t_s > to_s) continue;
+    const double motion_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) +
+                            radius_m * std::abs(b.heading_rad - a.heading_rad);
+    fastest = std::max(fastest, motion_m / (b.t_s - a.t_s));
+  }
+  return fastest;
+}
+
+}  // namespace
+
+struct CollisionChecker::Impl {
+  Impl(const CollisionScene& of_scene, const geometry::VehicleShape& of_vehicle,
+       const CollisionOptions& by_options)
+      : scene(of_scene),
+        vehicle(of_vehicle),
+        options(by_options),
+        circles(geometry::covering_circles(vehicle, options.circles)),
+        standing(scene.obstacles) {
+    for (const Obstacle& obstacle : scene.obstacles) {
+      if (obstacle.is_static() || obstacle.motion.empty()) continue;
+      movers.push_back({obstacle, fastest_mps(obstacle, scene.start_t_s, horizon_end_s())});
+    }
+  }
+
+  double horizon_end_s() const { return scene.start_t_s + options.horizon_s; }
+  double demanded_m(double driven_m) const;
+  void look_at(const std::vector<TrajectoryPoint>& drive, Place place, Moment& moment) const;
+
+  template <typename Clearance>
+  bool keeps_clear(const std::vector<TrajectoryPoint>& drive, const std::vector<Leg>& legs,
+                   double rate_mps, double until_s, const Clearance& clearance) const;
+  Place follow(const std::vector<Leg>& legs, Place from, double rate_mps, double slack_m) const;
+
+  double from_standing_m(const Moment& moment, double enough_m) const;
+  double from_occupied_m(const Moment& moment, double enough_m) const;
+  double from_mover_m(const Moment& moment, const Obstacle& obstacle, double enough_m) const;
+
+  CollisionScene scene;
+  geometry::VehicleShape vehicle;
+  CollisionOptions options;
+  geometry::CoveringCircles circles;
+  StaticObstacles standing;
+  std::vector<Mover> movers;
+};
+
+double CollisionChecker::Impl::demanded_m(double driven_m) const {
+  const double share = std::min(1.0, driven_m / options.recovery_m);
+  return options.clearance_m * (options.start_share + (1.0 - options.start_share) * share);
+}
+
+void CollisionChecker::Impl::look_at(const std::vector<TrajectoryPoint>& drive, Place place,
+                                     Moment& moment) const {
+  const TrajectoryPoint &a = drive[place.leg], &b = drive[place.leg + 1];
+  const auto between = [&](double from, double to) { return from + place.share * (to - from); };
+  moment.t_s = between(a.t_s, b.t_s);
+  moment.pose = {between(a.x_m, b.x_m), between(a.y_m, b.y_m),
+                 between(a.heading_rad, b.heading_rad)};
+  moment.body = geometry::body_at(moment.pose, vehicle);
+  moment.circle_centres.clear();
+  for (const double x_m : circles.centres_x_m) {
+    moment.circle_centres.push_back(moment.pose.position() + x_m * moment.body.axis);
+  }
+}
+
+// As far along the drive as `slack_m` allows, if every metre of motion may cost a metre of it; a
+// demand that grows along the drive costs too.
+Place CollisionChecker::Impl::follow(const std::vector<Leg>& legs, Place from, double rate_mps,
+                                     double slack_m) const {
+  const double demand_slope =
+      options.clearance_m * (1.0 - options.start_share) / options.recovery_m;
+  for (Place place = from; place.leg < legs.size(); place = {place.leg + 1, 0.0}) {
+    const Leg& leg = legs[place.leg];
+    const double whole_m = leg.motion_m + rate_mps * leg.duration_s + demand_slope * leg.length_m;
+    const double rest_m = (1.0 - place.share) * whole_m;
+    if (rest_m > slack_m) return {place.leg, place.share + slack_m / whole_m};
+    slack_m -= rest_m;
+  }
+  return {legs.size(), 0.0};
+}
+
+// `clearance(moment, enough)` is the distance at a moment, or any lower bound above `enough`.
+template <typename Clearance>
+bool CollisionChecker::Impl::keeps_clear(const std::vector<TrajectoryPoint>& drive,
+                                         const std::vector<Leg>& legs, double rate_mps,
+                                         double until_s, const Clearance& clearance) const {
+  Moment moment;
+  for (Place place; place.leg < legs.size();) {
+    look_at(drive, place, moment);
+    if (moment.t_s > until_s) return true;
+    const Leg& leg = legs[place.leg];
+    const double demanded = demanded_m(leg.from_m + place.share * leg.length_m);
+    const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
+    if (!(slack_m >= options.tolerance_m)) return false;
+    place = follow(legs, place, rate_mps, slack_m);
+  }
+  return true;
+}
+
+double CollisionChecker::Impl::from_standing_m(const Moment& moment, double enough_m) const {
+  double bound_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& centre : moment.circle_centres) {
+    bound_m = std::min(bound_m, standing.distance_bound_m(centre) - circles.radius_m);
+  }
+  return bound_m > enough_m ? bound_m : standing.distance_m(moment.body);
+}
+
+double CollisionChecker::Impl::from_occupied_m(const Moment& moment, double enough_m) const {
+  double bound_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& centre : moment.circle_centres) {
+    const Eigen::Vector2d in_source = centre + scene.origin_in_source;
+    bound_m = std::min(bound_m, scene.field->distance_bound_m(in_source) - circles.radius_m);
+  }
+  if (bound_m > enough_m) return bound_m;
+  const geometry::Pose2 source_from_vehicle{moment.pose.x_m + scene.origin_in_source.x(),
+                                            moment.pose.y_m + scene.origin_in_source.y(),
+                                            moment.pose.heading_rad};
+  const auto nearest = scene.field->nearest(source_from_vehicle, vehicle, enough_m);
+  return nearest ? nearest->distance_m : enough_m;
+}
+
+double CollisionChecker::Impl::from_mover_m(const Moment& moment, const Obstacle& obstacle,
+                                            double enough_m) const {
+  const Rectangle other = body_of(obstacle, moment.t_s);
+  double bound_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& centre : moment.circle_centres) {
+    bound_m = std::min(bound_m, geometry::distance_m(other, centre) - circles.radius_m);
+  }
+  return bound_m > enough_m ? bound_m : geometry::distance_m(moment.body, other);
+}
+
+CollisionChecker::CollisionChecker(const CollisionScene& scene,
+                                   const geometry::VehicleShape& vehicle,
+                                   const CollisionOptions& options)
+    : impl_(std::make_unique<const Impl>(scene, vehicle, options)) {}
+
+CollisionChecker::~CollisionChecker() = default;
+CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
+CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
+
+bool CollisionChecker::is_free(const std::vector<TrajectoryPoint>& drive) const {
+  const Impl& impl = *impl_;
+  const double for_ever = std::numeric_limits<double>::infinity();
+  const std::vector<Leg> legs = legs_of(drive, impl.vehicle.reach_m());
+  if (!impl.standing.empty() &&
+      !impl.keeps_clear(drive, legs, 0.0, for_ever, [&](const Moment& moment, double enough_m) {
+        return impl.from_standing_m(moment, enough_m);
+      })) {
+    return false;
+  }
+  if (impl.scene.field != nullptr &&
+      !impl.keeps_clear(drive, legs, 0.0, for_ever, [&](const Moment& moment, double enough_m) {
+        return impl.from_occupied_m(moment, enough_m);
+      })) {
+    return false;
+  }
+  return std::ranges::all_of(impl.movers, [&](const Mover& mover) {
+    return impl.keeps_clear(drive, legs, mover.rate_mps, impl.horizon_end_s(),
+                            [&](const Moment& moment, double enough_m) {
+                              return impl.from_mover_m(moment, mover.obstacle, enough_m);
+                            });
+  });
+}
+
+}  // namespace roadbed::planning

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/planning/obstacle.h"
+
+namespace roadbed::planning {
+
+struct CollisionOptions {
+  int circles = 3;           ///< that cover the vehicle, for the first look
+  double clearance_m = 0.3;  ///< to keep from everything
+  /// Of the clearance that is demanded at the start of a drive; it grows to the whole over
+  /// `recovery_m`. Where a drive begins cannot be chosen any more, and without this a vehicle that
+  /// passes an obstacle at just the clearance would find every continuation forbidden.
+  double start_share = 0.5;
+  double recovery_m = 10.0;
+  double tolerance_m = 0.02;  ///< see CollisionChecker::is_free
+  double horizon_s = 5.0;     ///< moving obstacles are checked this far ahead
+};
+
+/// What stands and moves around, ready to be asked for many drives. Lengths in the map's frame.
+struct CollisionScene {
+  const std::vector<Obstacle>& obstacles;
+  const map::ClearanceField* field = nullptr;  ///< none: no occupancy
+  Eigen::Vector2d origin_in_source{0, 0};      ///< source = map + origin, for the field
+  double start_t_s = 0.0;
+};
+
+/// Distances of a driving vehicle to obstacles, at every moment of the drive.
+class CollisionChecker {
+ public:
+  CollisionChecker(const CollisionScene& scene, const geometry::VehicleShape& vehicle,
+                   const CollisionOptions& options);
+  ~CollisionChecker();
+  CollisionChecker(CollisionChecker&&) noexcept;
+  CollisionChecker& operator=(CollisionChecker&&) noexcept;
+
+  /// Whether the vehicle keeps the clearance all along a drive: from standing obstacles and
+  /// occupied cells over its whole length, from moving ones up to the horizon, each at the time
+  /// at which the vehicle is there. Between the points position and heading are linear.
+  ///
+  /// Nothing is missed between points: from a pose with clearance c the drive is followed only as
+  /// far as no point of the body can come nearer than the demanded clearance. A drive that is
+  /// found free keeps the clearance; one that is not comes nearer than clearance + tolerance.
+  bool is_free(const std::vector<geometry::TrajectoryPoint>& drive) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace roadbed::planning

@@ -1,0 +1,39 @@
+#pragma once
+
+namespace roadbed::planning {
+
+/// Speed ahead: the current longitudinal plan.
+struct SpeedPlan {
+  double speed_mps = 0.0;
+  double acceleration_mps2 = 0.0;
+  double target_mps = 0.0;  ///< the acceleration holds until this speed is near, then fades
+};
+
+/// A speed plan as a function of the distance travelled, with finite jerk.
+///
+/// With w = v², dw/dl = 2a holds until the target is near, then w approaches the target's square
+/// exponentially over the length λ = v_target · 1 s, so that the acceleration is continuous. If
+/// the acceleration leads away from the target, it holds on: down to standstill, or up.
+class PlannedSpeed {
+ public:
+  /// @throws std::invalid_argument if a value is not finite or a speed is negative.
+  explicit PlannedSpeed(const SpeedPlan& plan);
+
+  struct State {
+    double speed_mps;
+    double acceleration_mps2;
+    double jerk_mps3;
+  };
+
+  /// State after `distance_m` ≥ 0.
+  State at(double distance_m) const;
+
+ private:
+  double start_squared_;        // w at distance 0
+  double acceleration_mps2_;    // in the first phase
+  double target_squared_;       // w that the second phase approaches
+  double fade_from_m_;          // where the second phase begins; infinite if there is none
+  double fade_length_m_ = 1.0;  // λ
+};
+
+}  // namespace roadbed::planning

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace roadbed::planning {
+
+/// What all candidates of one length share at one station, ready for the kernel. With e = d_e the
+/// speed g = |p′|², the turn q = p′ × p″ and their derivatives are exact quadratics
+/// c[0] + e (c[1] + e c[2]) (planning/README.md, section "One row at a time").
+struct KernelPoint {
+  double g[4][3];
+  double q[4][3];
+  double curvature_weight;  ///< of k²: its own and that of lateral acceleration
+  double curvature_d1_weight, curvature_d2_weight, curvature_d3_weight;
+  double jerk_per_k, jerk_per_d1;  ///< the square of their sum with k and dk/dσ is a cost
+  double time_weight;              ///< duration per stretch [s]
+  double fourth_power;             ///< v⁴: (lateral acceleration)² per k²
+};
+
+/// Sums of one candidate per lane, added to by run_kernel(). All spans have the same length.
+struct KernelSums {
+  std::span<double> cost;
+  std::span<double> duration_s;
+  std::span<double> curvature_squared;     ///< running maximum of k²
+  std::span<double> acceleration_squared;  ///< running maximum of v⁴ k²
+};
+
+/// Runs over all points of all lanes of a row; one square root and one division per point, and
+/// vector lanes over d_e. In a lane with g = 0 somewhere the sums are not finite or meaningless.
+/// The same bits come out on every instruction set.
+void run_kernel(std::span<const KernelPoint> points, std::span<const double> end_d_m,
+                const KernelSums& sums);
+
+}  // namespace roadbed::planning

@@ -1,0 +1,113 @@
+#include "roadbed/planning/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "roadbed/tests/support/analytic_line.h"
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::VehicleShape;
+using tests::AnalyticLine;
+
+Obstacle parked_at(double x_m, double y_m) {
+  return {.id = "parked", .motion = geometry::Trajectory({{.x_m = x_m, .y_m = y_m}})};
+}
+
+Obstacle moving(double x_m, double y_m, double speed_mps) {
+  return {
+      .id = "moving",
+      .motion = geometry::Trajectory({{.t_s = 0.0, .x_m = x_m, .y_m = y_m},
+                                      {.t_s = 20.0, .x_m = x_m + 20.0 * speed_mps, .y_m = y_m}})};
+}
+
+Plan plan_on(const AnalyticLine& line, const LateralState& start,
+             const std::vector<Obstacle>& obstacles, double speed_mps = 10.0,
+             const PlanOptions& options = {}) {
+  return plan_path({.line = line.view(),
+                    .start = start,
+                    .speed = {.speed_mps = speed_mps, .target_mps = speed_mps},
+                    .obstacles = obstacles},
+                   VehicleShape{}, options);
+}
+
+TEST(PlanPath, StaysOnAnEmptyStraightRoad) {
+  const Plan plan = plan_on({}, {}, {});
+  ASSERT_TRUE(plan.chosen) << plan.reason;
+  EXPECT_EQ(plan.chosen->end_d_m, 0.0);
+  for (const auto& point : plan.trajectory.points()) EXPECT_NEAR(point.y_m, 0.0, 1e-12);
+}
+
+TEST(PlanPath, ReturnsToTheLineFromBesideIt) {
+  const Plan plan = plan_on({}, {.d_m = 1.5}, {});
+  ASSERT_TRUE(plan.chosen) << plan.reason;
+  EXPECT_LT(std::abs(plan.chosen->end_d_m), 0.5);
+  EXPECT_NEAR(plan.trajectory.points().front().y_m, 1.5, 1e-12);
+}
+
+TEST(PlanPath, PassesAParkedCarWithTheClearanceAsked) {
+  const Plan plan = plan_on({}, {}, {parked_at(25.0, -1.0)});
+  ASSERT_TRUE(plan.chosen) << plan.reason;
+  // Both cars are straight when they are side by side: half widths and the clearance.
+  EXPECT_GE(plan.chosen->end_d_m, -1.0 + 0.5 * 1.8 + 0.5 * 1.61 + 0.3);
+  EXPECT_LT(plan.chosen->end_d_m, 1.5);
+}
+
+TEST(PlanPath, GoesBehindASlowerCarOnlyIfItIsNotReachedInTime) {
+  EXPECT_EQ(plan_on({}, {}, {moving(25.0, 0.0, 10.0)}).chosen->end_d_m, 0.0);
+  EXPECT_GT(std::abs(plan_on({}, {}, {moving(16.0, 0.0, 2.0)}).chosen->end_d_m), 1.5);
+}
+
+TEST(PlanPath, SaysWhyNothingIsLeftBeforeABlockedRoad) {
+  const std::vector<Obstacle> wall = {parked_at(20.0, -4.0), parked_at(20.0, -2.0),
+                                      parked_at(20.0, 0.0), parked_at(20.0, 2.0),
+                                      parked_at(20.0, 4.0)};
+  const Plan plan = plan_on({}, {}, wall);
+  EXPECT_FALSE(plan.chosen);
+  EXPECT_TRUE(plan.trajectory.empty());
+  EXPECT_NE(plan.reason.find("none of 5396 candidates"), std::string::npos) << plan.reason;
+  EXPECT_NE(plan.reason.find("collide"), std::string::npos) << plan.reason;
+  std::size_t rejected = 0;
+  for (const std::size_t count : plan.rejected) rejected += count;
+  EXPECT_EQ(rejected, 5396u);
+}
+
+TEST(PlanPath, LateralStateIsThatOfTheDrive) {
+  const Plan plan = plan_on({}, {.s_m = 3.0, .d_m = 1.0, .d_slope = 0.05}, {});
+  ASSERT_TRUE(plan.chosen) << plan.reason;
+  for (const auto& point : plan.trajectory.points()) {
+    const LateralState state = plan.lateral_at(point.x_m);
+    EXPECT_NEAR(state.d_m, point.y_m, 1e-12);
+    EXPECT_NEAR(std::atan(state.d_slope), point.heading_rad, 1e-12);
+  }
+}
+
+TEST(PlanPath, RefusesOptionsThatCannotBeUsed) {
+  const auto with = [](auto change) {
+    PlanOptions options;
+    change(options);
+    return options;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const PlanOptions& options :
+       {with([](PlanOptions& o) { o.points = 1; }), with([](PlanOptions& o) { o.d_step_m = 0.0; }),
+        with([](PlanOptions& o) { o.min_l_m = 31.0; }),
+        with([](PlanOptions& o) { o.min_l_m = 0.0; }),
+        with([&](PlanOptions& o) { o.max_d_m = nan; }),
+        with([&](PlanOptions& o) { of(o.weights, CostTerm::time) = nan; }),
+        with([](PlanOptions& o) { of(o.weights, CostTerm::offset) = -1.0; }),
+        with([](PlanOptions& o) { o.circles = 0; }),
+        with([](PlanOptions& o) { o.clearance_m = -0.1; })}) {
+    EXPECT_THROW(plan_on({}, {}, {}, 10.0, options), std::invalid_argument);
+  }
+  EXPECT_THROW(plan_on({}, {.d_m = nan}, {}), std::invalid_argument);
+  EXPECT_THROW(plan_on({}, {}, {}, -1.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace roadbed::planning
