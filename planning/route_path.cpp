@@ -1,0 +1,204 @@
+#include "roadbed/planning/route_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "roadbed/geometry/angle.h"
+
+namespace roadbed::planning {
+namespace {
+
+using map::LaneId;
+
+constexpr double kLeastPath_m = 1.0;
+constexpr double kStep_m = 0.05;               // at a link: a larger one is taken out
+constexpr double kMostStep_m = 5.0;            // what is larger is a gap of the map
+constexpr double kStepCurvature_per_m = 0.02;  // with which a step is taken out
+
+double smooth_step(double t) {
+  const double x = std::clamp(t, 0.0, 1.0);
+  return x * x * x * (10.0 + x * (6.0 * x - 15.0));
+}
+
+// Lanes beside each other, and where (shares of their length) the path changes between them.
+struct Stretch {
+  std::vector<LaneId> lanes;
+  std::vector<double> changes;
+  double from = 0.0, to = 1.0;
+};
+
+std::vector<Stretch> stretches_of(const map::RoadMap& road_map, const Route& route) {
+  std::vector<Stretch> stretches;
+  bool joins = false;
+  for (const RouteLeg& leg : route.legs) {
+    const double length_m = road_map.lane(leg.lane).length_m();
+    if (!joins) stretches.push_back({{}, {}, leg.from_s_m / length_m, 1.0});
+    Stretch& stretch = stretches.back();
+    stretch.lanes.push_back(leg.lane);
+    stretch.to = leg.to_s_m / length_m;
+    joins = leg.exit == LegExit::change_left || leg.exit == LegExit::change_right;
+    if (joins) stretch.changes.push_back(stretch.to);
+  }
+  return stretches;
+}
+
+std::optional<LaneId> straightest_successor(const map::RoadMap& road_map, LaneId lane) {
+  const auto heading_at = [&](LaneId id, double share) {
+    const map::Lane& at = road_map.lane(id);
+    return at.pose_at(share * at.length_m()).heading_rad;
+  };
+  std::optional<LaneId> best;
+  double least_turn = std::numeric_limits<double>::infinity();
+  for (const LaneId next : road_map.graph().of(lane).successors) {
+    const map::Lane& candidate = road_map.lane(next);
+    if (!is_drivable(candidate.type) || candidate.length_m() <= 0.0) continue;
+    const double turn =
+        std::abs(geometry::wrap_angle(heading_at(next, 1.0) - heading_at(lane, 1.0)));
+    if (turn < least_turn || (turn == least_turn && next < *best)) {
+      least_turn = turn;
+      best = next;
+    }
+  }
+  return best;
+}
+
+class Builder {
+ public:
+  Builder(const map::RoadMap& road_map, const RoutePathOptions& options)
+      : road_map_(road_map), options_(options) {}
+
+  void lead(const Stretch& first) {
+    const double share = options_.lead_m / length_m(first.lanes.front());
+    sample(first, std::max(0.0, first.from - share), first.from);
+    path_.start_m = length_m_;
+  }
+
+  void follow(const Stretch& stretch) {
+    take_out_step(stretch);
+    sample(stretch, stretch.from, stretch.to);
+  }
+
+  void extend(Stretch last) {
+    path_.goal_m = length_m_;
+    const double end_m = length_m_ + std::max(options_.extend_m, kLeastPath_m);
+    last = {{last.lanes.back()}, {}, last.to, 1.0};
+    // A loop of lanes without length would never end, hence the count.
+    for (std::size_t i = 0; i <= road_map_.lanes().size() && length_m_ < end_m; ++i) {
+      const double share = (end_m - length_m_) / length_m(last.lanes.back());
+      last.to = std::min(1.0, last.from + share);
+      if (i > 0) take_out_step(last);
+      sample(last, last.from, last.to);
+      const auto next = straightest_successor(road_map_, last.lanes.back());
+      if (!next) break;
+      last = {{*next}, {}, 0.0, 1.0};
+    }
+    go_straight(end_m - length_m_);
+  }
+
+  RoutePath take() && { return std::move(path_); }
+
+ private:
+  double length_m(LaneId lane) const { return std::max(1e-3, road_map_.lane(lane).length_m()); }
+
+  Eigen::Vector2d centre(LaneId lane, double share) const {
+    const auto& line = road_map_.lane(lane).centre.in_map;
+    return line.at(share * line.length_m());
+  }
+
+  Eigen::Vector2d direction(LaneId lane, double share) const {
+    const map::Lane& at = road_map_.lane(lane);
+    const double heading = at.pose_at(share * at.length_m()).heading_rad;
+    return {std::cos(heading), std::sin(heading)};
+  }
+
+  // Half the length of the i-th change as a share: as long as wanted, clear of its neighbours.
+  double half_change(const Stretch& stretch, std::size_t i) const {
+    const auto& at = stretch.changes;
+    const double before = i == 0 ? at[i] - stretch.from : 0.5 * (at[i] - at[i - 1]);
+    const double after = i + 1 == at.size() ? stretch.to - at[i] : 0.5 * (at[i + 1] - at[i]);
+    const double wanted = 0.5 * options_.lane_change_length_m / length_m(stretch.lanes[i]);
+    return std::max(1e-9, std::min({before, after, wanted}));
+  }
+
+  RoutePathPoint place(const Stretch& stretch, double share) const {
+    RoutePathPoint point{centre(stretch.lanes[0], share), stretch.lanes[0], share};
+    for (std::size_t i = 0; i < stretch.changes.size(); ++i) {
+      const double half = half_change(stretch, i);
+      const double weight = smooth_step((share - stretch.changes[i] + half) / (2.0 * half));
+      point.in_map +=
+          weight * (centre(stretch.lanes[i + 1], share) - centre(stretch.lanes[i], share));
+      if (weight > 0.5) point.lane = stretch.lanes[i + 1];
+    }
+    return point;
+  }
+
+  // Where a stretch begins beside the end of the path: the offset is kept at first and fades.
+  void take_out_step(const Stretch& stretch) {
+    step_ = Eigen::Vector2d(0.0, 0.0);
+    if (path_.points.empty() || stretch.from > 0.0) return;
+    const LaneId lane = stretch.lanes.front();
+    const Eigen::Vector2d along = direction(lane, 0.0), left(-along.y(), along.x());
+    const double step_m = (path_.points.back().in_map - centre(lane, 0.0)).dot(left);
+    if (std::abs(step_m) < kStep_m || std::abs(step_m) > kMostStep_m) return;
+    step_ = step_m * left;
+    const double wanted_m = std::sqrt(6.0 * std::abs(step_m) / kStepCurvature_per_m);
+    step_share_ = std::min(1.0, wanted_m / length_m(lane));
+  }
+
+  void sample(const Stretch& stretch, double from, double to) {
+    const double range_m = (to - from) * length_m(stretch.lanes.back());
+    const int count = std::max(1, static_cast<int>(std::ceil(range_m / options_.step_m)));
+    for (int i = 0; i <= count; ++i) {
+      const double share = std::lerp(from, to, static_cast<double>(i) / count);
+      RoutePathPoint point = place(stretch, share);
+      point.in_map += (1.0 - smooth_step(share / step_share_)) * step_;
+      add(point, direction(point.lane, share));
+    }
+  }
+
+  // Leaves out what is not ahead: lanes of real maps overlap by some centimetres.
+  void add(const RoutePathPoint& point, const Eigen::Vector2d& along) {
+    if (!path_.points.empty()) {
+      const Eigen::Vector2d advance = point.in_map - path_.points.back().in_map;
+      if (advance.dot(along) < 0.02 * options_.step_m) return;
+      length_m_ += advance.norm();
+    }
+    path_.points.push_back(point);
+  }
+
+  void go_straight(double rest_m) {
+    if (rest_m < options_.step_m || path_.points.empty()) return;
+    RoutePathPoint point = path_.points.back();
+    const Eigen::Vector2d along = direction(point.lane, point.share);
+    const int count = static_cast<int>(std::ceil(rest_m / options_.step_m));
+    for (int i = 0; i < count; ++i) {
+      point.in_map += rest_m / count * along;
+      add(point, along);
+    }
+  }
+
+  const map::RoadMap& road_map_;
+  const RoutePathOptions& options_;
+  RoutePath path_;
+  double length_m_ = 0.0;
+  Eigen::Vector2d step_{0.0, 0.0};
+  double step_share_ = 1.0;
+};
+
+}  // namespace
+
+RoutePath path_along(const map::RoadMap& road_map, const Route& route,
+                     const RoutePathOptions& options) {
+  if (route.legs.empty()) throw std::invalid_argument("path_along: the route has no leg");
+  const std::vector<Stretch> stretches = stretches_of(road_map, route);
+  Builder builder(road_map, options);
+  builder.lead(stretches.front());
+  for (const Stretch& stretch : stretches) builder.follow(stretch);
+  builder.extend(stretches.back());
+  return std::move(builder).take();
+}
+
+}  // namespace roadbed::planning
