@@ -1,0 +1,169 @@
+#include "roadbed/tools/support/place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "roadbed/geometry/angle.h"
+#include "roadbed/map/input_error.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr std::string_view kLanePrefix = "lane:";
+constexpr double kReach_m = 0.5;
+constexpr double kSearch_m[] = {10.0, 100.0, 1e3, 1e4, 1e5};
+constexpr double kMetresPerRadian = 2.0;
+constexpr double kOffsetWeight = 0.1;
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.push_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+// Radians, or degrees with their unit behind.
+std::optional<double> heading(std::string_view text) {
+  constexpr std::string_view kDegrees = "deg";
+  if (text.ends_with(kDegrees)) {
+    const auto degrees = number(text.substr(0, text.size() - kDegrees.size()));
+    return degrees ? std::optional(*degrees * std::numbers::pi / 180.0) : std::nullopt;
+  }
+  const auto radians = number(text);
+  return radians && std::abs(*radians) <= 2.0 * std::numbers::pi ? radians : std::nullopt;
+}
+
+struct LaneText {
+  std::string_view name;
+  std::string_view station;  ///< empty if none is given
+};
+
+LaneText lane_text(std::string_view text) {
+  text.remove_prefix(kLanePrefix.size());
+  const std::size_t at = text.rfind('@');
+  if (at == std::string_view::npos) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+[[noreturn]] void refuse(const std::string& text, const std::string& found,
+                         const std::string& needed, const std::string& remedy) {
+  throw map::InputError({.file = "place \"" + text + "\"",
+                         .place = {},
+                         .element = {},
+                         .found = found,
+                         .needed = needed,
+                         .remedy = remedy});
+}
+
+Place at_lane(const map::RoadMap& road_map, const std::string& text) {
+  const LaneText parts = lane_text(text);
+  const auto id = road_map.find_lane(parts.name);
+  if (!id) {
+    refuse(text, fmt::format("the map has no lane {}", parts.name), "",
+           "see the names with: roadbed locate MAP --at X,Y");
+  }
+  const map::Lane& lane = road_map.lane(*id);
+  const double s_m = parts.station.empty() ? 0.0 : number(parts.station).value();
+  if (s_m < 0.0 || s_m > lane.length_m()) {
+    refuse(text, fmt::format("station {} m", s_m),
+           fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
+  }
+  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false};
+}
+
+[[noreturn]] void refuse_far(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
+                             const std::string& text) {
+  for (const double radius_m : kSearch_m) {
+    const auto matches = road_map.locate(in_map, radius_m, true);
+    if (matches.empty()) continue;
+    const map::LaneMatch& nearest = matches.front();
+    const map::Lane& lane = road_map.lane(nearest.place.lane);
+    const Eigen::Vector2d on_lane = road_map.to_source(lane.pose_at(nearest.place.s_m).position());
+    refuse(text, "is off the road", "",
+           fmt::format("the nearest drivable lane is {}, {:.2f} m away; its centre there is at "
+                       "{:.3f},{:.3f}",
+                       lane.name, nearest.distance_m, on_lane.x(), on_lane.y()));
+  }
+  refuse(text, "is off the road", "", "no drivable lane is within 100 km: mind the coordinates");
+}
+
+double turn_from(const map::LaneMatch& match, double heading_rad) {
+  return std::abs(geometry::wrap_angle(match.heading_rad - heading_rad));
+}
+
+map::LaneMatch best_match(std::vector<map::LaneMatch> matches, std::optional<double> heading_rad) {
+  if (heading_rad) {
+    const auto against = [&](const map::LaneMatch& match) {
+      return turn_from(match, *heading_rad) > 0.5 * std::numbers::pi;
+    };
+    if (!std::all_of(matches.begin(), matches.end(), against)) std::erase_if(matches, against);
+  }
+  const auto misfit = [&](const map::LaneMatch& match) {
+    const double turn = heading_rad ? turn_from(match, *heading_rad) : 0.0;
+    return match.distance_m + kMetresPerRadian * turn + kOffsetWeight * std::abs(match.place.d_m);
+  };
+  return *std::min_element(matches.begin(), matches.end(),
+                           [&](const auto& a, const auto& b) { return misfit(a) < misfit(b); });
+}
+
+Place at_point(const map::RoadMap& road_map, const std::string& text) {
+  const auto parts = split(text);
+  const Eigen::Vector2d in_map =
+      road_map.to_map({number(parts[0]).value(), number(parts[1]).value()});
+  const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
+  const auto matches = road_map.locate(in_map, kReach_m, true);
+  if (matches.empty()) refuse_far(road_map, in_map, text);
+  const map::LaneMatch match = best_match(matches, heading_rad);
+  return {match.place,
+          {in_map.x(), in_map.y(), heading_rad.value_or(match.heading_rad)},
+          heading_rad.has_value()};
+}
+
+}  // namespace
+
+std::string place_syntax_fault(const std::string& text) {
+  if (text.starts_with(kLanePrefix)) {
+    const LaneText parts = lane_text(text);
+    if (parts.name.empty()) return "the lane's name is missing";
+    const bool has_station = text.find('@') != std::string::npos;
+    if (has_station && !number(parts.station)) return "the station behind @ is not a number";
+    return "";
+  }
+  const auto parts = split(text);
+  if (parts.size() < 2 || parts.size() > 3) return std::string("is not ") + kPlaceSyntax;
+  if (!number(parts[0]) || !number(parts[1])) return "X or Y is not a number";
+  if (parts.size() == 3 && !heading(parts[2])) {
+    return "the heading is not a number of radians up to 2π; write degrees as 90deg";
+  }
+  return "";
+}
+
+std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
+  const auto parts = split(text);
+  if (parts.size() != 2) return {};
+  const auto x = number(parts[0]), y = number(parts[1]);
+  return x && y ? std::optional(Eigen::Vector2d(*x, *y)) : std::nullopt;
+}
+
+Place find_place(const map::RoadMap& road_map, const std::string& text) {
+  const std::string fault = place_syntax_fault(text);
+  if (!fault.empty()) refuse(text, fault, "", "");
+  return text.starts_with(kLanePrefix) ? at_lane(road_map, text) : at_point(road_map, text);
+}
+
+}  // namespace roadbed::tools
