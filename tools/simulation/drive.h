@@ -35,12 +35,13 @@ struct DriveLead {
 struct DriveCycle {
   double t_s = 0.0;
   Behaviour behaviour = Behaviour::cruise;
-  std::string reason;             ///< "car p1 is 22.4 m ahead"
+  std::string reason = {};        ///< "car p1 is 22.4 m ahead"
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
-  std::optional<planning::Candidate> chosen;  ///< none: nothing feasible, the last path is kept
-  std::string plan_reason;                    ///< why nothing was feasible
-  std::vector<Eigen::Vector2d> path;          ///< planned, rear axle; empty without a candidate
-  std::optional<DriveLead> lead;
+  std::optional<planning::Candidate> chosen =
+      {};                                  ///< none: nothing feasible, the last path is kept
+  std::string plan_reason = {};            ///< why nothing was feasible
+  std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
+  std::optional<DriveLead> lead = {};
 };
 
 /// What is known at each row of the trajectory.

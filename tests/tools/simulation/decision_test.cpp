@@ -1,0 +1,71 @@
+#include "roadbed/tools/simulation/decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace roadbed::tools {
+namespace {
+
+const planning::SpeedCeiling kTen({10.0, 10.0}, 1000.0, 1.5);
+
+SpeedAnswer ask(const SpeedQuestion& question) { return choose_speed(question, {}); }
+
+SpeedQuestion free_road(double speed_mps) {
+  return {.ceiling = kTen, .goal_s_m = 1000.0, .speed_mps = speed_mps, .lead = {}, .lead_name = {}};
+}
+
+TEST(Decision, FreeRoadIsDrivenAtTheCeiling) {
+  const SpeedAnswer answer = ask(free_road(9.5));
+  EXPECT_EQ(answer.behaviour, Behaviour::cruise);
+  EXPECT_EQ(answer.set.speed_mps, 10.0);
+  EXPECT_EQ(answer.set.acceleration_mps2, 0.0);
+  EXPECT_FALSE(answer.hold);
+}
+
+TEST(Decision, SetSpeedStaysNearTheSpeedSoThatSpeedingUpIsComfortable) {
+  EXPECT_EQ(ask(free_road(2.0)).set.speed_mps, 3.5);
+}
+
+TEST(Decision, StopsAtTheGoalAndHoldsThere) {
+  SpeedQuestion question = free_road(7.0);
+  question.s_m = 980.0;
+  EXPECT_EQ(ask(question).behaviour, Behaviour::stop);
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -1.5, 1e-12);
+  EXPECT_THAT(ask(question).reason, testing::HasSubstr("20.0 m ahead"));
+  question.s_m = 999.9;
+  question.speed_mps = 0.1;
+  EXPECT_TRUE(ask(question).hold);
+  question.s_m = 1003.0;
+  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
+}
+
+TEST(Decision, ApproachesALeadDownToItsSpeedAndGap) {
+  SpeedQuestion question = free_road(10.0);
+  question.lead_name = "car a";
+  question.lead = Lead{.gap_m = 1.5 * 4.0 + 5.0, .speed_mps = 4.0};
+  const SpeedAnswer close = ask(question);
+  EXPECT_EQ(close.behaviour, Behaviour::follow);
+  EXPECT_NEAR(close.set.speed_mps, 4.0, 1e-12);
+  EXPECT_THAT(close.reason, testing::StartsWith("car a is 11.0 m ahead"));
+  question.lead->gap_m = 200.0;
+  EXPECT_EQ(ask(question).behaviour, Behaviour::cruise);
+}
+
+TEST(Decision, WaitsBehindAStandingLeadAndFollowsWhenItLeaves) {
+  SpeedQuestion question = free_road(0.0);
+  question.lead = Lead{.gap_m = 5.2};
+  EXPECT_TRUE(ask(question).hold);
+  question.lead->speed_mps = 1.0;
+  EXPECT_FALSE(ask(question).hold);
+}
+
+TEST(Decision, StopsWhenNothingIsFeasible) {
+  SpeedQuestion question = free_road(8.0);
+  question.path_is_free = false;
+  EXPECT_EQ(ask(question).behaviour, Behaviour::stop);
+  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
+  EXPECT_FALSE(ask(question).hold);
+}
+
+}  // namespace
+}  // namespace roadbed::tools

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+
+#include "roadbed/tools/simulation/drive.h"
+#include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/world.h"
+
+namespace roadbed::tools {
+
+/// Bounds of the loop; the scenario's own options come on top.
+struct LoopOptions {
+  /// Beyond either, planning starts from the measured state instead of the last plan.
+  double max_tracking_error_m = 0.3;
+  double max_heading_error_rad = 0.15;
+  double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
+  std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
+};
+
+/// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
+/// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.
+Drive drive(const Scenario& scenario, const World& world, const LoopOptions& options = {});
+
+}  // namespace roadbed::tools

@@ -1,0 +1,107 @@
+#include "roadbed/tools/simulation/decision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace roadbed::tools {
+namespace {
+
+using planning::SpeedTarget;
+
+constexpr double kAtRest_mps = 0.3;
+constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
+constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
+constexpr double kFollowSlack_mps = 2.0;
+
+struct Option {
+  SpeedTarget now, ahead;  ///< at the station, and where the actuator will have answered
+  Behaviour behaviour;
+  std::string reason;
+};
+
+Option by_ceiling(const SpeedQuestion& q, double preview_m) {
+  const SpeedTarget now = q.ceiling.at(q.s_m);
+  return {now, q.ceiling.at(q.s_m + preview_m), Behaviour::cruise,
+          fmt::format("at most {:.1f} m/s here", now.speed_mps)};
+}
+
+Option by_goal(const SpeedQuestion& q, double preview_m, double deceleration) {
+  const double distance = q.goal_s_m - q.s_m;
+  return {planning::stopping_speed(distance, deceleration),
+          planning::stopping_speed(distance - preview_m, deceleration), Behaviour::stop,
+          fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
+}
+
+/// In the lead's frame the approach is a stop: at the gap that belongs to the lead's speed.
+Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
+  const double lead_mps = std::max(0.0, q.lead->speed_mps);
+  const double room = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
+  const double closing_preview_m = std::max(0.0, q.speed_mps - lead_mps) * options.preview_s;
+  const auto approach = [&](double room_m) {
+    SpeedTarget target = planning::stopping_speed(room_m, options.deceleration_mps2);
+    target.speed_mps += lead_mps;
+    return target;
+  };
+  return {approach(room), approach(room - closing_preview_m), Behaviour::follow,
+          fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
+                      q.lead->speed_mps)};
+}
+
+std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
+  const double preview_m = q.speed_mps * options.preview_s;
+  std::vector<Option> all{by_ceiling(q, preview_m),
+                          by_goal(q, preview_m, options.deceleration_mps2)};
+  if (q.lead) all.push_back(by_lead(q, options));
+  return all;
+}
+
+const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*when) {
+  return *std::min_element(options.begin(), options.end(), [&](const Option& a, const Option& b) {
+    return (a.*when).speed_mps < (b.*when).speed_mps;
+  });
+}
+
+bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
+  if (q.speed_mps > kAtRest_mps) return false;
+  if (q.goal_s_m - q.s_m < kStopping_m) return true;
+  return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
+         q.lead->speed_mps < kAtRest_mps;
+}
+
+/// Nothing is feasible: come to rest on the last path as hard as the cruise control may.
+SpeedAnswer stop_without_path(const SpeedQuestion& q) {
+  return {.set = {},
+          .behaviour = Behaviour::stop,
+          .reason = "no candidate is feasible",
+          .hold = q.speed_mps < kAtRest_mps};
+}
+
+}  // namespace
+
+SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options) {
+  if (!question.path_is_free) return stop_without_path(question);
+  const std::vector<Option> all = options_of(question, options);
+  const Option& now = slowest(all, &Option::now);
+  const SpeedTarget& ahead = slowest(all, &Option::ahead).ahead;
+  SpeedAnswer answer{.set = {.speed_mps = now.now.speed_mps, .acceleration_mps2 = 0.0},
+                     .behaviour = now.behaviour,
+                     .reason = now.reason,
+                     .hold = is_at_rest(question, options)};
+  // The planned deceleration is that of a vehicle at the planned speed; a slower one needs none.
+  if (question.speed_mps > ahead.speed_mps - 0.5) {
+    answer.set.acceleration_mps2 = ahead.acceleration_mps2;
+  }
+  if (question.lead && now.behaviour == Behaviour::cruise &&
+      all.back().now.speed_mps < now.now.speed_mps + kFollowSlack_mps) {
+    answer.behaviour = Behaviour::follow;
+    answer.reason = all.back().reason;
+  }
+  answer.set.speed_mps =
+      std::min(answer.set.speed_mps, question.speed_mps + options.most_speed_up_mps);
+  return answer;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "roadbed/control/cruise_control.h"
+#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/tools/simulation/drive.h"
+#include "roadbed/tools/simulation/lead.h"
+
+namespace roadbed::tools {
+
+/// What the set speed is chosen from, at one planning cycle.
+struct SpeedQuestion {
+  const planning::SpeedCeiling& ceiling;
+  double s_m = 0.0;       ///< station of the rear axle
+  double goal_s_m = 0.0;  ///< to stop at
+  double speed_mps = 0.0;
+  std::optional<Lead> lead;
+  std::string lead_name;     ///< for the reason
+  bool path_is_free = true;  ///< false: the planner found nothing; stop
+};
+
+/// The set speed, and what it is due to.
+struct SpeedAnswer {
+  control::SetSpeed set;
+  Behaviour behaviour = Behaviour::cruise;
+  std::string reason;
+  bool hold = false;  ///< the vehicle has come to rest on purpose: keep the brake on
+};
+
+struct DecisionOptions {
+  double deceleration_mps2 = 1.5;
+  double headway_s = 1.5;
+  double standstill_gap_m = 5.0;
+  double preview_s = 0.45;  ///< the actuator's lag: deceleration is asked for this much ahead
+  double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
+};
+
+/// The least of: the ceiling, the stop at the goal, and the approach to the lead, which closes up
+/// at a comfortable deceleration to the gap that the cruise control then keeps.
+SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options);
+
+}  // namespace roadbed::tools

@@ -1,0 +1,60 @@
+#include "roadbed/tools/simulation/observer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "roadbed/geometry/rectangle.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kOffRoadSteps = 10;
+constexpr double kOffRoadStep_m = 0.1;
+
+}  // namespace
+
+Observer::Observer(const World& world, const geometry::VehicleShape& vehicle)
+    : world_(world), vehicle_(vehicle), clearance_m_(kInfinity) {}
+
+void Observer::look(double t_s, const VehicleState& truth) {
+  const geometry::Rectangle body = geometry::body_at(truth.motion.pose, vehicle_);
+  for (const planning::Obstacle& obstacle : world_.obstacles) {
+    const geometry::Rectangle other = rectangle_at(obstacle, t_s);
+    const double bound = (other.centre - body.centre).norm() - other.radius_m() - body.radius_m();
+    if (bound >= clearance_m_) continue;
+    const double distance = geometry::distance_m(body, other);
+    clearance_m_ = std::min(clearance_m_, distance);
+    if (distance <= 0.0) touched_ = obstacle.id;
+  }
+}
+
+double Observer::take_clearance_m() { return std::exchange(clearance_m_, kInfinity); }
+
+double Observer::off_road_m(const VehicleState& truth) const {
+  int worst = 0;
+  for (const Eigen::Vector2d& corner_in_vehicle : vehicle_.corners_in_vehicle()) {
+    const Eigen::Vector2d corner = truth.motion.pose * corner_in_vehicle;
+    while (worst < kOffRoadSteps && !world_.road_map.on_surface(corner, kOffRoadStep_m * worst)) {
+      ++worst;
+    }
+  }
+  return kOffRoadStep_m * worst;
+}
+
+geometry::TrajectoryPoint Observer::row(double t_s, const VehicleState& truth) const {
+  const control::SingleTrackState& motion = truth.motion;
+  const Eigen::Vector2d in_source = world_.road_map.to_source(motion.pose.position());
+  return {.t_s = t_s,
+          .x_m = in_source.x(),
+          .y_m = in_source.y(),
+          .heading_rad = motion.pose.heading_rad,
+          .speed_mps = motion.speed_mps,
+          .acceleration_mps2 = truth.acceleration_mps2,
+          .steering_rad = motion.steering_rad,
+          .curvature_per_m = std::tan(motion.steering_rad) / vehicle_.wheelbase_m};
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,118 @@
+#include "roadbed/tools/simulation/obstacle_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "roadbed/geometry/angle.h"
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::Pose2;
+using geometry::TrajectoryPoint;
+
+constexpr double kStep_s = 0.1;
+constexpr std::size_t kMostLanes = 10'000;  // lanes may run in a circle and be very short
+
+double turn_of(const map::Lane& lane) {
+  const double start = lane.pose_at(0.0).heading_rad;
+  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
+}
+
+std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from) {
+  std::optional<map::LaneId> best;
+  for (const map::LaneId next : road_map.graph().of(from).successors) {
+    if (!map::is_drivable(road_map.lane(next).type)) continue;
+    if (!best || turn_of(road_map.lane(next)) < turn_of(road_map.lane(*best))) best = next;
+  }
+  return best;
+}
+
+void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line, double from_m) {
+  points.push_back(line.at(from_m));
+  for (std::size_t i = 0; i < line.points().size(); ++i) {
+    if (line.stations_m()[i] > from_m) points.push_back(line.points()[i]);
+  }
+}
+
+double speed_at(const std::vector<TimedSpeed>& speeds, double t_s) {
+  const auto after = std::find_if(speeds.begin(), speeds.end(),
+                                  [&](const TimedSpeed& speed) { return speed.t_s > t_s; });
+  if (after == speeds.begin()) return speeds.front().speed_mps;
+  if (after == speeds.end()) return speeds.back().speed_mps;
+  const TimedSpeed& before = *std::prev(after);
+  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
+  return before.speed_mps + share * (after->speed_mps - before.speed_mps);
+}
+
+/// Speeds are those with which the straight line from point to point is driven.
+void fill_speeds(std::vector<TrajectoryPoint>& points) {
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Eigen::Vector2d way = points[i + 1].pose().position() - points[i].pose().position();
+    points[i].speed_mps = way.norm() / (points[i + 1].t_s - points[i].t_s);
+  }
+}
+
+}  // namespace
+
+geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlace& from,
+                               double length_m) {
+  std::vector<Eigen::Vector2d> points;
+  std::optional<map::LaneId> lane = from.lane;
+  double from_m = from.s_m, covered_m = 0.0;
+  for (std::size_t i = 0; lane && covered_m < length_m && i < kMostLanes; ++i) {
+    const geometry::Polyline& centre = road_map.lane(*lane).centre.in_map;
+    append(points, centre, from_m);
+    covered_m += std::max(0.0, centre.length_m() - from_m);
+    from_m = 0.0;
+    lane = straightest(road_map, *lane);
+  }
+  if (points.size() < 2) points.push_back(points.front());
+  return geometry::Polyline(std::move(points));
+}
+
+double travelled_m(const std::vector<TimedSpeed>& speeds, double t_s) {
+  // Trapezoids between 0, the times within, and t.
+  double distance = 0.0, from_s = 0.0;
+  const auto drive_to = [&](double to_s) {
+    distance += 0.5 * (speed_at(speeds, from_s) + speed_at(speeds, to_s)) * (to_s - from_s);
+    from_s = to_s;
+  };
+  for (const TimedSpeed& speed : speeds) {
+    if (speed.t_s > from_s && speed.t_s < t_s) drive_to(speed.t_s);
+  }
+  drive_to(t_s);
+  return distance;
+}
+
+geometry::Trajectory drive_along(const Way& way, double way_length_m,
+                                 const std::vector<TimedSpeed>& speeds, double duration_s) {
+  std::vector<TrajectoryPoint> points;
+  const auto steps = static_cast<std::size_t>(std::ceil(duration_s / kStep_s));
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const double t_s = kStep_s * static_cast<double>(k);
+    const double distance = travelled_m(speeds, t_s);
+    const Pose2 pose = way(std::min(distance, way_length_m));
+    points.push_back({.t_s = t_s,
+                      .x_m = pose.x_m,
+                      .y_m = pose.y_m,
+                      .heading_rad = pose.heading_rad,
+                      .speed_mps = distance < way_length_m ? speed_at(speeds, t_s) : 0.0});
+  }
+  return geometry::Trajectory(std::move(points));
+}
+
+geometry::Trajectory drive_through(const std::vector<TimedPose>& poses_in_map) {
+  std::vector<TrajectoryPoint> points;
+  for (const TimedPose& timed : poses_in_map) {
+    points.push_back({.t_s = timed.t_s,
+                      .x_m = timed.pose.x_m,
+                      .y_m = timed.pose.y_m,
+                      .heading_rad = timed.pose.heading_rad});
+  }
+  fill_speeds(points);
+  return geometry::Trajectory(std::move(points));
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,108 @@
+#include "roadbed/tools/simulation/planned_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "roadbed/geometry/angle.h"
+
+namespace roadbed::tools {
+namespace {
+
+using planning::LateralState;
+using planning::ReferencePoint;
+
+constexpr int kNewtonSteps = 8;
+constexpr double kLongestStep_m = 5.0;
+constexpr double kSteepest = 5.0;  // slope d′ of a vehicle that stands across the line
+constexpr double kLeastStretch = 0.05;
+
+/// p′ = along · t + across · n, and the parts of p″.
+struct FrameMotion {
+  double along, across, along_d1, across_d1;
+};
+
+FrameMotion frame_motion(const ReferencePoint& at, const LateralState& lateral) {
+  const double kappa = at.curvature_per_m;
+  return {.along = std::max(kLeastStretch, 1.0 - kappa * lateral.d_m),
+          .across = lateral.d_slope,
+          .along_d1 = -at.curvature_d1_per_m2 * lateral.d_m - kappa * lateral.d_slope,
+          .across_d1 = lateral.d_curvature_per_m};
+}
+
+double curvature_of(const FrameMotion& m, double kappa) {
+  const double speed = std::hypot(m.along, m.across);
+  const double turn =
+      m.along * (m.across_d1 + kappa * m.along) - m.across * (m.along_d1 - kappa * m.across);
+  return turn / (speed * speed * speed);
+}
+
+/// d″ that gives a path the curvature k: the inverse of curvature_of.
+double lateral_curvature(const FrameMotion& m, double kappa, double k) {
+  const double speed = std::hypot(m.along, m.across);
+  return (k * speed * speed * speed + m.across * (m.along_d1 - kappa * m.across)) / m.along -
+         kappa * m.along;
+}
+
+}  // namespace
+
+PlannedPath::PlannedPath(const planning::ReferenceLine& line, Lateral lateral)
+    : line_(&line), lateral_(std::move(lateral)) {}
+
+geometry::Pose2 PlannedPath::pose_at(double s_m) const {
+  const ReferencePoint at = line_->at(s_m);
+  const LateralState lateral = lateral_(s_m);
+  const FrameMotion motion = frame_motion(at, lateral);
+  const Eigen::Vector2d left{-std::sin(at.heading_rad), std::cos(at.heading_rad)};
+  const Eigen::Vector2d place = at.in_map + lateral.d_m * left;
+  return {.x_m = place.x(),
+          .y_m = place.y(),
+          .heading_rad = at.heading_rad + std::atan2(motion.across, motion.along)};
+}
+
+double PlannedPath::curvature_per_m(double s_m) const {
+  const ReferencePoint at = line_->at(s_m);
+  return curvature_of(frame_motion(at, lateral_(s_m)), at.curvature_per_m);
+}
+
+geometry::Pose2 PlannedPath::front_pose_at(double s_m, double wheelbase_m) const {
+  const geometry::Pose2 rear = pose_at(s_m);
+  const Eigen::Vector2d front = rear * Eigen::Vector2d(wheelbase_m, 0.0);
+  return {.x_m = front.x(),
+          .y_m = front.y(),
+          .heading_rad = rear.heading_rad + std::atan(wheelbase_m * curvature_per_m(s_m))};
+}
+
+double PlannedPath::nearest_front_s_m(const Eigen::Vector2d& front_in_map, double wheelbase_m,
+                                      double near_s_m) const {
+  double s = near_s_m;
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const geometry::Pose2 front = front_pose_at(s, wheelbase_m);
+    const Eigen::Vector2d offset_in_front = front.inverse() * front_in_map;
+    const FrameMotion motion = frame_motion(line_->at(s), lateral_(s));
+    const double turn = wheelbase_m * curvature_per_m(s);
+    const double stretch =  // of the front axle's path against the line
+        std::hypot(motion.along, motion.across) * std::hypot(1.0, turn);
+    const double step = std::clamp(offset_in_front.x() / stretch, -kLongestStep_m, kLongestStep_m);
+    s += step;
+    if (std::abs(step) < 1e-9) break;
+  }
+  return s;
+}
+
+LateralState lateral_state(const planning::ReferenceLine& line,
+                           const geometry::Pose2& map_from_vehicle, double curvature_per_m,
+                           double near_s_m) {
+  const geometry::LinePosition foot = line.project(map_from_vehicle.position(), near_s_m);
+  const ReferencePoint at = line.at(foot.s_m);
+  const double turned = geometry::wrap_angle(map_from_vehicle.heading_rad - at.heading_rad);
+  LateralState state{.s_m = foot.s_m, .d_m = foot.d_m};
+  const double slope = std::cos(turned) > 0.0 ? std::tan(turned) : std::copysign(kSteepest, turned);
+  const double along = std::max(kLeastStretch, 1.0 - at.curvature_per_m * foot.d_m);
+  state.d_slope = std::clamp(along * slope, -kSteepest, kSteepest);
+  const FrameMotion motion = frame_motion(at, state);
+  state.d_curvature_per_m = lateral_curvature(motion, at.curvature_per_m, curvature_per_m);
+  return state;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,28 @@
+#include "roadbed/tools/simulation/sensors.h"
+
+#include <algorithm>
+
+namespace roadbed::tools {
+
+Sensors::Sensors(const ScenarioNoise& noise, std::uint64_t seed)
+    : deviations_(noise), random_(seed) {}
+
+double Sensors::noise(double deviation) { return deviation * normal_(random_); }
+
+VehicleState Sensors::measure(const VehicleState& truth) {
+  VehicleState seen = truth;
+  seen.motion.pose.x_m += noise(deviations_.position_m);
+  seen.motion.pose.y_m += noise(deviations_.position_m);
+  seen.motion.pose.heading_rad += noise(deviations_.heading_rad);
+  seen.motion.speed_mps = std::max(0.0, seen.motion.speed_mps + noise(deviations_.speed_mps));
+  seen.acceleration_mps2 += noise(deviations_.acceleration_mps2);
+  return seen;
+}
+
+control::LeadMeasurement Sensors::measure(const Lead& truth, double own_speed_mps) {
+  return {.gap_m = truth.gap_m + noise(deviations_.gap_m),
+          .relative_speed_mps =
+              truth.speed_mps - own_speed_mps + noise(deviations_.relative_speed_mps)};
+}
+
+}  // namespace roadbed::tools

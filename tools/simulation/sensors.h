@@ -1,0 +1,34 @@
+#pragma once
+
+#include <random>
+
+#include "roadbed/control/cruise_control.h"
+#include "roadbed/control/single_track.h"
+#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/tools/simulation/scenario.h"
+
+namespace roadbed::tools {
+
+/// State of the vehicle, true or measured.
+struct VehicleState {
+  control::SingleTrackState motion;
+  double acceleration_mps2 = 0.0;
+};
+
+/// What the controllers get to see: the truth plus white Gaussian noise. Deterministic by seed.
+class Sensors {
+ public:
+  Sensors(const ScenarioNoise& noise, std::uint64_t seed);
+
+  VehicleState measure(const VehicleState& truth);
+  control::LeadMeasurement measure(const Lead& truth, double own_speed_mps);
+
+ private:
+  double noise(double deviation);
+
+  ScenarioNoise deviations_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
+
+}  // namespace roadbed::tools

@@ -1,0 +1,172 @@
+#include "roadbed/tools/simulation/world.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "roadbed/geometry/rectangle.h"
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
+#include "roadbed/tools/support/place.h"
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::Pose2;
+using planning::Obstacle;
+using planning::ReferenceLine;
+using planning::Route;
+
+[[noreturn]] void refuse(const Scenario& scenario, const std::string& pointer,
+                         const std::string& found, const std::string& remedy) {
+  throw map::InputError({.file = scenario.file.string(),
+                         .place = pointer,
+                         .element = {},
+                         .found = found,
+                         .needed = {},
+                         .remedy = remedy});
+}
+
+Place find(const Scenario& scenario, const map::RoadMap& road_map, const ScenarioPlace& place) {
+  return find_place(road_map, place.text, {scenario.file.string(), place.pointer});
+}
+
+Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
+                      const map::LanePlace& from, const ScenarioPlace& to) {
+  planning::RouteAnswer answer =
+      planning::find_route(road_map, from, find(scenario, road_map, to).on_lane);
+  if (!answer.route) {
+    refuse(scenario, to.pointer, "no route leads there: " + answer.reason,
+           "choose another start or goal");
+  }
+  return *std::move(answer.route);
+}
+
+bool is_octree(const std::filesystem::path& file) {
+  return file.extension() == ".bt" || file.extension() == ".ot";
+}
+
+std::optional<map::OccupancyMap> load_occupancy(const Scenario& scenario) {
+  const auto& files = scenario.occupancy_files;
+  if (files.empty()) return std::nullopt;
+  if (files.size() == 1 && is_octree(files.front())) return map::OccupancyMap::load(files.front());
+  std::vector<map::PointCloud> clouds;
+  for (const std::filesystem::path& file : files) {
+    if (is_octree(file)) {
+      refuse(scenario, "/occupancy", file.string() + " is an octree beside other files",
+             "give one octree, or clouds only");
+    }
+    clouds.push_back(map::read_point_cloud(file));
+  }
+  return map::OccupancyMap::build(clouds, {});
+}
+
+/// Makes obstacles of the scenario's; one instance per world.
+class ObstacleMaker {
+ public:
+  ObstacleMaker(const Scenario& scenario, const map::RoadMap& road_map)
+      : scenario_(scenario), road_map_(road_map) {}
+
+  Obstacle make(const ScenarioObstacle& from) const {
+    Obstacle obstacle{.id = from.id,
+                      .kind = from.kind,
+                      .length_m = from.length_m,
+                      .width_m = from.width_m,
+                      .motion = {}};
+    obstacle.motion = std::visit([&](const auto& how) { return motion(how); }, from.motion);
+    return obstacle;
+  }
+
+ private:
+  Pose2 to_map(const Pose2& in_source) const {
+    const Eigen::Vector2d place = road_map_.to_map(in_source.position());
+    return {place.x(), place.y(), in_source.heading_rad};
+  }
+
+  Pose2 pose_of(const Pose2& in_source) const { return to_map(in_source); }
+
+  Pose2 pose_of(const ParkedObstacle::Beside& beside) const {
+    const Pose2 on_lane = find(scenario_, road_map_, beside.place).map_from_vehicle;
+    return on_lane * Pose2{0.0, beside.d_m, 0.0};
+  }
+
+  geometry::Trajectory motion(const ParkedObstacle& parked) const {
+    const Pose2 pose = std::visit([&](const auto& at) { return pose_of(at); }, parked.at);
+    return drive_through({{0.0, pose}});
+  }
+
+  geometry::Trajectory motion(const ScriptedObstacle& scripted) const {
+    std::vector<TimedPose> poses = scripted.poses;
+    for (TimedPose& timed : poses) timed.pose = to_map(timed.pose);
+    return drive_through(poses);
+  }
+
+  geometry::Trajectory motion(const TrafficObstacle& traffic) const {
+    const map::LanePlace start = find(scenario_, road_map_, traffic.start).on_lane;
+    if (traffic.to) return along_route(traffic, start);
+    const double length_m = travelled_m(traffic.speeds, scenario_.duration_s) + 1.0;
+    const geometry::Polyline way = straight_on(road_map_, start, length_m);
+    return drive_along([&](double distance_m) { return way.pose_at(distance_m); }, way.length_m(),
+                       traffic.speeds, scenario_.duration_s);
+  }
+
+  geometry::Trajectory along_route(const TrafficObstacle& traffic,
+                                   const map::LanePlace& start) const {
+    const Route route = route_or_refuse(scenario_, road_map_, start, *traffic.to);
+    const ReferenceLine line = ReferenceLine::along(road_map_, route);
+    const auto pose_at = [&](double s_m) {
+      const planning::ReferencePoint point = line.at(s_m);
+      return Pose2{point.in_map.x(), point.in_map.y(), point.heading_rad};
+    };
+    return drive_along(pose_at, line.goal_s_m(), traffic.speeds, scenario_.duration_s);
+  }
+
+  const Scenario& scenario_;
+  const map::RoadMap& road_map_;
+};
+
+/// @pre the obstacles are those of the scenario, in its order.
+void refuse_overlap(const Scenario& scenario, const World& world) {
+  const geometry::Rectangle body = geometry::body_at(world.start, scenario.vehicle);
+  for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+    if (geometry::distance_m(body, rectangle_at(world.obstacles[i], 0.0)) > 0.0) continue;
+    refuse(scenario, fmt::format("/obstacles/{}", i),
+           fmt::format("{} touches the ego at the start", world.obstacles[i].id),
+           "move one of the two");
+  }
+}
+
+}  // namespace
+
+World make_world(const Scenario& scenario) {
+  map::RoadMap road_map = map::load_map(scenario.map_file);
+  const Place start = find(scenario, road_map, scenario.start);
+  Route route = route_or_refuse(scenario, road_map, start.on_lane, scenario.goal);
+  ReferenceLine line = ReferenceLine::along(road_map, route);
+  const ObstacleMaker maker(scenario, road_map);
+  std::vector<Obstacle> obstacles;
+  for (const ScenarioObstacle& obstacle : scenario.obstacles) {
+    obstacles.push_back(maker.make(obstacle));
+  }
+  std::optional<map::OccupancyMap> occupancy = load_occupancy(scenario);
+  std::unique_ptr<const map::ClearanceField> field;
+  if (occupancy) {
+    field = std::make_unique<map::ClearanceField>(
+        *occupancy,
+        map::HeightBand{.from_m = map::HeightBand{}.from_m, .to_m = scenario.vehicle.height_m});
+  }
+  World world{.road_map = std::move(road_map),
+              .occupancy = std::move(occupancy),
+              .field = std::move(field),
+              .start = start.map_from_vehicle,
+              .route = std::move(route),
+              .line = std::move(line),
+              .obstacles = std::move(obstacles)};
+  refuse_overlap(scenario, world);
+  return world;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "roadbed/geometry/pose2.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/road_map.h"
+#include "roadbed/planning/obstacle.h"
+#include "roadbed/planning/reference_line.h"
+#include "roadbed/planning/route.h"
+#include "roadbed/tools/simulation/scenario.h"
+
+namespace roadbed::tools {
+
+/// What a scenario means: its files loaded, its places found, its obstacles set in motion. All
+/// poses are in the map's frame.
+struct World {
+  map::RoadMap road_map;
+  std::optional<map::OccupancyMap> occupancy;
+  std::unique_ptr<const map::ClearanceField> field;  ///< of the occupancy; none without
+  geometry::Pose2 start;                             ///< of the ego's rear axle
+  planning::Route route;
+  planning::ReferenceLine line;
+  std::vector<planning::Obstacle> obstacles;  ///< motions last for the scenario's duration
+};
+
+/// @throws InputError if a file is unusable, a place is not on the map, there is no route to the
+///         goal, or an obstacle touches the ego at the start; it names the place in the scenario.
+World make_world(const Scenario& scenario);
+
+}  // namespace roadbed::tools
