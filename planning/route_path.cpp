@@ -14,6 +14,7 @@ namespace {
 using map::LaneId;
 
 constexpr double kLeastPath_m = 1.0;
+constexpr double kChord_m = 0.2;
 constexpr double kStep_m = 0.05;               // at a link: a larger one is taken out
 constexpr double kMostStep_m = 5.0;            // what is larger is a gap of the map
 constexpr double kStepCurvature_per_m = 0.02;  // with which a step is taken out
@@ -45,10 +46,18 @@ std::vector<Stretch> stretches_of(const map::RoadMap& road_map, const Route& rou
   return stretches;
 }
 
+// Of a chord, since single segments of real centrelines may point anywhere.
+Eigen::Vector2d direction_of(const map::Lane& lane, double share) {
+  const double s_m = share * lane.length_m();
+  const Eigen::Vector2d chord =
+      lane.centre.in_map.at(s_m + kChord_m) - lane.centre.in_map.at(s_m - kChord_m);
+  return chord.norm() > 0.0 ? Eigen::Vector2d(chord.normalized()) : Eigen::Vector2d(1.0, 0.0);
+}
+
 std::optional<LaneId> straightest_successor(const map::RoadMap& road_map, LaneId lane) {
   const auto heading_at = [&](LaneId id, double share) {
-    const map::Lane& at = road_map.lane(id);
-    return at.pose_at(share * at.length_m()).heading_rad;
+    const Eigen::Vector2d along = direction_of(road_map.lane(id), share);
+    return std::atan2(along.y(), along.x());
   };
   std::optional<LaneId> best;
   double least_turn = std::numeric_limits<double>::infinity();
@@ -109,9 +118,7 @@ class Builder {
   }
 
   Eigen::Vector2d direction(LaneId lane, double share) const {
-    const map::Lane& at = road_map_.lane(lane);
-    const double heading = at.pose_at(share * at.length_m()).heading_rad;
-    return {std::cos(heading), std::sin(heading)};
+    return direction_of(road_map_.lane(lane), share);
   }
 
   // Half the length of the i-th change as a share: as long as wanted, clear of its neighbours.

@@ -144,13 +144,13 @@ void print_info(std::ostream& out, const Json& info) {
   line("bounds", bounds_text(info.at("bounds")));
   line("roads", fmt::format("{}, {:.1f} m", info.at("roads").get<int>(),
                             number(info.at("lengths").at("roads_m"))));
-  line("junctions", fmt::format("{}, {:.1f} m2", info.at("junctions").get<int>(),
+  line("junctions", fmt::format("{}, {:.1f} m²", info.at("junctions").get<int>(),
                                 number(info.at("areas").at("junctions_m2"))));
   line("signals", fmt::format("{}", info.at("signals").get<int>()));
   line("lanes",
        fmt::format("{}: {}", info.at("lanes").get<int>(), listed(info.at("lanes_by_type"))));
   line("drivable lanes",
-       fmt::format("{:.1f} m, {:.1f} m2", number(info.at("lengths").at("drivable_lanes_m")),
+       fmt::format("{:.1f} m, {:.1f} m²", number(info.at("lengths").at("drivable_lanes_m")),
                    number(info.at("areas").at("drivable_m2"))));
   line("connected components", components_text(info.at("drivable_component_lanes")));
   line("remarks", listed(info.at("remarks")));

@@ -24,6 +24,7 @@ struct Entry {
 constexpr Entry kCommands[] = {
     {"import", make_import_command},
     {"info", make_info_command},
+    {"validate", make_validate_command},
     {"export", make_export_command},
     {"control", make_control_command},
 };

@@ -30,8 +30,13 @@ using planning::Route;
                          .remedy = remedy});
 }
 
+/// The place's own message, at its place in the scenario.
 Place find(const Scenario& scenario, const map::RoadMap& road_map, const ScenarioPlace& place) {
-  return find_place(road_map, place.text, {scenario.file.string(), place.pointer});
+  try {
+    return find_place(road_map, place.text);
+  } catch (const map::InputError& error) {
+    refuse(scenario, place.pointer, error.what(), "");
+  }
 }
 
 Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/angle.h"
@@ -14,130 +14,156 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::string_view kLanePrefix = "lane:";
+constexpr double kReach_m = 0.5;
+constexpr double kSearch_m[] = {10.0, 100.0, 1e3, 1e4, 1e5};
 constexpr double kMetresPerRadian = 2.0;
-constexpr double kSearch_m = 100.0;  // to say how far off the road a point is
-constexpr std::string_view kLane = "lane:";
-constexpr const char* kForms = "X,Y or X,Y,HEADING or lane:NAME or lane:NAME@S";
+constexpr double kOffsetWeight = 0.1;
 
-class Finder {
- public:
-  Finder(const map::RoadMap& road_map, std::string_view text, const PlaceOrigin& origin)
-      : road_map_(road_map), text_(text), origin_(origin) {}
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
-  Place find() const {
-    return text_.starts_with(kLane) ? on_lane(text_.substr(kLane.size())) : at_point(numbers());
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.push_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
   }
+}
 
- private:
-  [[noreturn]] void refuse(const std::string& found, const std::string& needed,
-                           const std::string& remedy) const {
-    throw map::InputError({.file = origin_.file,
-                           .place = origin_.pointer,
-                           .element = fmt::format("place \"{}\"", text_),
-                           .found = found,
-                           .needed = needed,
-                           .remedy = remedy});
+// Radians, or degrees with their unit behind.
+std::optional<double> heading(std::string_view text) {
+  constexpr std::string_view kDegrees = "deg";
+  if (text.ends_with(kDegrees)) {
+    const auto degrees = number(text.substr(0, text.size() - kDegrees.size()));
+    return degrees ? std::optional(*degrees * std::numbers::pi / 180.0) : std::nullopt;
   }
+  const auto radians = number(text);
+  return radians && std::abs(*radians) <= 2.0 * std::numbers::pi ? radians : std::nullopt;
+}
 
-  std::optional<double> number(std::string_view word) const {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
-      return std::nullopt;
-    }
-    return value;
-  }
-
-  std::vector<double> numbers() const {
-    std::vector<double> values;
-    std::string_view rest = text_;
-    while (true) {
-      const std::size_t comma = rest.find(',');
-      const std::optional<double> value = number(rest.substr(0, comma));
-      if (!value) refuse("is not a place", kForms, "write it like that");
-      values.push_back(*value);
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
-    if (values.size() < 2 || values.size() > 3) {
-      refuse("is not a place", kForms, "write it like that");
-    }
-    return values;
-  }
-
-  Place on_lane(std::string_view rest) const {
-    const std::size_t at = rest.rfind('@');
-    const std::string_view lane_name = rest.substr(0, at);
-    const std::optional<map::LaneId> id = road_map_.find_lane(lane_name);
-    if (!id) refuse("no lane has this name", "one", "list the lanes with: roadbed info");
-    const map::Lane& lane = road_map_.lane(*id);
-    double s_m = 0.0;
-    if (at != std::string_view::npos) {
-      const std::optional<double> station = number(rest.substr(at + 1));
-      if (!station) refuse("the station is no number", kForms, "write it like that");
-      s_m = *station;
-    }
-    if (s_m < 0.0 || s_m > lane.length_m()) {
-      refuse("the station is not on the lane", fmt::format("0 to {:.3f} m", lane.length_m()),
-             "change it");
-    }
-    return {.on_lane = {.lane = *id, .s_m = s_m}, .map_from_vehicle = lane.pose_at(s_m)};
-  }
-
-  Place at_point(const std::vector<double>& values) const {
-    const Eigen::Vector2d point = road_map_.to_map({values[0], values[1]});
-    std::optional<double> heading;
-    if (values.size() == 3) heading = values[2] * kDegree;
-    const std::vector<map::LaneMatch> near = road_map_.locate(point, kMostOffLane_m, true);
-    const map::LaneMatch* best = choose(near, heading);
-    if (best == nullptr) refuse_point(point, near, heading);
-    return {.on_lane = best->place,
-            .map_from_vehicle = {point.x(), point.y(), heading.value_or(best->heading_rad)}};
-  }
-
-  static const map::LaneMatch* choose(const std::vector<map::LaneMatch>& near,
-                                      const std::optional<double>& heading) {
-    if (!heading) return near.empty() ? nullptr : &near.front();
-    const map::LaneMatch* best = nullptr;
-    double least = 0.0;
-    for (const map::LaneMatch& match : near) {
-      const double off = std::abs(geometry::wrap_angle(match.heading_rad - *heading));
-      const double aside = match.distance_m > 0.0 ? match.distance_m : 0.0;
-      const double cost = aside + kMetresPerRadian * off;
-      if (off >= 0.5 * std::numbers::pi || (best != nullptr && cost >= least)) continue;
-      best = &match;
-      least = cost;
-    }
-    return best;
-  }
-
-  [[noreturn]] void refuse_point(const Eigen::Vector2d& point,
-                                 const std::vector<map::LaneMatch>& near,
-                                 const std::optional<double>& heading) const {
-    if (heading && !near.empty()) {
-      const map::Lane& lane = road_map_.lane(near.front().place.lane);
-      refuse(fmt::format("the heading is against every lane there; lane {} has {:.0f}°", lane.name,
-                         near.front().heading_rad / kDegree),
-             "less than 90° between them", "turn it or leave it out");
-    }
-    const std::vector<map::LaneMatch> far = road_map_.locate(point, kSearch_m, true);
-    refuse(far.empty()
-               ? fmt::format("no drivable lane within {:.0f} m", kSearch_m)
-               : fmt::format("{:.1f} m off the nearest drivable lane, {}", far.front().distance_m,
-                             road_map_.lane(far.front().place.lane).name),
-           fmt::format("at most {:.0f} m", kMostOffLane_m), "move it onto the road");
-  }
-
-  const map::RoadMap& road_map_;
-  std::string_view text_;
-  const PlaceOrigin& origin_;
+struct LaneText {
+  std::string_view name;
+  std::string_view station;  ///< empty if none is given
 };
+
+LaneText lane_text(std::string_view text) {
+  text.remove_prefix(kLanePrefix.size());
+  const std::size_t at = text.rfind('@');
+  if (at == std::string_view::npos) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+[[noreturn]] void refuse(const std::string& text, const std::string& found,
+                         const std::string& needed, const std::string& remedy) {
+  throw map::InputError({.file = "place \"" + text + "\"",
+                         .place = {},
+                         .element = {},
+                         .found = found,
+                         .needed = needed,
+                         .remedy = remedy});
+}
+
+Place at_lane(const map::RoadMap& road_map, const std::string& text) {
+  const LaneText parts = lane_text(text);
+  const auto id = road_map.find_lane(parts.name);
+  if (!id) {
+    refuse(text, fmt::format("the map has no lane {}", parts.name), "",
+           "see the names with: roadbed locate MAP --at X,Y");
+  }
+  const map::Lane& lane = road_map.lane(*id);
+  const double s_m = parts.station.empty() ? 0.0 : number(parts.station).value();
+  if (s_m < 0.0 || s_m > lane.length_m()) {
+    refuse(text, fmt::format("station {} m", s_m),
+           fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
+  }
+  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false};
+}
+
+[[noreturn]] void refuse_far(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
+                             const std::string& text) {
+  for (const double radius_m : kSearch_m) {
+    const auto matches = road_map.locate(in_map, radius_m, true);
+    if (matches.empty()) continue;
+    const map::LaneMatch& nearest = matches.front();
+    const map::Lane& lane = road_map.lane(nearest.place.lane);
+    const Eigen::Vector2d on_lane = road_map.to_source(lane.pose_at(nearest.place.s_m).position());
+    refuse(text, "is off the road", "",
+           fmt::format("the nearest drivable lane is {}, {:.2f} m away; its centre there is at "
+                       "{:.3f},{:.3f}",
+                       lane.name, nearest.distance_m, on_lane.x(), on_lane.y()));
+  }
+  refuse(text, "is off the road", "", "no drivable lane is within 100 km: mind the coordinates");
+}
+
+double turn_from(const map::LaneMatch& match, double heading_rad) {
+  return std::abs(geometry::wrap_angle(match.heading_rad - heading_rad));
+}
+
+map::LaneMatch best_match(std::vector<map::LaneMatch> matches, std::optional<double> heading_rad) {
+  if (heading_rad) {
+    const auto against = [&](const map::LaneMatch& match) {
+      return turn_from(match, *heading_rad) > 0.5 * std::numbers::pi;
+    };
+    if (!std::all_of(matches.begin(), matches.end(), against)) std::erase_if(matches, against);
+  }
+  const auto misfit = [&](const map::LaneMatch& match) {
+    const double turn = heading_rad ? turn_from(match, *heading_rad) : 0.0;
+    return match.distance_m + kMetresPerRadian * turn + kOffsetWeight * std::abs(match.place.d_m);
+  };
+  return *std::min_element(matches.begin(), matches.end(),
+                           [&](const auto& a, const auto& b) { return misfit(a) < misfit(b); });
+}
+
+Place at_point(const map::RoadMap& road_map, const std::string& text) {
+  const auto parts = split(text);
+  const Eigen::Vector2d in_map =
+      road_map.to_map({number(parts[0]).value(), number(parts[1]).value()});
+  const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
+  const auto matches = road_map.locate(in_map, kReach_m, true);
+  if (matches.empty()) refuse_far(road_map, in_map, text);
+  const map::LaneMatch match = best_match(matches, heading_rad);
+  return {match.place,
+          {in_map.x(), in_map.y(), heading_rad.value_or(match.heading_rad)},
+          heading_rad.has_value()};
+}
 
 }  // namespace
 
-Place find_place(const map::RoadMap& road_map, std::string_view text, const PlaceOrigin& origin) {
-  return Finder(road_map, text, origin).find();
+std::string place_syntax_fault(const std::string& text) {
+  if (text.starts_with(kLanePrefix)) {
+    const LaneText parts = lane_text(text);
+    if (parts.name.empty()) return "the lane's name is missing";
+    const bool has_station = text.find('@') != std::string::npos;
+    if (has_station && !number(parts.station)) return "the station behind @ is not a number";
+    return "";
+  }
+  const auto parts = split(text);
+  if (parts.size() < 2 || parts.size() > 3) return std::string("is not ") + kPlaceSyntax;
+  if (!number(parts[0]) || !number(parts[1])) return "X or Y is not a number";
+  if (parts.size() == 3 && !heading(parts[2])) {
+    return "the heading is not a number of radians up to 2π; write degrees as 90deg";
+  }
+  return "";
+}
+
+std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
+  const auto parts = split(text);
+  if (parts.size() != 2) return {};
+  const auto x = number(parts[0]), y = number(parts[1]);
+  return x && y ? std::optional(Eigen::Vector2d(*x, *y)) : std::nullopt;
+}
+
+Place find_place(const map::RoadMap& road_map, const std::string& text) {
+  const std::string fault = place_syntax_fault(text);
+  if (!fault.empty()) refuse(text, fault, "", "");
+  return text.starts_with(kLanePrefix) ? at_lane(road_map, text) : at_point(road_map, text);
 }
 
 }  // namespace roadbed::tools

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,32 +10,29 @@
 
 namespace roadbed::tools {
 
-/// A place on the map, as the user named it.
+/// How places are written, for help texts.
+inline constexpr const char* kPlaceSyntax =
+    "X,Y[,HEADING] in the map's coordinates, heading in radians or as 90deg; or lane:NAME[@S]";
+
+/// A place on a drivable lane.
 struct Place {
-  map::LanePlace on_lane;            ///< the lane it is on, and where
-  geometry::Pose2 map_from_vehicle;  ///< of a vehicle whose rear axle is there
+  map::LanePlace on_lane;
+  geometry::Pose2 map_from_vehicle;  ///< as given; heading of the lane where none is given
+  bool has_heading = false;          ///< given, not the lane's
 };
 
-/// Where the text of a place stood, for messages.
-struct PlaceOrigin {
-  std::string file;     ///< "scenario.json", or the option: "--from"
-  std::string pointer;  ///< JSON pointer in the file; empty for an option
-};
+/// What is wrong with the writing of a place, empty if nothing is. Needs no map.
+std::string place_syntax_fault(const std::string& text);
 
-/// Farthest from a drivable lane that a point may be [m].
-inline constexpr double kMostOffLane_m = 3.0;
+/// Two numbers "X,Y", in source coordinates.
+std::optional<Eigen::Vector2d> parse_point(std::string_view text);
 
-/// Finds a place written as one of
-///
-///     X,Y           source coordinates [m]; on the nearest drivable lane, along it
-///     X,Y,HEADING   heading in degrees, counter-clockwise from the x axis; the lane is the one
-///                   that is near and points the same way: least distance + 2 m per radian off,
-///                   among those less than 90° off
-///     lane:NAME     a lane's start
-///     lane:NAME@S   a station along it [m]
-///
-/// @throws InputError if the text is none of these, the lane is not there or too short, or the
-///         point is off the road.
-Place find_place(const map::RoadMap& road_map, std::string_view text, const PlaceOrigin& origin);
+/// Finds a place on the map. A point belongs to the drivable lane that it is on, or at most 0.5 m
+/// beside. Of several, as in a junction, the one is taken whose heading fits best: an angle of 0.1
+/// rad counts as much as 0.2 m beside the lane or 2 m off its centreline. Lanes that run against a
+/// given heading are left out where another is there.
+/// @throws InputError, whose element is the text, if it is no place, its lane is not there or not
+///         that long, or there is no drivable lane near the point; it names the nearest.
+Place find_place(const map::RoadMap& road_map, const std::string& text);
 
 }  // namespace roadbed::tools
