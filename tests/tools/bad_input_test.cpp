@@ -49,19 +49,61 @@ void expect_refused(const ProgramRun& run, const std::string& culprit) {
   EXPECT_EQ(run.out, "");
 }
 
-TEST(BadInput, MapThatCannotBeUsedIsRefusedByImportAndLeavesNoOutput) {
+/// Every command that reads a map; "MAP" stands for the map, "OUT" for an output without suffix.
+std::vector<std::vector<std::string>> commands_on_a_map() {
+  return {
+      {"import", "MAP", "-o", "OUT.rbm"}, {"info", "MAP"},
+      {"info", "MAP", "--json"},          {"export", "MAP", "-o", "OUT.geojson"},
+      {"export", "MAP", "-o", "OUT.svg"}, {"export", "MAP", "-o", "OUT.csv"},
+  };
+}
+
+std::vector<std::string> filled_in(std::vector<std::string> words, const std::string& map,
+                                   const std::string& out) {
+  for (std::string& word : words) {
+    if (word == "MAP") word = map;
+    if (word.rfind("OUT", 0) == 0) word.replace(0, 3, out);
+  }
+  return words;
+}
+
+std::string line_of(const std::vector<std::string>& words) {
+  std::string line = "roadbed";
+  for (const std::string& word : words) line += " " + word;
+  return line;
+}
+
+TEST(BadInput, MapThatCannotBeUsedIsRefusedByEveryCommandAndLeavesNoOutput) {
   for (const BadMap& map : bad_maps()) {
-    SCOPED_TRACE(map.name);
     const TemporaryFolder folder;
     const std::string file = folder.write(map.name, map.bytes);
-    expect_refused(run_roadbed({"import", file, "-o", folder / "out.rbm"}), map.name);
+    for (const auto& command : commands_on_a_map()) {
+      const auto words = filled_in(command, file, folder / "out");
+      SCOPED_TRACE(line_of(words));
+      expect_refused(run_roadbed(words), map.name);
+    }
     EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{map.name});
   }
 }
 
-TEST(BadInput, MissingMapIsNamed) {
+TEST(BadInput, MissingMapIsNamedByEveryCommand) {
   const TemporaryFolder folder;
-  expect_refused(run_roadbed({"import", folder / "no.xodr", "-o", folder / "out.rbm"}), "no.xodr");
+  for (const auto& command : commands_on_a_map()) {
+    const auto words = filled_in(command, folder / "no.xodr", folder / "out");
+    SCOPED_TRACE(line_of(words));
+    expect_refused(run_roadbed(words), "no.xodr");
+  }
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, FolderInPlaceOfAMapIsNamedByEveryCommand) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "map.xodr");
+  for (const auto& command : commands_on_a_map()) {
+    const auto words = filled_in(command, folder / "map.xodr", folder / "out");
+    SCOPED_TRACE(line_of(words));
+    expect_refused(run_roadbed(words), "map.xodr");
+  }
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 

@@ -1,0 +1,61 @@
+// The whole way from a map to a driven and audited route, on the project's own data, as a user
+// goes it.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+std::string town() { return data_folder() / "town.xodr"; }
+
+/// Runs the program, expects status 0, and returns what it printed.
+std::string answer(const std::vector<std::string>& words) {
+  const ProgramRun run = run_roadbed(words);
+  EXPECT_EQ(run.status, 0) << run.err;
+  return run.out;
+}
+
+nlohmann::json json_answer(std::vector<std::string> words) {
+  words.push_back("--json");
+  const std::string text = answer(words);
+  EXPECT_TRUE(nlohmann::json::accept(text)) << text;
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
+TEST(MainJob, CompiledMapAnswersAsItsSourceDoes) {
+  const TemporaryFolder folder;
+  const std::string compiled = folder / "town.rbm";
+  answer({"import", town(), "-o", compiled});
+  EXPECT_EQ(answer({"info", compiled}), answer({"info", town()}));
+}
+
+// data/check_links.py, which shares no code with the program, counts the same.
+TEST(MainJob, InfoCountsTheTownAsItsRecipeDoesAndFindsItInOnePiece) {
+  const nlohmann::json info = json_answer({"info", town()});
+  EXPECT_EQ(info.at("roads"), 49);
+  EXPECT_EQ(info.at("junctions"), 9);
+  EXPECT_EQ(info.at("drivable_component_lanes"), nlohmann::json::array({119}));
+}
+
+TEST(MainJob, ImportOfTheSameMapGivesTheSameBytes) {
+  const TemporaryFolder folder;
+  answer({"import", town(), "-o", folder / "one.rbm", "--threads", "1"});
+  answer({"import", town(), "-o", folder / "two.rbm", "--threads", "2"});
+  EXPECT_EQ(bytes_of(folder / "one.rbm"), bytes_of(folder / "two.rbm"));
+}
+
+TEST(MainJob, QuietKeepsNotesFromStderr) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_roadbed({"import", town(), "-o", folder / "t.rbm", "--quiet"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err + run.out, "");
+}
+
+}  // namespace
+}  // namespace roadbed::tests
