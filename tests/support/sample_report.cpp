@@ -120,7 +120,8 @@ std::vector<tools::ReportPlan> plans_of(const geometry::Trajectory& drive) {
   std::vector<tools::ReportPlan> plans;
   for (int cycle = 0; cycle < 400; cycle += 1) {
     const double t_s = 0.1 * cycle;
-    tools::ReportPlan plan{.t_s = t_s, .path = {}, .note = "d_e 0.2 m, l_e 24 m"};
+    tools::ReportPlan plan{
+        .t_s = t_s, .path = {}, .note = "ends 0.2 m to the left after 24.0 m", .reason = {}};
     for (double ahead_s = 0.0; ahead_s <= 2.5; ahead_s += 0.25) {
       plan.path.push_back(drive.at(t_s + ahead_s).pose().position());
     }

@@ -200,11 +200,13 @@ std::string page_data_json(const ReportInput& input) {
       {"obstacles",
        list_of(input.obstacles,
                [&](const planning::Obstacle& one) { return coded_obstacle(one, origin); })},
-      {"plans",
-       list_of(input.plans,
-               [&](const ReportPlan& plan) {
-                 return Json{{"t", plan.t_s}, {"note", plan.note}, {"path", line(plan.path)}};
-               })},
+      {"plans", list_of(input.plans,
+                        [&](const ReportPlan& plan) {
+                          return Json{{"t", plan.t_s},
+                                      {"note", plan.note},
+                                      {"reason", plan.reason},
+                                      {"path", line(plan.path)}};
+                        })},
       {"plots", list_of(input.plots, coded_plot)},
       {"events", list_of(input.events,
                          [](const ReportEvent& event) {

@@ -59,11 +59,16 @@ std::vector<Fact> facts_of_drive(const geometry::Trajectory& drive) {
           {"largest lateral acceleration", fmt::format("{:.2f} m/s²", lateral_mps2)}};
 }
 
+bool is_bound(const ReportCheck& check) { return !check.bound.empty(); }
+
+bool has_failed(const ReportCheck& check) { return is_bound(check) && !check.passed; }
+
 std::string facts_html(const ReportInput& input) {
   std::vector<Fact> facts = facts_of_drive(input.drive);
-  const auto passed = std::ranges::count_if(input.checks, &ReportCheck::passed);
-  if (!input.checks.empty()) {
-    facts.push_back({"checks passed", fmt::format("{} of {}", passed, input.checks.size())});
+  const auto bound = std::ranges::count_if(input.checks, is_bound);
+  const auto failed = std::ranges::count_if(input.checks, has_failed);
+  if (bound > 0) {
+    facts.push_back({"checks passed", fmt::format("{} of {}", bound - failed, bound)});
   }
   std::string html = "<dl class=\"facts\">";
   for (const Fact& fact : facts) {
@@ -77,14 +82,19 @@ std::string moment_link(double t_s) {
   return fmt::format("<a href=\"#t={0}\" data-t=\"{0}\">{0} s</a>", t);
 }
 
+std::string result_cell(const ReportCheck& check) {
+  if (!is_bound(check)) return "<td class=\"none\">noted</td>";
+  return check.passed ? "<td class=\"passed\">✔ passed</td>" : "<td class=\"failed\">✖ failed</td>";
+}
+
 std::string check_row(const ReportCheck& check) {
-  const std::string value = check.value ? short_number(*check.value, 3) : "–";
+  const std::string value =
+      check.value ? short_number(*check.value, 3) + ' ' + escape_markup(check.unit) : "–";
   return fmt::format(
-      "<tr><td>{}</td><td class=\"number\">{} {}</td><td class=\"number\">{}</td>"
-      "<td class=\"number\">{}</td><td class=\"{}\">{}</td></tr>\n",
-      escape_markup(check.name), value, escape_markup(check.unit), escape_markup(check.bound),
-      check.at_s ? moment_link(*check.at_s) : "", check.passed ? "passed" : "failed",
-      check.passed ? "✔ passed" : "✖ failed");
+      "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+      "<td class=\"number\">{}</td>{}</tr>\n",
+      escape_markup(check.name), value, escape_markup(check.bound),
+      check.at_s ? moment_link(*check.at_s) : "", result_cell(check));
 }
 
 std::string_view sign_of(Severity severity) {

@@ -30,8 +30,9 @@ struct ReportLane {
 /// What one planning cycle chose.
 struct ReportPlan {
   double t_s = 0.0;
-  LineInSource path;  ///< empty: the cycle found nothing
-  std::string note;   ///< "d_e 0.4 m, l_e 22 m; 3,120 of 5,396 feasible"
+  LineInSource path;   ///< empty: the cycle found nothing
+  std::string note;    ///< "ends 0.4 m to the left after 22 m"
+  std::string reason;  ///< of the decision in force; empty: that of its ReportDecision
 };
 
 struct ReportSeries {
@@ -69,7 +70,7 @@ struct ReportCheck {
   std::string name;             ///< "least clearance"
   std::optional<double> value;  ///< none: not measured
   std::string unit;             ///< "m"
-  std::string bound;            ///< "≥ 0.30", empty if there is none
+  std::string bound;            ///< "≥ 0.30", empty if it is only noted
   bool passed = true;
   std::optional<double> at_s;  ///< when the value was taken
 };

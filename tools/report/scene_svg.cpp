@@ -76,14 +76,19 @@ Layout lay_out(const Box& box) {
   return {{box.center(), {0.5 * kWidth_px, 0.5 * height_px}, scale}, height_px};
 }
 
-// Lanes, of which at least one point may be in the picture.
+bool may_be_seen(const Layout& layout, const Box& box) {
+  if (box.isEmpty()) return false;
+  const Vector2d upper_left = layout.frame.to_px({box.min().x(), box.max().y()});
+  const Vector2d size_px = layout.frame.px_per_m * box.sizes();
+  return Box(upper_left, upper_left + size_px)
+      .intersects(Box(Vector2d(0, 0), Vector2d(kWidth_px, layout.height_px)));
+}
+
 bool may_be_seen(const Layout& layout, const ReportLane& lane) {
-  Box box_px;
-  for (const LineInSource* line : {&lane.left, &lane.right}) {
-    for (const Vector2d& point : *line) box_px.extend(layout.frame.to_px(point));
-  }
-  return !box_px.isEmpty() &&
-         box_px.intersects(Box(Vector2d(0, 0), Vector2d(kWidth_px, layout.height_px)));
+  Box box;
+  extend(box, lane.left);
+  extend(box, lane.right);
+  return may_be_seen(layout, box);
 }
 
 LineInSource outline_of(const ReportLane& lane) {
@@ -121,8 +126,8 @@ std::string route_svg(const ReportInput& input, const Layout& layout) {
 std::string occupied_svg(const ReportInput& input, const Layout& layout) {
   std::string data;
   for (const map::Box2& box : input.occupied) {
-    const Vector2d a = box.min_in_source, b = box.max_in_source;
-    data += svg_ring(layout.frame, std::array<Vector2d, 4>{a, {b.x(), a.y()}, b, {a.x(), b.y()}});
+    const Box shown(box.min_in_source, box.max_in_source);
+    if (may_be_seen(layout, shown)) data += svg_box(layout.frame, shown);
   }
   return svg_path("occupied", data);
 }

@@ -44,6 +44,14 @@ std::string svg_ring(const PictureFrame& frame, std::span<const Eigen::Vector2d>
   return path_data(frame, points_in_source, true);
 }
 
+std::string svg_box(const PictureFrame& frame, const Eigen::AlignedBox2d& box_in_source) {
+  const Eigen::Vector2d upper_left =
+      frame.to_px({box_in_source.min().x(), box_in_source.max().y()});
+  const Eigen::Vector2d size_px = frame.px_per_m * box_in_source.sizes();
+  return fmt::format("M{} {}h{}v{}h-{}z", svg_number(upper_left.x()), svg_number(upper_left.y()),
+                     svg_number(size_px.x()), svg_number(size_px.y()), svg_number(size_px.x()));
+}
+
 std::string svg_path(std::string_view css_class, std::string_view data) {
   if (data.empty()) return {};
   return fmt::format("<path class=\"{}\" d=\"{}\"/>\n", css_class, data);

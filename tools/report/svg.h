@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +23,9 @@ std::string svg_number(double value_px);
 /// within a fifth of a pixel of what is left.
 std::string svg_line(const PictureFrame& frame, std::span<const Eigen::Vector2d> points_in_source);
 std::string svg_ring(const PictureFrame& frame, std::span<const Eigen::Vector2d> points_in_source);
+
+/// Path data of a box that is upright in the picture.
+std::string svg_box(const PictureFrame& frame, const Eigen::AlignedBox2d& box_in_source);
 
 /// `<path class="…" d="…"/>`, nothing if there is no data.
 std::string svg_path(std::string_view css_class, std::string_view data);

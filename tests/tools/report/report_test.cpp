@@ -170,7 +170,10 @@ ReportInput restless_minute() {
   input.plots.assign(7, plot);
   input.plans.clear();
   for (int cycle = 0; cycle < 600; ++cycle) {
-    ReportPlan plan{.t_s = 0.1 * cycle, .path = {}, .note = "d_e 0.2 m, l_e 24 m, 3120 feasible"};
+    ReportPlan plan{.t_s = 0.1 * cycle,
+                    .path = {},
+                    .note = "ends 0.2 m to the left after 24.0 m",
+                    .reason = "car p1 is 22.4 m ahead"};
     for (int i = 0; i < 31; ++i) plan.path.emplace_back(1.2 * cycle + i, std::sin(i));
     input.plans.push_back(plan);
   }

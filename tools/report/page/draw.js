@@ -47,6 +47,7 @@ function drawReference(pen) {
 function drawOccupied(pen) {
   pen.ctx.fillStyle = pen.ink("occupied");
   pen.ctx.fill(pen.scene.occupied);
+  stroke(pen, pen.scene.occupied, pen.ink("occupied"), pixels(pen, 1));
 }
 
 function drawDrive(pen) {
@@ -61,13 +62,8 @@ function drawFootprints(pen) {
   stroke(pen, pen.scene.footprints, pen.ink("footprint"), pixels(pen, 1));
 }
 
-function currentPlan(pen) {
-  const i = lastAtOrBefore(pen.scene.planTimes, pen.t + 1e-9);
-  return i < 0 ? null : pen.scene.plans[i];
-}
-
 function drawPlan(pen) {
-  const plan = currentPlan(pen);
+  const plan = planAt(pen.scene, pen.t);
   if (plan) strokePoints(pen, plan.path, pen.ink("plan"), pixels(pen, 4));
 }
 

@@ -181,6 +181,6 @@ function showTime(page) {
   state.replaceChildren();
   if (decision) {
     addText(state, "b", "", decision.state);
-    state.append(" " + decision.reason);
+    state.append(" " + (planAt(page.map.scene, clock.t)?.reason || decision.reason));
   }
 }

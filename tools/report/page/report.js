@@ -15,14 +15,14 @@ function addReading(list, name, value) {
 
 /** The vehicle's state at the page's time, beside the map. */
 function showState(page) {
-  const hud = element("hud"), {drive, plans, planTimes} = page.map.scene;
+  const hud = element("hud"), {drive} = page.map.scene;
   hud.replaceChildren();
   if (drive.t.length === 0) return void (hud.textContent = "No drive");
   const state = stateAt(drive, page.clock.t), list = document.createElement("dl");
   addReading(list, "speed", `${state.v.toFixed(2)} m/s (${(3.6 * state.v).toFixed(0)} km/h)`);
   addReading(list, "acceleration", `${state.a.toFixed(2)} m/s²`);
   addReading(list, "steering", `${(state.steering * 180 / Math.PI).toFixed(1)}°`);
-  const plan = plans[lastAtOrBefore(planTimes, page.clock.t + 1e-9)];
+  const plan = planAt(page.map.scene, page.clock.t);
   if (plan && plan.note !== "") addReading(list, "plan", plan.note);
   hud.append(list);
 }

@@ -46,7 +46,12 @@ function decodeObstacle(coded) {
 }
 
 function decodePlan(coded) {
-  return {t: coded.t, note: coded.note, path: decodeLine(coded.path)};
+  return {t: coded.t, note: coded.note, reason: coded.reason, path: decodeLine(coded.path)};
+}
+
+/** The plan in force at a time; null before the first. */
+function planAt(scene, t) {
+  return scene.plans[lastAtOrBefore(scene.planTimes, t + 1e-9)] ?? null;
 }
 
 /** Outlines of the vehicle once a second. */

@@ -1,0 +1,145 @@
+#include "roadbed/tools/report/drive_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "roadbed/tools/report/comfort_bounds.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Point = geometry::TrajectoryPoint;
+
+constexpr double kOverLimitTolerance_mps = 0.5;  // a controller overshoots a little
+
+struct Worst {
+  double value = -std::numeric_limits<double>::infinity();
+  double at_s = 0.0;
+};
+
+// The largest value of all rows, and the first time of it.
+template <typename Value>
+Worst largest(const Drive& drive, Value value) {
+  Worst worst;
+  for (std::size_t i = 0; i < drive.samples.size(); ++i) {
+    const double found = value(drive.trajectory.points()[i], drive.samples[i]);
+    if (found > worst.value) worst = {found, drive.samples[i].t_s};
+  }
+  return worst;
+}
+
+ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit) {
+  return {.name = std::move(name),
+          .value = worst.value,
+          .unit = std::move(unit),
+          .bound = fmt::format("≤ {}", bound),
+          .passed = worst.value <= bound,
+          .at_s = worst.at_s};
+}
+
+ReportCheck noted(std::string name, double value, std::string unit, std::optional<double> at_s) {
+  return {.name = std::move(name),
+          .value = value,
+          .unit = std::move(unit),
+          .bound = {},
+          .passed = true,
+          .at_s = at_s};
+}
+
+ReportCheck outcome_check(const Drive& drive) {
+  return {.name = "goal reached",
+          .value = {},
+          .unit = {},
+          .bound = "required",
+          .passed = drive.verdict.outcome == Outcome::goal_reached,
+          .at_s = drive.trajectory.empty() ? std::optional<double>() : drive.verdict.at_s};
+}
+
+ReportCheck clearance_check(const Drive& drive) {
+  const Worst nearest =
+      largest(drive, [](const Point&, const DriveSample& s) { return -s.clearance_m; });
+  ReportCheck check{.name = "least clearance to obstacles",
+                    .value = {},
+                    .unit = "m",
+                    .bound = "> 0",
+                    .passed = nearest.value < 0.0,
+                    .at_s = {}};
+  if (std::isfinite(nearest.value)) {
+    check.value = -nearest.value;
+    check.at_s = nearest.at_s;
+  }
+  return check;
+}
+
+ReportCheck audit_check(const planning::AuditReport& audit) {
+  return {.name = audit.beyond_horizon ? "clearance to occupied space, at least"
+                                       : "least clearance to occupied space",
+          .value = audit.least_clearance_m,
+          .unit = "m",
+          .bound = "clear",
+          .passed = audit.verdict == planning::Verdict::clear,
+          .at_s = audit.least_clearance_at_s};
+}
+
+ReportCheck braking_check(const Drive& drive) {
+  const Worst braking =
+      largest(drive, [](const Point& p, const DriveSample&) { return -p.acceleration_mps2; });
+  return at_most("strongest braking", braking, -kLeastAcceleration_mps2, "m/s²");
+}
+
+void append_motion_checks(const Drive& drive, std::vector<ReportCheck>& checks) {
+  const auto off_road = [](const Point&, const DriveSample& s) { return s.off_road_m; };
+  const auto over_limit = [](const Point& p, const DriveSample& s) {
+    return p.speed_mps - s.speed_limit_mps;
+  };
+  const auto speeding_up = [](const Point& p, const DriveSample&) { return p.acceleration_mps2; };
+  const auto across = [](const Point& p, const DriveSample&) {
+    return std::abs(p.speed_mps * p.speed_mps * p.curvature_per_m);
+  };
+  const auto yaw_rate = [](const Point& p, const DriveSample&) {
+    return std::abs(p.speed_mps * p.curvature_per_m);
+  };
+  checks.push_back(at_most("farthest off the road", largest(drive, off_road), 0.0, "m"));
+  checks.push_back(
+      at_most("speed above the limit", largest(drive, over_limit), kOverLimitTolerance_mps, "m/s"));
+  checks.push_back(at_most("strongest acceleration", largest(drive, speeding_up),
+                           kMostAcceleration_mps2, "m/s²"));
+  checks.push_back(braking_check(drive));
+  checks.push_back(at_most("largest lateral acceleration", largest(drive, across),
+                           kMostLateralAcceleration_mps2, "m/s²"));
+  checks.push_back(
+      at_most("largest yaw rate", largest(drive, yaw_rate), kMostYawRate_radps, "rad/s"));
+}
+
+void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {
+  const Worst cross_track =
+      largest(drive, [](const Point&, const DriveSample& s) { return std::abs(s.cross_track_m); });
+  const Worst heading = largest(
+      drive, [](const Point&, const DriveSample& s) { return std::abs(s.heading_error_rad); });
+  const auto blind = std::ranges::count_if(
+      drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen.has_value(); });
+  checks.push_back(noted("largest cross-track error", cross_track.value, "m", cross_track.at_s));
+  checks.push_back(noted("largest heading error", heading.value, "rad", heading.at_s));
+  checks.push_back(noted("cruise control saturated", 100.0 * drive.saturated_share, "%", {}));
+  checks.push_back(noted(fmt::format("cycles without a plan, of {}", drive.cycles.size()),
+                         static_cast<double>(blind), "", {}));
+}
+
+}  // namespace
+
+std::vector<ReportCheck> drive_checks(const Drive& drive,
+                                      const std::optional<planning::AuditReport>& audit) {
+  std::vector<ReportCheck> checks{outcome_check(drive)};
+  if (drive.samples.empty()) return checks;
+  checks.push_back(clearance_check(drive));
+  if (audit) checks.push_back(audit_check(*audit));
+  append_motion_checks(drive, checks);
+  append_notes(drive, checks);
+  return checks;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,90 @@
+#include "roadbed/tools/report/from_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::tools {
+namespace {
+
+LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyline& in_map) {
+  LineInSource line;
+  for (const Eigen::Vector2d& point : in_map.points()) line.push_back(road_map.to_source(point));
+  return line;
+}
+
+// The stretch of a line between two stations, with both its ends.
+geometry::Polyline stretch(const geometry::Polyline& line, double from_s_m, double to_s_m) {
+  std::vector<Eigen::Vector2d> points{line.at(from_s_m)};
+  for (std::size_t i = 0; i < line.points().size(); ++i) {
+    const double s_m = line.stations_m()[i];
+    if (s_m > from_s_m && s_m < to_s_m) points.push_back(line.points()[i]);
+  }
+  points.push_back(line.at(to_s_m));
+  return geometry::Polyline(std::move(points));
+}
+
+Eigen::AlignedBox2d box_of(const ReportLane& lane) {
+  Eigen::AlignedBox2d box;
+  for (const LineInSource* line : {&lane.left, &lane.right}) {
+    for (const Eigen::Vector2d& point : *line) box.extend(point);
+  }
+  return box;
+}
+
+}  // namespace
+
+std::vector<ReportLane> lanes_in(const map::RoadMap& road_map,
+                                 const Eigen::AlignedBox2d& box_in_source) {
+  std::vector<ReportLane> lanes;
+  for (const map::Lane& lane : road_map.lanes()) {
+    if (lane.polygon.empty()) continue;  // it has no area
+    ReportLane shown{.name = lane.name,
+                     .type = lane.type,
+                     .in_junction = lane.junction.has_value(),
+                     .left = line_in_source(road_map, lane.left.in_map),
+                     .centre = line_in_source(road_map, lane.centre.in_map),
+                     .right = line_in_source(road_map, lane.right.in_map)};
+    if (box_of(shown).intersects(box_in_source)) lanes.push_back(std::move(shown));
+  }
+  return lanes;
+}
+
+std::vector<LineInSource> route_lines(const map::RoadMap& road_map, const planning::Route& route) {
+  std::vector<LineInSource> lines;
+  for (const planning::RouteLeg& leg : route.legs) {
+    const geometry::Polyline& centre = road_map.lane(leg.lane).centre.in_map;
+    lines.push_back(line_in_source(road_map, stretch(centre, leg.from_s_m, leg.to_s_m)));
+  }
+  return lines;
+}
+
+std::optional<Eigen::Vector2d> route_goal(const map::RoadMap& road_map,
+                                          const planning::Route& route) {
+  if (route.legs.empty()) return std::nullopt;
+  const planning::RouteLeg& last = route.legs.back();
+  return road_map.to_source(road_map.lane(last.lane).pose_at(last.to_s_m).position());
+}
+
+LineInSource reference_points(const map::RoadMap& road_map, const planning::ReferenceLine& line) {
+  LineInSource points;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(line.length_m())));
+  for (int i = 0; i <= pieces; ++i) {
+    points.push_back(road_map.to_source(line.at(line.length_m() * i / pieces).in_map));
+  }
+  return points;
+}
+
+planning::Obstacle obstacle_in_source(const map::RoadMap& road_map,
+                                      const planning::Obstacle& obstacle) {
+  planning::Obstacle moved = obstacle;
+  std::vector<geometry::TrajectoryPoint> points = obstacle.motion.points();
+  for (geometry::TrajectoryPoint& point : points) {
+    const Eigen::Vector2d place = road_map.to_source(point.pose().position());
+    point.x_m = place.x();
+    point.y_m = place.y();
+  }
+  moved.motion = geometry::Trajectory(std::move(points));
+  return moved;
+}
+
+}  // namespace roadbed::tools
