@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "roadbed/tests/support/program_run.h"
+
+namespace roadbed::tests {
+namespace {
+
+std::filesystem::path golden(const std::string& name) {
+  return std::filesystem::path(ROADBED_TESTS) / "tools/info" / name;
+}
+
+TEST(InfoCommand, PrintsCountsLengthsAreasAndBounds) {
+  const ProgramRun run = run_roadbed({"info", golden("two_roads.xodr")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, bytes_of(golden("two_roads.txt")));
+}
+
+TEST(InfoCommand, PrintsTheSameAsJson) {
+  const ProgramRun run = run_roadbed({"info", golden("two_roads.xodr"), "--json"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, bytes_of(golden("two_roads.json")));
+}
+
+TEST(InfoCommand, SaysTheSameOfACompiledMap) {
+  const TemporaryFolder folder;
+  const std::string compiled = folder / "two_roads.rbm";
+  ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
+  EXPECT_EQ(run_roadbed({"info", compiled}).out, bytes_of(golden("two_roads.txt")));
+}
+
+TEST(InfoCommand, SaysWhichMapIsMissing) {
+  const ProgramRun run = run_roadbed({"info", "no_such.xodr"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.out, "");
+  EXPECT_NE(run.err.find("no_such.xodr"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadbed::tests
