@@ -43,6 +43,12 @@ TEST(MainJob, InfoCountsTheTownAsItsRecipeDoesAndFindsItInOnePiece) {
   EXPECT_EQ(info.at("drivable_component_lanes"), nlohmann::json::array({119}));
 }
 
+TEST(MainJob, TownIsFitForPlanning) {
+  for (const auto& finding : json_answer({"validate", town()}).at("findings")) {
+    EXPECT_EQ(finding.at("severity"), "info") << finding.dump();
+  }
+}
+
 TEST(MainJob, ImportOfTheSameMapGivesTheSameBytes) {
   const TemporaryFolder folder;
   answer({"import", town(), "-o", folder / "one.rbm", "--threads", "1"});
