@@ -186,8 +186,8 @@ tools::ReportInput sample_report() {
   tools::ReportInput input;
   input.title = "Drive past a parked car";
   input.scenario = "data/scenarios/parked_car.json";
-  input.verdict = {true, "goal reached after 40 s, 390 m; nothing was touched"};
-  input.audit = tools::ReportVerdict{true, "clear, at least 0.61 m"};
+  input.verdict = {tools::Tone::good, "goal reached after 40 s, 390 m; nothing was touched"};
+  input.audit = tools::ReportVerdict{tools::Tone::good, "clear, at least 0.61 m"};
   input.lanes = {lane_between("12/0/-1", LaneType::driving, 0.0, -3.5),
                  lane_between("12/0/1", LaneType::driving, 0.0, 3.5),
                  lane_between("12/0/-2", LaneType::shoulder, -3.5, -5.0),

@@ -32,13 +32,18 @@ Worst largest(const Drive& drive, Value value) {
   return worst;
 }
 
+// Where nothing is exceeded at any time, no moment is worth a visit.
+std::optional<double> time_of(const Worst& worst) {
+  return worst.value > 0.0 ? std::optional<double>(worst.at_s) : std::nullopt;
+}
+
 ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit) {
   return {.name = std::move(name),
           .value = worst.value,
           .unit = std::move(unit),
           .bound = fmt::format("≤ {}", bound),
           .passed = worst.value <= bound,
-          .at_s = worst.at_s};
+          .at_s = time_of(worst)};
 }
 
 ReportCheck noted(std::string name, double value, std::string unit, std::optional<double> at_s) {
@@ -80,8 +85,8 @@ ReportCheck audit_check(const planning::AuditReport& audit) {
                                        : "least clearance to occupied space",
           .value = audit.least_clearance_m,
           .unit = "m",
-          .bound = "clear",
-          .passed = audit.verdict == planning::Verdict::clear,
+          .bound = "no conflict",
+          .passed = audit.verdict != planning::Verdict::conflict,
           .at_s = audit.least_clearance_at_s};
 }
 
@@ -136,7 +141,10 @@ std::vector<ReportCheck> drive_checks(const Drive& drive,
   std::vector<ReportCheck> checks{outcome_check(drive)};
   if (drive.samples.empty()) return checks;
   checks.push_back(clearance_check(drive));
-  if (audit) checks.push_back(audit_check(*audit));
+  if (audit) {
+    checks.push_back(audit_check(*audit));
+    checks.push_back(noted("swept area never measured", 100.0 * audit->unknown_share, "%", {}));
+  }
   append_motion_checks(drive, checks);
   append_notes(drive, checks);
   return checks;

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::TrajectoryPoint;
 
-constexpr double kFarthestShown_m = 15.0;
+constexpr double kFarthestShown_m = 5.0;
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 // One value per row, from its state and what else is known of it.
@@ -85,7 +85,7 @@ ReportPlot clearance_plot(const Drive& drive, const std::optional<planning::Audi
       return if_near(audited_m(audit->profile, p.t_s));
     }));
   }
-  return plot_of(drive, "Clearance", "m", std::move(series));
+  return plot_of(drive, "Clearance up to 5 m", "m", std::move(series));
 }
 
 }  // namespace

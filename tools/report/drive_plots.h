@@ -10,7 +10,7 @@
 namespace roadbed::tools {
 
 /// Speed, acceleration, curvature, lateral and heading error, and clearance over time. A clearance
-/// of more than 15 m is a gap, so that the near ones can be told apart.
+/// of more than 5 m is a gap, so that the near ones can be told apart.
 std::vector<ReportPlot> drive_plots(const Drive& drive,
                                     const std::optional<planning::AuditReport>& audit);
 

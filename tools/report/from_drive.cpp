@@ -75,6 +75,19 @@ std::vector<ReportEvent> events_of(const Drive& drive,
   return events;
 }
 
+Tone tone_of(planning::Verdict verdict) {
+  switch (verdict) {
+    case planning::Verdict::clear:
+      return Tone::good;
+    case planning::Verdict::conflict:
+      return Tone::bad;
+    case planning::Verdict::unknown:
+    case planning::Verdict::undecided:
+      return Tone::open;
+  }
+  return Tone::open;
+}
+
 std::string clearance_text(const planning::AuditReport& audit) {
   return audit.beyond_horizon ? fmt::format("nothing within {:.1f} m", audit.least_clearance_m)
                               : fmt::format("least clearance {:.2f} m at {:.1f} s",
@@ -88,7 +101,7 @@ std::optional<ReportVerdict> audit_verdict(const std::optional<planning::AuditRe
     text += fmt::format("; {:.0f} % of the swept area was never measured",
                         100.0 * audit->unknown_share);
   }
-  return ReportVerdict{audit->verdict == planning::Verdict::clear, std::move(text)};
+  return ReportVerdict{tone_of(audit->verdict), std::move(text)};
 }
 
 map::HeightBand height_band(const geometry::VehicleShape& vehicle) {
@@ -135,7 +148,8 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
   ReportInput input;
   input.title = scenario.name;
   input.scenario = scenario.file.string();
-  input.verdict = {drive.verdict.outcome == Outcome::goal_reached, drive.verdict.text};
+  input.verdict = {drive.verdict.outcome == Outcome::goal_reached ? Tone::good : Tone::bad,
+                   drive.verdict.text};
   input.audit = audit_verdict(context.audit);
   input.vehicle = scenario.vehicle;
   input.drive = drive.trajectory;

@@ -23,10 +23,26 @@ std::string short_number(double value, int decimals) {
   return text == "-0" ? "0" : text;
 }
 
+struct Look {
+  std::string_view css_class, sign;
+};
+
+Look look_of(Tone tone) {
+  switch (tone) {
+    case Tone::good:
+      return {"good", "✔"};
+    case Tone::open:
+      return {"open", "?"};
+    case Tone::bad:
+      return {"bad", "✖"};
+  }
+  return {"bad", "✖"};
+}
+
 std::string verdict_html(const ReportVerdict& verdict, std::string_view label) {
+  const Look look = look_of(verdict.tone);
   return fmt::format("<p class=\"verdict {}\"><span class=\"sign\">{}</span><span>{}{}</span></p>",
-                     verdict.good ? "good" : "bad", verdict.good ? "✔" : "✖", label,
-                     escape_markup(verdict.text));
+                     look.css_class, look.sign, label, escape_markup(verdict.text));
 }
 
 double driven_m(const geometry::Trajectory& drive) {

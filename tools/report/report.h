@@ -82,9 +82,11 @@ struct ReportSource {
   std::string xxhash;  ///< XXH3 of its bytes, hexadecimal
 };
 
+enum class Tone { good, open, bad };
+
 /// One line that says how it went.
 struct ReportVerdict {
-  bool good = false;
+  Tone tone = Tone::open;
   std::string text;  ///< "goal reached after 41.2 s, 512 m; nothing touched"
 };
 

@@ -215,31 +215,40 @@ LineInSource obstacle_at(const planning::Obstacle& obstacle, double t_s) {
                  obstacle.width_m);
 }
 
-std::string moving_svg(const planning::Obstacle& obstacle, const ReportInput& input,
-                       const Layout& layout) {
-  if (input.drive.empty()) return {};
-  const double from_s = std::max(input.drive.start_s(), obstacle.motion.start_s());
-  const double to_s = std::min(input.drive.end_s(), obstacle.motion.end_s());
-  if (to_s <= from_s) return {};
-  std::string bodies;
-  for (const double t_s : footprint_times(input.drive)) {
-    if (t_s >= from_s && t_s <= to_s) bodies += svg_ring(layout.frame, obstacle_at(obstacle, t_s));
-  }
-  return svg_path("motion", svg_line(layout.frame, motion_within(obstacle, from_s, to_s))) +
-         svg_path("moving", bodies);
+// When the obstacle moves during the drive; empty (to before from) if it does not.
+struct Span {
+  double from_s = 0.0, to_s = -1.0;
+};
+
+Span moving_span(const planning::Obstacle& obstacle, const geometry::Trajectory& drive) {
+  if (drive.empty() || obstacle.motion.empty() || obstacle.is_static()) return {};
+  return {std::max(drive.start_s(), obstacle.motion.start_s()),
+          std::min(drive.end_s(), obstacle.motion.end_s())};
 }
 
+std::string motions_svg(const ReportInput& input, const Layout& layout) {
+  std::string data;
+  for (const planning::Obstacle& obstacle : input.obstacles) {
+    const Span span = moving_span(obstacle, input.drive);
+    if (span.to_s <= span.from_s) continue;
+    data += svg_line(layout.frame, motion_within(obstacle, span.from_s, span.to_s));
+  }
+  return svg_path("motion", data);
+}
+
+// Bodies at the times of the vehicle's footprints.
 std::string obstacles_svg(const ReportInput& input, const Layout& layout) {
-  std::string svg, standing;
+  std::string moving, standing;
   for (const planning::Obstacle& obstacle : input.obstacles) {
     if (obstacle.motion.empty()) continue;
-    if (obstacle.is_static()) {
-      standing += svg_ring(layout.frame, obstacle_at(obstacle, 0.0));
-    } else {
-      svg += moving_svg(obstacle, input, layout);
+    if (obstacle.is_static()) standing += svg_ring(layout.frame, obstacle_at(obstacle, 0.0));
+    const Span span = moving_span(obstacle, input.drive);
+    for (const double t_s : footprint_times(input.drive)) {
+      if (t_s < span.from_s || t_s > span.to_s) continue;
+      moving += svg_ring(layout.frame, obstacle_at(obstacle, t_s));
     }
   }
-  return svg + svg_path("standing", standing);
+  return svg_path("moving", moving) + svg_path("standing", standing);
 }
 
 std::string pin_svg(std::string_view css_class, const Vector2d& at_px, std::string_view text) {
@@ -344,7 +353,8 @@ std::string drive_scene_svg(const ReportInput& input) {
       size, svg_number(kWidth_px), svg_number(layout.height_px + kLegend_px),
       escape_markup(input.title), kStyle, svg_number(layout.height_px));
   svg += lanes_svg(input, layout) + route_svg(input, layout) + occupied_svg(input, layout);
-  svg += driven_svg(input, layout) + obstacles_svg(input, layout) + vehicle_svg(input, layout);
+  svg += motions_svg(input, layout) + driven_svg(input, layout);
+  svg += obstacles_svg(input, layout) + vehicle_svg(input, layout);
   svg += ends_svg(input, layout) + scale_bar_svg(layout) + "</g>\n";
   return svg + legend_svg(input, layout) + "</g></svg>\n";
 }

@@ -119,15 +119,15 @@ TEST(DrivePlots, ShowClearanceOnlyWhereSomethingIsNear) {
   const auto plots = drive_plots(good_drive(), std::nullopt);
   const auto& values = plots.back().series.at(0).values;
   EXPECT_NEAR(values[40], 0.8, 1e-9);
-  EXPECT_TRUE(std::isnan(values[0]));  // 20.8 m
+  EXPECT_TRUE(std::isnan(values[0]));  // 20.8 m away
 }
 
 TEST(DrivePlots, ReadTheAuditsProfileBetweenItsSamples) {
   planning::AuditReport audit;
-  audit.profile = {{1.0, 3.0}, {2.0, 5.0}};
+  audit.profile = {{1.0, 3.0}, {2.0, 4.0}};
   const auto plots = drive_plots(good_drive(), audit);
   const auto& values = plots.back().series.at(1).values;
-  EXPECT_NEAR(values[15], 4.0, 1e-9);
+  EXPECT_NEAR(values[15], 3.5, 1e-9);
   EXPECT_NEAR(values[10], 3.0, 1e-9);
   EXPECT_TRUE(std::isnan(values[5]));
   EXPECT_TRUE(std::isnan(values[25]));
