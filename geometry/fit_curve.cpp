@@ -50,6 +50,21 @@ std::vector<Sample> samples_along(const Polyline& line, std::size_t count) {
   return samples;
 }
 
+// On the line, and on its straight extensions: the j-th control point acts at parameter j − 3.
+std::vector<Eigen::Vector2d> first_control_points(const Polyline& line, std::size_t spans) {
+  const double step_m = line.length_m() / static_cast<double>(spans);
+  const Eigen::Vector2d first = line.at(0.0), last = line.at(line.length_m());
+  const Eigen::Vector2d ahead = (line.at(step_m) - first).normalized();
+  const Eigen::Vector2d back = (line.at(line.length_m() - step_m) - last).normalized();
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t j = 0; j < spans + kSplineDegree; ++j) {
+    const double u = step_m * (static_cast<double>(j) - 3.0);
+    const double before_m = std::min(0.0, u), past_m = std::max(0.0, u - line.length_m());
+    points.push_back(line.at(u) + before_m * ahead - past_m * back);
+  }
+  return points;
+}
+
 // One smoothing spline through the points of a line, refined until it keeps the tolerance.
 class Fit {
  public:
@@ -59,7 +74,8 @@ class Fit {
         tolerance_m_(options.tolerance_m),
         spans_(static_cast<std::size_t>(
             std::max(1.0, std::ceil(length_m_ / options.knot_distance_m)))),
-        samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder))) {}
+        samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder))),
+        control_points_(first_control_points(line, spans_)) {}
 
   FittedCurve refined() {
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
@@ -75,7 +91,7 @@ class Fit {
 
   void solve() {
     const double step_m = length_m_ / static_cast<double>(samples_.size() - 1);
-    SplineProblem problem(spans_, knot_distance());
+    SplineProblem problem(std::move(control_points_), knot_distance());
     problem.smooth(std::pow(scale_m_, 6));
     for (const Sample& sample : samples_) {
       const Eigen::Vector2d normal(-sample.along.y(), sample.along.x());
@@ -83,7 +99,8 @@ class Fit {
           sample.along * sample.along.transpose() + sample.weight * normal * normal.transpose();
       problem.attract(sample.u, sample.point, step_m * weight);
     }
-    curve_ = SmoothCurve(std::move(problem).solve(), knot_distance());
+    control_points_ = std::move(problem).solve();
+    curve_ = SmoothCurve(control_points_, knot_distance());
   }
 
   void measure() {
@@ -104,6 +121,7 @@ class Fit {
   double length_m_, scale_m_, tolerance_m_;
   std::size_t spans_;
   std::vector<Sample> samples_;
+  std::vector<Eigen::Vector2d> control_points_;
   SmoothCurve curve_;
   double largest_move_m_ = 0.0;
 };

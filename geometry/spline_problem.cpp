@@ -40,21 +40,27 @@ const std::array<Basis, kSplineOrder>& roughness() {
 
 }  // namespace
 
-SplineProblem::SplineProblem(std::size_t spans, double knot_distance)
-    : spans_(spans),
+SplineProblem::SplineProblem(std::vector<Eigen::Vector2d> control_points, double knot_distance)
+    : control_points_(std::move(control_points)),
       knot_distance_(knot_distance),
-      matrix_(2 * (spans + kSplineDegree), 2 * kSplineOrder - 1),
+      spans_(control_points_.size() - kSplineDegree),
+      matrix_(2 * control_points_.size(), 2 * kSplineOrder - 1),
       right_(matrix_.size(), 0.0) {}
 
 void SplineProblem::smooth(double factor) {
   const double scaled = factor / std::pow(knot_distance_, 5);
   for (std::size_t k = 0; k < spans_; ++k) {
     for (std::size_t i = 0; i < kSplineOrder; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
+      Eigen::Vector2d slope(0.0, 0.0);
+      for (std::size_t j = 0; j < kSplineOrder; ++j) {
         const double entry = scaled * roughness()[i][j];
+        slope += entry * (control_points_[k + j] - control_points_[k]);
+        if (j > i) continue;
         matrix_.at(2 * (k + i), 2 * (k + j)) += entry;
         matrix_.at(2 * (k + i) + 1, 2 * (k + j) + 1) += entry;
       }
+      right_[2 * (k + i)] -= slope.x();
+      right_[2 * (k + i) + 1] -= slope.y();
     }
   }
 }
@@ -63,8 +69,13 @@ void SplineProblem::attract(double u, const Eigen::Vector2d& point, const Eigen:
   const double index =
       std::clamp(std::floor(u / knot_distance_), 0.0, static_cast<double>(spans_ - 1));
   const Basis basis = basis_at(u / knot_distance_ - index);
-  const Eigen::Vector2d pull = weight * point;
-  const std::size_t first = 2 * static_cast<std::size_t>(index);
+  const auto span = static_cast<std::size_t>(index);
+  Eigen::Vector2d missing(0.0, 0.0);  // the basis adds up to one
+  for (std::size_t j = 0; j < kSplineOrder; ++j) {
+    missing += basis[j] * (point - control_points_[span + j]);
+  }
+  const Eigen::Vector2d pull = weight * missing;
+  const std::size_t first = 2 * span;
   for (std::size_t row = 0; row < 2 * kSplineOrder; ++row) {
     const auto axis = static_cast<Eigen::Index>(row % 2);
     right_[first + row] += basis[row / 2] * pull(axis);
@@ -76,13 +87,11 @@ void SplineProblem::attract(double u, const Eigen::Vector2d& point, const Eigen:
 }
 
 std::vector<Eigen::Vector2d> SplineProblem::solve() && {
-  const std::vector<double> flat = BandMatrix::solve(std::move(matrix_), std::move(right_));
-  std::vector<Eigen::Vector2d> control_points;
-  control_points.reserve(flat.size() / 2);
-  for (std::size_t i = 0; i + 1 < flat.size(); i += 2) {
-    control_points.emplace_back(flat[i], flat[i + 1]);
+  const std::vector<double> moves = BandMatrix::solve(std::move(matrix_), std::move(right_));
+  for (std::size_t i = 0; i < control_points_.size(); ++i) {
+    control_points_[i] += Eigen::Vector2d(moves[2 * i], moves[2 * i + 1]);
   }
-  return control_points;
+  return std::move(control_points_);
 }
 
 }  // namespace roadbed::geometry

@@ -9,10 +9,12 @@
 namespace roadbed::geometry {
 
 /// Normal equations for the control points of a uniform B-spline of degree seven that passes near
-/// points and bends little. Unknowns: x and y of each control point in turn.
+/// points and bends little. Unknowns are x and y of each control point in turn, as moves from given
+/// ones: these are small, so that few digits are lost however far away the coordinates are.
 class SplineProblem {
  public:
-  SplineProblem(std::size_t spans, double knot_distance);
+  /// @param control_points  at least 8, about where the solution will be.
+  SplineProblem(std::vector<Eigen::Vector2d> control_points, double knot_distance);
 
   /// Adds factor · ∫ |p‴(u)|² du.
   void smooth(double factor);
@@ -24,8 +26,9 @@ class SplineProblem {
   std::vector<Eigen::Vector2d> solve() &&;
 
  private:
-  std::size_t spans_;
+  std::vector<Eigen::Vector2d> control_points_;
   double knot_distance_;
+  std::size_t spans_;
   BandMatrix matrix_;
   std::vector<double> right_;
 };

@@ -17,6 +17,7 @@ using map::LaneId;
 std::vector<LaneId> lanes_to(const TravelRules& rules, LaneId goal) {
   const map::LaneGraph& graph = rules.road_map().graph();
   std::vector<bool> seen(graph.size(), false);
+  if (!rules.may_enter(goal)) return {goal};
   std::vector<LaneId> open{goal}, found;
   seen[goal.index] = true;
   const auto visit = [&](LaneId lane) {

@@ -26,6 +26,9 @@ constexpr Entry kCommands[] = {
     {"info", make_info_command},
     {"validate", make_validate_command},
     {"export", make_export_command},
+    {"locate", make_locate_command},
+    {"route", make_route_command},
+    {"reference", make_reference_command},
     {"control", make_control_command},
 };
 

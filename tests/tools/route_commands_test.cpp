@@ -1,0 +1,168 @@
+// `locate`, `route` and `reference` as a user runs them, on the project's own town.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kTown = (data_folder() / "town.xodr").string();
+const std::string kFrom = "lane:1/0/-1@10", kTo = "lane:7/0/1@55";
+
+std::vector<std::vector<double>> rows_of(const std::string& file) {
+  std::istringstream text(bytes_of(file));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line,
+            "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
+            "speed_limit_mps");
+  std::vector<std::vector<double>> rows;
+  while (std::getline(text, line)) {
+    std::istringstream fields(line);
+    rows.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) {
+      rows.back().push_back(std::stod(field));
+    }
+  }
+  return rows;
+}
+
+TEST(RouteCommand, PrintsOneJsonDocumentWithConnectedLanes) {
+  const ProgramRun run = run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json route = json::parse(run.out);
+  EXPECT_TRUE(route["found"]);
+  EXPECT_EQ(route["lanes"].front()["lane"], "1/0/-1");
+  EXPECT_EQ(route["lanes"].front()["from_s_m"], 10.0);
+  EXPECT_EQ(route["lanes"].back()["lane"], "7/0/1");
+  EXPECT_EQ(route["lanes"].back()["to_s_m"], 55.0);
+  double length_m = 0.0;
+  for (const json& lane : route["lanes"]) {
+    length_m += lane["to_s_m"].get<double>() - lane["from_s_m"].get<double>();
+  }
+  EXPECT_NEAR(route["length_m"].get<double>(), length_m, 1e-6);  // no lane change on this way
+  EXPECT_EQ(route["lane_changes"], 0);
+}
+
+TEST(RouteCommand, GoesRoundAClosedLaneOrSaysWhyItCannot) {
+  const auto route_with = [&](const std::string& avoid) {
+    return run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", avoid, "--json"});
+  };
+  const ProgramRun free = run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--json"});
+  const std::string closed = json::parse(free.out)["lanes"][8]["lane"];
+  const ProgramRun round = route_with("lane:" + closed);
+  ASSERT_EQ(round.status, 0) << round.err;
+  EXPECT_EQ(round.out.find("\"" + closed + "\""), std::string::npos);
+  EXPECT_GT(json::parse(round.out)["cost_s"], json::parse(free.out)["cost_s"]);
+
+  const ProgramRun none = route_with("lane:7/0/1");
+  EXPECT_EQ(none.status, 1);
+  const json answer = json::parse(none.out);
+  EXPECT_FALSE(answer["found"]);
+  EXPECT_THAT(answer["reason"].get<std::string>(), HasSubstr("closed"));
+  EXPECT_TRUE(answer["found_with_closed_lanes_open"]);
+  EXPECT_EQ(answer["gap_to_lane"], "7/0/1");
+}
+
+TEST(RouteCommand, WritesTheWayAsGeoJson) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "way.geojson";
+  ASSERT_EQ(run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "-o", file}).status, 0);
+  const json line = json::parse(bytes_of(file))["features"][0]["geometry"];
+  EXPECT_EQ(line["type"], "LineString");
+  EXPECT_GT(line["coordinates"].size(), 1000U);
+  EXPECT_NEAR(line["coordinates"][0][0].get<double>(), 270.0, 1e-6);
+}
+
+TEST(RouteCommand, RefusesPlacesThatAreNotOnTheMap) {
+  const ProgramRun off = run_roadbed({"route", kTown, "--from", "-1000,50", "--to", kTo});
+  EXPECT_EQ(off.status, 1);
+  EXPECT_THAT(off.err, HasSubstr("nearest drivable lane is"));
+  EXPECT_EQ(run_roadbed({"route", kTown, "--from", "lane:99/0/1", "--to", kTo}).status, 1);
+  EXPECT_EQ(
+      run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", "lane:99/0/1"}).status,
+      1);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--from", "1,2,90", "--to", kTo}).status, 2);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--from", kFrom}).status, 2);
+}
+
+TEST(ReferenceCommand, RowsAreOneStepApartAndDescribeOneCurve) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "line.csv";
+  const ProgramRun run =
+      run_roadbed({"reference", kTown, "--from", kFrom, "--to", kTo, "-o", file});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto rows = rows_of(file);
+  ASSERT_GT(rows.size(), 2000U);
+  for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+    const auto &before = rows[i - 1], &row = rows[i];
+    ASSERT_EQ(row.size(), 9U);
+    const double step = row[0] - before[0];
+    EXPECT_NEAR(step, 0.5, 1e-9);
+    EXPECT_NEAR(std::hypot(row[1] - before[1], row[2] - before[2]), step, 1e-3);
+    EXPECT_NEAR(row[3] - before[3], 0.5 * step * (row[4] + before[4]), 1e-3);
+    EXPECT_NEAR(row[4] - before[4], 0.5 * step * (row[5] + before[5]), 1e-3);
+    EXPECT_GE(row[6], 0.8) << "left at " << row[0] << " m";
+    EXPECT_GE(row[7], 0.8) << "right at " << row[0] << " m";
+    EXPECT_GT(row[8], 1.0);
+    EXPECT_LE(std::abs(row[4]), 0.2);
+  }
+  const ProgramRun again =
+      run_roadbed({"reference", kTown, "--from", kFrom, "--to", kTo, "-o", file});
+  EXPECT_EQ(again.status, 1) << "an existing file is not replaced";
+}
+
+TEST(ReferenceCommand, WithoutARouteWritesNothing) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_roadbed(
+      {"reference", kTown, "--from", kFrom, "--to", "lane:1/3/3@1", "-o", folder / "line.csv"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("sidewalk"));
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(LocateCommand, FindsTheLaneThatAReferenceLineStartsOn) {
+  const ProgramRun run = run_roadbed({"locate", kTown, "--at", "270,203.375", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json lanes = json::parse(run.out)["points"][0]["lanes"];
+  EXPECT_EQ(lanes[0]["lane"], "1/0/-1");
+  EXPECT_EQ(lanes[0]["road"], "1");
+  EXPECT_NEAR(lanes[0]["s_m"].get<double>(), 10.0, 1e-6);
+  EXPECT_NEAR(lanes[0]["d_m"].get<double>(), 0.0, 1e-3);
+  EXPECT_EQ(lanes[0]["distance_m"], 0.0);
+  EXPECT_NEAR(std::abs(lanes[0]["heading_rad"].get<double>()), std::acos(-1.0), 1e-6);
+  EXPECT_NEAR(lanes[0]["road_s_m"].get<double>(), 10.0, 1e-6);
+  EXPECT_LT(lanes[0]["road_t_m"].get<double>(), -1.0);
+}
+
+TEST(LocateCommand, ReadsPointsFromACsvFile) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("points.csv", "id,x_m,y_m\n1,270,203.375\n2,260,203.375\n");
+  const ProgramRun run = run_roadbed({"locate", kTown, "--points", file, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json points = json::parse(run.out)["points"];
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[1]["x_m"], 260.0);
+  const std::string bad = folder.write("bad.csv", "x_m,y_m\n1,nan\n");
+  const ProgramRun refused = run_roadbed({"locate", kTown, "--points", bad});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("bad.csv:2"));
+  EXPECT_EQ(run_roadbed({"locate", kTown}).status, 2);
+  EXPECT_EQ(run_roadbed({"locate", kTown, "--at", "1,x"}).status, 2);
+}
+
+}  // namespace
+}  // namespace roadbed::tests

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/road_place.h"
+#include "roadbed/tools/command.h"
+#include "roadbed/tools/support/place.h"
+#include "roadbed/tools/support/points_csv.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSearch_m[] = {5.0, 50.0, 500.0, 5e3, 5e4};
+
+/// Nearest lanes first, at most `count`, searched ever farther until there is one.
+std::vector<map::LaneMatch> nearest_lanes(const map::RoadMap& road_map,
+                                          const Eigen::Vector2d& point_in_map, std::size_t count,
+                                          bool only_drivable) {
+  for (const double radius_m : kSearch_m) {
+    auto matches = road_map.locate(point_in_map, radius_m, only_drivable);
+    if (matches.empty()) continue;
+    matches.resize(std::min(matches.size(), count));
+    return matches;
+  }
+  return {};
+}
+
+Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
+                const Eigen::Vector2d& point_in_map) {
+  const map::Lane& lane = road_map.lane(match.place.lane);
+  const auto on_road = map::road_place(road_map, lane.id, point_in_map);
+  Json json = {{"lane", lane.name}};
+  json["road"] = lane.road ? Json(road_map.road(*lane.road).source_id) : Json();
+  json["section"] = lane.origin.section;
+  json["lane_id"] = lane.origin.source_id;
+  json["type"] = name(lane.type);
+  json["s_m"] = match.place.s_m;
+  json["d_m"] = match.place.d_m;
+  json["distance_m"] = match.distance_m;
+  json["heading_rad"] = match.heading_rad;
+  json["road_s_m"] = on_road ? Json(on_road->s_m) : Json();
+  json["road_t_m"] = on_road ? Json(on_road->t_m) : Json();
+  return json;
+}
+
+Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source, std::size_t count,
+             bool only_drivable) {
+  const Eigen::Vector2d in_map = road_map.to_map(in_source);
+  Json lanes = Json::array();
+  for (const auto& match : nearest_lanes(road_map, in_map, count, only_drivable)) {
+    lanes.push_back(match_json(road_map, match, in_map));
+  }
+  return {{"x_m", in_source.x()}, {"y_m", in_source.y()}, {"lanes", std::move(lanes)}};
+}
+
+void print(std::ostream& out, const Json& point) {
+  fmt::print(out, "{:.3f},{:.3f}\n", point["x_m"].get<double>(), point["y_m"].get<double>());
+  const auto shown = [](const Json& value) {
+    return value.is_null() ? std::string("-") : fmt::format("{:.3f}", value.get<double>());
+  };
+  if (!point["lanes"].empty()) {
+    fmt::print(out, "  {:<16} {:<10} {:>10} {:>8} {:>9} {:>8} {:>10} {:>8}\n", "lane", "type",
+               "s_m", "d_m", "away_m", "heading", "road_s_m", "road_t_m");
+  }
+  for (const Json& lane : point["lanes"]) {
+    fmt::print(out, "  {:<16} {:<10} {:>10} {:>8} {:>9} {:>8} {:>10} {:>8}\n",
+               lane["lane"].get<std::string>(), lane["type"].get<std::string>(), shown(lane["s_m"]),
+               shown(lane["d_m"]), shown(lane["distance_m"]), shown(lane["heading_rad"]),
+               shown(lane["road_s_m"]), shown(lane["road_t_m"]));
+  }
+}
+
+class LocateCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description("Find the lanes nearest to points");
+    app.add_option("MAP", map_file_, "Any readable map")->required();
+    auto* at = app.add_option("--at", at_, "Point X,Y in the map's coordinates [m]")
+                   ->check([](const std::string& text) {
+                     return parse_point(text) ? std::string() : "is not X,Y: two numbers";
+                   });
+    auto* points = app.add_option("--points", points_file_, "CSV file with columns x_m,y_m");
+    at->excludes(points);
+    app.add_option("--count", count_, "Most lanes to name per point")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
+    app.add_flag("--json", json_, "Print one JSON document");
+    app.callback([this] {
+      if (at_.empty() && points_file_.empty()) throw CLI::RequiredError("--at or --points");
+    });
+    app.footer("Example:\n  roadbed locate town.xodr --at 20,-1.8");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions&) override {
+    const map::RoadMap road_map = map::load_map(map_file_);
+    Json answers = Json::array();
+    bool all_found = true;
+    for (const Eigen::Vector2d& point : points()) {
+      answers.push_back(located(road_map, point, count_, only_drivable_));
+      all_found = all_found && !answers.back()["lanes"].empty();
+    }
+    if (json_) {
+      fmt::print(streams.out, "{}\n",
+                 Json{{"points", answers}}.dump(2, ' ', false, Json::error_handler_t::replace));
+    } else {
+      for (const Json& answer : answers) print(streams.out, answer);
+    }
+    if (!all_found) fmt::print(streams.err, "roadbed: a point has no lane within 50 km\n");
+    return all_found ? Exit::ok : Exit::failed;
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> points() const {
+    if (!points_file_.empty()) return read_points_csv(points_file_);
+    return {parse_point(at_).value()};
+  }
+
+  std::filesystem::path map_file_, points_file_;
+  std::string at_;
+  std::size_t count_ = 5;
+  bool only_drivable_ = false, json_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_locate_command() { return std::make_unique<LocateCommand>(); }
+
+}  // namespace roadbed::tools

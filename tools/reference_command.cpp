@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <string>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/planning/reference_line.h"
+#include "roadbed/planning/route.h"
+#include "roadbed/tools/command.h"
+#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/support/route_question.h"
+
+namespace roadbed::tools {
+namespace {
+
+void append_row(fmt::memory_buffer& text, const map::RoadMap& road_map,
+                const planning::ReferenceLine& line, double s_m) {
+  const planning::ReferencePoint point = line.at(s_m);
+  const planning::Corridor room = line.corridor_at(s_m);
+  const Eigen::Vector2d in_source = road_map.to_source(point.in_map);
+  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", s_m, in_source.x(),
+                 in_source.y(), point.heading_rad, point.curvature_per_m, point.curvature_d1_per_m2,
+                 room.left_m, room.right_m, room.speed_limit_mps);
+}
+
+/// Rows from the start to the goal, the last step shortened.
+std::string csv(const map::RoadMap& road_map, const planning::ReferenceLine& line, double step_m) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text),
+                 "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
+                 "speed_limit_mps\n");
+  const double end_m = line.goal_s_m();
+  for (int i = 0; i * step_m < end_m - 1e-6; ++i) append_row(text, road_map, line, i * step_m);
+  append_row(text, road_map, line, end_m);
+  return fmt::to_string(text);
+}
+
+double peak_curvature_per_m(const planning::ReferenceLine& line) {
+  double peak = 0.0;
+  for (double s = 0.0; s < line.goal_s_m(); s += 0.25) {
+    peak = std::max(peak, std::abs(line.at(s).curvature_per_m));
+  }
+  return peak;
+}
+
+class ReferenceCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description("Draw the smooth line to drive along a route");
+    app.add_option("MAP", map_file_, "Any readable map")->required();
+    question_.declare(app);
+    app.add_option("-o,--output", output_, "CSV file to write")->required();
+    app.add_option("--step", step_m_, "Distance between rows [m]")
+        ->check(CLI::Range(1e-3, 100.0))
+        ->capture_default_str();
+    app.add_option("--max-move", options_.max_smoothing_m,
+                   "Largest distance of the line from the centreline [m]")
+        ->check(CLI::Range(0.01, 2.0))
+        ->capture_default_str();
+    app.add_flag("--force", force_, "Replace the output if it exists");
+    app.footer(
+        "Example:\n"
+        "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    check_writable(output_, force_);
+    const map::RoadMap road_map = map::load_map(map_file_);
+    const RouteQuestion::Asked asked = question_.on(road_map);
+    const planning::RouteAnswer answer =
+        planning::find_route(road_map, asked.from.on_lane, asked.to.on_lane, asked.options);
+    if (!answer.route) {
+      fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
+      return Exit::failed;
+    }
+    const auto line = planning::ReferenceLine::along(road_map, *answer.route, options_);
+    write_output(output_, csv(road_map, line, step_m_));
+    if (!common.quiet) {
+      fmt::print(streams.err,
+                 "{}: {:.1f} m, peak curvature {:.3f} 1/m, at most {:.2f} m off the centreline\n",
+                 output_.string(), line.goal_s_m(), peak_curvature_per_m(line),
+                 line.largest_move_m());
+    }
+    return Exit::ok;
+  }
+
+ private:
+  std::filesystem::path map_file_, output_;
+  RouteQuestion question_;
+  planning::ReferenceLineOptions options_;
+  double step_m_ = 0.5;
+  bool force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_reference_command() { return std::make_unique<ReferenceCommand>(); }
+
+}  // namespace roadbed::tools
