@@ -21,6 +21,7 @@ struct Entry {
 };
 
 // In the order in which --help lists them.
+// clang-format off: one a line, so that two new ones do not meet in a merge
 constexpr Entry kCommands[] = {
     {"import", make_import_command},
     {"info", make_info_command},
@@ -30,7 +31,9 @@ constexpr Entry kCommands[] = {
     {"route", make_route_command},
     {"reference", make_reference_command},
     {"control", make_control_command},
+    {"simulate", make_simulate_command},
 };
+// clang-format on
 
 struct Registered {
   CLI::App* app;

@@ -102,7 +102,7 @@ class ClosedLoop {
         find_lead(keeper_.expected_path(), keeper_.s_m(), look_m, world_.obstacles, t_s(),
                   scenario_.vehicle, kSideMargin_m);
     if (lead) cycle.lead = {world_.obstacles[lead->obstacle].id, lead->gap_m, lead->speed_mps};
-    const SpeedAnswer answer = choose_speed(question(speed, lead), decision_options_);
+    const SpeedAnswer answer = choose_speed(question(measured, lead), decision_options_);
     std::optional<control::LeadMeasurement> seen;
     if (lead) seen = sensors_.measure(*lead, truth_.motion.speed_mps);
     command_mps2_ = cruise_.update(speed, measured.acceleration_mps2, answer.set, seen);
@@ -112,11 +112,12 @@ class ClosedLoop {
     explain(answer, lead, speed, cycle);
   }
 
-  SpeedQuestion question(double speed_mps, const std::optional<Lead>& lead) const {
+  SpeedQuestion question(const VehicleState& measured, const std::optional<Lead>& lead) const {
     return {.ceiling = ceiling_,
             .s_m = keeper_.s_m(),
             .goal_s_m = world_.line.goal_s_m(),
-            .speed_mps = speed_mps,
+            .speed_mps = measured.motion.speed_mps,
+            .acceleration_mps2 = measured.acceleration_mps2,
             .lead = lead,
             .lead_name = lead ? lead_name(*lead) : "",
             .path_is_free = keeper_.last_plan().chosen.has_value()};

@@ -22,16 +22,21 @@ struct Option {
   std::string reason;
 };
 
-Option by_ceiling(const SpeedQuestion& q, double preview_m) {
+/// Distance driven until the actuator has answered.
+double preview_m(const SpeedQuestion& q, double preview_s) {
+  return std::max(0.0, (q.speed_mps + 0.5 * q.acceleration_mps2 * preview_s) * preview_s);
+}
+
+Option by_ceiling(const SpeedQuestion& q, double ahead_m) {
   const SpeedTarget now = q.ceiling.at(q.s_m);
-  return {now, q.ceiling.at(q.s_m + preview_m), Behaviour::cruise,
+  return {now, q.ceiling.at(q.s_m + ahead_m), Behaviour::cruise,
           fmt::format("at most {:.1f} m/s here", now.speed_mps)};
 }
 
-Option by_goal(const SpeedQuestion& q, double preview_m, double deceleration) {
+Option by_goal(const SpeedQuestion& q, double ahead_m, double deceleration) {
   const double distance = q.goal_s_m - q.s_m;
   return {planning::stopping_speed(distance, deceleration),
-          planning::stopping_speed(distance - preview_m, deceleration), Behaviour::stop,
+          planning::stopping_speed(distance - ahead_m, deceleration), Behaviour::stop,
           fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
 }
 
@@ -39,21 +44,21 @@ Option by_goal(const SpeedQuestion& q, double preview_m, double deceleration) {
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   const double lead_mps = std::max(0.0, q.lead->speed_mps);
   const double room = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
-  const double closing_preview_m = std::max(0.0, q.speed_mps - lead_mps) * options.preview_s;
+  const double closing_m =
+      std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
   const auto approach = [&](double room_m) {
     SpeedTarget target = planning::stopping_speed(room_m, options.deceleration_mps2);
     target.speed_mps += lead_mps;
     return target;
   };
-  return {approach(room), approach(room - closing_preview_m), Behaviour::follow,
+  return {approach(room), approach(room - closing_m), Behaviour::follow,
           fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
                       q.lead->speed_mps)};
 }
 
 std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
-  const double preview_m = q.speed_mps * options.preview_s;
-  std::vector<Option> all{by_ceiling(q, preview_m),
-                          by_goal(q, preview_m, options.deceleration_mps2)};
+  const double ahead_m = preview_m(q, options.preview_s);
+  std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
   if (q.lead) all.push_back(by_lead(q, options));
   return all;
 }

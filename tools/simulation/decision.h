@@ -17,6 +17,7 @@ struct SpeedQuestion {
   double s_m = 0.0;       ///< station of the rear axle
   double goal_s_m = 0.0;  ///< to stop at
   double speed_mps = 0.0;
+  double acceleration_mps2 = 0.0;
   std::optional<Lead> lead;
   std::string lead_name;     ///< for the reason
   bool path_is_free = true;  ///< false: the planner found nothing; stop

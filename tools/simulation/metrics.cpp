@@ -1,0 +1,131 @@
+#include "roadbed/tools/simulation/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::TrajectoryPoint;
+using nlohmann::ordered_json;
+
+constexpr double kCycle_s = 0.1;
+
+/// Largest value of a function over a list; 0 for an empty one.
+template <typename List, typename Value>
+double largest(const List& list, Value value) {
+  double most = 0.0;
+  for (const auto& element : list) most = std::max(most, static_cast<double>(value(element)));
+  return most;
+}
+
+template <typename List, typename Test>
+std::size_t count(const List& list, Test test) {
+  return static_cast<std::size_t>(std::count_if(list.begin(), list.end(), test));
+}
+
+double driven_m(const geometry::Trajectory& drive) {
+  double length = 0.0;
+  const auto& rows = drive.points();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    length += (rows[i].pose().position() - rows[i - 1].pose().position()).norm();
+  }
+  return length;
+}
+
+double cross_track_rms_m(const Drive& drive) {
+  double sum = 0.0;
+  for (const DriveSample& sample : drive.samples)
+    sum += sample.cross_track_m * sample.cross_track_m;
+  return std::sqrt(sum / static_cast<double>(drive.samples.size()));
+}
+
+ordered_json least_clearance(const Drive& drive) {
+  const auto nearest = std::min_element(
+      drive.samples.begin(), drive.samples.end(),
+      [](const DriveSample& a, const DriveSample& b) { return a.clearance_m < b.clearance_m; });
+  if (!std::isfinite(nearest->clearance_m)) return {{"least_clearance_m", nullptr}};
+  return {{"least_clearance_m", nearest->clearance_m}, {"least_clearance_at_s", nearest->t_s}};
+}
+
+ordered_json motion(const Drive& drive) {
+  const auto& rows = drive.trajectory.points();
+  return {{"largest_speed_mps", largest(rows, [](const auto& row) { return row.speed_mps; })},
+          {"largest_over_speed_mps", largest(drive.samples,
+                                             [&](const DriveSample& sample) {
+                                               return drive.trajectory.at(sample.t_s).speed_mps -
+                                                      sample.speed_limit_mps;
+                                             })},
+          {"largest_acceleration_mps2",
+           largest(rows, [](const auto& row) { return row.acceleration_mps2; })},
+          {"largest_deceleration_mps2",
+           largest(rows, [](const auto& row) { return -row.acceleration_mps2; })},
+          {"largest_lateral_acceleration_mps2", largest(rows, [](const TrajectoryPoint& row) {
+             return std::abs(row.curvature_per_m) * row.speed_mps * row.speed_mps;
+           })}};
+}
+
+ordered_json tracking(const Drive& drive) {
+  return {{"largest_cross_track_m",
+           largest(drive.samples,
+                   [](const DriveSample& sample) { return std::abs(sample.cross_track_m); })},
+          {"cross_track_rms_m", cross_track_rms_m(drive)},
+          {"largest_heading_error_rad",
+           largest(drive.samples,
+                   [](const DriveSample& sample) { return std::abs(sample.heading_error_rad); })},
+          {"largest_off_road_m",
+           largest(drive.samples, [](const DriveSample& sample) { return sample.off_road_m; })}};
+}
+
+ordered_json cycles(const Drive& drive) {
+  ordered_json per_behaviour = ordered_json::object();
+  for (const Behaviour behaviour : {Behaviour::cruise, Behaviour::pass, Behaviour::follow,
+                                    Behaviour::stop, Behaviour::emergency}) {
+    const std::size_t cycles =
+        count(drive.cycles, [&](const DriveCycle& cycle) { return cycle.behaviour == behaviour; });
+    per_behaviour[std::string(name(behaviour)) + "_s"] = kCycle_s * static_cast<double>(cycles);
+  }
+  return {{"cycles", drive.cycles.size()},
+          {"cycles_without_candidate",
+           count(drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen; })},
+          {"cycles_from_measurement",
+           count(drive.cycles, [](const DriveCycle& cycle) { return cycle.from_measurement; })},
+          {"saturated_share", drive.saturated_share},
+          {"behaviour", per_behaviour}};
+}
+
+ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
+  if (!audit) return nullptr;
+  return {{"verdict", std::string(planning::name(audit->verdict))},
+          {"least_clearance_m", audit->least_clearance_m},
+          {"least_clearance_at_s", audit->least_clearance_at_s},
+          {"beyond_horizon", audit->beyond_horizon},
+          {"unknown_share", audit->unknown_share},
+          {"conflicts", audit->conflicts.size()}};
+}
+
+}  // namespace
+
+ordered_json metrics_of(const Scenario& scenario, const World& world, const Drive& drive,
+                        const std::optional<planning::AuditReport>& audit) {
+  ordered_json metrics = {
+      {"scenario", scenario.name},
+      {"seed", scenario.seed},
+      {"outcome", std::string(name(drive.verdict.outcome))},
+      {"text", drive.verdict.text},
+      {"goal_reached", drive.verdict.outcome == Outcome::goal_reached},
+      {"collision", drive.verdict.outcome == Outcome::collision},
+      {"duration_s", drive.verdict.at_s},
+      {"driven_m", driven_m(drive.trajectory)},
+      {"to_goal_m", world.line.goal_s_m() - drive.samples.back().s_m},
+  };
+  for (const ordered_json& part :
+       {least_clearance(drive), motion(drive), tracking(drive), cycles(drive)}) {
+    metrics.update(part);
+  }
+  metrics["audit"] = audit_summary(audit);
+  return metrics;
+}
+
+}  // namespace roadbed::tools
