@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 
 constexpr const char* kPaper = "#f4f2ec";
 constexpr const char* kAsphalt = "#4d535c";
-constexpr const char* kJunction = "#6e6660";
+constexpr const char* kJunction = "#77695c";
 constexpr const char* kMarking = "#ffffff";
 constexpr const char* kOpposite = "#f3c14b";
 constexpr const char* kDirection = "#8fd3f4";

@@ -54,7 +54,7 @@ TEST(WriteSvg, SaysHowItsCoordinatesFollowFromTheSource) {
 
 TEST(WriteSvg, TintsJunctionsAndPointsArrowsInDrivingDirection) {
   const auto document = parsed(write_svg(tests::three_roads_in_a_row().build()));
-  EXPECT_EQ(count_of(data_filled(document, "#6e6660"), 'M'), 1);
+  EXPECT_EQ(count_of(data_filled(document, "#77695c"), 'M'), 1);
   const std::string arrows = data_filled(document, "#8fd3f4");
   double tip_x = 0, tip_y = 0, wing_x = 0, wing_y = 0;
   ASSERT_EQ(std::sscanf(arrows.c_str(), "M%lf %lfL%lf %lf", &tip_x, &tip_y, &wing_x, &wing_y), 4);
