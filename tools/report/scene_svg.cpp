@@ -16,6 +16,7 @@
 #include "roadbed/tools/report/lane_look.h"
 #include "roadbed/tools/report/speed_colour.h"
 #include "roadbed/tools/report/svg.h"
+#include "roadbed/tools/report/svg_legend.h"
 
 namespace roadbed::tools {
 namespace {
@@ -30,7 +31,7 @@ constexpr double kMostScale_px_per_m = 14.0;
 constexpr std::string_view kStyle = R"(<style>
 .ground{fill:#eceee8}.strip{fill:#fff}.drive{fill:#c3c8d0;stroke:#c3c8d0;stroke-width:.6}
 .junction{fill:#b9bfc9;stroke:#b9bfc9;stroke-width:.6}.shoulder{fill:#d3d6d9}.walk{fill:#dfd9cc}
-.bike{fill:#cfd9c8}.other{fill:#dcdfda}.border{fill:none;stroke:#fff;stroke-width:.9}
+.bike{fill:#cfd9c8}.other{fill:#dcdfda}.border{fill:none;stroke:#fff}
 .route{fill:none;stroke:#56b4e9;stroke-opacity:.45;stroke-linecap:round;stroke-linejoin:round}
 .occupied{fill:#4b3f33;stroke:#4b3f33;stroke-width:.8}.casing{fill:none;stroke:#10141a;stroke-width:5.4;stroke-linejoin:round;stroke-linecap:round}
 .speed{fill:none;stroke-width:3.6;stroke-linejoin:round}.ego{fill:#2f9be0;stroke:#10141a;stroke-width:.8}
@@ -112,7 +113,10 @@ std::string lanes_svg(const ReportInput& input, const Layout& layout) {
   }
   std::string svg;
   for (const std::string_view look : kLooks) svg += svg_path(look, areas[look]);
-  return svg + svg_path("border", borders);
+  if (borders.empty()) return svg;
+  // Far away, borders are thinner than a pixel, or they would hide their lanes.
+  return svg + fmt::format("<path class=\"border\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
+                           std::min(0.9, 0.3 * layout.frame.px_per_m), borders);
 }
 
 std::string route_svg(const ReportInput& input, const Layout& layout) {
@@ -135,7 +139,7 @@ std::string occupied_svg(const ReportInput& input, const Layout& layout) {
 double top_speed_mps(const geometry::Trajectory& drive) {
   double top_mps = 0.0;
   for (const auto& point : drive.points()) top_mps = std::max(top_mps, point.speed_mps);
-  return std::max(1.0, std::ceil(top_mps));
+  return std::max(1.0, top_mps);
 }
 
 // The driven path in pieces of one colour each, on a dark casing.
@@ -287,52 +291,18 @@ std::string scale_bar_svg(const Layout& layout) {
          svg_text("over", {x + 5.0, y - 6.0}, fmt::format("{} m", length_m));
 }
 
-// Entries of the legend one after the other.
-class Legend {
- public:
-  explicit Legend(double baseline_px) : y_px_(baseline_px) {}
-
-  void add(std::string_view css_class, std::string_view style, std::string_view text) {
-    svg_ += fmt::format(
-        "<rect class=\"{}\" {} x=\"{}\" y=\"{}\" width=\"18\" height=\"9\" rx=\"1.5\"/>\n",
-        css_class, style, svg_number(x_px_), svg_number(y_px_ - 9.0));
-    svg_ += svg_text("", {x_px_ + 25.0, y_px_}, text);
-    x_px_ += 25.0 + 7.0 * static_cast<double>(text.size()) + 22.0;
-  }
-
-  void add_speeds(double top_mps) {
-    constexpr int kSteps = 24;
-    constexpr double kStep_px = 5.0;
-    for (int i = 0; i < kSteps; ++i) {
-      svg_ += fmt::format("<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"5.2\" height=\"9\"/>\n",
-                          speed_colour((i + 0.5) / kSteps), svg_number(x_px_ + kStep_px * i),
-                          svg_number(y_px_ - 9.0));
-    }
-    x_px_ += kSteps * kStep_px;
-    svg_ += svg_text("", {x_px_ + 7.0, y_px_}, fmt::format("driven at 0 to {:.0f} m/s", top_mps));
-    x_px_ += 180.0;
-  }
-
-  const std::string& svg() const { return svg_; }
-
- private:
-  double x_px_ = 18.0;
-  double y_px_;
-  std::string svg_;
-};
-
 std::string legend_svg(const ReportInput& input, const Layout& layout) {
-  Legend legend(layout.height_px + 0.5 * kLegend_px + 4.0);
+  SvgLegend legend(layout.height_px + 0.5 * kLegend_px + 4.0);
   if (!input.drive.empty()) {
     legend.add_speeds(top_speed_mps(input.drive));
-    legend.add("ego", "", "vehicle");
+    legend.add("class=\"ego\"", "vehicle");
   }
-  if (!input.route.empty()) legend.add("", "fill=\"#a5d0ea\"", "route");
+  if (!input.route.empty()) legend.add("fill=\"#a5d0ea\"", "route");
   const auto moving = std::ranges::count_if(
       input.obstacles, [](const planning::Obstacle& one) { return !one.is_static(); });
-  if (moving > 0) legend.add("moving", "", "moving");
-  if (moving < std::ssize(input.obstacles)) legend.add("standing", "", "standing");
-  if (!input.occupied.empty()) legend.add("occupied", "", "occupied");
+  if (moving > 0) legend.add("class=\"moving\"", "moving");
+  if (moving < std::ssize(input.obstacles)) legend.add("class=\"standing\"", "standing");
+  if (!input.occupied.empty()) legend.add("class=\"occupied\"", "occupied");
   return fmt::format("<rect class=\"strip\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
                      svg_number(layout.height_px), svg_number(kWidth_px), svg_number(kLegend_px)) +
          legend.svg();

@@ -54,6 +54,31 @@ TEST(ReportInBrowser, ShowsTheMomentOfItsLinkWithoutErrorOrRequest) {
   EXPECT_TRUE(holds(page, "<b class=\"\">pass</b> parked-1 narrows the lane"));
 }
 
+// Types keys, clicks on a check's moment and writes down the clock after each.
+constexpr std::string_view kVisitor = R"(<script>
+const times = [], note = () => times.push(document.getElementById("clock").textContent);
+for (const [key, shiftKey] of [["ArrowRight", false], ["ArrowRight", true], ["]", false],
+                               ["End", false], ["[", false], ["Home", false]]) {
+  document.body.dispatchEvent(new KeyboardEvent("keydown", {key, shiftKey, bubbles: true}));
+  note();
+}
+document.querySelector("#checks a[data-t='7.1']").click();
+note();
+document.documentElement.dataset.times = times.join(", ");
+document.documentElement.dataset.hash = location.hash;
+</script>)";
+
+TEST(ReportInBrowser, GoesWhereKeysAndLinksSay) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  std::string html = drive_report_html(tests::sample_report());
+  html.insert(html.rfind("</body>"), kVisitor);
+  const std::string page = page_after_scripts(browser, html, "#t=5");
+  EXPECT_TRUE(
+      holds(page, "data-times=\"5.10 s, 6.10 s, 9.50 s, 40.00 s, 19.00 s, 0.00 s, 7.10 s\""))
+      << page.substr(0, 400);
+  EXPECT_TRUE(holds(page, "data-hash=\"#t=7.1\""));
+}
+
 TEST(ReportInBrowser, ComesUpWithNothingToShow) {
   ROADBED_BROWSER_OR_SKIP(browser);
   const std::string page = page_after_scripts(browser, drive_report_html({}), "");

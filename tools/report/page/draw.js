@@ -28,7 +28,9 @@ function drawLanes(pen) {
     pen.ctx.fill(area, "nonzero");
     stroke(pen, area, pen.ink("lane-" + look), pixels(pen, 0.8));
   }
-  stroke(pen, pen.scene.borders, pen.ink("border"), bandWidth(pen, 0.12, 0.8));
+  // Far away, borders are thinner than a pixel, or they would hide their lanes.
+  stroke(pen, pen.scene.borders, pen.ink("border"),
+         bandWidth(pen, 0.12, Math.min(0.8, 0.3 * pen.view.scale)));
 }
 
 function drawCentres(pen) {

@@ -27,6 +27,14 @@ function showState(page) {
   hud.append(list);
 }
 
+/** Lets the map be as high as the window leaves room below the head. */
+function watchHead() {
+  const head = document.querySelector("header");
+  new ResizeObserver(() => {
+    document.documentElement.style.setProperty("--head", head.offsetHeight + "px");
+  }).observe(head);
+}
+
 function start() {
   const data = JSON.parse(element("data").textContent), scene = decodeScene(data);
   const clock = makeClock(...timesOf(scene, data.plots));
@@ -36,6 +44,7 @@ function start() {
   clock.listeners.push(() => showState(page));
   setFollow(page.map, followInFragment(location.hash));
   seek(clock, timeInFragment(location.hash) ?? clock.start);
+  watchHead();
   playOn(clock);
   document.documentElement.dataset.ready = "yes";
 }
