@@ -12,9 +12,8 @@ namespace roadbed::geometry {
 /// lexicographic order, so the result does not depend on the order of the rings. Then every edge
 /// that passes a kept point within `weld_m` gets it as a vertex:
 ///
-///         ●────────────●                 ●────────────●
-///         ●──────╮                       │      ╱ ▔ ▔          ● kept points; the edge below
-///                ●─────● ≤ weld_m   ▶    └─────●──────●        now passes through the middle one
+///      ●───────────────●            ●─────╮ ╭─────●
+///              ● ≤ weld_m     ▶           ╰●╯           ● kept points
 ///
 /// No point moves by more than `weld_m`, no edge by more than twice that. Repeated points are
 /// dropped; rings of fewer than three points become empty. 0 only drops repeated points.

@@ -242,9 +242,10 @@ void draw_scale_bar(Drawing& drawing) {
   const double px = drawing.sheet.px_m;
   const double length_m = round_length_m(0.2 * drawing.sheet.size_m.x());
   const double right = drawing.sheet.size_m.x() - 24 * px, y = drawing.sheet.size_m.y() + 46 * px;
-  drawing.canvas.add(fmt::format(
-      R"(<path d="M{:.2f} {:.2f}v{:.2f}h{:.2f}v{:.2f}" fill="none" stroke="{}" stroke-width="{:.3f}"/>)",
-      right - length_m, y - 8 * px, 8 * px, length_m, -8 * px, kInk, 2 * px));
+  drawing.canvas.add(
+      fmt::format(R"(<path d="M{:.2f} {:.2f}v{:.2f}h{:.2f}v{:.2f}" fill="none" stroke="{}" )"
+                  R"(stroke-width="{:.3f}"/>)",
+                  right - length_m, y - 8 * px, 8 * px, length_m, -8 * px, kInk, 2 * px));
   drawing.canvas.add(fmt::format(
       R"(<text x="{:.2f}" y="{:.2f}" font-size="{:.3f}" text-anchor="middle">{} m</text>)",
       right - 0.5 * length_m, y - 6 * px, 16 * px, length_m));
