@@ -18,12 +18,16 @@ from xml.etree import ElementTree
 from road_borders import read_roads
 
 DATA = Path(__file__).parent
-SCANNER_HEIGHT = 1.8  # m
-REACH = 45.0  # m
-DOWN_TO_UP = [-25, -20, -16, -13, -10.5, -8.5, -7, -5.5, -4.2, -3, -2, -1, 0, 1.5, 4, 8]  # degrees
-AROUND = 360  # rays
+SCANNER_HEIGHT = 2.2  # m
+REACH = 60.0  # m
+DOWN_TO_UP = [  # degrees
+    -27, -21, -17.5, -15, -13, -11.2, -9.8, -8.6, -7.6, -6.8, -6.0, -5.3, -4.6, -4.0, -3.4, -2.8,
+    -2.2, 0, 4,
+]
+ALONG, ACROSS = 0.7, 4  # degrees between rays: within ALONG_WIDTH of the street, and elsewhere
+ALONG_WIDTH = 20
 RANGE_NOISE = 0.01  # m, standard deviation
-THINNING = 0.2  # m: one point of a scan per cube of this size
+THINNING = 0.3  # m: one point of a scan per cube of this size
 
 # (road, section, lane) one after the other, as route goes from drive.json's start to its goal.
 WAY = [
@@ -164,14 +168,13 @@ def town_things(roads, scenario):
 
 
 def standing_places(roads, step):
-    """Every `step` metres along the way, its first place after half a step."""
+    """Poses every `step` metres along the way, the first after half a step."""
     to_go = step / 2
     for name, index, lane in WAY:
         road = roads[str(name)]
         start, end = road.ranges[index]
         while to_go < end - start:
-            x, y, _ = road.middle(index, lane, start + to_go if lane < 0 else end - to_go)
-            yield x, y
+            yield road.middle(index, lane, start + to_go if lane < 0 else end - to_go)
             to_go += step
         to_go -= end - start
 
@@ -186,8 +189,18 @@ def first_hit(things, ox, oy, oz, dx, dy, dz):
     return nearest if nearest < REACH else None
 
 
-def scan(things, x, y, random):
-    """Points [m] seen from a place, thinned; those nearest in angle come first."""
+def directions(random):
+    """Angles from the street's direction, all around, each a little off."""
+    angle = 0.0
+    while angle < 360:
+        along = min(angle % 180, 180 - angle % 180) < ALONG_WIDTH
+        step = ALONG if along else ACROSS
+        yield radians(angle + step * random.random())
+        angle += step
+
+
+def scan(things, x, y, heading, random):
+    """Points [m] seen from a place, thinned."""
     near = [t for t in things if hypot(t.x - x, t.y - y) < REACH + t.radius]
     bearings = []  # of each thing: direction and half its angle of view
     for thing in near:
@@ -195,8 +208,8 @@ def scan(things, x, y, random):
         half = pi if distance <= thing.radius else atan2(thing.radius, distance - thing.radius)
         bearings.append((thing, atan2(thing.y - y, thing.x - x), half))
     kept = {}
-    for k in range(AROUND):
-        turn = 2 * pi * (k + random.random()) / AROUND
+    for direction in directions(random):
+        turn = heading + direction
         ahead = [thing for thing, bearing, half in bearings
                  if abs((turn - bearing + pi) % (2 * pi) - pi) <= half]
         for degrees in DOWN_TO_UP:
@@ -224,7 +237,7 @@ def write_pcd(file, points, sensor):
 def narrow_gap():
     """Two walls along the lane that leave 2.9 m between them, seen from in front of them."""
     walls = [Box(170.0, y, 0.0, 12.0, 0.3, 0.0, 1.2) for y in (196.75, 199.95)]
-    return scan(walls, 155.0, 198.25, Random(20261121)), (155.0, 198.25, SCANNER_HEIGHT)
+    return scan(walls, 155.0, 198.25, 0.0, Random(20261121)), (155.0, 198.25, SCANNER_HEIGHT)
 
 
 def main():
@@ -235,8 +248,8 @@ def main():
     for old in folder.glob("*.pcd"):
         old.unlink()
     random = Random(20261122)
-    for number, (x, y) in enumerate(standing_places(roads, 20.0)):
-        points = scan(things, x, y, random)
+    for number, (x, y, heading) in enumerate(standing_places(roads, 12.0)):
+        points = scan(things, x, y, heading, random)
         write_pcd(folder / f"scan_{number:02}.pcd", points, (x, y, SCANNER_HEIGHT))
     write_pcd(DATA / "scenarios" / "narrow_gap.pcd", *narrow_gap())
 
