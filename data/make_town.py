@@ -8,7 +8,7 @@ from math import acos, pi, radians
 from pathlib import Path as File
 
 from opendrive import (
-    BROKEN, CENTRE, DOUBLE, EDGE, SOLID, Junction, Lane, Mark, Poly3, Road, Section, Signal,
+    BROKEN, DOUBLE, EDGE, SOLID, Junction, Lane, Mark, Poly3, Road, Section, Signal,
     ramp, smooth, write_map,
 )
 from plan_view import Path, Pose
@@ -88,7 +88,7 @@ def shoulder(side, width=1.5):
     return [Lane(side + "B", "shoulder", width)]
 
 
-def country(s=0.0, width=1.5, mark=CENTRE):
+def country(s=0.0, width=1.5, mark=BROKEN):
     """One lane each way between shoulders."""
     side = lambda name: [Lane(name + "1", mark=SOLID)] + shoulder(name, width)
     return Section(s, side("L"), side("R"), mark)

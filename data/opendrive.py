@@ -52,7 +52,6 @@ class Mark:
 
 SOLID, DOUBLE, EDGE = Mark(), Mark("solid solid", width=0.3), Mark("none", width=0.0)
 BROKEN = Mark("broken", "both")
-CENTRE = Mark("broken", "none")  # overtaking there is no lane change of a route
 
 
 @dataclass
@@ -73,7 +72,7 @@ class Section:
     s: float
     left: list
     right: list
-    mark: Mark = field(default_factory=lambda: CENTRE)
+    mark: Mark = field(default_factory=lambda: BROKEN)
 
     def id_of(self, key):
         for side, sign in ((self.left, 1), (self.right, -1)):
