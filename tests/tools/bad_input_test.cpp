@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,7 @@ std::vector<std::vector<std::string>> commands_on_a_map() {
   return {
       {"import", "MAP", "-o", "OUT.rbm"}, {"info", "MAP"},
       {"info", "MAP", "--json"},          {"validate", "MAP"},
-      {"validate", "MAP", "--json"},
-      {"export", "MAP", "-o", "OUT.geojson"},
+      {"validate", "MAP", "--json"},      {"export", "MAP", "-o", "OUT.geojson"},
       {"export", "MAP", "-o", "OUT.svg"}, {"export", "MAP", "-o", "OUT.csv"},
   };
 }
@@ -106,6 +106,42 @@ TEST(BadInput, FolderInPlaceOfAMapIsNamedByEveryCommand) {
     SCOPED_TRACE(line_of(words));
     expect_refused(run_roadbed(words), "map.xodr");
   }
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, StartThatIsOffTheRoadOrNoPlaceIsNamed) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  for (const std::string start : {"0,0", "1e9,0", "lane:no", "lane:1/3/1@1e6"}) {
+    SCOPED_TRACE(start);
+    expect_refused(run_roadbed({"route", town, "--from", start, "--to", "lane:7/0/1"}), start);
+    expect_refused(run_roadbed({"reference", town, "--from", start, "--to", "lane:7/0/1", "-o",
+                                folder / "out.csv"}),
+                   start);
+  }
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, UnreachableGoalIsAnAnswerWithAReason) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  const std::vector<std::string> closed{"--from",     "lane:1/3/1", "--to",
+                                        "lane:7/0/1", "--avoid",    "lane:2102/0/-1"};
+  std::vector<std::string> words{"route", town};
+  words.insert(words.end(), closed.begin(), closed.end());
+  expect_refused(run_roadbed(words), "no route");
+
+  words.emplace_back("--json");
+  const ProgramRun run = run_roadbed(words);
+  EXPECT_EQ(run.status, 1);
+  const auto answer = nlohmann::json::parse(run.out, nullptr, false);
+  ASSERT_TRUE(answer.is_object()) << run.out;
+  EXPECT_EQ(answer.at("found"), false);
+  EXPECT_FALSE(answer.at("reason").get<std::string>().empty());
+
+  words = {"reference", town, "-o", folder / "out.csv"};
+  words.insert(words.end(), closed.begin(), closed.end());
+  expect_refused(run_roadbed(words), "no route");
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 

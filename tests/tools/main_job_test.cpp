@@ -5,12 +5,16 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tests {
 namespace {
+
+constexpr const char* kStart = "lane:1/3/1@6";  // as in data/drive.json
+constexpr const char* kGoal = "lane:7/0/1@55";
 
 std::string town() { return data_folder() / "town.xodr"; }
 
@@ -47,6 +51,20 @@ TEST(MainJob, TownIsFitForPlanning) {
   for (const auto& finding : json_answer({"validate", town()}).at("findings")) {
     EXPECT_EQ(finding.at("severity"), "info") << finding.dump();
   }
+}
+
+TEST(MainJob, RouteAcrossTownGoesOverTheCrossroadsAndThreeQuartersRoundTheRoundabout) {
+  const nlohmann::json route = json_answer({"route", town(), "--from", kStart, "--to", kGoal});
+  EXPECT_EQ(route.at("found"), true);
+  std::vector<std::string> roads;  // one entry per road, whatever its sections
+  for (const auto& leg : route.at("lanes")) {
+    const std::string lane = leg.at("lane");
+    const std::string road = lane.substr(0, lane.find('/'));
+    if (roads.empty() || roads.back() != road) roads.push_back(road);
+  }
+  EXPECT_EQ(roads, (std::vector<std::string>{"1", "1007", "2", "2201", "22", "2300", "23", "2000",
+                                             "20", "2102", "7"}));
+  EXPECT_EQ(route.at("lane_changes"), 0);
 }
 
 TEST(MainJob, ImportOfTheSameMapGivesTheSameBytes) {
