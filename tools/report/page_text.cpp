@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "roadbed/tools/report/escape.h"
@@ -129,6 +130,31 @@ std::string foot_entry(std::string_view name, const std::string& html) {
   return html.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html);
 }
 
+std::string code(const std::string& text) {
+  return text.empty() ? text : "<code>" + escape_markup(text) + "</code>";
+}
+
+// One entry per role, in the order of their first files; many files are folded away.
+std::string sources_html(const std::vector<ReportSource>& sources) {
+  constexpr std::size_t kMostShown = 4;
+  std::vector<std::pair<std::string, std::vector<std::string>>> roles;
+  for (const ReportSource& source : sources) {
+    auto role = std::ranges::find(roles, source.role, [](const auto& one) { return one.first; });
+    if (role == roles.end()) role = roles.insert(role, {source.role, {}});
+    role->second.push_back(code(source.name) + " xxhash " + code(source.xxhash));
+  }
+  std::string html;
+  for (const auto& [role, files] : roles) {
+    const std::string list = fmt::format("{}", fmt::join(files, "<br>"));
+    html += foot_entry(
+        escape_markup(role),
+        files.size() <= kMostShown
+            ? list
+            : fmt::format("<details><summary>{} files</summary>{}</details>", files.size(), list));
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string page_head(const ReportInput& input) {
@@ -165,18 +191,11 @@ std::string page_events(const ReportInput& input) {
 
 std::string page_foot(const ReportInput& input) {
   std::string html = "<dl>\n";
-  const auto code = [](const std::string& text) {
-    return text.empty() ? text : "<code>" + escape_markup(text) + "</code>";
-  };
   html += foot_entry("Made by", escape_markup(input.version));
   html += foot_entry("Again with", code(input.command));
   html += foot_entry("Coordinates",
                      input.crs.empty() ? "as in the map; its CRS is unknown" : code(input.crs));
-  for (const ReportSource& source : input.sources) {
-    html += foot_entry(escape_markup(source.role),
-                       code(source.name) + " xxhash " + code(source.xxhash));
-  }
-  return html + "</dl>";
+  return html + sources_html(input.sources) + "</dl>";
 }
 
 }  // namespace roadbed::tools

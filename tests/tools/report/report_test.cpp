@@ -136,6 +136,16 @@ TEST(Report, NamesItsInputsAndHowToMakeItAgain) {
   EXPECT_TRUE(holds(html, "Permission is hereby granted"));  // the plots' licence
 }
 
+TEST(Report, FoldsAwayALongListOfInputsOfOneKind) {
+  ReportInput input = tests::sample_report();
+  input.sources = {{"map", "town.xodr", "1"}};
+  for (int i = 0; i < 28; ++i) input.sources.push_back({"cloud", "scan.pcd", "2"});
+  const std::string html = drive_report_html(input);
+  EXPECT_TRUE(holds(html, "<dt>map</dt><dd><code>town.xodr</code>"));
+  EXPECT_TRUE(holds(html, "<dt>cloud</dt><dd><details><summary>28 files</summary>"));
+  EXPECT_EQ(count_of(html, "<code>scan.pcd</code>"), 28U);
+}
+
 TEST(Report, OfNothingIsAPageToo) {
   const json data = data_of(drive_report_html({}));
   EXPECT_TRUE(data["drive"]["t"]["v"].empty());
