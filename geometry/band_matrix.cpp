@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 namespace roadbed::geometry {
 
-void BandMatrix::factorise() {
+bool BandMatrix::factorise() {
   for (std::size_t row = 0; row < size_; ++row) {
     for (std::size_t column = first_column(row); column <= row; ++column) {
       double sum = at(row, column);
@@ -18,14 +17,15 @@ void BandMatrix::factorise() {
       } else if (sum > 0.0) {
         at(row, row) = std::sqrt(sum);
       } else {
-        throw std::invalid_argument("BandMatrix: not positive definite");
+        return false;
       }
     }
   }
+  return true;
 }
 
-std::vector<double> BandMatrix::solve(BandMatrix matrix, std::vector<double> right) {
-  matrix.factorise();
+std::optional<std::vector<double>> BandMatrix::solve(BandMatrix matrix, std::vector<double> right) {
+  if (!matrix.factorise()) return {};
   for (std::size_t row = 0; row < matrix.size_; ++row) {
     for (std::size_t k = matrix.first_column(row); k < row; ++k) {
       right[row] -= matrix.at(row, k) * right[k];

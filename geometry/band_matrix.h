@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace roadbed::geometry {
@@ -19,15 +20,15 @@ class BandMatrix {
     return values_[row * width_ + column + width_ - 1 - row];
   }
 
-  /// x of `matrix x = right` by Cholesky's factors; the matrix must be positive definite.
-  /// O(N · bandwidth²).
-  static std::vector<double> solve(BandMatrix matrix, std::vector<double> right);
+  /// x of `matrix x = right` by Cholesky's factors; none if the matrix is not positive definite to
+  /// the digits that there are. O(N · bandwidth²).
+  static std::optional<std::vector<double>> solve(BandMatrix matrix, std::vector<double> right);
 
  private:
   std::size_t first_column(std::size_t row) const {
     return row < width_ - 1 ? 0 : row - (width_ - 1);
   }
-  void factorise();
+  bool factorise();
 
   std::size_t size_, width_;
   std::vector<double> values_;

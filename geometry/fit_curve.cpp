@@ -75,11 +75,12 @@ class Fit {
         spans_(static_cast<std::size_t>(
             std::max(1.0, std::ceil(length_m_ / options.knot_distance_m)))),
         samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder))),
-        control_points_(first_control_points(line, spans_)) {}
+        control_points_(first_control_points(line, spans_)),
+        curve_(control_points_, knot_distance()) {}
 
   FittedCurve refined() {
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
-      solve();
+      if (!solve()) break;  // keeps the curve before
       measure();
       if (largest_move_m_ <= tolerance_m_ && iteration >= kLeastIterations) break;
     }
@@ -89,9 +90,9 @@ class Fit {
  private:
   double knot_distance() const { return length_m_ / static_cast<double>(spans_); }
 
-  void solve() {
+  bool solve() {
     const double step_m = length_m_ / static_cast<double>(samples_.size() - 1);
-    SplineProblem problem(std::move(control_points_), knot_distance());
+    SplineProblem problem(control_points_, knot_distance());
     problem.smooth(std::pow(scale_m_, 6));
     for (const Sample& sample : samples_) {
       const Eigen::Vector2d normal(-sample.along.y(), sample.along.x());
@@ -99,8 +100,11 @@ class Fit {
           sample.along * sample.along.transpose() + sample.weight * normal * normal.transpose();
       problem.attract(sample.u, sample.point, step_m * weight);
     }
-    control_points_ = std::move(problem).solve();
+    auto solution = std::move(problem).solve();
+    if (!solution) return false;
+    control_points_ = std::move(*solution);
     curve_ = SmoothCurve(control_points_, knot_distance());
+    return true;
   }
 
   void measure() {

@@ -86,10 +86,11 @@ void SplineProblem::attract(double u, const Eigen::Vector2d& point, const Eigen:
   }
 }
 
-std::vector<Eigen::Vector2d> SplineProblem::solve() && {
-  const std::vector<double> moves = BandMatrix::solve(std::move(matrix_), std::move(right_));
+std::optional<std::vector<Eigen::Vector2d>> SplineProblem::solve() && {
+  const auto moves = BandMatrix::solve(std::move(matrix_), std::move(right_));
+  if (!moves) return {};
   for (std::size_t i = 0; i < control_points_.size(); ++i) {
-    control_points_[i] += Eigen::Vector2d(moves[2 * i], moves[2 * i + 1]);
+    control_points_[i] += Eigen::Vector2d((*moves)[2 * i], (*moves)[2 * i + 1]);
   }
   return std::move(control_points_);
 }

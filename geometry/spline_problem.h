@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/band_matrix.h"
@@ -22,8 +23,9 @@ class SplineProblem {
   /// Adds (p(u) − point)ᵀ weight (p(u) − point).
   void attract(double u, const Eigen::Vector2d& point, const Eigen::Matrix2d& weight);
 
-  /// The control points of least cost; the problem is used up.
-  std::vector<Eigen::Vector2d> solve() &&;
+  /// The control points of least cost; none if the weights span more than the digits that there
+  /// are. The problem is used up.
+  std::optional<std::vector<Eigen::Vector2d>> solve() &&;
 
  private:
   std::vector<Eigen::Vector2d> control_points_;

@@ -100,6 +100,7 @@ class Builder {
       last.to = std::min(1.0, last.from + share);
       if (i > 0) take_out_step(last);
       sample(last, last.from, last.to);
+      if (last.to < 1.0) return;
       const auto next = straightest_successor(road_map_, last.lanes.back());
       if (!next) break;
       last = {{*next}, {}, 0.0, 1.0};

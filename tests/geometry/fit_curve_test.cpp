@@ -55,11 +55,11 @@ TEST(BandMatrix, SolvesAsADenseMatrixDoes) {
   }
   const Eigen::VectorXd expected =
       dense.fullPivLu().solve(Eigen::Map<Eigen::VectorXd>(right.data(), 30));
-  const auto solution = BandMatrix::solve(band, right);
+  const auto solution = BandMatrix::solve(band, right).value();
   for (std::size_t i = 0; i < size; ++i)
     EXPECT_NEAR(solution[i], expected(static_cast<int>(i)), 1e-13);
   band.at(3, 3) = -1.0;
-  EXPECT_THROW(BandMatrix::solve(band, right), std::invalid_argument);
+  EXPECT_FALSE(BandMatrix::solve(band, right));
 }
 
 TEST(FitCurve, KeepsAStraightLine) {
