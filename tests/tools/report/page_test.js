@@ -117,7 +117,9 @@ function testPlots() {
 
 function testStrip() {
   const decisions = [{from: 0, to: 2, state: "a"}, {from: 2, to: 5, state: "b"}, {from: 5, to: 6, state: "a"}];
-  expectEqual("one number per state", [...numberStates(decisions).values()], [0, 1]);
+  const numbers = numberStates(decisions);
+  expectEqual("one number per state", new Set(numbers.values()).size, KNOWN_STATES.length + 2);
+  expectEqual("known states keep theirs", numberStates([{state: "stop"}]).get("stop"), numbers.get("stop"));
   expectEqual("decision in force", [1, 2, 6, 7].map((t) => decisionAt(decisions, t)?.state ?? "none"),
               ["a", "b", "a", "none"]);
   expectEqual("ticks are round and few", [9, 40, 61, 300].map(tickStep), [1, 5, 10, 50]);

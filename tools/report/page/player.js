@@ -25,9 +25,12 @@ function percent(share) {
   return (100 * share).toFixed(3) + "%";
 }
 
-/** The same number for the same state, in order of appearance. */
+// These have the same colours in every report; others follow in order of appearance.
+const KNOWN_STATES = ["cruise", "follow", "pass", "emergency", "stop"];
+
+/** The same number for the same state. */
 function numberStates(decisions) {
-  const numbers = new Map();
+  const numbers = new Map(KNOWN_STATES.map((state, i) => [state, i]));
   for (const {state} of decisions) if (!numbers.has(state)) numbers.set(state, numbers.size);
   return numbers;
 }
