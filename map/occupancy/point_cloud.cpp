@@ -83,8 +83,8 @@ PointCloud relative_to_origin(RawCloud raw) {
 }  // namespace
 
 std::string_view name(LengthUnit unit) {
-  constexpr std::array<std::string_view, 5> names{"unknown", "metre", "foot", "US survey foot",
-                                                  "degree"};
+  constexpr std::array<std::string_view, 5> names{"unknown", "metres", "feet", "US survey feet",
+                                                  "degrees"};
   return names[static_cast<std::size_t>(unit)];
 }
 
@@ -96,6 +96,29 @@ Box3 bounds(const PointCloud& cloud) {
     box.max_in_source = box.max_in_source.cwiseMax(point);
   }
   return box;
+}
+
+PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
+  RawCloud raw;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    raw.points_in_source.emplace_back(cloud.in_source(i) * factor);
+  }
+  PointCloud scaled = relative_to_origin(std::move(raw));
+  scaled.name = cloud.name;
+  scaled.format = cloud.format;
+  scaled.unit = LengthUnit::metre;
+  scaled.dropped_not_finite = cloud.dropped_not_finite;
+  if (cloud.sensor_in_source) scaled.sensor_in_source = *cloud.sensor_in_source * factor;
+  scaled.notes = cloud.notes;
+  return scaled;
+}
+
+void check_is_in_metres(const PointCloud& cloud) {
+  if (cloud.unit == LengthUnit::unknown || cloud.unit == LengthUnit::metre) return;
+  refuse_cloud(cloud.name, "", cloud.crs, fmt::format("coordinates are in {}", name(cloud.unit)),
+               "metres",
+               cloud.unit == LengthUnit::degree ? "project the cloud first"
+                                                : "project the cloud, or scale it by 0.3048");
 }
 
 PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {

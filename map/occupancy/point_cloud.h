@@ -42,6 +42,12 @@ struct Box3 {
 /// Smallest box around all points. The cloud must hold one.
 Box3 bounds(const PointCloud& cloud);
 
+/// The same cloud with every coordinate times `factor`, in metres and of no known CRS.
+PointCloud scaled_to_metres(const PointCloud& cloud, double factor);
+
+/// @throws InputError if the file says that its unit is another than the metre.
+void check_is_in_metres(const PointCloud& cloud);
+
 /// Reads .pcd (ascii, binary, compressed), .ply, .las, .xyz/.csv; the format is told by content,
 /// and by suffix where content does not tell. No library sees the bytes, and no header makes the
 /// reader allocate more than a small multiple of the file.

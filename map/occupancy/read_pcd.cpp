@@ -27,7 +27,6 @@ struct Header {
   std::string version = "0.7";
   std::vector<Field> fields;
   std::optional<std::uint64_t> width, height, points;
-  std::optional<Eigen::Vector3d> viewpoint;
   std::string data;
   std::size_t point_size = 0;      // bytes
   std::size_t point_elements = 0;  // words of an ascii line
@@ -45,7 +44,6 @@ class PcdParser {
     check_points();
     lay_out_fields();
     cloud_.format = fmt::format("PCD {} {}", header_.version, header_.data);
-    cloud_.sensor_in_source = header_.viewpoint;
     if (header_.data == "ascii") {
       read_ascii();
     } else if (header_.data == "binary") {
@@ -134,15 +132,22 @@ class PcdParser {
     return *value;
   }
 
-  // A viewpoint that is left at its default says nothing about where the sensor was.
+  // A viewpoint left at its default says nothing about where the sensor was; with a rotation it is
+  // not told whether the points are in the sensor's frame.
   void read_viewpoint(std::string_view line) {
-    Eigen::Vector3d at;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto value = parse_number(next_word(line));
-      if (!value || !std::isfinite(*value)) return;
-      at[axis] = *value;
+    std::array<double, 7> values{};
+    for (double& value : values) {
+      const auto number = parse_number(next_word(line));
+      if (!number || !std::isfinite(*number)) return;
+      value = *number;
     }
-    if (!at.isZero(0.0)) header_.viewpoint = at;
+    const Eigen::Vector3d at(values[0], values[1], values[2]);
+    const bool turned = values[4] != 0.0 || values[5] != 0.0 || values[6] != 0.0;
+    if (turned) {
+      cloud_.notes.emplace_back("its viewpoint has a rotation and is not taken as the sensor");
+    } else if (!at.isZero(0.0)) {
+      cloud_.sensor_in_source = at;
+    }
   }
 
   void check_points() {

@@ -11,6 +11,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
+#include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {
 namespace {
@@ -41,19 +42,6 @@ std::string known_keys() {
   return fmt::format("one of {}", fmt::join(names, ", "));
 }
 
-json parse(std::string_view bytes, const std::string& name) {
-  try {
-    return json::parse(bytes);
-  } catch (const json::parse_error& error) {
-    throw map::InputError({.file = name,
-                           .place = fmt::format("byte {}", error.byte),
-                           .element = {},
-                           .found = "is not JSON here",
-                           .needed = {},
-                           .remedy = "mend the text"});
-  }
-}
-
 void set(VehicleShape& shape, const std::string& key, const json& value, const std::string& name) {
   const auto refuse = [&](const std::string& found, const std::string& needed) {
     throw map::InputError({.file = name,
@@ -77,7 +65,7 @@ void set(VehicleShape& shape, const std::string& key, const json& value, const s
 }  // namespace
 
 VehicleShape parse_vehicle_json(std::string_view bytes, const std::string& name) {
-  const json document = parse(bytes, name);
+  const json document = parse_json_strictly(bytes, name);
   const auto refuse = [&](const std::string& found, const std::string& needed) {
     throw map::InputError({.file = name,
                            .place = {},
