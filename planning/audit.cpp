@@ -108,6 +108,23 @@ geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double ma
   return grown;
 }
 
+map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
+                                const geometry::VehicleShape& vehicle,
+                                const AuditOptions& options) {
+  constexpr double least_horizon_m = 50.0;
+  const Eigen::Vector2d reach_m =
+      Eigen::Vector2d::Constant(inflated(vehicle, options.inflate_m).reach_m());
+  const Eigen::Vector2d start = drive_in_source.points().front().pose().position();
+  map::Box2 around{start, start};
+  for (const geometry::TrajectoryPoint& point : drive_in_source.points()) {
+    around.min_in_source = around.min_in_source.cwiseMin(point.pose().position());
+    around.max_in_source = around.max_in_source.cwiseMax(point.pose().position());
+  }
+  around.min_in_source -= reach_m;
+  around.max_in_source += reach_m;
+  return {around, std::max(least_horizon_m, 3.0 * options.clearance_m)};
+}
+
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                   const geometry::VehicleShape& vehicle, const AuditOptions& options) {
   check(field, drive_in_source, vehicle, options);

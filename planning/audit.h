@@ -70,6 +70,11 @@ struct AuditReport {
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                   const geometry::VehicleShape& vehicle, const AuditOptions& options = {});
 
+/// The part of an occupancy that matters to the audit of a drive: wherever the inflated body may
+/// be, with a horizon of 50 m, or more where the clearance asks for it.
+map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
+                                const geometry::VehicleShape& vehicle, const AuditOptions& options);
+
 /// The vehicle's rectangle grown by a margin on every side.
 geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double margin_m);
 

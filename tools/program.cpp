@@ -32,6 +32,8 @@ constexpr Entry kCommands[] = {
     {"reference", make_reference_command},
     {"control", make_control_command},
     {"simulate", make_simulate_command},
+    {"occupancy", make_occupancy_command},
+    {"audit", make_audit_command},
 };
 // clang-format on
 

@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/planning/audit.h"
+#include "roadbed/tools/command.h"
+#include "roadbed/tools/report/audit_svg.h"
+#include "roadbed/tools/support/audit_json.h"
+#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/support/trajectory_csv.h"
+#include "roadbed/tools/support/vehicle_json.h"
+
+namespace roadbed::tools {
+namespace {
+
+using planning::AuditOptions;
+using planning::AuditReport;
+using planning::UnknownPolicy;
+
+const std::map<std::string, UnknownPolicy> kPolicies{{"free", UnknownPolicy::free},
+                                                     {"occupied", UnknownPolicy::occupied},
+                                                     {"report", UnknownPolicy::report}};
+
+bool overlap(const map::Box2& a, const map::Box2& b) {
+  return (a.min_in_source.array() <= b.max_in_source.array()).all() &&
+         (b.min_in_source.array() <= a.max_in_source.array()).all();
+}
+
+void extend(std::optional<map::Box2>& box, const Eigen::Vector2d& least,
+            const Eigen::Vector2d& most) {
+  if (!box) box = map::Box2{least, most};
+  box->min_in_source = box->min_in_source.cwiseMin(least);
+  box->max_in_source = box->max_in_source.cwiseMax(most);
+}
+
+std::optional<map::Box2> bounds_of(const std::vector<map::OccupancyCell>& cells) {
+  std::optional<map::Box2> box;
+  for (const map::OccupancyCell& cell : cells) {
+    const Eigen::Array2d centre = cell.centre_in_source.head<2>();
+    extend(box, centre - 0.5 * cell.size_m, centre + 0.5 * cell.size_m);
+  }
+  return box;
+}
+
+std::string text_of(const map::Box2& box) {
+  return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", box.min_in_source.x(),
+                     box.max_in_source.x(), box.min_in_source.y(), box.max_in_source.y());
+}
+
+std::vector<geometry::Ring> drivable_lanes(const map::RoadMap& road_map) {
+  std::vector<geometry::Ring> rings;
+  for (const map::Lane& lane : road_map.lanes()) {
+    if (!is_drivable(lane.type)) continue;
+    geometry::Ring ring;
+    for (const Eigen::Vector2d& point : lane.polygon) ring.push_back(road_map.to_source(point));
+    rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+class AuditCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description(
+        "Prove that a drive keeps clear of occupied space, or show where it does not. Between rows "
+        "of the drive position and heading are linear, and every point of the body is covered");
+    app.add_option("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)")->required();
+    app.add_option("--trajectory", trajectory_, "Drive to audit (.csv), poses of the rear axle")
+        ->required();
+    app.add_option("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
+    app.add_option("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
+    app.add_option("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    app.add_option("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    app.add_option("--unknown", options_.unknown,
+                   "What space counts as that was not measured: free, occupied, or report: no "
+                   "obstacle, but a drive over it is not clear")
+        ->transform(CLI::CheckedTransformer(kPolicies))
+        ->default_str("report");
+    app.add_option("--ground", ground_m_, "Height of the ground in the occupancy's frame [m]")
+        ->capture_default_str();
+    app.add_option("--from-height", from_height_m_,
+                   "The vehicle's underside above the ground [m]; its top is the vehicle's height")
+        ->capture_default_str();
+    app.add_flag("--json", json_, "Print one JSON document");
+    app.add_option("--svg", svg_, "Draw the audit as a picture (.svg)");
+    app.add_flag("--force", force_, "Replace the picture if it exists");
+    app.footer("Example:\n  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (!svg_.empty()) check_writable(svg_, force_);
+    const geometry::Trajectory drive = read_trajectory_csv(trajectory_);
+    const geometry::VehicleShape vehicle =
+        vehicle_.empty() ? geometry::VehicleShape{} : read_vehicle_json(vehicle_);
+    const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_);
+    const map::FieldRegion region = planning::audited_region(drive, vehicle, options_);
+    const auto lanes = check_frames(streams.err, common.quiet, occupancy, region.around);
+    const map::HeightBand band = height_band(vehicle);
+    const map::ClearanceField field(occupancy, band, region);
+    const AuditReport report = planning::audit(field, drive, vehicle, options_);
+
+    if (!svg_.empty()) {
+      write_output(svg_, audit_svg({drive, planning::inflated(vehicle, options_.inflate_m), report,
+                                    occupied_boxes(occupancy, band), lanes}));
+    }
+    print(streams.out, report);
+    return report.verdict == planning::Verdict::clear ? Exit::ok : Exit::failed;
+  }
+
+ private:
+  map::HeightBand height_band(const geometry::VehicleShape& vehicle) const {
+    if (from_height_m_ < vehicle.height_m) {
+      return {ground_m_ + from_height_m_, ground_m_ + vehicle.height_m};
+    }
+    throw map::InputError({.file = vehicle_.empty() ? "vehicle" : vehicle_.string(),
+                           .place = {},
+                           .element = "height_m",
+                           .found = fmt::format("is {} m", vehicle.height_m),
+                           .needed = fmt::format("more than --from-height, {} m", from_height_m_),
+                           .remedy = "lower --from-height"});
+  }
+
+  // Says what lies apart from what; an occupancy apart from the map cannot be meant.
+  std::vector<geometry::Ring> check_frames(std::ostream& err, bool quiet,
+                                           const map::OccupancyMap& occupancy,
+                                           const map::Box2& drive) const {
+    const auto measured = bounds_of(occupancy.cells());
+    if (!quiet && (!measured || !overlap(*measured, drive))) {
+      fmt::print(err, "note: the drive ({}) lies outside the measured space ({})\n", text_of(drive),
+                 measured ? text_of(*measured) : "none");
+    }
+    if (map_.empty()) return {};
+    const map::RoadMap road_map = map::load_map(map_);
+    std::optional<map::Box2> roads;
+    std::vector<geometry::Ring> lanes = drivable_lanes(road_map);
+    for (const geometry::Ring& lane : lanes) {
+      for (const Eigen::Vector2d& point : lane) extend(roads, point, point);
+    }
+    if (roads && measured) check_overlap(*roads, *measured);
+    if (!quiet && !road_map.crs().empty() && !occupancy.crs().empty() &&
+        road_map.crs() != occupancy.crs()) {
+      fmt::print(err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", road_map.crs(),
+                 occupancy.crs());
+    }
+    return lanes;
+  }
+
+  void check_overlap(const map::Box2& roads, const map::Box2& measured) const {
+    if (overlap(roads, measured)) return;
+    throw map::InputError({.file = occupancy_.string(),
+                           .place = {},
+                           .element = {},
+                           .found = fmt::format("covers {}", text_of(measured)),
+                           .needed = fmt::format("the map's {}", text_of(roads)),
+                           .remedy = "bring map and occupancy into one frame"});
+  }
+
+  static std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
+                                               const map::HeightBand& band) {
+    std::vector<map::Box2> boxes;
+    for (const map::OccupancyCell& cell : occupancy.cells()) {
+      const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
+      if (cell.state != map::CellState::occupied) continue;
+      if (z_m + half_m <= band.from_m || z_m - half_m >= band.to_m) continue;
+      const Eigen::Array2d centre = cell.centre_in_source.head<2>();
+      boxes.push_back({centre - half_m, centre + half_m});
+    }
+    return boxes;
+  }
+
+  void print(std::ostream& out, const AuditReport& report) const {
+    if (json_) {
+      out << audit_json(report).dump(2) << '\n';
+    } else {
+      out << audit_text(report);
+    }
+  }
+
+  std::filesystem::path occupancy_, trajectory_, vehicle_, map_, svg_;
+  AuditOptions options_;
+  double ground_m_ = 0.0, from_height_m_ = map::HeightBand{}.from_m;
+  bool json_ = false, force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_audit_command() { return std::make_unique<AuditCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/read_file.h"
+#include "roadbed/tools/occupancy_parts.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+class OccupancyBuildCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description(
+        "Make an OctoMap file from point clouds. A measured hit stays occupied whatever rays pass "
+        "through its cell; space that no ray crossed stays unknown");
+    app.add_option("CLOUD", clouds_,
+                   "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
+                   "(.bt .ot) to convert")
+        ->required();
+    app.add_option("-o,--output", output_, "OctoMap file to write (.bt)")->required();
+    app.add_option("--resolution", resolution_m_, "Side of a cell [m]")
+        ->check(CLI::Range(1e-3, 1e3))
+        ->capture_default_str();
+    app.add_option("--sensor", sensor_,
+                   "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
+                   "the viewpoint of each .pcd counts, where the file names one")
+        ->delimiter(',')
+        ->expected(3);
+    app.add_flag("--no-carving", no_carving_, "Only mark hits, whatever viewpoints the files name");
+    app.add_option("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--scale", scale_,
+                   "Multiplies every coordinate, for clouds that are not in metres (feet: 0.3048)")
+        ->check(CLI::Range(1e-6, 1e6));
+    app.add_option("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
+    app.add_flag("--force", force_, "Replace the output if it exists");
+    app.footer("Example:\n  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    check_writable(output_, force_);
+    const map::OccupancyMap occupancy = make(streams.err, common.quiet);
+    const std::string bytes = occupancy.to_bt();
+    write_output(output_, bytes);
+    if (!common.quiet) {
+      fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(),
+                 occupancy.node_count(), occupancy.resolution_m(), bytes.size());
+    }
+    return Exit::ok;
+  }
+
+ private:
+  map::OccupancyMap make(std::ostream& err, bool quiet) const {
+    std::vector<map::PointCloud> clouds;
+    for (const std::filesystem::path& file : clouds_) {
+      const std::string bytes = map::read_file(file);
+      if (map::is_occupancy_file(bytes)) return convert(bytes, file);
+      clouds.push_back(prepared(map::parse_point_cloud(bytes, file.string())));
+      if (!quiet) print_notes(err, clouds.back());
+    }
+    map::OccupancyOptions options{.resolution_m = resolution_m_};
+    if (carve_range_m_) options.carve_range_m = *carve_range_m_;
+    return map::OccupancyMap::build(clouds, options);
+  }
+
+  map::OccupancyMap convert(const std::string& bytes, const std::filesystem::path& file) const {
+    if (clouds_.size() > 1) {
+      throw map::InputError({.file = file.string(),
+                             .place = {},
+                             .element = {},
+                             .found = "is an octree beside other files",
+                             .needed = "one octree alone, or point clouds",
+                             .remedy = "give the clouds that the octree was built from"});
+    }
+    return map::OccupancyMap::parse(bytes, file.string());
+  }
+
+  map::PointCloud prepared(map::PointCloud cloud) const {
+    if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
+    map::check_is_in_metres(cloud);
+    if (!crs_.empty()) cloud.crs = crs_;
+    if (!sensor_.empty()) cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
+    if (no_carving_) cloud.sensor_in_source.reset();
+    return cloud;
+  }
+
+  static void print_notes(std::ostream& err, const map::PointCloud& cloud) {
+    const auto note = [&](const std::string& text) {
+      fmt::print(err, "note: {}: {}\n", cloud.name, text);
+    };
+    for (const std::string& text : cloud.notes) note(text);
+    if (cloud.dropped_not_finite > 0) {
+      note(fmt::format("{} of {} points are not finite and were left out", cloud.dropped_not_finite,
+                       cloud.dropped_not_finite + cloud.points.size()));
+    }
+    if (!cloud.sensor_in_source) {
+      note("no sensor position, so all but its hits stays unknown; give --sensor X,Y,Z");
+    }
+  }
+
+  std::vector<std::filesystem::path> clouds_;
+  std::filesystem::path output_;
+  double resolution_m_ = 0.1;
+  std::vector<double> sensor_;
+  std::optional<double> carve_range_m_, scale_;
+  std::string crs_;
+  bool no_carving_ = false, force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_occupancy_build_command() {
+  return std::make_unique<OccupancyBuildCommand>();
+}
+
+}  // namespace roadbed::tools

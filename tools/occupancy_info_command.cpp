@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/read_file.h"
+#include "roadbed/tools/occupancy_parts.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json bounds_json(const map::Box3& box) {
+  return {{"min_x_m", box.min_in_source.x()}, {"min_y_m", box.min_in_source.y()},
+          {"min_z_m", box.min_in_source.z()}, {"max_x_m", box.max_in_source.x()},
+          {"max_y_m", box.max_in_source.y()}, {"max_z_m", box.max_in_source.z()}};
+}
+
+Json crs_json(const std::string& crs) { return crs.empty() ? Json() : Json(crs); }
+
+/// Leaves of one state: how many, their volume and the box around them.
+struct Space {
+  std::size_t leaves = 0;
+  double volume_m3 = 0.0;
+  map::Box3 box;
+
+  void add(const map::OccupancyCell& cell) {
+    const Eigen::Vector3d least = cell.centre_in_source.array() - 0.5 * cell.size_m;
+    const Eigen::Vector3d most = cell.centre_in_source.array() + 0.5 * cell.size_m;
+    box = leaves == 0
+              ? map::Box3{least, most}
+              : map::Box3{box.min_in_source.cwiseMin(least), box.max_in_source.cwiseMax(most)};
+    ++leaves;
+    volume_m3 += cell.size_m * cell.size_m * cell.size_m;
+  }
+
+  Json json() const {
+    return {{"leaves", leaves},
+            {"volume_m3", volume_m3},
+            {"bounds", leaves == 0 ? Json() : bounds_json(box)}};
+  }
+};
+
+Json octree_info(const map::OccupancyMap& occupancy) {
+  Space occupied, free, known;
+  for (const map::OccupancyCell& cell : occupancy.cells()) {
+    known.add(cell);
+    (cell.state == map::CellState::occupied ? occupied : free).add(cell);
+  }
+  Json info;
+  info["kind"] = "octree";
+  info["crs"] = crs_json(occupancy.crs());
+  info["origin"] = {{"x_m", occupancy.origin_in_source().x()},
+                    {"y_m", occupancy.origin_in_source().y()},
+                    {"z_m", occupancy.origin_in_source().z()}};
+  info["resolution_m"] = occupancy.resolution_m();
+  info["nodes"] = occupancy.node_count();
+  info["leaves"] = known.leaves;
+  info["bounds"] = known.json().at("bounds");
+  info["occupied"] = occupied.json();
+  info["free"] = free.json();
+  return info;
+}
+
+Json cloud_info(const map::PointCloud& cloud) {
+  Json info;
+  info["kind"] = "cloud";
+  info["format"] = cloud.format;
+  info["crs"] = crs_json(cloud.crs);
+  info["unit"] = std::string(name(cloud.unit));
+  info["points"] = cloud.points.size();
+  info["not_finite"] = cloud.dropped_not_finite;
+  info["bounds"] = bounds_json(bounds(cloud));
+  info["sensor"] = Json();
+  if (cloud.sensor_in_source) {
+    const Eigen::Vector3d& at = *cloud.sensor_in_source;
+    info["sensor"] = {{"x_m", at.x()}, {"y_m", at.y()}, {"z_m", at.z()}};
+  }
+  info["notes"] = cloud.notes;
+  return info;
+}
+
+// "x 0 to 10, y -5 to 5, z 0 to 3"
+std::string bounds_text(const Json& bounds) {
+  if (bounds.is_null()) return "none";
+  std::string text;
+  for (const char* axis : {"x", "y", "z"}) {
+    text += fmt::format("{}{} {:.3f} to {:.3f}", text.empty() ? "" : ", ", axis,
+                        bounds.at(fmt::format("min_{}_m", axis)).get<double>(),
+                        bounds.at(fmt::format("max_{}_m", axis)).get<double>());
+  }
+  return text;
+}
+
+std::string text_of(const Json& value) {
+  if (value.is_null()) return "unknown";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.contains("min_x_m")) return bounds_text(value);
+  if (value.contains("leaves")) {
+    return fmt::format("{} leaves, {:.3f} m3, {}", value.at("leaves").get<std::size_t>(),
+                       value.at("volume_m3").get<double>(), bounds_text(value.at("bounds")));
+  }
+  if (value.contains("x_m")) {
+    return fmt::format("{}, {}, {}", value.at("x_m").get<double>(), value.at("y_m").get<double>(),
+                       value.at("z_m").get<double>());
+  }
+  return value.dump();
+}
+
+class OccupancyInfoCommand : public Command {
+ public:
+  void declare(CLI::App& app) override {
+    app.description("Say what an octree or a point cloud holds: counts, bounds, frame");
+    app.add_option("F", input_, "Octree (.bt .ot) or point cloud (.pcd .ply .las .xyz .csv)")
+        ->required();
+    app.add_flag("--json", json_, "Print one JSON document");
+    app.footer("Example:\n  roadbed occupancy info street.bt --json");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions&) override {
+    const std::string bytes = map::read_file(input_);
+    const Json info = map::is_occupancy_file(bytes)
+                          ? octree_info(map::OccupancyMap::parse(bytes, input_.string()))
+                          : cloud_info(map::parse_point_cloud(bytes, input_.string()));
+    if (json_) {
+      streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    } else {
+      for (const auto& [key, value] : info.items()) {
+        fmt::print(streams.out, "{:<14}{}\n", key, text_of(value));
+      }
+    }
+    return Exit::ok;
+  }
+
+ private:
+  std::filesystem::path input_;
+  bool json_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_occupancy_info_command() {
+  return std::make_unique<OccupancyInfoCommand>();
+}
+
+}  // namespace roadbed::tools

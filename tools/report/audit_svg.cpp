@@ -1,0 +1,189 @@
+#include "roadbed/tools/report/audit_svg.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include "roadbed/tools/report/svg.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Ring;
+using Box = Eigen::AlignedBox2d;
+
+constexpr double kWidth_px = 900.0, kHeader_px = 34.0, kMargin_px = 20.0;
+constexpr double kLeastHeight_px = 240.0, kMostHeight_px = 900.0, kMostScale_px_per_m = 60.0;
+constexpr std::size_t kMostFootprints = 400;
+
+constexpr std::string_view kStyle = R"(<style>
+.ground{fill:#f4f4f1}.lane{fill:#dcdfe3;stroke:#c6cad0;stroke-width:.5}
+.occupied{fill:#4b3f33}.body{fill:#2f9be0;fill-opacity:.16;stroke:#2f7fb8;stroke-width:.7;stroke-opacity:.8}
+.unknown{fill:#9467bd;fill-opacity:.25;stroke:#7b4fa6;stroke-width:.7}
+.conflict{fill:#d62728;fill-opacity:.28;stroke:#b01417;stroke-width:1}
+.worst{fill:none;stroke:#b01417;stroke-width:2.2}.witness{fill:#ffd400;stroke:#b01417;stroke-width:1}
+.axle{fill:none;stroke:#1b2029;stroke-width:1;stroke-dasharray:5 3}.rule{fill:none;stroke:#1b2029;stroke-width:1.4}
+.head{fill:#fff}text{font:13px system-ui,-apple-system,"Segoe UI","DejaVu Sans",sans-serif;fill:#1b2029}
+.mid{text-anchor:middle}.over{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}
+</style>
+)";
+
+/// The part of the plane that is shown.
+struct View {
+  PictureFrame frame;
+  double height_px;
+
+  bool shows(const map::Box2& box) const {
+    const Vector2d a = frame.to_px(box.min_in_source), b = frame.to_px(box.max_in_source);
+    return b.x() >= 0.0 && a.x() <= kWidth_px && a.y() >= 0.0 && b.y() <= height_px;
+  }
+};
+
+Ring body_ring(const AuditPicture& picture, double t_s) {
+  const geometry::Pose2 pose = picture.drive.at(t_s).pose();
+  Ring ring;
+  for (const Vector2d& corner : picture.body.corners_in_vehicle()) ring.push_back(pose * corner);
+  return ring;
+}
+
+Ring box_ring(const map::Box2& box) {
+  const Vector2d &a = box.min_in_source, &b = box.max_in_source;
+  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
+}
+
+View look_at(const AuditPicture& picture) {
+  Box box;
+  for (const auto& point : picture.drive.points()) {
+    for (const Vector2d& corner : body_ring(picture, point.t_s)) box.extend(corner);
+  }
+  const Vector2d around = Vector2d::Constant(std::max(3.0, 0.04 * box.sizes().maxCoeff()));
+  box = Box(box.min() - around, box.max() + around);
+  const Vector2d size = box.sizes();
+  double scale = std::min((kWidth_px - 2.0 * kMargin_px) / size.x(), kMostScale_px_per_m);
+  const double inner_px = std::clamp(scale * size.y(), kLeastHeight_px, kMostHeight_px);
+  scale = std::min(scale, inner_px / size.y());
+  const Vector2d middle_px(0.5 * kWidth_px, kHeader_px + 0.5 * inner_px);
+  return {{box.center(), middle_px, scale}, kHeader_px + inner_px};
+}
+
+// Cells above one another, or in the same pixel, are drawn once.
+std::string occupied_svg(const AuditPicture& picture, const View& view) {
+  const double step_m = 0.5 / view.frame.px_per_m;
+  std::set<std::tuple<std::int64_t, std::int64_t, std::int64_t>> drawn;
+  std::string data;
+  for (const map::Box2& box : picture.occupied) {
+    if (!view.shows(box)) continue;
+    const auto step = [&](double at_m) {
+      return static_cast<std::int64_t>(std::llround(at_m / step_m));
+    };
+    const double side_m = box.max_in_source.x() - box.min_in_source.x();
+    const auto place =
+        std::tuple(step(box.min_in_source.x()), step(box.min_in_source.y()), step(side_m));
+    if (drawn.insert(place).second) data += svg_ring(view.frame, box_ring(box));
+  }
+  return svg_path("occupied", data);
+}
+
+std::string lanes_svg(const AuditPicture& picture, const View& view) {
+  std::string data;
+  for (const Ring& lane : picture.lanes) {
+    Box box;
+    for (const Vector2d& point : lane) box.extend(point);
+    if (!lane.empty() && view.shows({box.min(), box.max()})) data += svg_ring(view.frame, lane);
+  }
+  return svg_path("lane", data);
+}
+
+std::string_view look_at_time(const planning::AuditReport& report, double t_s) {
+  const auto covers = [t_s](const auto& stretch) {
+    return stretch.from_s <= t_s && t_s <= stretch.to_s;
+  };
+  const auto any = [&](const auto& all) { return std::any_of(all.begin(), all.end(), covers); };
+  if (any(report.conflicts)) return "conflict";
+  return any(report.unknown) || any(report.undecided) ? "unknown" : "body";
+}
+
+// Footprints about as far apart as a quarter of the body.
+std::vector<double> footprint_times(const AuditPicture& picture) {
+  const auto& rows = picture.drive.points();
+  double way_m = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    way_m += (rows[i].pose().position() - rows[i - 1].pose().position()).norm();
+  }
+  const double wanted = way_m / (0.25 * picture.body.length_m);
+  const std::size_t count =
+      std::clamp(static_cast<std::size_t>(wanted), std::size_t{2}, kMostFootprints);
+  std::vector<double> times;
+  const double start_s = rows.front().t_s, duration_s = rows.back().t_s - start_s;
+  for (std::size_t i = 0; i <= count; ++i) {
+    times.push_back(start_s + duration_s * static_cast<double>(i) / static_cast<double>(count));
+  }
+  return times;
+}
+
+std::string drive_svg(const AuditPicture& picture, const View& view) {
+  std::string body, unknown, conflict;
+  for (const double t_s : footprint_times(picture)) {
+    const std::string_view look = look_at_time(picture.report, t_s);
+    std::string& data = look == "conflict" ? conflict : look == "unknown" ? unknown : body;
+    data += svg_ring(view.frame, body_ring(picture, t_s));
+  }
+  Ring axle;
+  for (const auto& point : picture.drive.points()) axle.push_back(point.pose().position());
+  return svg_path("body", body) + svg_path("unknown", unknown) + svg_path("conflict", conflict) +
+         svg_path("axle", svg_line(view.frame, axle));
+}
+
+std::string conflicts_svg(const AuditPicture& picture, const View& view) {
+  std::string worst, witness, labels;
+  for (const planning::Conflict& conflict : picture.report.conflicts) {
+    worst += svg_ring(view.frame, body_ring(picture, conflict.at.t_s));
+    witness += svg_ring(view.frame, box_ring(conflict.witness));
+    labels +=
+        svg_text("over", view.frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
+                 fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s));
+  }
+  if (picture.report.conflicts.empty() && picture.report.witness) {
+    worst += svg_ring(view.frame, body_ring(picture, picture.report.least_clearance_at_s));
+    witness += svg_ring(view.frame, box_ring(*picture.report.witness));
+  }
+  return svg_path("witness", witness) + svg_path("worst", worst) + labels;
+}
+
+std::string header_svg(const AuditPicture& picture, const View& view) {
+  const planning::AuditReport& report = picture.report;
+  const std::string text = fmt::format(
+      "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", name(report.verdict),
+      report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
+      100.0 * report.unknown_share);
+  double bar_m = 1.0;
+  while (2.5 * bar_m * view.frame.px_per_m < 160.0) bar_m *= 2.5;
+  const double end_px = kWidth_px - kMargin_px, start_px = end_px - bar_m * view.frame.px_per_m;
+  return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kWidth_px, kHeader_px) +
+         svg_text("", {kMargin_px, 22.0}, text) +
+         svg_text("mid", {0.5 * (start_px + end_px), 17.0}, fmt::format("{:g} m", bar_m)) +
+         svg_path("rule", fmt::format("M{} 20v5H{}v-5", svg_number(start_px), svg_number(end_px)));
+}
+
+}  // namespace
+
+std::string audit_svg(const AuditPicture& picture) {
+  const View view = look_at(picture);
+  const std::string height = svg_number(view.height_px);
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+             "viewBox=\"0 0 {0} {1}\" role=\"img\">\n<title>Audit of a drive</title>\n{2}"
+             "<rect class=\"ground\" width=\"{0}\" height=\"{1}\"/>\n",
+             kWidth_px, height, kStyle) +
+         lanes_svg(picture, view) + occupied_svg(picture, view) + drive_svg(picture, view) +
+         conflicts_svg(picture, view) + header_svg(picture, view) + "</svg>\n";
+}
+
+}  // namespace roadbed::tools
