@@ -91,7 +91,7 @@ class AuditCommand : public Command {
                    "What space counts as that was not measured: free, occupied, or report: no "
                    "obstacle, but a drive over it is not clear")
         ->transform(CLI::CheckedTransformer(kPolicies))
-        ->default_str("report");
+        ->option_text("free|occupied|report [report]");
     app.add_option("--ground", ground_m_, "Height of the ground in the occupancy's frame [m]")
         ->capture_default_str();
     app.add_option("--from-height", from_height_m_,

@@ -157,14 +157,24 @@ std::string conflicts_svg(const AuditPicture& picture, const View& view) {
   return svg_path("witness", witness) + svg_path("worst", worst) + labels;
 }
 
+// The longest of 1, 2, 5 × 10ⁿ metres that takes at most 160 pixels.
+double scale_bar_m(double px_per_m) {
+  double best_m = 0.01;
+  for (double power_m = 0.01; power_m < 1e6; power_m *= 10.0) {
+    for (const double length_m : {power_m, 2.0 * power_m, 5.0 * power_m}) {
+      if (length_m * px_per_m <= 160.0) best_m = length_m;
+    }
+  }
+  return best_m;
+}
+
 std::string header_svg(const AuditPicture& picture, const View& view) {
   const planning::AuditReport& report = picture.report;
   const std::string text = fmt::format(
       "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", name(report.verdict),
       report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
       100.0 * report.unknown_share);
-  double bar_m = 1.0;
-  while (2.5 * bar_m * view.frame.px_per_m < 160.0) bar_m *= 2.5;
+  const double bar_m = scale_bar_m(view.frame.px_per_m);
   const double end_px = kWidth_px - kMargin_px, start_px = end_px - bar_m * view.frame.px_per_m;
   return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kWidth_px, kHeader_px) +
          svg_text("", {kMargin_px, 22.0}, text) +

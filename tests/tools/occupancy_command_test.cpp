@@ -1,0 +1,139 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/tests/support/program_run.h"
+
+namespace roadbed::tests {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// Hits on a wall x = 20 m, |y| ≤ 6 m, seen from a scanner at the origin, and a pole at (10, 4).
+std::string street_pcd() {
+  std::string points;
+  int count = 0;
+  const auto hit = [&](double x, double y, double z) {
+    points += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    ++count;
+  };
+  for (double y = -6.0; y < 6.0; y += 0.05) {
+    for (double z = 0.05; z < 2.0; z += 0.05) hit(20.05, y, z);
+  }
+  for (double z = 0.05; z < 2.0; z += 0.05) hit(10.05, 4.05, z);
+  const std::string number = std::to_string(count);
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + number +
+         "\nHEIGHT 1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS " + number + "\nDATA ascii\n" + points;
+}
+
+std::string straight_csv(double from_x, double to_x, double y) {
+  return "t_s,x_m,y_m,heading_rad\n0," + std::to_string(from_x) + "," + std::to_string(y) +
+         ",0\n10," + std::to_string(to_x) + "," + std::to_string(y) + ",0\n";
+}
+
+class OccupancyCommands : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string cloud = folder_.write("street.pcd", street_pcd());
+    const ProgramRun run = run_roadbed({"occupancy", "build", cloud, "-o", octree_, "--quiet"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.out + run.err, "");
+  }
+
+  ProgramRun audit(const std::string& csv, std::vector<std::string> more) const {
+    more.insert(more.begin(),
+                {"audit", "--occupancy", octree_, "--trajectory", folder_.write("drive.csv", csv)});
+    return run_roadbed(more);
+  }
+
+  TemporaryFolder folder_;
+  std::string octree_ = folder_ / "street.bt";
+};
+
+TEST_F(OccupancyCommands, InfoTellsBoundsAndSpaceOfWhatBuildMade) {
+  const ProgramRun run = run_roadbed({"occupancy", "info", octree_, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json info = Json::parse(run.out);
+  EXPECT_EQ(info.at("resolution_m"), 0.1);
+  EXPECT_NEAR(info.at("occupied").at("bounds").at("max_x_m").get<double>(), 20.1, 1e-6);
+  EXPECT_NEAR(info.at("occupied").at("bounds").at("min_y_m").get<double>(), -6.0, 1e-6);
+  EXPECT_NEAR(info.at("occupied").at("volume_m3").get<double>(), 12.0 * 2.0 * 0.1 + 0.02, 0.3);
+  EXPECT_GT(info.at("free").at("volume_m3").get<double>(), 50.0);
+  EXPECT_THAT(run_roadbed({"occupancy", "info", octree_}).out, HasSubstr("resolution_m  0.1"));
+}
+
+TEST_F(OccupancyCommands, AuditTellsTheDistanceToTheWallAndItsExitStatusTheVerdict) {
+  const ProgramRun clear = audit(straight_csv(2, 10, 0), {"--unknown", "free", "--json"});
+  ASSERT_EQ(clear.status, 0) << clear.err;
+  const Json report = Json::parse(clear.out);
+  EXPECT_EQ(report.at("verdict"), "clear");
+  // The pole at (10, 4) is nearer than the wall: 4 m less half the width.
+  EXPECT_NEAR(report.at("least_clearance_m").get<double>(), 4.0 - 0.805, 0.02);
+  EXPECT_TRUE(report.at("conflicts").empty());
+
+  const ProgramRun hit = audit(straight_csv(2, 18, 0), {"--unknown", "free", "--json"});
+  EXPECT_EQ(hit.status, 1);
+  const Json conflict = Json::parse(hit.out).at("conflicts").at(0);
+  // The front meets the wall at x = 20 m: 20 − 3.6767 − 2 metres at 1.6 m/s; the stretch may begin
+  // 4 cm earlier.
+  EXPECT_NEAR(conflict.at("from_s").get<double>(), (20.0 - 3.6767171 - 2.0) / 1.6, 0.025);
+  EXPECT_EQ(conflict.at("to_s").get<double>(), 10.0);
+
+  EXPECT_EQ(audit(straight_csv(2, 10, 0), {"--unknown", "free", "--clearance", "4"}).status, 1);
+  EXPECT_EQ(audit(straight_csv(2, 10, 0), {"--unknown", "free", "--inflate", "4"}).status, 1);
+}
+
+TEST_F(OccupancyCommands, AuditNamesUnknownSpaceAndADriveOutsideIt) {
+  const ProgramRun unknown = audit(straight_csv(2, 10, 40), {});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.out, HasSubstr("verdict          unknown"));
+  EXPECT_THAT(unknown.out, HasSubstr("not measured     100.0 %"));
+  EXPECT_THAT(unknown.err, HasSubstr("outside the measured space"));
+}
+
+TEST_F(OccupancyCommands, AuditDrawsAPictureAndKeepsAnOldOne) {
+  const std::string picture = folder_ / "audit.svg";
+  const std::vector<std::string> options{"--unknown", "free", "--svg", picture};
+  EXPECT_EQ(audit(straight_csv(2, 18, 0), options).status, 1);
+  const std::string svg = bytes_of(picture);
+  EXPECT_THAT(svg, HasSubstr("class=\"conflict\""));
+  EXPECT_THAT(svg, HasSubstr("class=\"witness\""));
+  const ProgramRun again = audit(straight_csv(2, 10, 0), options);
+  EXPECT_EQ(again.status, 1);
+  EXPECT_THAT(again.err, HasSubstr("--force"));
+  EXPECT_EQ(bytes_of(picture), svg);
+}
+
+TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
+  const std::string out = folder_ / "out.bt";
+  const auto expect_refused = [&](const std::vector<std::string>& arguments, const char* reason) {
+    const ProgramRun run = run_roadbed(arguments);
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(reason));
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  const std::string empty = folder_.write("empty.pcd", "");
+  const std::string nan = folder_.write("nan.xyz", "nan nan nan\n");
+  const std::string cut = folder_.write("cut.bt", bytes_of(octree_).substr(0, 500));
+  const std::string drive = folder_.write("ok.csv", straight_csv(0, 1, 0));
+  const std::string backwards =
+      folder_.write("back.csv", "t_s,x_m,y_m,heading_rad\n1,0,0,0\n0,0,0,0\n");
+  expect_refused({"occupancy", "build", empty, "-o", out}, "empty.pcd: is empty");
+  expect_refused({"occupancy", "build", nan, "-o", out}, "is finite");
+  expect_refused({"occupancy", "build", folder_ / "no.pcd", "-o", out}, "no such file");
+  expect_refused({"occupancy", "build", octree_, octree_, "-o", out}, "one octree alone");
+  expect_refused({"occupancy", "build", cut, "-o", out}, "ends after");
+  expect_refused({"occupancy", "info", cut}, "ends after");
+  expect_refused({"audit", "--occupancy", cut, "--trajectory", drive}, "cut.bt");
+  expect_refused({"audit", "--occupancy", octree_, "--trajectory", backwards}, "back.csv:3");
+  EXPECT_EQ(run_roadbed({"occupancy", "build"}).status, 2);
+  EXPECT_EQ(run_roadbed({"audit", "--unknown", "maybe"}).status, 2);
+}
+
+}  // namespace
+}  // namespace roadbed::tests
