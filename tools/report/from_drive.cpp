@@ -29,7 +29,7 @@ Eigen::AlignedBox2d box_around(const std::vector<LineInSource>& route, const Dri
 
 // "ends 0.4 m to the left after 22.0 m".
 std::string note_of(const DriveCycle& cycle) {
-  if (!cycle.chosen) return "none feasible: " + cycle.plan_reason;
+  if (!cycle.chosen) return cycle.plan_reason.empty() ? "none feasible" : cycle.plan_reason;
   const double end_d_m = cycle.chosen->end_d_m;
   const char* side = end_d_m > 0.0 ? "to the left" : "to the right";
   return std::abs(end_d_m) < 0.05

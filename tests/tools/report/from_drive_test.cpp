@@ -33,6 +33,7 @@ Drive short_drive() {
       cycle_at(0.4, Behaviour::cruise, "free again")};
   drive.cycles[1].chosen = planning::Candidate{.end_d_m = -0.42, .end_l_m = 22.0};
   drive.cycles[1].path = {{61.0, 196.7}, {80.0, 196.3}};
+  drive.cycles[2].plan_reason = "all collide";
   drive.events = {{0.3, EventLevel::warning, "close"}};
   drive.verdict = {Outcome::goal_reached, 0.5, "goal reached after 0.5 s"};
   return drive;
@@ -69,7 +70,8 @@ TEST(ReportOf, SaysWhatEachCycleChose) {
   EXPECT_EQ(input.plans[1].note, "ends 0.4 m to the right after 22.0 m");
   EXPECT_EQ(input.plans[1].path.size(), 2U);
   EXPECT_EQ(input.plans[3].reason, "car b");
-  EXPECT_TRUE(input.plans[0].note.starts_with("none feasible"));
+  EXPECT_EQ(input.plans[0].note, "none feasible");
+  EXPECT_EQ(input.plans[2].note, "all collide");
 }
 
 TEST(ReportOf, ShowsObstaclesAndGoalInSourceCoordinates) {
