@@ -163,6 +163,18 @@ bool is_finite(const PlanPiece& piece) {
 
 }  // namespace
 
+double arc_length_m(const ParamPoly3Curve& curve) {
+  const auto speed = [&](double p) {
+    return std::hypot(polynomial(curve.u, p).d1, polynomial(curve.v, p).d1);
+  };
+  constexpr int parts = 16;
+  double length_m = 0.0;
+  for (int i = 0; i < parts; ++i) {
+    length_m += integrate(speed, curve.p_end * i / parts, curve.p_end * (i + 1) / parts);
+  }
+  return length_m;
+}
+
 PlanView::PlanView(std::vector<PlanPiece> pieces) : pieces_(std::move(pieces)) {
   if (pieces_.empty()) throw std::invalid_argument("PlanView: needs at least 1 piece, got 0");
   for (std::size_t i = 0; i < pieces_.size(); ++i) {

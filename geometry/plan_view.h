@@ -32,6 +32,9 @@ struct ParamPoly3Curve {
   double p_end;
 };
 
+/// Length of the curve from parameter 0 to its end [m], by quadrature.
+double arc_length_m(const ParamPoly3Curve& curve);
+
 using PlanCurve = std::variant<LineCurve, ArcCurve, SpiralCurve, Poly3Curve, ParamPoly3Curve>;
 
 /// A curve with its place: `start` is the pose at road station `s_m`.

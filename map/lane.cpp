@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace roadbed::map {
 
@@ -51,6 +52,14 @@ Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
   const auto i = static_cast<std::size_t>(after - stations.begin());
   const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
   return points[i - 1] + share * (points[i] - points[i - 1]);
+}
+
+geometry::Pose2 Lane::pose_at(double s_m) const {
+  constexpr double reach_m = 0.05;
+  const double s = std::clamp(s_m, 0.0, length_m());
+  const Eigen::Vector2d point = centre.in_map.at(s);
+  const Eigen::Vector2d along = centre.in_map.at(s + reach_m) - centre.in_map.at(s - reach_m);
+  return {point.x(), point.y(), std::atan2(along.y(), along.x())};
 }
 
 double Lane::width_m(double s_m) const {

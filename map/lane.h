@@ -88,8 +88,9 @@ struct Lane {
 
   double length_m() const { return centre.in_map.length_m(); }
 
-  /// Place on the centreline with its direction, clamped to the lane.
-  geometry::Pose2 pose_at(double s_m) const { return centre.in_map.pose_at(s_m); }
+  /// Place on the centreline, clamped to the lane, with its direction over ±5 cm: records of real
+  /// files do not meet exactly, and a step of a fraction of a millimetre has no direction.
+  geometry::Pose2 pose_at(double s_m) const;
 
   /// Distance between the borders at a station [m].
   double width_m(double s_m) const;

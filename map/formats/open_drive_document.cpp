@@ -90,25 +90,40 @@ void check_range(const XmlDocument& xml, pugi::xml_node node, const geometry::Pl
   }
 }
 
+// paramPoly3: its parameter is taken as proportional to s, so its length must be the stated one.
+void check_param_poly3(const RoadRecord& road, const geometry::PlanPiece& piece, long line,
+                       Document& document) {
+  const auto* curve = std::get_if<geometry::ParamPoly3Curve>(&piece.curve);
+  if (curve == nullptr) return;
+  const double length_m = geometry::arc_length_m(*curve);
+  if (std::abs(length_m - piece.length_m) > 1e-3 * std::max(1.0, piece.length_m)) {
+    document.remarks.push_back(
+        {"import.param-poly3-length", true, "road " + road.id, line,
+         fmt::format("paramPoly3 is {:.4f} m long but its length says {:.4f} m; correct one",
+                     length_m, piece.length_m)});
+  }
+}
+
 // Shorter than this a piece has no direction of its own; leaving it out moves nothing.
 constexpr double kShortestPieceM = 1e-9;
 
 void read_plan_view(const XmlDocument& xml, pugi::xml_node node, RoadRecord& road,
                     Document& document) {
-  for (const auto geometry : node.child("planView").children("geometry")) {
-    const double length_m = xml.number(geometry, "length");
+  for (const auto record : node.child("planView").children("geometry")) {
+    const double length_m = xml.number(record, "length");
     if (length_m < kShortestPieceM) {
       document.remarks.push_back(
-          {"import.zero-length", true, "road " + road.id, xml.line_of(geometry),
+          {"import.zero-length", true, "road " + road.id, xml.line_of(record),
            fmt::format("geometry of length {} m is left out; remove it", length_m)});
       continue;
     }
     road.plan_pieces.push_back(
-        {xml.number(geometry, "s"),
+        {xml.number(record, "s"),
          length_m,
-         {xml.number(geometry, "x"), xml.number(geometry, "y"), xml.number(geometry, "hdg")},
-         read_curve(xml, geometry, length_m)});
-    check_range(xml, geometry, road.plan_pieces.back());
+         {xml.number(record, "x"), xml.number(record, "y"), xml.number(record, "hdg")},
+         read_curve(xml, record, length_m)});
+    check_range(xml, record, road.plan_pieces.back());
+    check_param_poly3(road, road.plan_pieces.back(), xml.line_of(record), document);
   }
   std::stable_sort(road.plan_pieces.begin(), road.plan_pieces.end(),
                    [](const auto& a, const auto& b) { return a.s_m < b.s_m; });

@@ -97,15 +97,62 @@ class Linker {
       for (const auto& [id, lane] : sections[s].lanes) {
         const std::size_t next = next_section(road_at(road), s, id);
         if (id == 0 || next >= sections.size()) continue;
-        for (const int to : lane.successors) join_sections(road, s, id, next, to, lane.line);
-        for (const auto& [next_id, next_lane] : sections[next].lanes) {
-          const auto& back = next_lane.predecessors;
-          if (std::find(back.begin(), back.end(), id) != back.end()) {
-            join_sections(road, s, id, next, next_id, next_lane.line);
-          }
+        for (const int to : lane.successors) {
+          join_sections(road, s, id, next, to, lane.line);
+          check_declared_back(road, id, next, to);
         }
       }
+      for (const auto& [id, lane] : sections[s].lanes) link_back(road, s, id, lane);
     }
+  }
+
+  // A lane's predecessors in the section before it on its side.
+  void link_back(std::size_t road, std::size_t section, int id, const LaneRecord& lane) {
+    if (id == 0) return;
+    const auto before = previous_section(road, section, id);
+    if (!before) return;
+    for (const int from : lane.predecessors) {
+      const auto& lanes = road_at(road).sections[*before].lanes;
+      const auto found = lanes.find(from);
+      if (found == lanes.end()) {
+        fault(lane_name(road, section, id), lane.line,
+              fmt::format("is linked to lane {} of the section before, which is not there", from));
+        continue;
+      }
+      join_sections(road, *before, from, section, id, lane.line);
+      const auto& successors = found->second.successors;
+      if (std::find(successors.begin(), successors.end(), id) == successors.end()) {
+        fault(lane_name(road, *before, from), found->second.line,
+              fmt::format("does not name lane {} of the next section, which names it; name each "
+                          "other in both",
+                          id));
+      }
+    }
+  }
+
+  void check_declared_back(std::size_t road, int id, std::size_t next, int to) {
+    const auto& lanes = road_at(road).sections[next].lanes;
+    const auto found = lanes.find(to);
+    if (found == lanes.end()) return;  // said by join_sections
+    const auto& back = found->second.predecessors;
+    if (std::find(back.begin(), back.end(), id) == back.end()) {
+      fault(lane_name(road, next, to), found->second.line,
+            fmt::format("does not name lane {} of the section before, which names it; name each "
+                        "other in both",
+                        id));
+    }
+  }
+
+  std::optional<std::size_t> previous_section(std::size_t road, std::size_t section,
+                                              int sign) const {
+    for (std::size_t i = section; i-- > 0;) {
+      if (next_section(road_at(road), i, sign) == section) return i;
+    }
+    return {};
+  }
+
+  std::string lane_name(std::size_t road, std::size_t section, int id) const {
+    return fmt::format("lane {}/{}/{}", road_at(road).id, section, id);
   }
 
   void join_sections(std::size_t road, std::size_t section, int lane, std::size_t next, int to,
