@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/cloud_filter.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/occupancy_parts.h"
@@ -38,6 +39,15 @@ class OccupancyBuildCommand : public Command {
     app.add_flag("--no-carving", no_carving_, "Only mark hits, whatever viewpoints the files name");
     app.add_option("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
         ->check(CLI::PositiveNumber);
+    app.add_option("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
+        ->check(CLI::Range(1e-3, 1e3));
+    app.add_option("--outlier-neighbours", filter_.outlier_neighbours,
+                   "Leave out points far from this many neighbours, as compared to the rest (PCL)")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--outlier-deviations", filter_.outlier_deviations,
+                   "Far is this many standard deviations over the mean distance")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     app.add_option("--scale", scale_,
                    "Multiplies every coordinate, for clouds that are not in metres (feet: 0.3048)")
         ->check(CLI::Range(1e-6, 1e6));
@@ -87,6 +97,7 @@ class OccupancyBuildCommand : public Command {
   map::PointCloud prepared(map::PointCloud cloud) const {
     if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
     map::check_is_in_metres(cloud);
+    if (filter_.does_something()) cloud = map::filtered(cloud, filter_);
     if (!crs_.empty()) cloud.crs = crs_;
     if (!sensor_.empty()) cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
     if (no_carving_) cloud.sensor_in_source.reset();
@@ -112,6 +123,7 @@ class OccupancyBuildCommand : public Command {
   double resolution_m_ = 0.1;
   std::vector<double> sensor_;
   std::optional<double> carve_range_m_, scale_;
+  map::CloudFilter filter_;
   std::string crs_;
   bool no_carving_ = false, force_ = false;
 };

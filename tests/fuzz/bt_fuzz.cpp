@@ -1,0 +1,16 @@
+// OctoMap .bt in, octree or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::map::OccupancyMap::parse("# Octomap OcTree binary file\n" + bytes, "fuzz.bt");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,16 @@
+// LAS in, cloud or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/point_cloud.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::map::parse_point_cloud("LASF" + bytes, "fuzz.las");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,16 @@
+// trajectory.csv in, drive or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/support/trajectory_csv.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::tools::parse_trajectory_csv(bytes, "fuzz.csv");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}

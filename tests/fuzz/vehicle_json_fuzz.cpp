@@ -1,0 +1,16 @@
+// vehicle.json in, vehicle or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/support/vehicle_json.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::tools::parse_vehicle_json(bytes, "fuzz.json");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}
