@@ -120,7 +120,14 @@ class ClosedLoop {
             .acceleration_mps2 = measured.acceleration_mps2,
             .lead = lead,
             .lead_name = lead ? lead_name(*lead) : "",
-            .path_is_free = keeper_.last_plan().chosen.has_value()};
+            .path_left_m = path_left_m(lead)};
+  }
+
+  /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
+  std::optional<double> path_left_m(const std::optional<Lead>& lead) const {
+    if (keeper_.last_plan().chosen) return std::nullopt;
+    if (keeper_.something_is_in_the_way() && !lead) return 0.0;
+    return keeper_.checked_ahead_m();
   }
 
   std::string lead_name(const Lead& lead) const {

@@ -40,6 +40,14 @@ Option by_goal(const SpeedQuestion& q, double ahead_m, double deceleration) {
           fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
 }
 
+/// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
+Option by_path(const SpeedQuestion& q, double ahead_m, double deceleration) {
+  const double left_m = *q.path_left_m;
+  return {planning::stopping_speed(left_m, deceleration),
+          planning::stopping_speed(left_m - ahead_m, deceleration), Behaviour::stop,
+          fmt::format("no candidate is feasible, the last path is good for {:.1f} m", left_m)};
+}
+
 /// In the lead's frame the approach is a stop: at the gap that belongs to the lead's speed.
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   const double lead_mps = std::max(0.0, q.lead->speed_mps);
@@ -59,6 +67,7 @@ Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
 std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
   const double ahead_m = preview_m(q, options.preview_s);
   std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
+  if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;
 }
@@ -72,22 +81,14 @@ const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*w
 bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
   if (q.speed_mps > kAtRest_mps) return false;
   if (q.goal_s_m - q.s_m < kStopping_m) return true;
+  if (q.path_left_m && *q.path_left_m < kStopping_m) return true;
   return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
          q.lead->speed_mps < kAtRest_mps;
-}
-
-/// Nothing is feasible: come to rest on the last path as hard as the cruise control may.
-SpeedAnswer stop_without_path(const SpeedQuestion& q) {
-  return {.set = {},
-          .behaviour = Behaviour::stop,
-          .reason = "no candidate is feasible",
-          .hold = q.speed_mps < kAtRest_mps};
 }
 
 }  // namespace
 
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options) {
-  if (!question.path_is_free) return stop_without_path(question);
   const std::vector<Option> all = options_of(question, options);
   const Option& now = slowest(all, &Option::now);
   const SpeedTarget& ahead = slowest(all, &Option::ahead).ahead;

@@ -19,8 +19,9 @@ struct SpeedQuestion {
   double speed_mps = 0.0;
   double acceleration_mps2 = 0.0;
   std::optional<Lead> lead;
-  std::string lead_name;     ///< for the reason
-  bool path_is_free = true;  ///< false: the planner found nothing; stop
+  std::string lead_name;  ///< for the reason
+  /// Set if the planner found nothing: the last path is still good for so far; stop on it.
+  std::optional<double> path_left_m;
 };
 
 /// The set speed, and what it is due to.
@@ -33,13 +34,15 @@ struct SpeedAnswer {
 
 struct DecisionOptions {
   double deceleration_mps2 = 1.5;
+  double most_deceleration_mps2 = 2.0;  ///< to stop on a path that ends
   double headway_s = 1.5;
   double standstill_gap_m = 5.0;
   double preview_s = 0.45;  ///< the actuator's lag: deceleration is asked for this much ahead
   double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
 };
 
-/// The least of: the ceiling, the stop at the goal, and the approach to the lead, which closes up
+/// The least of: the ceiling, the stop at the goal, the stop on a path that ends, and the approach
+/// to the lead, which closes up
 /// at a comfortable deceleration to the gap that the cruise control then keeps.
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options);
 

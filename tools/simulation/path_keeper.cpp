@@ -9,6 +9,7 @@ namespace roadbed::tools {
 namespace {
 
 using planning::LateralState;
+using planning::Rejection;
 
 constexpr double kReturn_m = 20.0;
 
@@ -18,10 +19,30 @@ double fade(double s_m, double from_m) {
   return 1.0 - share * share * (3.0 - 2.0 * share);
 }
 
+/// The line as planning sees it: past `end_m`, where the vehicle never comes, it goes on straight
+/// with the room that it has there, so that no bend or dead end behind the goal matters.
+planning::LineView straight_past(const planning::ReferenceLine& line, double end_m) {
+  const auto at = [&line, end_m](double s_m) {
+    planning::ReferencePoint point = line.at(std::min(s_m, end_m));
+    if (s_m <= end_m) return point;
+    const Eigen::Vector2d along{std::cos(point.heading_rad), std::sin(point.heading_rad)};
+    return planning::ReferencePoint{.s_m = s_m,
+                                    .in_map = point.in_map + (s_m - end_m) * along,
+                                    .heading_rad = point.heading_rad};
+  };
+  const auto corridor_at = [&line, end_m](double s_m) {
+    return line.corridor_at(std::min(s_m, end_m));
+  };
+  return {at, corridor_at};
+}
+
 }  // namespace
 
 PathKeeper::PathKeeper(const Scenario& scenario, const World& world, const Bounds& bounds)
-    : scenario_(scenario), world_(world), bounds_(bounds) {}
+    : scenario_(scenario),
+      world_(world),
+      bounds_(bounds),
+      line_(straight_past(world.line, world.line.goal_s_m() + scenario.vehicle.front_m() + 1.0)) {}
 
 LateralState PathKeeper::start_state(const VehicleState& measured) {
   const control::SingleTrackState& motion = measured.motion;
@@ -43,7 +64,7 @@ void PathKeeper::plan(double t_s, const VehicleState& measured, double target_mp
   const LateralState start = start_state(measured);
   planning::PlanOptions options;
   options.clearance_m = scenario_.options.clearance_m;
-  planning::PlanInput input{.line = world_.line,
+  planning::PlanInput input{.line = line_,
                             .start = start,
                             .start_t_s = t_s,
                             .speed = {.speed_mps = measured.motion.speed_mps,
@@ -59,12 +80,17 @@ void PathKeeper::plan(double t_s, const VehicleState& measured, double target_mp
   plan_ = planning::plan_path(input, scenario_.vehicle, options);
   if (plan_.chosen) {
     path_end_s_m_ = plan_.start.s_m + plan_.chosen->end_l_m;
+    checked_to_s_m_ = plan_.start.s_m + options.max_l_m;
     path_.emplace(world_.line, [kept = plan_](double s_m) { return kept.lateral_at(s_m); });
   } else if (!path_) {
-    path_end_s_m_ = start.s_m;
+    path_end_s_m_ = checked_to_s_m_ = start.s_m;
     path_.emplace(world_.line,
                   [d_m = start.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
   }
+}
+
+bool PathKeeper::something_is_in_the_way() const {
+  return plan_.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
 }
 
 PlannedPath PathKeeper::expected_path() const {

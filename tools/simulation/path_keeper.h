@@ -32,6 +32,12 @@ class PathKeeper {
   /// Station of the measured rear axle at the last cycle.
   double s_m() const { return s_m_; }
 
+  /// How far the kept path was found feasible when it was planned, from the vehicle on.
+  double checked_ahead_m() const { return checked_to_s_m_ - s_m_; }
+
+  /// Whether the last cycle rejected candidates because they would touch something.
+  bool something_is_in_the_way() const;
+
   /// The path to drive.
   const PlannedPath& path() const { return *path_; }
 
@@ -45,9 +51,11 @@ class PathKeeper {
   const Scenario& scenario_;
   const World& world_;
   Bounds bounds_;
+  planning::LineView line_;
   planning::Plan plan_;
   std::optional<PlannedPath> path_;
   double path_end_s_m_ = 0.0;
+  double checked_to_s_m_ = 0.0;
   double s_m_ = 0.0;
   bool from_measurement_ = false;
 };

@@ -11,7 +11,12 @@ const planning::SpeedCeiling kTen({10.0, 10.0}, 1000.0, 1.5);
 SpeedAnswer ask(const SpeedQuestion& question) { return choose_speed(question, {}); }
 
 SpeedQuestion free_road(double speed_mps) {
-  return {.ceiling = kTen, .goal_s_m = 1000.0, .speed_mps = speed_mps, .lead = {}, .lead_name = {}};
+  return {.ceiling = kTen,
+          .goal_s_m = 1000.0,
+          .speed_mps = speed_mps,
+          .lead = {},
+          .lead_name = {},
+          .path_left_m = {}};
 }
 
 TEST(Decision, FreeRoadIsDrivenAtTheCeiling) {
@@ -59,12 +64,16 @@ TEST(Decision, WaitsBehindAStandingLeadAndFollowsWhenItLeaves) {
   EXPECT_FALSE(ask(question).hold);
 }
 
-TEST(Decision, StopsWhenNothingIsFeasible) {
+TEST(Decision, StopsBeforeTheLastPathEndsWhenNothingIsFeasible) {
   SpeedQuestion question = free_road(8.0);
-  question.path_is_free = false;
+  question.path_left_m = 16.0;
   EXPECT_EQ(ask(question).behaviour, Behaviour::stop);
-  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -2.0, 1e-12);
   EXPECT_FALSE(ask(question).hold);
+  question.path_left_m = 200.0;  // far enough to drive on until the next cycle
+  EXPECT_EQ(ask(question).behaviour, Behaviour::cruise);
+  question.path_left_m = 0.0;
+  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <random>
@@ -113,6 +114,7 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
         name, trip.route.length_m, trip.route.lane_changes, result.worst_off_road_m,
         result.worst_tracking_m, result.worst_lateral_mps2, result.replanned, result.infeasible,
         result.drive.verdict.text);
+    std::fflush(stdout);
     EXPECT_EQ(result.drive.verdict.outcome, Outcome::goal_reached) << name;
     EXPECT_EQ(result.worst_off_road_m, 0.0) << name;
   }
