@@ -199,32 +199,108 @@ def directions(random):
         angle += step
 
 
-def scan(things, x, y, heading, random):
-    """Points [m] seen from a place, thinned."""
-    near = [t for t in things if hypot(t.x - x, t.y - y) < REACH + t.radius]
-    bearings = []  # of each thing: direction and half its angle of view
-    for thing in near:
-        distance = hypot(thing.x - x, thing.y - y)
-        half = pi if distance <= thing.radius else atan2(thing.radius, distance - thing.radius)
-        bearings.append((thing, atan2(thing.y - y, thing.x - x), half))
-    kept = {}
-    for direction in directions(random):
-        turn = heading + direction
-        ahead = [thing for thing, bearing, half in bearings
-                 if abs((turn - bearing + pi) % (2 * pi) - pi) <= half]
-        for degrees in DOWN_TO_UP:
-            up = radians(degrees)
-            ray = cos(turn) * cos(up), sin(turn) * cos(up), sin(up)
-            distance = first_hit(ahead, x, y, SCANNER_HEIGHT, *ray)
-            if distance is None:
+class Scanner:
+    """Stands at a place and keeps the points [m] that it has seen from there."""
+
+    def __init__(self, things, x, y, heading, random):
+        self.place, self.heading, self.random = (x, y, SCANNER_HEIGHT), heading, random
+        self.points = []
+        self.views = []  # of each thing: itself, its direction and half its angle of view
+        for thing in things:
+            distance = hypot(thing.x - x, thing.y - y)
+            if distance < REACH + thing.radius:
+                near = distance <= thing.radius
+                half = pi if near else atan2(thing.radius, distance - thing.radius)
+                self.views.append((thing, atan2(thing.y - y, thing.x - x), half))
+
+    def ahead(self, turn):
+        return [thing for thing, bearing, half in self.views
+                if abs((turn - bearing + pi) % (2 * pi) - pi) <= half]
+
+    def look(self, turn, up, ahead=None):
+        """Distance to what is seen there, and the point, measured with noise; None for nothing."""
+        ray = cos(turn) * cos(up), sin(turn) * cos(up), sin(up)
+        distance = first_hit(self.ahead(turn) if ahead is None else ahead, *self.place, *ray)
+        if distance is None:
+            return None
+        measured = distance + self.random.gauss(0.0, RANGE_NOISE)
+        return distance, tuple(o + measured * d for o, d in zip(self.place, ray))
+
+    def sweep(self):
+        """Looks all around and keeps one point per cube."""
+        kept = {}
+        for direction in directions(self.random):
+            turn = self.heading + direction
+            ahead = self.ahead(turn)
+            for degrees in DOWN_TO_UP:
+                seen = self.look(turn, radians(degrees), ahead)
+                if seen is not None:
+                    kept.setdefault(tuple(int(v // THINNING) for v in seen[1]), seen[1])
+        self.points += kept.values()
+        return self
+
+    def look_through(self, x, y, z):
+        """Keeps the point seen through a place in free space. Whether the view is free."""
+        dx, dy, dz = x - self.place[0], y - self.place[1], z - self.place[2]
+        flat = hypot(dx, dy)
+        seen = self.look(atan2(dy, dx), atan2(dz, flat))
+        if seen is None or seen[0] < hypot(flat, dz) + CELL:
+            return False
+        self.points.append(seen[1])
+        return True
+
+
+# Where the car goes, space is to be measured over the whole height of a car, in cubes of CELL.
+CELL = 0.2  # m
+LAYERS = range(1, 8)  # of cubes above the ground
+RIGHT, LEFT = -1.6, 2.2  # m from the way's middle
+
+
+def columns_of_way(roads):
+    """Columns of cubes that the car may pass through, in order of the way."""
+    columns = {}
+    for x, y, heading in standing_places(roads, CELL / 2):
+        for k in range(int((LEFT - RIGHT) / CELL * 2) + 1):
+            t = RIGHT + k * CELL / 2
+            columns[int((x - sin(heading) * t) // CELL), int((y + cos(heading) * t) // CELL)] = None
+    return columns
+
+
+def cubes_seen(place, point, columns):
+    """Cubes of the columns through which a ray goes."""
+    span = [b - a for a, b in zip(place, point)]
+    if span[2] >= 0:
+        return
+    top = (LAYERS.stop * CELL - place[2]) / span[2]  # share of the ray above the highest layer
+    steps = int(hypot(*span) * (1 - top) / (0.4 * CELL)) + 1
+    for k in range(steps):
+        share = top + (1 - top) * k / steps
+        i, j, layer = (int((a + share * d) // CELL) for a, d in zip(place, span))
+        if (i, j) in columns:
+            yield i, j, layer
+
+
+def look_where_nobody_looked(roads, scanners):
+    """Single rays through those cubes of the way that no sweep has met."""
+    columns = columns_of_way(roads)
+    seen = set()
+    for scanner in scanners:
+        for point in scanner.points:
+            seen.update(cubes_seen(scanner.place, point, columns))
+    for i, j in columns:
+        x, y = (i + 0.5) * CELL, (j + 0.5) * CELL
+        near = sorted(scanners, key=lambda s: hypot(s.place[0] - x, s.place[1] - y))[:12]
+        for layer in LAYERS:
+            if (i, j, layer) in seen:
                 continue
-            distance += random.gauss(0.0, RANGE_NOISE)
-            point = tuple(o + distance * d for o, d in zip((x, y, SCANNER_HEIGHT), ray))
-            kept.setdefault(tuple(int(v // THINNING) for v in point), point)
-    return list(kept.values())
+            for scanner in near:
+                if scanner.look_through(x, y, (layer + 0.5) * CELL):
+                    seen.update(cubes_seen(scanner.place, scanner.points[-1], columns))
+                    break
 
 
-def write_pcd(file, points, sensor):
+def write_pcd(file, scanner):
+    points, sensor = scanner.points, scanner.place
     header = (
         "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\n"
         f"TYPE F F F\nCOUNT 1 1 1\nWIDTH {len(points)}\nHEIGHT 1\n"
@@ -237,21 +313,23 @@ def write_pcd(file, points, sensor):
 def narrow_gap():
     """Two walls along the lane that leave 2.9 m between them, seen from in front of them."""
     walls = [Box(170.0, y, 0.0, 12.0, 0.3, 0.0, 1.2) for y in (196.75, 199.95)]
-    return scan(walls, 155.0, 198.25, 0.0, Random(20261121)), (155.0, 198.25, SCANNER_HEIGHT)
+    return Scanner(walls, 155.0, 198.25, 0.0, Random(20261121)).sweep()
 
 
 def main():
     roads = read_roads(ElementTree.parse(DATA / "town.xodr").getroot())
     things = town_things(roads, json.loads((DATA / "drive.json").read_text()))
+    random = Random(20261122)
+    scanners = [Scanner(things, *pose, random).sweep() for pose in standing_places(roads, 12.0)]
+    look_where_nobody_looked(roads, scanners)
+
     folder = DATA / "scans"
     folder.mkdir(exist_ok=True)
     for old in folder.glob("*.pcd"):
         old.unlink()
-    random = Random(20261122)
-    for number, (x, y, heading) in enumerate(standing_places(roads, 12.0)):
-        points = scan(things, x, y, heading, random)
-        write_pcd(folder / f"scan_{number:02}.pcd", points, (x, y, SCANNER_HEIGHT))
-    write_pcd(DATA / "scenarios" / "narrow_gap.pcd", *narrow_gap())
+    for number, scanner in enumerate(scanners):
+        write_pcd(folder / f"scan_{number:02}.pcd", scanner)
+    write_pcd(DATA / "scenarios" / "narrow_gap.pcd", narrow_gap())
 
 
 if __name__ == "__main__":
