@@ -145,6 +145,53 @@ TEST(BadInput, UnreachableGoalIsAnAnswerWithAReason) {
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
+/// Content that no reader of clouds can use.
+std::vector<BadMap> bad_clouds() {
+  const std::string scan = bytes_of(data_folder() / "scans" / "scan_00.pcd");
+  const std::string header = scan.substr(0, scan.find("DATA binary"));
+  return {
+      {"empty.pcd", ""},
+      {"header_only.pcd", header},
+      {"truncated.pcd", scan.substr(0, scan.size() - 5)},
+      {"too_many.pcd", replaced(scan, "\nPOINTS ", "\nPOINTS 99999999")},
+      {"not_a_cloud.pcd", "lane,x,y\n1,2,3\n"},
+      {"nan.xyz", "nan nan nan\nnan 1 2\n"},
+      {"empty.bt", ""},
+      {"ones.bt", std::string(4096, '\xff')},
+  };
+}
+
+TEST(BadInput, CloudThatCannotBeUsedIsRefusedAndLeavesNoOutput) {
+  for (const BadMap& cloud : bad_clouds()) {
+    SCOPED_TRACE(cloud.name);
+    const TemporaryFolder folder;
+    const std::string file = folder.write(cloud.name, cloud.bytes);
+    expect_refused(run_roadbed({"occupancy", "build", file, "-o", folder / "out.bt"}), cloud.name);
+    EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{cloud.name});
+  }
+}
+
+TEST(BadInput, ScenarioThatCannotBeUsedIsRefusedAndLeavesNoFolder) {
+  const std::string good = bytes_of(data_folder() / "scenarios" / "parked_car.json");
+  const std::string town = data_folder() / "town.xodr";
+  const std::string here = replaced(good, "../town.xodr", town);
+  const std::vector<BadMap> scenarios{
+      {"empty.json", ""},
+      {"truncated.json", good.substr(0, good.size() / 2)},
+      {"unknown_key.json", replaced(here, "\"goal\"", "\"gaol\": 1, \"goal\"")},
+      {"no_map.json", replaced(good, "../town.xodr", "no_such.xodr")},
+      {"off_road.json", replaced(here, "lane:1/3/1@6", "0,0")},
+  };
+  for (const BadMap& scenario : scenarios) {
+    SCOPED_TRACE(scenario.name);
+    const TemporaryFolder folder;
+    const std::string file = folder.write(scenario.name, scenario.bytes);
+    const ProgramRun run = run_roadbed({"simulate", file, "-o", folder / "out"});
+    expect_refused(run, "");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+}
+
 TEST(BadInput, DamagedCompiledMapIsRefusedWhereverItIsCutOrChanged) {
   const TemporaryFolder folder;
   const std::string good = folder / "town.rbm";

@@ -14,7 +14,7 @@ namespace roadbed::tests {
 namespace {
 
 constexpr const char* kStart = "lane:1/3/1@6";  // as in data/drive.json
-constexpr const char* kGoal = "lane:7/0/1@55";
+constexpr const char* kGoal = "lane:7/0/1@35";
 
 std::string town() { return data_folder() / "town.xodr"; }
 
