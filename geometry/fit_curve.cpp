@@ -107,13 +107,23 @@ class Fit {
     return true;
   }
 
+  // Moves the parameters to the feet, so that the first point stays at the start of the curve and
+  // the last one at its end, and raises weights.
   void measure() {
+    const double s_per_u = curve_.length_m() / length_m_;
+    std::vector<LinePosition> feet;
+    feet.reserve(samples_.size());
+    for (const Sample& sample : samples_) {
+      feet.push_back(curve_.project(sample.point, sample.u * s_per_u));
+    }
+    const double first_m = feet.front().s_m, range_m = feet.back().s_m - first_m;
     largest_move_m_ = 0.0;
-    const double u_per_s = length_m_ / curve_.length_m();
-    for (Sample& sample : samples_) {
-      const LinePosition foot = curve_.project(sample.point, sample.u / u_per_s);
-      sample.u = std::clamp(foot.s_m * u_per_s, 0.0, length_m_);
-      const double move_m = std::abs(foot.d_m);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      Sample& sample = samples_[i];
+      if (range_m > 0.0) {
+        sample.u = std::clamp((feet[i].s_m - first_m) / range_m, 0.0, 1.0) * length_m_;
+      }
+      const double move_m = std::abs(feet[i].d_m);
       largest_move_m_ = std::max(largest_move_m_, move_m);
       const double excess = move_m / (kAim * tolerance_m_);
       if (move_m > tolerance_m_) {

@@ -99,8 +99,9 @@ std::size_t SmoothCurve::span_of(double u) const {
 Eigen::Vector2d SmoothCurve::derivative(double u, int order) const {
   const std::size_t k = span_of(u);
   const double t = u / knot_distance_ - static_cast<double>(k);
-  const double scale = order == 0 ? 1.0 : std::pow(knot_distance_, -order);
   const Eigen::Vector2d value(evaluate(spans_[k].x, t, order), evaluate(spans_[k].y, t, order));
+  double scale = 1.0;
+  for (int i = 0; i < order; ++i) scale /= knot_distance_;
   return order == 0 ? Eigen::Vector2d(spans_[k].origin + value) : Eigen::Vector2d(scale * value);
 }
 

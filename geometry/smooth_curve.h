@@ -38,7 +38,7 @@ class SmoothCurve {
   /// Stations of the knots.
   const std::vector<double>& knots_m() const { return arc_length_.stations_m(); }
 
-  /// Point at arc length `s_m`. O(log N), about 1 µs.
+  /// Point at arc length `s_m`. O(log N), a few µs.
   CurvePoint at(double s_m) const;
 
   /// Foot of the perpendicular from a point: the nearest one of the whole curve, O(N); with

@@ -64,7 +64,7 @@ class ReferenceLine {
   double goal_s_m() const;
 
   /// Point at `s_m`. Past the end the line goes on straight; before 0 it follows the lane's first
-  /// metres behind the start, where there are any, then goes on straight. O(log N), about 1 µs.
+  /// metres behind the start, where there are any, then goes on straight. O(log N), a few µs.
   ReferencePoint at(double s_m) const;
 
   /// Room and speed limit at `s_m`, clamped to the line.

@@ -90,6 +90,15 @@ TEST(FitCurve, RightTurnsOfStreetCornersStayNearAndSteerable) {
   }
 }
 
+TEST(FitCurve, BeginsAndEndsBesideItsFirstAndLastPointInABend) {
+  const Points points = turn_of(5.0, 2.0, 0.0);
+  const FittedCurve fitted = fit_curve(points);
+  EXPECT_LE(move_of(points, fitted.curve), 0.301);
+  EXPECT_LE(fitted.largest_move_m, 0.301);
+  EXPECT_NEAR(fitted.curve.project(points.front()).s_m, 0.0, 0.25);
+  EXPECT_NEAR(fitted.curve.project(points.back()).s_m, fitted.curve.length_m(), 0.25);
+}
+
 TEST(FitCurve, KeepsATighterToleranceWhereAskedTo) {
   const Points points = turn_of(6.0, std::numbers::pi / 2.0, 20.0);
   for (const double tolerance_m : {0.2, 0.1, 0.05}) {
