@@ -8,6 +8,7 @@
 #include "roadbed/geometry/rectangle.h"
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/occupancy/load_occupancy.h"
 #include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/support/place.h"
@@ -50,23 +51,9 @@ Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
   return *std::move(answer.route);
 }
 
-bool is_octree(const std::filesystem::path& file) {
-  return file.extension() == ".bt" || file.extension() == ".ot";
-}
-
-std::optional<map::OccupancyMap> load_occupancy(const Scenario& scenario) {
-  const auto& files = scenario.occupancy_files;
-  if (files.empty()) return std::nullopt;
-  if (files.size() == 1 && is_octree(files.front())) return map::OccupancyMap::load(files.front());
-  std::vector<map::PointCloud> clouds;
-  for (const std::filesystem::path& file : files) {
-    if (is_octree(file)) {
-      refuse(scenario, "/occupancy", file.string() + " is an octree beside other files",
-             "give one octree, or clouds only");
-    }
-    clouds.push_back(map::read_point_cloud(file));
-  }
-  return map::OccupancyMap::build(clouds, {});
+std::optional<map::OccupancyMap> occupancy_of(const Scenario& scenario) {
+  if (scenario.occupancy_files.empty()) return std::nullopt;
+  return map::load_occupancy(scenario.occupancy_files);
 }
 
 /// Makes obstacles of the scenario's; one instance per world.
@@ -156,7 +143,7 @@ World make_world(const Scenario& scenario) {
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {
     obstacles.push_back(maker.make(obstacle));
   }
-  std::optional<map::OccupancyMap> occupancy = load_occupancy(scenario);
+  std::optional<map::OccupancyMap> occupancy = occupancy_of(scenario);
   std::unique_ptr<const map::ClearanceField> field;
   if (occupancy) {
     field = std::make_unique<map::ClearanceField>(

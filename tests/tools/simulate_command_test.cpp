@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/support/trajectory_csv.h"
+
+namespace roadbed::tests {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SimulateCommand : public testing::Test {
+ protected:
+  // 45 m along the town's first street.
+  static json short_drive() {
+    return {{"roadbed_scenario", 1},
+            {"map", (data_folder() / "town.xodr").string()},
+            {"ego", {{"start", "lane:1/3/1@6"}, {"speed_mps", 8.0}}},
+            {"goal", "lane:1/3/1@45"},
+            {"duration_s", 20.0}};
+  }
+
+  ProgramRun simulate(const json& scenario, const std::string& name, bool force = false) {
+    const std::string file = folder_.write("scenario.json", scenario.dump());
+    std::vector<std::string> arguments{"simulate", file, "-o", out(name).string()};
+    if (force) arguments.push_back("--force");
+    return run_roadbed(arguments);
+  }
+
+  std::filesystem::path out(const std::string& name) const { return folder_ / name; }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(SimulateCommand, ReachesTheGoalAndWritesTheSameBytesAgain) {
+  const ProgramRun run = simulate(short_drive(), "a");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("goal reached after"));
+  EXPECT_THAT(files_below(out("a")),
+              ElementsAre("drive.svg", "metrics.json", "report.html", "trajectory.csv"));
+  const json metrics = json::parse(bytes_of(out("a") / "metrics.json"));
+  EXPECT_EQ(metrics["goal_reached"], true);
+  EXPECT_EQ(metrics["largest_off_road_m"], 0.0);
+  EXPECT_EQ(tools::read_trajectory_csv(out("a") / "trajectory.csv").start_s(), 0.0);
+
+  ASSERT_EQ(simulate(short_drive(), "b").status, 0);
+  for (const std::string& file : files_below(out("a"))) {
+    EXPECT_EQ(bytes_of(out("a") / file), bytes_of(out("b") / file)) << file;
+  }
+}
+
+TEST_F(SimulateCommand, AGoalThatIsNotReachedIsStatusOneWithItsOutputs) {
+  json scenario = short_drive();
+  scenario["duration_s"] = 1.0;
+  const ProgramRun run = simulate(scenario, "a");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.out, HasSubstr("before the goal"));
+  EXPECT_EQ(files_below(out("a")).size(), 4U);
+}
+
+TEST_F(SimulateCommand, OutputsAreOnlyReplacedWithForce) {
+  json scenario = short_drive();
+  scenario["duration_s"] = 0.2;
+  simulate(scenario, "a");
+  const std::string before = bytes_of(out("a") / "metrics.json");
+  scenario["seed"] = 2;
+  EXPECT_EQ(simulate(scenario, "a").status, 1);
+  EXPECT_EQ(bytes_of(out("a") / "metrics.json"), before);
+  simulate(scenario, "a", true);
+  EXPECT_NE(bytes_of(out("a") / "metrics.json"), before);
+}
+
+TEST_F(SimulateCommand, UnusableInputLeavesNothingBehind) {
+  const auto refused = [&](const char* pointer, const json& value, const char* message) {
+    json scenario = short_drive();
+    scenario[json::json_pointer(pointer)] = value;
+    const ProgramRun run = simulate(scenario, "a");
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_EQ(run.out, "");
+    EXPECT_FALSE(std::filesystem::exists(out("a"))) << message;
+  };
+  refused("/goal", "lane:1/3/1@4500", "scenario.json:/goal: place");
+  refused("/goal", "1e6,1e6", "off the road");
+  refused("/ego/start", "nowhere", "scenario.json:/ego/start: place");
+  refused("/map", "missing.xodr", "no such file");
+  refused("/occupancy", "missing.bt", "no such file");
+  refused("/duration_s", -1, "scenario.json:/duration_s: is -1");
+  const json inside = {{"id", "a"}, {"parked", {{"place", "lane:1/3/1@7"}}}};
+  refused("/obstacles", json::array({inside}), "scenario.json:/obstacles/0: a touches the ego");
+}
+
+TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
+  const ProgramRun run = run_roadbed({"control", "design", "--json"});
+  EXPECT_EQ(run.status, 0);
+  const json design = json::parse(run.out);
+  EXPECT_NEAR(design["K"][0].get<double>(), 0.9114729761, 1e-9);
+  EXPECT_LT(design["riccati_residual"].get<double>(), 1e-12);
+  EXPECT_EQ(run_roadbed({"control", "design", "--input-weight", "-1"}).status, 1);
+  EXPECT_EQ(run_roadbed({"control"}).status, 2);
+}
+
+}  // namespace
+}  // namespace roadbed::tests
