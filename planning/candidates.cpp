@@ -89,12 +89,14 @@ Station station_at(const Course& course, double l_m) {
   const double s_m = course.start.s_m + l_m;
   const Corridor corridor = course.line.corridor_at(s_m);
   const double inward_m = course.half_width_m - allowed_excess_m(course, l_m);
-  return {.l_m = l_m,
-          .line = course.line.at(s_m),
-          .speed = course.speed.at(l_m),
-          .previous_d_m = course.previous_d_m ? course.previous_d_m(s_m) : 0.0,
-          .min_d_m = inward_m - corridor.right_m,
-          .max_d_m = corridor.left_m - inward_m};
+  Station station{.l_m = l_m,
+                  .line = course.line.at(s_m),
+                  .speed = course.speed.at(l_m),
+                  .previous_d_m = {},
+                  .min_d_m = inward_m - corridor.right_m,
+                  .max_d_m = corridor.left_m - inward_m};
+  if (course.previous_d_m) station.previous_d_m = course.previous_d_m(s_m);
+  return station;
 }
 
 std::vector<Station> stations_over(const Course& course, double end_l_m, int count) {
@@ -129,7 +131,7 @@ std::vector<CostPoint> cost_points(const std::vector<Station>& stations,
     const auto curve = geometry::offset_curve(curvatures(station.line), offset, kLeastUnfolded);
     if (!curve) return {};
     points.push_back({.d_m = offset[0],
-                      .previous_d_m = station.previous_d_m,
+                      .previous_d_m = station.previous_d_m.value_or(offset[0]),
                       .stretch = curve->stretch,
                       .curvature_per_m = curve->curvature_per_m,
                       .curvature_d1_per_m2 = curve->curvature_d1_per_m2,

@@ -77,7 +77,7 @@ struct Station {
   double l_m = 0.0;  ///< ahead of the start
   ReferencePoint line;
   PlannedSpeed::State speed{};
-  double previous_d_m = 0.0;
+  std::optional<double> previous_d_m;   ///< of the last plan; none: there is none
   double min_d_m = 0.0, max_d_m = 0.0;  ///< that keep the rear axle's full width in the corridor
 };
 

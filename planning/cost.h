@@ -34,7 +34,7 @@ inline double of(const CostTerms& terms, CostTerm term) {
 /// A candidate at one of its points, equally spaced in the reference line's station.
 struct CostPoint {
   double d_m = 0.0;
-  double previous_d_m = 0.0;  ///< of the previous plan at the same station
+  double previous_d_m = 0.0;  ///< of the previous plan there; d_m itself if there is none
   double stretch = 1.0;       ///< dσ/ds, arc length of the candidate per station
   double curvature_per_m = 0.0;
   double curvature_d1_per_m2 = 0.0;  ///< with respect to the candidate's own arc length

@@ -94,7 +94,10 @@ Quadratic closed_form_cost(const std::vector<RowStation>& row, const RowQuestion
     sum.add_square(at.share * acceleration, at.station.speed.acceleration_mps2, 0.0);
     sum.add_square(at.share * jerk, at.station.speed.jerk_mps3, 0.0);
     sum.add_square(at.share * offset, at.at_zero[0], at.per_unit[0]);
-    sum.add_square(at.share * consistency, at.at_zero[0] - at.station.previous_d_m, at.per_unit[0]);
+    if (at.station.previous_d_m) {
+      sum.add_square(at.share * consistency, at.at_zero[0] - *at.station.previous_d_m,
+                     at.per_unit[0]);
+    }
   }
   return sum;
 }

@@ -30,6 +30,7 @@ constexpr Entry kCommands[] = {
     {"locate", make_locate_command},
     {"route", make_route_command},
     {"reference", make_reference_command},
+    {"plan", make_plan_command},
     {"control", make_control_command},
     {"simulate", make_simulate_command},
     {"occupancy", make_occupancy_command},

@@ -74,7 +74,7 @@ Scene random_scene(std::uint32_t seed) {
   scene.previous_d_m = unit(random);
   for (double& weight : scene.options.weights) weight *= std::exp(1.6 * unit(random));
   scene.options.d_step_m = 0.5;
-  scene.options.l_step_m = 2.0;
+  scene.options.l_step_m = 3.0;
   scene.options.points = 17;
   const int obstacles = static_cast<int>(random() % 5);
   for (int i = 0; i < obstacles; ++i)
@@ -147,7 +147,7 @@ struct Verdict {
 
 Verdict judge_slowly(const Scene& scene, const LineView& line, const SlowCandidate& slow) {
   const VehicleShape vehicle;
-  constexpr double kRounding = 1e-6, kRoadBand_m = 0.003, kSampling_m = 0.005;
+  constexpr double kRounding = 1e-6, kRoadBand_m = 0.003, kSampling_m = 0.025;
   if (slow.folded) return {.surely_rejected = true};
   const double limits = std::min(
       {std::tan(vehicle.max_steering_rad) / vehicle.wheelbase_m - slow.worst_curvature_per_m,

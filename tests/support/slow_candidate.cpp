@@ -158,7 +158,7 @@ SlowCandidate slow_candidate(const PlanInput& input, const PlanOptions& options,
     last_stretch = motion.stretch;
     last_l = l;
     if (share == 0) return true;
-    const Real previous_d = input.previous_d_m ? input.previous_d_m(s_m) : 0.0;
+    const Real previous_d = input.previous_d_m ? Real(input.previous_d_m(s_m)) : d[0];
     add_sample(sums, share, motion, d[0], previous_d, state);
     const double k = static_cast<double>(std::abs(motion.k));
     slow.worst_curvature_per_m = std::max(slow.worst_curvature_per_m, k);

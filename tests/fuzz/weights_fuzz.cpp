@@ -1,0 +1,14 @@
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/support/weights_json.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    roadbed::tools::parse_weights({reinterpret_cast<const char*>(data), size}, "fuzz.json");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}
