@@ -62,7 +62,7 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
 int run_program(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
-  app.set_version_flag("--version", "roadbed " ROADBED_VERSION);
+  app.set_version_flag("--version", "roadbed " ROADBED_VERSION "\n" ROADBED_LIBRARIES);
   app.require_subcommand(1);
   app.fallthrough();
 
