@@ -83,7 +83,8 @@ class ClosedLoop {
     DriveCycle cycle{.t_s = t_s(),
                      .from_measurement = keeper_.from_measurement() && !drive_.cycles.empty(),
                      .chosen = keeper_.last_plan().chosen,
-                     .plan_reason = keeper_.last_plan().reason};
+                     .plan_reason = keeper_.last_plan().reason,
+                     .beyond_the_edge_m = keeper_.beyond_the_edge_m()};
     command(measured, cycle);
     log_path(cycle);
     log_events(cycle);
@@ -173,6 +174,11 @@ class ClosedLoop {
     const DriveCycle* last = drive_.cycles.empty() ? nullptr : &drive_.cycles.back();
     if (!cycle.chosen && (!last || last->chosen)) {
       log(EventLevel::warning, "nothing is feasible: " + cycle.plan_reason);
+    }
+    if (cycle.chosen && cycle.beyond_the_edge_m > 0.0 &&
+        (!last || last->beyond_the_edge_m < cycle.beyond_the_edge_m)) {
+      log(EventLevel::info, fmt::format("no candidate keeps to the lanes; up to {:.1f} m beyond",
+                                        cycle.beyond_the_edge_m));
     }
     if (cycle.behaviour == Behaviour::emergency &&
         (!last || last->behaviour != Behaviour::emergency)) {

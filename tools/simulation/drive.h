@@ -38,8 +38,9 @@ struct DriveCycle {
   std::string reason = {};        ///< "car p1 is 22.4 m ahead"
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
-      {};                                  ///< none: nothing feasible, the last path is kept
-  std::string plan_reason = {};            ///< why nothing was feasible
+      {};                          ///< none: nothing feasible, the last path is kept
+  std::string plan_reason = {};    ///< why nothing was feasible
+  double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<DriveLead> lead = {};
 };

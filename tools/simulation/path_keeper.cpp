@@ -12,6 +12,7 @@ using planning::LateralState;
 using planning::Rejection;
 
 constexpr double kReturn_m = 20.0;
+constexpr double kBeyondTheEdge_m[] = {0.0, 0.3, 0.6};
 
 /// 1 up to `from`, 0 from `from` + kReturn_m on.
 double fade(double s_m, double from_m) {
@@ -77,7 +78,13 @@ void PathKeeper::plan(double t_s, const VehicleState& measured, double target_mp
   if (path_) {
     input.previous_d_m = [this](double s_m) { return path_->lateral_at(s_m).d_m; };
   }
-  plan_ = planning::plan_path(input, scenario_.vehicle, options);
+  // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
+  for (const double beyond_m : kBeyondTheEdge_m) {
+    options.border_margin_m = -beyond_m;
+    plan_ = planning::plan_path(input, scenario_.vehicle, options);
+    beyond_the_edge_m_ = beyond_m;
+    if (plan_.chosen || something_is_in_the_way()) break;
+  }
   if (plan_.chosen) {
     path_end_s_m_ = plan_.start.s_m + plan_.chosen->end_l_m;
     checked_to_s_m_ = plan_.start.s_m + options.max_l_m;

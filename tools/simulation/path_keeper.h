@@ -29,6 +29,9 @@ class PathKeeper {
   const planning::Plan& last_plan() const { return plan_; }
   bool from_measurement() const { return from_measurement_; }
 
+  /// How far the body was allowed past the corridor's edge, because nothing keeps to it [m].
+  double beyond_the_edge_m() const { return beyond_the_edge_m_; }
+
   /// Station of the measured rear axle at the last cycle.
   double s_m() const { return s_m_; }
 
@@ -57,6 +60,7 @@ class PathKeeper {
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;
   double s_m_ = 0.0;
+  double beyond_the_edge_m_ = 0.0;
   bool from_measurement_ = false;
 };
 

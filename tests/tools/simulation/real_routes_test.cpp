@@ -94,6 +94,8 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
     Trip trip = random_trip(road_map, random);
     const std::string from = text_of(road_map, trip.from);
     const std::string name = fmt::format("{} {} -> {}", i, from, text_of(road_map, trip.to));
+    fmt::print("{:<48} ", name);
+    std::fflush(stdout);
     Scenario scenario;
     scenario.duration_s = std::min(3600.0, 60.0 + trip.route.length_m);
     planning::ReferenceLine line = planning::ReferenceLine::along(road_map, trip.route);
@@ -108,10 +110,10 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
     const Result result = measure(drive(scenario, world));
     road_map = std::move(world.road_map);
     fmt::print(
-        "{:<48} {:7.1f} m {} changes | off {:.1f} m, track {:.2f} m, lat {:.2f} m/s², replanned "
+        "{:7.1f} m {} changes | off {:.1f} m, track {:.2f} m, lat {:.2f} m/s², replanned "
         "{}, "
         "infeasible {} | {}\n",
-        name, trip.route.length_m, trip.route.lane_changes, result.worst_off_road_m,
+        trip.route.length_m, trip.route.lane_changes, result.worst_off_road_m,
         result.worst_tracking_m, result.worst_lateral_mps2, result.replanned, result.infeasible,
         result.drive.verdict.text);
     std::fflush(stdout);
