@@ -10,6 +10,7 @@ and some in the parking lane. Same seed, same bytes.
 
 import json
 import struct
+from itertools import product
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
 from pathlib import Path
 from random import Random
@@ -19,7 +20,7 @@ from road_borders import read_roads
 
 DATA = Path(__file__).parent
 SCANNER_HEIGHT = 2.2  # m
-REACH = 60.0  # m
+REACH = 50.0  # m
 DOWN_TO_UP = [  # degrees
     -27, -21, -17.5, -15, -13, -11.2, -9.8, -8.6, -7.6, -6.8, -6.0, -5.3, -4.6, -4.0, -3.4, -2.8,
     -2.2, 0, 4,
@@ -168,8 +169,8 @@ def town_things(roads, scenario):
 
 
 def standing_places(roads, step):
-    """Poses every `step` metres along the way, the first after half a step."""
-    to_go = step / 2
+    """Poses every `step` metres along the way, the first where it begins."""
+    to_go = 0.0
     for name, index, lane in WAY:
         road = roads[str(name)]
         start, end = road.ranges[index]
@@ -240,14 +241,11 @@ class Scanner:
         return self
 
     def look_through(self, x, y, z):
-        """Keeps the point seen through a place in free space. Whether the view is free."""
+        """The point seen through a place in free space, None where the view is not free."""
         dx, dy, dz = x - self.place[0], y - self.place[1], z - self.place[2]
         flat = hypot(dx, dy)
         seen = self.look(atan2(dy, dx), atan2(dz, flat))
-        if seen is None or seen[0] < hypot(flat, dz) + CELL:
-            return False
-        self.points.append(seen[1])
-        return True
+        return None if seen is None or seen[0] < hypot(flat, dz) + CELL else seen[1]
 
 
 # Where the car goes, space is to be measured over the whole height of a car, in cubes of CELL.
@@ -267,17 +265,20 @@ def columns_of_way(roads):
 
 
 def cubes_seen(place, point, columns):
-    """Cubes of the columns through which a ray goes."""
-    span = [b - a for a, b in zip(place, point)]
+    """Cubes of the columns that a ray more than grazes, if it ends in the middle of a cube, as one
+    does from which an octree is built."""
+    span = [(b // CELL + 0.5) * CELL - a for a, b in zip(place, point)]
     if span[2] >= 0:
         return
     top = (LAYERS.stop * CELL - place[2]) / span[2]  # share of the ray above the highest layer
     steps = int(hypot(*span) * (1 - top) / (0.4 * CELL)) + 1
+    before = None
     for k in range(steps):
         share = top + (1 - top) * k / steps
-        i, j, layer = (int((a + share * d) // CELL) for a, d in zip(place, span))
-        if (i, j) in columns:
-            yield i, j, layer
+        cube = tuple(int((a + share * d) // CELL) for a, d in zip(place, span))
+        if cube == before and cube[:2] in columns:
+            yield cube
+        before = cube
 
 
 def look_where_nobody_looked(roads, scanners):
@@ -293,9 +294,12 @@ def look_where_nobody_looked(roads, scanners):
         for layer in LAYERS:
             if (i, j, layer) in seen:
                 continue
-            for scanner in near:
-                if scanner.look_through(x, y, (layer + 0.5) * CELL):
-                    seen.update(cubes_seen(scanner.place, scanner.points[-1], columns))
+            for scanner, share in product(near, (0.5, 0.3, 0.7)):
+                point = scanner.look_through(x, y, (layer + share) * CELL)
+                cubes = set(cubes_seen(scanner.place, point, columns)) if point else set()
+                if (i, j, layer) in cubes:
+                    scanner.points.append(point)
+                    seen |= cubes
                     break
 
 

@@ -192,6 +192,26 @@ TEST(BadInput, ScenarioThatCannotBeUsedIsRefusedAndLeavesNoFolder) {
   }
 }
 
+TEST(BadInput, DriveThatCannotBeUsedIsRefusedByAudit) {
+  const TemporaryFolder folder;
+  const std::string walls = folder / "walls.bt";
+  const std::string cloud = data_folder() / "scenarios" / "narrow_gap.pcd";
+  ASSERT_EQ(run_roadbed({"occupancy", "build", cloud, "-o", walls, "--quiet"}).status, 0);
+  const std::string header = "t_s,x_m,y_m,heading_rad\n";
+  const std::vector<BadMap> drives{
+      {"empty.csv", ""},
+      {"no_rows.csv", header},
+      {"nan.csv", header + "0,160,nan,0\n1,161,198,0\n"},
+      {"backwards.csv", header + "1,160,198,0\n0,161,198,0\n"},
+      {"no_heading.csv", "t_s,x_m,y_m\n0,160,198\n"},
+  };
+  for (const BadMap& drive : drives) {
+    SCOPED_TRACE(drive.name);
+    const std::string file = folder.write(drive.name, drive.bytes);
+    expect_refused(run_roadbed({"audit", "--occupancy", walls, "--trajectory", file}), drive.name);
+  }
+}
+
 TEST(BadInput, DamagedCompiledMapIsRefusedWhereverItIsCutOrChanged) {
   const TemporaryFolder folder;
   const std::string good = folder / "town.rbm";

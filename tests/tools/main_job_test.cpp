@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -72,6 +73,52 @@ TEST(MainJob, ImportOfTheSameMapGivesTheSameBytes) {
   answer({"import", town(), "-o", folder / "one.rbm", "--threads", "1"});
   answer({"import", town(), "-o", folder / "two.rbm", "--threads", "2"});
   EXPECT_EQ(bytes_of(folder / "one.rbm"), bytes_of(folder / "two.rbm"));
+}
+
+TEST(MainJob, DriveGoesPastAParkedCarToTheGoal) {
+  const TemporaryFolder folder;
+  const std::string scenario = data_folder() / "scenarios" / "parked_car.json";
+  answer({"simulate", scenario, "-o", folder / "drive"});
+  const auto metrics = nlohmann::json::parse(bytes_of(folder / "drive/metrics.json"));
+  EXPECT_EQ(metrics.at("goal_reached"), true);
+  EXPECT_EQ(metrics.at("collision"), false);
+  EXPECT_GT(metrics.at("least_clearance_m"), 0.2);
+  EXPECT_LT(metrics.at("least_clearance_m"), 2.0);  // it did pass the car
+  EXPECT_NE(bytes_of(folder / "drive/report.html").find("</html>"), std::string::npos);
+}
+
+TEST(MainJob, DriveBetweenWallsIsClearAndTheSameDriveThroughAWallIsAConflict) {
+  const TemporaryFolder folder;
+  const std::filesystem::path scenarios = data_folder() / "scenarios";
+  answer({"simulate", scenarios / "narrow_gap.json", "-o", folder / "drive"});
+  answer({"occupancy", "build", scenarios / "narrow_gap.pcd", "-o", folder / "walls.bt"});
+  const std::vector<std::string> audit{"audit",        "--occupancy", folder / "walls.bt",
+                                       "--trajectory", "DRIVE",       "--unknown",
+                                       "free",         "--json"};
+  auto words = audit;
+  words[4] = folder / "drive/trajectory.csv";
+  const auto clear = nlohmann::json::parse(answer(words));
+  EXPECT_EQ(clear.at("verdict"), "clear");
+  // Walls 2.9 m apart and a vehicle 1.61 m wide: at best 0.645 m to either side, cells of 0.1 m.
+  EXPECT_GT(clear.at("least_clearance_m"), 0.2);
+  EXPECT_LT(clear.at("least_clearance_m"), 0.646);
+
+  words[4] = folder.write("through.csv", "t_s,x_m,y_m,heading_rad\n0,160,199,0\n3,180,199.9,0\n");
+  const ProgramRun through = run_roadbed(words);
+  EXPECT_EQ(through.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(through.out).at("verdict"), "conflict");
+}
+
+TEST(MainJob, OctreeOfTheTownIsMadeFromItsScans) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words{"occupancy", "build", "-o",     folder / "town.bt",
+                                 "--resolution", "0.2",   "--quiet"};
+  for (const std::string& scan : files_below(data_folder() / "scans")) {
+    words.push_back(data_folder() / "scans" / scan);
+  }
+  answer(words);
+  EXPECT_TRUE(bytes_of(folder / "town.bt") == bytes_of(data_folder() / "town.bt"))
+      << "make data/town.bt again, as data/README.md says";
 }
 
 TEST(MainJob, QuietKeepsNotesFromStderr) {
