@@ -111,7 +111,7 @@ TEST(MainJob, DriveBetweenWallsIsClearAndTheSameDriveThroughAWallIsAConflict) {
 
 TEST(MainJob, OctreeOfTheTownIsMadeFromItsScans) {
   const TemporaryFolder folder;
-  std::vector<std::string> words{"occupancy", "build", "-o",     folder / "town.bt",
+  std::vector<std::string> words{"occupancy",    "build", "-o",     folder / "town.bt",
                                  "--resolution", "0.2",   "--quiet"};
   for (const std::string& scan : files_below(data_folder() / "scans")) {
     words.push_back(data_folder() / "scans" / scan);
