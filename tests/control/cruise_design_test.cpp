@@ -63,7 +63,8 @@ nlohmann::json read_oracle(const std::filesystem::path& folder) {
 
 TEST(CruiseDesign, AgreesWithSciPyOnAllDesigns) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  for (const nlohmann::json& figures : read_oracle(folder)["lqr"]) {
+  const nlohmann::json oracle = read_oracle(folder);
+  for (const nlohmann::json& figures : oracle["lqr"]) {
     const auto [signs, options, expected] = oracle_of(figures);
     const CruiseDesign design = design_cruise(options);
     const Eigen::Matrix3d flip = signs.asDiagonal();
