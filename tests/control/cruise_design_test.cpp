@@ -74,8 +74,10 @@ TEST(CruiseDesign, AgreesWithSciPyOnAllDesigns) {
     expect_near(design.K * flip, vector(expected["K"]).transpose(), 1e-9);
     expect_near(flip * design.P * flip, matrix(expected["P"]), 1e-9);
     EXPECT_LT(design.riccati_residual, 1e-12 * design.P.cwiseAbs().maxCoeff());
-    EXPECT_NEAR(string_gain(design, options.step_s).gain,
-                expected["string_peak_gain"].get<double>(), 1e-6);
+    if (expected.contains("string_peak_gain")) {  // not in those of the other sign
+      EXPECT_NEAR(string_gain(design, options.step_s).gain,
+                  expected["string_peak_gain"].get<double>(), 1e-6);
+    }
   }
 }
 
