@@ -40,8 +40,7 @@ void check(const CruiseOptions& options) {
 
 void require_rank(int rank, const char* what) {
   if (rank == 3) return;
-  throw std::invalid_argument(
-      fmt::format("{}: rank {} of 3", what, rank));
+  throw std::invalid_argument(fmt::format("{}: rank {} of 3", what, rank));
 }
 
 void check_ranks(const CruiseModel& model, const CruiseOptions& options) {

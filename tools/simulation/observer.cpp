@@ -40,7 +40,8 @@ double Observer::off_road_m(const VehicleState& truth) const {
   int worst = 0;
   for (const Eigen::Vector2d& corner_in_vehicle : vehicle_.corners_in_vehicle()) {
     const Eigen::Vector2d corner = truth.motion.pose * corner_in_vehicle;
-    while (worst < kOffRoadSteps && !world_.road_map.on_surface(corner, kSurfaceGap_m + kOffRoadStep_m * worst)) {
+    while (worst < kOffRoadSteps &&
+           !world_.road_map.on_surface(corner, kSurfaceGap_m + kOffRoadStep_m * worst)) {
       ++worst;
     }
   }
