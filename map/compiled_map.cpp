@@ -12,9 +12,9 @@
 namespace roadbed::map {
 namespace {
 
-// File: 16 bytes "roadbed map v001", u64 payload size, u64 XXH3 of the payload, payload.
+// File: 16 bytes "roadbed map v002", u64 payload size, u64 XXH3 of the payload, payload.
 // Payload: the parts in the order of `visit`, numbers little-endian, counts as u64.
-constexpr std::string_view kMagic = "roadbed map v001";
+constexpr std::string_view kMagic = "roadbed map v002";
 constexpr std::size_t kHeaderSize = 32;
 static_assert(std::endian::native == std::endian::little);
 
@@ -53,6 +53,10 @@ class Writer {
   std::string bytes;
 };
 
+constexpr LaneType last(LaneType) { return LaneType::other; }
+constexpr MarkType last(MarkType) { return MarkType::other; }
+constexpr JunctionKind last(JunctionKind) { return JunctionKind::crossing; }
+
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -70,11 +74,13 @@ class Reader {
     if (byte > 1) throw Cut{};
     value = byte == 1;
   }
-  void operator()(LaneType& type) {
-    std::underlying_type_t<LaneType> value = 0;
+  template <typename T>
+  requires std::is_enum_v<T>
+  void operator()(T& kind) {
+    std::underlying_type_t<T> value = 0;
     (*this)(value);
-    if (value < 0 || value > static_cast<int>(LaneType::other)) throw Cut{};
-    type = static_cast<LaneType>(value);
+    if (value < 0 || value > static_cast<int>(last(kind))) throw Cut{};
+    kind = static_cast<T>(value);
   }
   void operator()(std::string& text) {
     const std::size_t size = count(1);
@@ -125,6 +131,41 @@ constexpr auto point_field = [](auto& io, auto& point) {
   io(point.y());
 };
 
+constexpr auto point3_field = [](auto& io, auto& point) {
+  io(point.x());
+  io(point.y());
+  io(point.z());
+};
+
+constexpr auto attribute = [](auto& io, auto& item) {
+  io(item.first);
+  io(item.second);
+};
+
+template <typename Io, typename T>
+void participants(Io& io, T& item) {
+  std::uint16_t bits = item.bits();
+  io(bits);
+  if constexpr (!std::is_const_v<T>) item = Participants::from_bits(bits);
+}
+
+constexpr auto region = [](auto& io, auto& polygon) {
+  io.list(polygon.outer, point_field);
+  io.list(polygon.holes, [](auto& rings, auto& ring) { rings.list(ring, point_field); });
+};
+
+constexpr auto speed_limit = [](auto& io, auto& item) {
+  io(item.from_s_m);
+  io.optional(item.limit_mps, field);
+};
+
+constexpr auto mark = [](auto& io, auto& item) {
+  io(item.from_s_m);
+  io(item.type);
+  io(item.color);
+  io(item.width_m);
+};
+
 constexpr auto lane_line = [](auto& io, auto& line) {
   io.line(line.in_map);
   io.list(line.z_m, field);
@@ -141,7 +182,12 @@ constexpr auto lane = [](auto& io, auto& item) {
   io(item.origin.road_to_s_m);
   io(item.name);
   io(item.type);
-  io.optional(item.speed_limit_mps, field);
+  io(item.one_way);
+  participants(io, item.participants);
+  io.list(item.speed_limits, speed_limit);
+  io.list(item.left_marks, mark);
+  io.list(item.right_marks, mark);
+  io.list(item.attributes, attribute);
   lane_line(io, item.left);
   lane_line(io, item.centre);
   lane_line(io, item.right);
@@ -151,7 +197,10 @@ constexpr auto lane = [](auto& io, auto& item) {
 constexpr auto neighbour = [](auto& io, auto& item) {
   io(item.lane.index);
   io(item.same_direction);
-  io(item.change_allowed);
+  io.list(item.change_windows, [](auto& ranges, auto& range) {
+    ranges(range.from_s_m);
+    ranges(range.to_s_m);
+  });
 };
 
 constexpr auto links = [](auto& io, auto& item) {
@@ -176,23 +225,85 @@ constexpr auto junction = [](auto& io, auto& item) {
   io(item.id.index);
   io(item.source_id);
   io(item.name);
+  io(item.kind);
   io.list(item.connecting_roads, id_field);
 };
 
 constexpr auto signal = [](auto& io, auto& item) {
   io(item.source_id);
   io(item.name);
-  io(item.road.index);
+  io.optional(item.road, id_field);
   io(item.road_s_m);
   io(item.road_t_m);
   point_field(io, item.in_map);
+  io(item.z_m);
+  io.optional(item.heading_rad, field);
   io(item.country);
   io(item.type);
   io(item.subtype);
   io.optional(item.value, field);
   io(item.unit);
+  io(item.text);
   io(item.dynamic);
   io.list(item.lanes, id_field);
+  io.list(item.attributes, attribute);
+};
+
+constexpr auto controller = [](auto& io, auto& item) {
+  io(item.source_id);
+  io(item.name);
+  io.list(item.signals, field);
+};
+
+constexpr auto stop_line = [](auto& io, auto& item) {
+  io(item.source_id);
+  io.list(item.in_map, point3_field);
+  io.list(item.lanes, id_field);
+  io.list(item.signals, field);
+};
+
+constexpr auto regulation_member = [](auto& io, auto& item) {
+  io(item.role);
+  io(item.source_id);
+  io.optional(item.lane, id_field);
+  io.list(item.in_map, point3_field);
+  io.list(item.attributes, attribute);
+};
+
+constexpr auto regulation = [](auto& io, auto& item) {
+  io(item.source_id);
+  io(item.type);
+  io.list(item.lanes, id_field);
+  io.list(item.members, regulation_member);
+  io.list(item.attributes, attribute);
+};
+
+constexpr auto map_object = [](auto& io, auto& item) {
+  io(item.source_id);
+  io(item.name);
+  io(item.type);
+  io.optional(item.road, id_field);
+  io(item.road_s_m);
+  io(item.road_t_m);
+  point_field(io, item.in_map);
+  io.list(item.outline_in_map, point_field);
+  io(item.z_m);
+  io(item.height_m);
+  io.list(item.attributes, attribute);
+};
+
+constexpr auto area = [](auto& io, auto& item) {
+  io(item.source_id);
+  io(item.type);
+  io(item.is_road);
+  io.list(item.in_map, region);
+  participants(io, item.participants);
+  io.list(item.attributes, attribute);
+};
+
+constexpr auto unused = [](auto& io, auto& item) {
+  io(item.name);
+  io(item.count);
 };
 
 constexpr auto remark = [](auto& io, auto& item) {
@@ -210,9 +321,15 @@ constexpr auto visit = [](auto& io, auto& parts) {
   io.list(parts.roads, road);
   io.list(parts.junctions, junction);
   io.list(parts.signals, signal);
+  io.list(parts.controllers, controller);
+  io.list(parts.stop_lines, stop_line);
+  io.list(parts.regulations, regulation);
+  io.list(parts.objects, map_object);
+  io.list(parts.areas, area);
   io.list(parts.lanes, lane);
   io.list(parts.links, links);
   io.list(parts.remarks, remark);
+  io.list(parts.unused, unused);
 };
 
 [[noreturn]] void refuse(const std::string& name, const std::string& found) {

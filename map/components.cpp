@@ -38,7 +38,8 @@ void join_with_linked(const RoadMap& road_map, LaneId lane, Groups& groups) {
   for (const LaneId successor : links.successors) join(successor);
   for (const LaneId predecessor : links.predecessors) join(predecessor);
   for (const auto& neighbour : {links.left, links.right}) {
-    if (neighbour && neighbour->same_direction && neighbour->change_allowed) join(neighbour->lane);
+    if (neighbour && neighbour->same_direction && neighbour->change_allowed())
+      join(neighbour->lane);
   }
 }
 

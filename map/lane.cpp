@@ -43,6 +43,23 @@ bool is_surface(LaneType type) {
   }
 }
 
+std::optional<double> Lane::speed_limit_at_mps(double s_m) const {
+  std::optional<double> limit_mps;
+  for (const SpeedLimit& limit : speed_limits) {
+    if (limit.from_s_m <= s_m) limit_mps = limit.limit_mps;
+  }
+  return limit_mps;
+}
+
+std::optional<double> Lane::least_speed_limit_mps() const {
+  std::optional<double> least_mps;
+  for (const SpeedLimit& limit : speed_limits) {
+    if (limit.limit_mps)
+      least_mps = std::min(*limit.limit_mps, least_mps.value_or(*limit.limit_mps));
+  }
+  return least_mps;
+}
+
 Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
   const auto& stations = line.station_m;
   const auto& points = line.in_map.points();

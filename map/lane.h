@@ -7,7 +7,10 @@
 
 #include "roadbed/geometry/polygon.h"
 #include "roadbed/geometry/polyline.h"
+#include "roadbed/map/attributes.h"
+#include "roadbed/map/border_mark.h"
 #include "roadbed/map/id.h"
+#include "roadbed/map/participants.h"
 
 namespace roadbed::map {
 
@@ -74,6 +77,12 @@ struct LaneOrigin {
   double road_to_s_m = 0;    ///< road s at the lane's end; less than the former against the road
 };
 
+/// The speed limit from a station on, until the next one begins.
+struct SpeedLimit {
+  double from_s_m = 0.0;
+  std::optional<double> limit_mps;  ///< none: the source says nothing
+};
+
 /// A strip between two borders, from one section end to the next.
 struct Lane {
   LaneId id;
@@ -82,11 +91,21 @@ struct Lane {
   LaneOrigin origin;
   std::string name;  ///< unique, as on the command line: "road/section/lane", or the source's id
   LaneType type = LaneType::none;
-  std::optional<double> speed_limit_mps;  ///< as the source says; none if it does not
+  bool one_way = true;                              ///< false: may be driven in both directions
+  Participants participants;                        ///< who may use it
+  std::vector<SpeedLimit> speed_limits;             ///< by station; empty: the source says nothing
+  std::vector<BorderMark> left_marks, right_marks;  ///< by station; empty: unknown
   LaneLine left, centre, right;
   geometry::Ring polygon;  ///< simple and counter-clockwise; the borders' folds are taken out
+  Attributes attributes;
 
   double length_m() const { return centre.in_map.length_m(); }
+
+  /// The limit that holds at a station.
+  std::optional<double> speed_limit_at_mps(double s_m) const;
+
+  /// The least limit anywhere along the lane.
+  std::optional<double> least_speed_limit_mps() const;
 
   /// Place on the centreline, clamped to the lane, with its direction over ±5 cm: records of real
   /// files do not meet exactly, and a step of a fraction of a millimetre has no direction.

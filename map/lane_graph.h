@@ -8,11 +8,19 @@
 
 namespace roadbed::map {
 
-/// A lane beside another one, and whether the marking between them may be crossed.
+/// Part of a lane, by its stations.
+struct StationRange {
+  double from_s_m = 0.0, to_s_m = 0.0;
+  bool operator==(const StationRange&) const = default;
+};
+
+/// A lane beside another one, and where the marking between them may be crossed.
 struct Neighbour {
   LaneId lane;
   bool same_direction = true;
-  bool change_allowed = false;
+  std::vector<StationRange> change_windows;  ///< stations of the lane that is left; in order, apart
+
+  bool change_allowed() const { return !change_windows.empty(); }
 };
 
 /// What one lane leads to.

@@ -12,6 +12,9 @@
 #include "roadbed/map/id.h"
 #include "roadbed/map/lane.h"
 #include "roadbed/map/lane_graph.h"
+#include "roadbed/map/map_object.h"
+#include "roadbed/map/regulation.h"
+#include "roadbed/map/signal.h"
 
 namespace roadbed::map {
 
@@ -27,25 +30,15 @@ struct Road {
   std::vector<LaneId> lanes;
 };
 
+/// How a junction joins roads (ASAM OpenDRIVE 1.8, section 12).
+enum class JunctionKind { common, direct, virtual_, crossing };
+
 struct Junction {
   JunctionId id;
   std::string source_id;
   std::string name;
+  JunctionKind kind = JunctionKind::common;
   std::vector<RoadId> connecting_roads;
-};
-
-/// A sign or light beside a road.
-struct Signal {
-  std::string source_id;
-  std::string name;
-  RoadId road;
-  double road_s_m = 0.0, road_t_m = 0.0;
-  Eigen::Vector2d in_map{0, 0};
-  std::string country, type, subtype;
-  std::optional<double> value;
-  std::string unit;
-  bool dynamic = false;       ///< changes, as a light does
-  std::vector<LaneId> lanes;  ///< that it speaks to
 };
 
 /// What the loader saw and did not keep, or had to mend: for `info` and `validate`.
@@ -57,6 +50,12 @@ struct ImportRemark {
   std::string message;
 };
 
+/// Elements that the file holds and roadbed does not use.
+struct UnusedContent {
+  std::string name;  ///< of the element, as the file spells it, with its parent: "road/railroad"
+  std::size_t count = 0;
+};
+
 /// Everything a RoadMap is made of, filled by a reader of a format.
 struct RoadMapParts {
   std::string format;  ///< "OpenDRIVE 1.4", …
@@ -65,9 +64,15 @@ struct RoadMapParts {
   std::vector<Road> roads;
   std::vector<Junction> junctions;
   std::vector<Signal> signals;
+  std::vector<Controller> controllers;
+  std::vector<StopLine> stop_lines;
+  std::vector<Regulation> regulations;
+  std::vector<MapObject> objects;
+  std::vector<Area> areas;
   std::vector<Lane> lanes;
   std::vector<LaneLinks> links;  ///< one per lane
   std::vector<ImportRemark> remarks;
+  std::vector<UnusedContent> unused;  ///< in order of name
 };
 
 /// A lane near a point. `distance_m` is 0 inside the lane's polygon.
@@ -102,6 +107,12 @@ class RoadMap {
   const std::vector<Junction>& junctions() const { return parts_.junctions; }
   const Junction& junction(JunctionId id) const { return parts_.junctions.at(id.index); }
   const std::vector<Signal>& signals() const { return parts_.signals; }
+  const std::vector<Controller>& controllers() const { return parts_.controllers; }
+  const std::vector<StopLine>& stop_lines() const { return parts_.stop_lines; }
+  const std::vector<Regulation>& regulations() const { return parts_.regulations; }
+  const std::vector<MapObject>& objects() const { return parts_.objects; }
+  const std::vector<Area>& areas() const { return parts_.areas; }
+  const std::vector<UnusedContent>& unused() const { return parts_.unused; }
   const std::vector<ImportRemark>& remarks() const { return parts_.remarks; }
   const LaneGraph& graph() const { return graph_; }
   const RoadMapParts& parts() const { return parts_; }

@@ -26,7 +26,7 @@ Edge outermost(const map::RoadMap& road_map, LaneId lane, Side side) {
   // Neighbours of a broken map could form a ring, hence the count.
   for (std::size_t i = 0; i < road_map.lanes().size(); ++i) {
     const auto& next = beyond(road_map, lane, side);
-    if (!next || !next->change_allowed || !is_drivable(road_map.lane(next->lane).type)) break;
+    if (!next || !next->change_allowed() || !is_drivable(road_map.lane(next->lane).type)) break;
     if (!next->same_direction) return {&road_map.lane(next->lane), false};
     lane = next->lane;
   }
@@ -57,7 +57,7 @@ Corridor room_beside(const map::RoadMap& road_map, LaneId lane, double share,
   const auto room_m = [&](Side side) {
     return distance_m(outermost(road_map, lane, side), share, side, point);
   };
-  const auto& limit_mps = road_map.lane(lane).speed_limit_mps;
+  const auto limit_mps = road_map.lane(lane).least_speed_limit_mps();
   return {room_m(Side::left), room_m(Side::right),
           limit_mps && *limit_mps > 0.0 ? *limit_mps : default_speed_mps};
 }

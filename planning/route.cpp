@@ -53,7 +53,7 @@ void add_passage(Route& route, const Passage& passage, const map::RoadMap& road_
       leg.exit = side_of(road_map.graph().of(lane.id), passage.lanes[i + 1]);
     }
     route.legs.push_back(leg);
-    route.legs_of_unknown_speed += lane.speed_limit_mps ? 0 : 1;
+    route.legs_of_unknown_speed += lane.least_speed_limit_mps() ? 0 : 1;
   }
 }
 

@@ -5,7 +5,7 @@
 namespace roadbed::planning {
 
 double route_speed_mps(const map::Lane& lane, const RouteOptions& options) {
-  const double limit_mps = lane.speed_limit_mps.value_or(options.default_speed_mps);
+  const double limit_mps = lane.least_speed_limit_mps().value_or(options.default_speed_mps);
   return std::min(limit_mps > 0.0 ? limit_mps : options.default_speed_mps, options.max_speed_mps);
 }
 
@@ -19,7 +19,7 @@ TravelRules::TravelRules(const map::RoadMap& road_map, const RouteOptions& optio
 
 bool TravelRules::may_change(map::LaneId from, const map::Neighbour& to, int changes,
                              double share) const {
-  return to.same_direction && (to.change_allowed || leniency_.markings) && may_enter(to.lane) &&
+  return to.same_direction && (to.change_allowed() || leniency_.markings) && may_enter(to.lane) &&
          has_room(from, changes + 1, share);
 }
 

@@ -29,10 +29,6 @@ using planning::AuditOptions;
 using planning::AuditReport;
 using planning::UnknownPolicy;
 
-const std::map<std::string, UnknownPolicy> kPolicies{{"free", UnknownPolicy::free},
-                                                     {"occupied", UnknownPolicy::occupied},
-                                                     {"report", UnknownPolicy::report}};
-
 bool overlap(const map::Box2& a, const map::Box2& b) {
   return (a.min_in_source.array() <= b.max_in_source.array()).all() &&
          (b.min_in_source.array() <= a.max_in_source.array()).all();
@@ -72,35 +68,37 @@ std::vector<geometry::Ring> drivable_lanes(const map::RoadMap& road_map) {
 
 class AuditCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description(
+  void declare(Arguments& arguments) override {
+    arguments.description(
         "Prove that a drive keeps clear of occupied space, or show where it does not. Between rows "
         "of the drive position and heading are linear, and every point of the body is covered");
-    app.add_option("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)")->required();
-    app.add_option("--trajectory", trajectory_, "Drive to audit (.csv), poses of the rear axle")
-        ->required();
-    app.add_option("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
-    app.add_option("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
-    app.add_option("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
-        ->check(CLI::Range(0.0, 100.0))
-        ->capture_default_str();
-    app.add_option("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
-        ->check(CLI::Range(0.0, 100.0))
-        ->capture_default_str();
-    app.add_option("--unknown", options_.unknown,
-                   "What space counts as that was not measured: free, occupied, or report: no "
-                   "obstacle, but a drive over it is not clear")
-        ->transform(CLI::CheckedTransformer(kPolicies))
-        ->option_text("free|occupied|report [report]");
-    app.add_option("--ground", ground_m_, "Height of the ground in the occupancy's frame [m]")
-        ->capture_default_str();
-    app.add_option("--from-height", from_height_m_,
-                   "The vehicle's underside above the ground [m]; its top is the vehicle's height")
-        ->capture_default_str();
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.add_option("--svg", svg_, "Draw the audit as a picture (.svg)");
-    app.add_flag("--force", force_, "Replace the picture if it exists");
-    app.footer("Example:\n  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv");
+    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)").required();
+    arguments.add("--trajectory", trajectory_, "Drive to audit (.csv), poses of the rear axle")
+        .required();
+    arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
+    arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
+    arguments.add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
+        .within(0.0, 100.0)
+        .with_default();
+    arguments.add("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
+        .within(0.0, 100.0)
+        .with_default();
+    arguments.choice("--unknown", options_.unknown,
+                     {{"free", UnknownPolicy::free},
+                      {"occupied", UnknownPolicy::occupied},
+                      {"report", UnknownPolicy::report}},
+                     "What space counts as that was not measured: free, occupied, or report: no "
+                     "obstacle, but a drive over it is not clear");
+    arguments.add("--ground", ground_m_, "Height of the ground in the occupancy's frame [m]")
+        .with_default();
+    arguments
+        .add("--from-height", from_height_m_,
+             "The vehicle's underside above the ground [m]; its top is the vehicle's height")
+        .with_default();
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.add("--svg", svg_, "Draw the audit as a picture (.svg)");
+    arguments.flag("--force", force_, "Replace the picture if it exists");
+    arguments.example("  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <memory>
 #include <string>
+
+#include "roadbed/tools/support/arguments.h"
 
 namespace roadbed::tools {
 
@@ -30,7 +31,7 @@ struct Streams {
 class Command {
  public:
   virtual ~Command() = default;
-  virtual void declare(CLI::App& app) = 0;
+  virtual void declare(Arguments& arguments) = 0;
   virtual Exit run(const Streams& streams, const CommonOptions& common) = 0;
 };
 

@@ -76,27 +76,22 @@ void print_text(std::ostream& out, const control::CruiseDesign& design,
 
 class ControlCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("The controllers' designs");
-    app.require_subcommand(1);
-    CLI::App* design = app.add_subcommand("design", "Gains and poles of the cruise control");
-    design->add_option("--headway", options_.headway_s, "Time gap to the lead [s]")
-        ->capture_default_str();
-    design->add_option("--lag", options_.actuator_lag_s, "Time constant of the actuator [s]")
-        ->capture_default_str();
-    design->add_option("--gain", options_.actuator_gain, "Gain of the actuator")
-        ->capture_default_str();
-    design->add_option("--step", options_.step_s, "Sampling time [s]")->capture_default_str();
-    design
-        ->add_option("--weights", weights_,
-                     "Weights of distance error, relative speed and acceleration")
-        ->expected(3)
-        ->capture_default_str();
-    design->add_option("--input-weight", options_.input_weight, "Weight of the command")
-        ->capture_default_str();
-    design->add_flag("--json", json_, "Print one JSON document");
-    design->footer("Example:\n  roadbed control design --weights 1 2 0.5 --input-weight 5");
-    app.footer("Example:\n  roadbed control design --json");
+  void declare(Arguments& arguments) override {
+    arguments.description("The controllers' designs");
+    Arguments design = arguments.part("design");
+    design.description("Gains and poles of the cruise control");
+    design.add("--headway", options_.headway_s, "Time gap to the lead [s]").with_default();
+    design.add("--lag", options_.actuator_lag_s, "Time constant of the actuator [s]")
+        .with_default();
+    design.add("--gain", options_.actuator_gain, "Gain of the actuator").with_default();
+    design.add("--step", options_.step_s, "Sampling time [s]").with_default();
+    design.add("--weights", weights_, "Weights of distance error, relative speed and acceleration")
+        .values(3)
+        .with_default();
+    design.add("--input-weight", options_.input_weight, "Weight of the command").with_default();
+    design.flag("--json", json_, "Print one JSON document");
+    design.example("  roadbed control design --weights 1 2 0.5 --input-weight 5");
+    arguments.example("  roadbed control design --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions& /*common*/) override {

@@ -35,14 +35,15 @@ Writer writer_for(const std::filesystem::path& output) {
 
 class ExportCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Write a map in another format, told by the output's suffix");
-    app.add_option("MAP", input_, "Any readable map")->required();
-    app.add_option("-o,--output", output_,
-                   ".geojson: lanes, centrelines, signals; .svg: a picture; .csv: all lane lines")
-        ->required();
-    app.add_flag("--force", force_, "Replace the output if it exists");
-    app.footer("Example:\n  roadbed export town.xodr -o town.svg");
+  void declare(Arguments& arguments) override {
+    arguments.description("Write a map in another format, told by the output's suffix");
+    arguments.add("MAP", input_, "Any readable map").required();
+    arguments
+        .add("-o,--output", output_,
+             ".geojson: lanes, centrelines, signals; .svg: a picture; .csv: all lane lines")
+        .required();
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed export town.xodr -o town.svg");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -23,19 +23,20 @@ map::RoadMap with_crs(map::RoadMap road_map, const std::string& crs) {
 
 class ImportCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Read a digital road map and write it as a compiled map");
-    app.add_option("IN", input_, "Map file: OpenDRIVE (.xodr), or a compiled one")->required();
-    app.add_option("-o,--output", output_, "Compiled map to write (.rbm)")->required();
-    app.add_option("--crs", crs_,
-                   "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
-                   "the file gives none or a wrong one; nothing is reprojected");
-    app.add_option("--max-error", max_error_m_,
-                   "Largest distance between a sampled border and the true curve [m]")
-        ->check(CLI::Range(1e-6, 1.0))
-        ->capture_default_str();
-    app.add_flag("--force", force_, "Replace the output if it exists");
-    app.footer("Example:\n  roadbed import town.xodr -o town.rbm");
+  void declare(Arguments& arguments) override {
+    arguments.description("Read a digital road map and write it as a compiled map");
+    arguments.add("IN", input_, "Map file: OpenDRIVE (.xodr), or a compiled one").required();
+    arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required();
+    arguments.add("--crs", crs_,
+                  "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
+                  "the file gives none or a wrong one; nothing is reprojected");
+    arguments
+        .add("--max-error", max_error_m_,
+             "Largest distance between a sampled border and the true curve [m]")
+        .within(1e-6, 1.0)
+        .with_default();
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed import town.xodr -o town.rbm");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -158,11 +158,11 @@ void print_info(std::ostream& out, const Json& info) {
 
 class InfoCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Say what a map holds: counts, lengths, areas, bounds, connectivity");
-    app.add_option("MAP", input_, "Any readable map")->required();
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.footer("Example:\n  roadbed info town.xodr --json");
+  void declare(Arguments& arguments) override {
+    arguments.description("Say what a map holds: counts, lengths, areas, bounds, connectivity");
+    arguments.add("MAP", input_, "Any readable map").required();
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.example("  roadbed info town.xodr --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

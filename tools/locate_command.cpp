@@ -81,24 +81,22 @@ void print(std::ostream& out, const Json& point) {
 
 class LocateCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Find the lanes nearest to points");
-    app.add_option("MAP", map_file_, "Any readable map")->required();
-    auto* at = app.add_option("--at", at_, "Point X,Y in the map's coordinates [m]")
-                   ->check([](const std::string& text) {
-                     return parse_point(text) ? std::string() : "is not X,Y: two numbers";
-                   });
-    auto* points = app.add_option("--points", points_file_, "CSV file with columns x_m,y_m");
-    at->excludes(points);
-    app.add_option("--count", count_, "Most lanes to name per point")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.callback([this] {
-      if (at_.empty() && points_file_.empty()) throw CLI::RequiredError("--at or --points");
+  void declare(Arguments& arguments) override {
+    arguments.description("Find the lanes nearest to points");
+    arguments.add("MAP", map_file_, "Any readable map").required();
+    const Argument at = arguments.add("--at", at_, "Point X,Y in the map's coordinates [m]")
+                            .checked([](const std::string& text) {
+                              return parse_point(text) ? std::string() : "is not X,Y: two numbers";
+                            });
+    Argument points = arguments.add("--points", points_file_, "CSV file with columns x_m,y_m");
+    points.excludes(at);
+    arguments.add("--count", count_, "Most lanes to name per point").positive().with_default();
+    arguments.flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.require([this] {
+      return at_.empty() && points_file_.empty() ? std::string("--at or --points") : std::string();
     });
-    app.footer("Example:\n  roadbed locate town.xodr --at 20,-1.8");
+    arguments.example("  roadbed locate town.xodr --at 20,-1.8");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

@@ -19,41 +19,47 @@ namespace {
 
 class OccupancyBuildCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description(
+  void declare(Arguments& arguments) override {
+    arguments.description(
         "Make an OctoMap file from point clouds. A measured hit stays occupied whatever rays pass "
         "through its cell; space that no ray crossed stays unknown");
-    app.add_option("CLOUD", clouds_,
-                   "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
-                   "(.bt .ot) to convert")
-        ->required();
-    app.add_option("-o,--output", output_, "OctoMap file to write (.bt)")->required();
-    app.add_option("--resolution", resolution_m_, "Side of a cell [m]")
-        ->check(CLI::Range(1e-3, 1e3))
-        ->capture_default_str();
-    app.add_option("--sensor", sensor_,
-                   "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
-                   "the viewpoint of each .pcd counts, where the file names one")
-        ->delimiter(',')
-        ->expected(3);
-    app.add_flag("--no-carving", no_carving_, "Only mark hits, whatever viewpoints the files name");
-    app.add_option("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
-        ->check(CLI::Range(1e-3, 1e3));
-    app.add_option("--outlier-neighbours", filter_.outlier_neighbours,
-                   "Leave out points far from this many neighbours, as compared to the rest (PCL)")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--outlier-deviations", filter_.outlier_deviations,
-                   "Far is this many standard deviations over the mean distance")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_option("--scale", scale_,
-                   "Multiplies every coordinate, for clouds that are not in metres (feet: 0.3048)")
-        ->check(CLI::Range(1e-6, 1e6));
-    app.add_option("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
-    app.add_flag("--force", force_, "Replace the output if it exists");
-    app.footer("Example:\n  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt");
+    arguments
+        .add("CLOUD", clouds_,
+             "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
+             "(.bt .ot) to convert")
+        .required();
+    arguments.add("-o,--output", output_, "OctoMap file to write (.bt)").required();
+    arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
+        .within(1e-3, 1e3)
+        .with_default();
+    arguments
+        .add("--sensor", sensor_,
+             "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
+             "the viewpoint of each .pcd counts, where the file names one")
+        .separated_by(',')
+        .values(3);
+    arguments.flag("--no-carving", no_carving_,
+                   "Only mark hits, whatever viewpoints the files name");
+    arguments.add("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
+        .positive();
+    arguments.add("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
+        .within(1e-3, 1e3);
+    arguments
+        .add("--outlier-neighbours", filter_.outlier_neighbours,
+             "Leave out points far from this many neighbours, as compared to the rest (PCL)")
+        .within(1, 1000);
+    arguments
+        .add("--outlier-deviations", filter_.outlier_deviations,
+             "Far is this many standard deviations over the mean distance")
+        .positive()
+        .with_default();
+    arguments
+        .add("--scale", scale_,
+             "Multiplies every coordinate, for clouds that are not in metres (feet: 0.3048)")
+        .within(1e-6, 1e6);
+    arguments.add("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

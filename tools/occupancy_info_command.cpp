@@ -114,12 +114,12 @@ std::string text_of(const Json& value) {
 
 class OccupancyInfoCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Say what an octree or a point cloud holds: counts, bounds, frame");
-    app.add_option("F", input_, "Octree (.bt .ot) or point cloud (.pcd .ply .las .xyz .csv)")
-        ->required();
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.footer("Example:\n  roadbed occupancy info street.bt --json");
+  void declare(Arguments& arguments) override {
+    arguments.description("Say what an octree or a point cloud holds: counts, bounds, frame");
+    arguments.add("F", input_, "Octree (.bt .ot) or point cloud (.pcd .ply .las .xyz .csv)")
+        .required();
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.example("  roadbed occupancy info street.bt --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

@@ -160,17 +160,17 @@ void print_text(std::ostream& out, const Plan& plan, const CostTerms& weights) {
 
 class PlanCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("One planning cycle: every candidate, its cost, and why it was rejected");
-    app.add_option("SCENE", scene_file_, "Scenario (.json); the cycle at t = 0 is planned")
-        ->required();
-    app.add_option("-o,--output", folder_, "Folder for candidates.csv, trajectory.csv and plan.svg")
-        ->required();
-    app.add_option("--weights", weights_file_,
-                   "JSON file with weights by term; others keep their defaults");
-    app.add_flag("--json", json_, "One JSON document on stdout");
-    app.add_flag("--force", force_, "Replace files in the folder");
-    app.footer("Example: roadbed plan data/scenarios/parked_car.json -o /tmp/plan");
+  void declare(Arguments& arguments) override {
+    arguments.description("One planning cycle: every candidate, its cost, and why it was rejected");
+    arguments.add("SCENE", scene_file_, "Scenario (.json); the cycle at t = 0 is planned")
+        .required();
+    arguments.add("-o,--output", folder_, "Folder for candidates.csv, trajectory.csv and plan.svg")
+        .required();
+    arguments.add("--weights", weights_file_,
+                  "JSON file with weights by term; others keep their defaults");
+    arguments.flag("--json", json_, "One JSON document on stdout");
+    arguments.flag("--force", force_, "Replace files in the folder");
+    arguments.example("  roadbed plan data/scenarios/parked_car.json -o /tmp/plan");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

@@ -70,7 +70,8 @@ int run_program(int argc, char** argv) {
   for (const Entry& entry : kCommands) {
     CLI::App* sub = app.add_subcommand(entry.name);
     commands.push_back({sub, entry.make()});
-    commands.back().command->declare(*sub);
+    Arguments arguments(*sub);
+    commands.back().command->declare(arguments);
   }
 
   try {

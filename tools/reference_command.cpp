@@ -50,21 +50,22 @@ double peak_curvature_per_m(const planning::ReferenceLine& line) {
 
 class ReferenceCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Draw the smooth line to drive along a route");
-    app.add_option("MAP", map_file_, "Any readable map")->required();
-    question_.declare(app);
-    app.add_option("-o,--output", output_, "CSV file to write")->required();
-    app.add_option("--step", step_m_, "Distance between rows [m]")
-        ->check(CLI::Range(1e-3, 100.0))
-        ->capture_default_str();
-    app.add_option("--max-move", options_.max_smoothing_m,
-                   "Largest distance of the line from the centreline [m]")
-        ->check(CLI::Range(0.01, 2.0))
-        ->capture_default_str();
-    app.add_flag("--force", force_, "Replace the output if it exists");
-    app.footer(
-        "Example:\n"
+  void declare(Arguments& arguments) override {
+    arguments.description("Draw the smooth line to drive along a route");
+    arguments.add("MAP", map_file_, "Any readable map").required();
+    question_.declare(arguments);
+    arguments.add("-o,--output", output_, "CSV file to write").required();
+    arguments.add("--step", step_m_, "Distance between rows [m]")
+        .within(1e-3, 100.0)
+        .with_default();
+    arguments
+        .add("--max-move", options_.max_smoothing_m,
+             "Largest distance of the line from the centreline [m]")
+        .within(0.01, 2.0)
+        .with_default();
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example(
+        ""
         "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv");
   }
 

@@ -105,14 +105,14 @@ void print(std::ostream& out, const map::RoadMap& road_map, const planning::Rout
 
 class RouteCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Find the cheapest route over lanes, or say why there is none");
-    app.add_option("MAP", map_file_, "Any readable map")->required();
-    question_.declare(app);
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.add_option("-o,--output", output_, "Write the way as GeoJSON too");
-    app.add_flag("--force", force_, "Replace the output if it exists");
-    app.footer("Example:\n  roadbed route town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55");
+  void declare(Arguments& arguments) override {
+    arguments.description("Find the cheapest route over lanes, or say why there is none");
+    arguments.add("MAP", map_file_, "Any readable map").required();
+    question_.declare(arguments);
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.add("-o,--output", output_, "Write the way as GeoJSON too");
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed route town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

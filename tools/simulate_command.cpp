@@ -45,16 +45,17 @@ std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const Wo
 
 class SimulateCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Drive a scenario in a closed loop and report on it");
-    app.add_option("SCENARIO", scenario_file_, "Scenario file (.json)")->required();
-    app.add_option("-o,--output", folder_,
-                   "Folder for trajectory.csv, metrics.json, report.html and drive.svg")
-        ->required();
-    app.add_option("--timings", timings_file_,
-                   "File for the wall clock of each planning cycle (.csv)");
-    app.add_flag("--force", force_, "Replace outputs that exist");
-    app.footer("Example:\n  roadbed simulate data/drive.json -o drive");
+  void declare(Arguments& arguments) override {
+    arguments.description("Drive a scenario in a closed loop and report on it");
+    arguments.add("SCENARIO", scenario_file_, "Scenario file (.json)").required();
+    arguments
+        .add("-o,--output", folder_,
+             "Folder for trajectory.csv, metrics.json, report.html and drive.svg")
+        .required();
+    arguments.add("--timings", timings_file_,
+                  "File for the wall clock of each planning cycle (.csv)");
+    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.example("  roadbed simulate data/drive.json -o drive");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

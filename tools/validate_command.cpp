@@ -53,22 +53,23 @@ long count(const Findings& findings, map::Severity severity) {
 
 class ValidateCommand : public Command {
  public:
-  void declare(CLI::App& app) override {
-    app.description("Report what makes a map unfit for planning");
-    app.add_option("MAP", input_, "Any readable map")->required();
-    app.add_flag("--json", json_, "Print one JSON document");
-    app.add_option("--fail-on", fail_on_, "Least severity that makes the exit status 1")
-        ->check(CLI::IsMember({"error", "warning"}))
-        ->capture_default_str();
-    app.add_option("--max-gap", options_.max_gap_m,
-                   "Largest gap between the ends of linked lanes [m]")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app.add_option("--max-kink", options_.max_kink_rad,
-                   "Largest change of heading between linked lanes [rad]")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    app.footer("Example:\n  roadbed validate town.xodr --fail-on warning");
+  void declare(Arguments& arguments) override {
+    arguments.description("Report what makes a map unfit for planning");
+    arguments.add("MAP", input_, "Any readable map").required();
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.add("--fail-on", fail_on_, "Least severity that makes the exit status 1")
+        .one_of({"error", "warning"})
+        .with_default();
+    arguments
+        .add("--max-gap", options_.max_gap_m, "Largest gap between the ends of linked lanes [m]")
+        .not_negative()
+        .with_default();
+    arguments
+        .add("--max-kink", options_.max_kink_rad,
+             "Largest change of heading between linked lanes [rad]")
+        .not_negative()
+        .with_default();
+    arguments.example("  roadbed validate town.xodr --fail-on warning");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

@@ -41,7 +41,7 @@ std::vector<Junction> build_junctions(const Document& document,
   for (const JunctionRecord& record : document.junctions) {
     const JunctionId id{static_cast<std::uint32_t>(junctions.size())};
     if (!ids.emplace(record.id, id).second) continue;
-    junctions.push_back({id, record.id, record.name, {}});
+    junctions.push_back({id, record.id, record.name, JunctionKind::common, {}});
   }
   return junctions;
 }
@@ -127,20 +127,20 @@ std::vector<Signal> build_signals(const Document& document,
     if (found == index.end()) continue;
     const Road& road = roads[found->second];
     const geometry::Pose2 pose = views[found->second].at(record.s_m).pose;
-    Signal signal{record.id,
-                  record.name,
-                  road.id,
-                  record.s_m,
-                  record.t_m,
-                  {},
-                  record.country,
-                  record.type,
-                  record.subtype,
-                  record.value,
-                  record.unit,
-                  record.dynamic,
-                  signal_lanes(record, road, built)};
+    Signal signal;
+    signal.source_id = record.id;
+    signal.name = record.name;
+    signal.road = road.id;
+    signal.road_s_m = record.s_m;
+    signal.road_t_m = record.t_m;
     signal.in_map = pose * Eigen::Vector2d(0.0, record.t_m);
+    signal.country = record.country;
+    signal.type = record.type;
+    signal.subtype = record.subtype;
+    signal.value = record.value;
+    signal.unit = record.unit;
+    signal.dynamic = record.dynamic;
+    signal.lanes = signal_lanes(record, road, built);
     signals.push_back(std::move(signal));
   }
   return signals;

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "roadbed/map/formats/open_drive_cross_section.h"
+#include "roadbed/map/formats/open_drive_values.h"
 
 namespace roadbed::map::open_drive {
 namespace {
@@ -160,7 +161,9 @@ class LaneBuilder {
                    forward ? side.from_s_m : side.to_s_m, forward ? side.to_s_m : side.from_s_m};
     lane.name = fmt::format("{}/{}/{}", road.id, section_index, record.id);
     lane.type = record.type;
-    lane.speed_limit_mps = speed_limit(road, record, side);
+    lane.one_way = record.direction != "both" && record.type != LaneType::bidirectional;
+    lane.participants = participants_of(record.type);
+    lane.speed_limits = {{0.0, speed_limit(road, record, side)}};
     const std::vector<double> station_m = geometry::Polyline(centre.points).stations_m();
     lane.centre = lane_line(std::move(centre), station_m);
     lane.left = lane_line(std::move(left), station_m);

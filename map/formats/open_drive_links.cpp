@@ -261,9 +261,14 @@ class Linker {
     const Crossing crossing = crossing_between(road, section, right, left);
     const bool same = built_.forward[a->index] == built_.forward[b->index];
     (built_.forward[a->index] ? links_[a->index].left : links_[a->index].right) =
-        Neighbour{*b, same, crossing.to_larger_id};
+        Neighbour{*b, same, windows(*a, crossing.to_larger_id)};
     (built_.forward[b->index] ? links_[b->index].right : links_[b->index].left) =
-        Neighbour{*a, same, crossing.to_smaller_id};
+        Neighbour{*a, same, windows(*b, crossing.to_smaller_id)};
+  }
+
+  std::vector<StationRange> windows(LaneId lane, bool allowed) const {
+    if (!allowed) return {};
+    return {{0.0, built_.lanes[lane.index].length_m()}};
   }
 
   Crossing crossing_between(std::size_t road, std::size_t section, int right, int left) const {

@@ -46,6 +46,25 @@ std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed) {
   return max * to_mps;
 }
 
+Participants participants_of(LaneType type) {
+  switch (type) {
+    case LaneType::bus:
+      return {Participant::bus, Participant::emergency};
+    case LaneType::taxi:
+      return {Participant::taxi, Participant::emergency};
+    case LaneType::biking:
+      return {Participant::bicycle};
+    case LaneType::sidewalk:
+      return {Participant::pedestrian};
+    case LaneType::tram:
+      return {Participant::tram};
+    case LaneType::rail:
+      return {Participant::train};
+    default:
+      return is_surface(type) ? Participants::vehicles() : Participants{};
+  }
+}
+
 LaneType lane_type(std::string_view word) {
   static constexpr std::array<std::pair<std::string_view, LaneType>, 30> words = {{
       {"none", LaneType::none},

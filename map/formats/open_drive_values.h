@@ -24,6 +24,9 @@ std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> rec
 /// @throws InputError if the unit is unknown or the speed negative.
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed);
 
+/// Who may use a lane of that type where the file does not say.
+Participants participants_of(LaneType type);
+
 /// OpenDRIVE's name of a lane type; `other` if it is not known.
 LaneType lane_type(std::string_view word);
 

@@ -43,7 +43,8 @@ Json lane_properties(const RoadMap& road_map, const Lane& lane, const char* kind
       lane.junction ? Json(road_map.junction(*lane.junction).source_id) : Json();
   properties["type"] = name(lane.type);
   properties["length_m"] = lane.length_m();
-  properties["speed_limit_mps"] = lane.speed_limit_mps ? Json(*lane.speed_limit_mps) : Json();
+  const auto limit_mps = lane.least_speed_limit_mps();
+  properties["speed_limit_mps"] = limit_mps ? Json(*limit_mps) : Json();
   return properties;
 }
 
@@ -76,10 +77,14 @@ Json centreline_feature(const RoadMap& road_map, const Lane& lane) {
 }
 
 Json signal_feature(const RoadMap& road_map, const Signal& signal) {
-  Json properties = {{"kind", "signal"},          {"signal", signal.source_id},
-                     {"name", signal.name},       {"road", road_map.road(signal.road).source_id},
-                     {"dynamic", signal.dynamic}, {"country", signal.country},
-                     {"type", signal.type},       {"subtype", signal.subtype}};
+  Json properties = {{"kind", "signal"},
+                     {"signal", signal.source_id},
+                     {"name", signal.name},
+                     {"road", signal.road ? Json(road_map.road(*signal.road).source_id) : Json()},
+                     {"dynamic", signal.dynamic},
+                     {"country", signal.country},
+                     {"type", signal.type},
+                     {"subtype", signal.subtype}};
   properties["value"] = signal.value ? Json(*signal.value) : Json();
   properties["unit"] = signal.unit;
   properties["lanes"] = names_of(road_map, signal.lanes);

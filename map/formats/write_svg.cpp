@@ -144,7 +144,7 @@ void add_markings(const Drawing& drawing, const Lane& lane, Markings& markings) 
   if (!is_drivable_neighbour(drawing.road_map, links.right)) {
     markings.solid += right;
   } else {
-    (links.right->change_allowed ? markings.dashed : markings.solid) += right;
+    (links.right->change_allowed() ? markings.dashed : markings.solid) += right;
   }
   if (!is_drivable_neighbour(drawing.road_map, links.left)) {
     markings.solid += left;

@@ -7,9 +7,11 @@
 namespace roadbed::map::rules {
 namespace {
 
-bool lacks_speed(const Lane& lane) { return is_drivable(lane.type) && !lane.speed_limit_mps; }
+bool lacks_speed(const Lane& lane) {
+  return is_drivable(lane.type) && !lane.least_speed_limit_mps();
+}
 
-bool has_speed(const Lane& lane) { return is_drivable(lane.type) && lane.speed_limit_mps; }
+bool has_speed(const Lane& lane) { return is_drivable(lane.type) && lane.least_speed_limit_mps(); }
 
 Finding missing(const std::string& element, std::optional<Eigen::Vector2d> in_map,
                 std::string message) {

@@ -83,7 +83,7 @@ TEST(ReferenceLineAlong, RoomEndsAtAMarkingThatMayNotBeCrossedAndSpansAnOpposite
   };
   EXPECT_NEAR(room_at_50().left_m, 1.75, 1e-3);
   EXPECT_NEAR(room_at_50().right_m, 1.75, 1e-3);
-  made.parts.links[0].left->change_allowed = true;
+  made.parts.links[0].left->change_windows = {{0.0, made.parts.lanes[0].length_m()}};
   EXPECT_NEAR(room_at_50().left_m, 1.75 + 3.5, 1e-3);
   EXPECT_NEAR(room_at_50().right_m, 1.75, 1e-3);
 }

@@ -62,7 +62,7 @@ class BoostOracle {
 
   double travel(const map::Lane& lane, double length_m) const {
     if (options_.cost == RouteCost::distance) return length_m;
-    const double limit = lane.speed_limit_mps.value_or(options_.default_speed_mps);
+    const double limit = lane.least_speed_limit_mps().value_or(options_.default_speed_mps);
     return length_m / std::min(limit, options_.max_speed_mps);
   }
 
@@ -82,7 +82,8 @@ class BoostOracle {
       }
     }
     for (const auto& next : {links.left, links.right}) {
-      if (!next || !next->same_direction || !next->change_allowed || !usable(next->lane)) continue;
+      if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane))
+        continue;
       if (changes + 1 >= kChanges || !fits(changes + 1, rest_m)) continue;
       const double least = options_.cost == RouteCost::distance ? options_.lane_change_cost_m
                                                                 : options_.lane_change_cost_s;
@@ -121,8 +122,8 @@ RoadMap random_grid(std::mt19937& random, int columns, int rows) {
           made.add_lane(road, std::to_string(-1 - i), {left, left + length_m * along},
                         {left + 3.5 * right, left + 3.5 * right + length_m * along},
                         unit(random) < 0.95 ? map::LaneType::driving : map::LaneType::shoulder));
-      made.lane(added.back()).speed_limit_mps =
-          unit(random) < 0.9 ? std::optional(5.0 + 30.0 * unit(random)) : std::nullopt;
+      made.lane(added.back()).speed_limits = {
+          {0.0, unit(random) < 0.9 ? std::optional(5.0 + 30.0 * unit(random)) : std::nullopt}};
       if (i > 0) made.put_beside(added[added.size() - 2], added.back(), unit(random) < 0.6);
       out[crossing(x0, y0)].push_back(added.back());
       in[crossing(x1, y1)].push_back(added.back());
@@ -185,7 +186,7 @@ void expect_connected(const RoadMap& road_map, const Route& route, const LanePla
       EXPECT_EQ(next.from_s_m, 0.0);
     } else {
       const auto& beside = leg.exit == LegExit::change_left ? links.left : links.right;
-      ASSERT_TRUE(beside && beside->change_allowed && beside->same_direction);
+      ASSERT_TRUE(beside && beside->change_allowed() && beside->same_direction);
       EXPECT_EQ(beside->lane, next.lane);
       EXPECT_NEAR(leg.to_s_m / lane.length_m(), next.from_s_m / road_map.lane(next.lane).length_m(),
                   1e-9);

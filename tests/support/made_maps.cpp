@@ -34,7 +34,7 @@ map::RoadId MadeMap::add_road(const std::string& source_id,
 
 map::JunctionId MadeMap::add_junction(const std::string& source_id) {
   const map::JunctionId id{static_cast<std::uint32_t>(parts.junctions.size())};
-  parts.junctions.push_back({id, source_id, "", {}});
+  parts.junctions.push_back({id, source_id, "", map::JunctionKind::common, {}});
   return id;
 }
 
@@ -49,7 +49,8 @@ map::LaneId MadeMap::add_lane(map::RoadId road, const std::string& source_id, co
   lane.origin = {0, source_id, 0.0, centre.length_m()};
   lane.name = owner.source_id + "/0/" + source_id;
   lane.type = type;
-  lane.speed_limit_mps = 13.9;
+  lane.participants = map::Participants::vehicles();
+  lane.speed_limits = {{0.0, 13.9}};
   lane.left = line(left, centre.stations_m());
   lane.centre = line(centre.points(), centre.stations_m());
   lane.right = line(right, centre.stations_m());
@@ -70,13 +71,17 @@ void MadeMap::link(map::LaneId from, map::LaneId to) {
 }
 
 void MadeMap::put_beside(map::LaneId left, map::LaneId right, bool change_allowed) {
-  parts.links.at(left.index).right = map::Neighbour{right, true, change_allowed};
-  parts.links.at(right.index).left = map::Neighbour{left, true, change_allowed};
+  const auto windows = [&](map::LaneId id) -> std::vector<map::StationRange> {
+    if (!change_allowed) return {};
+    return {{0.0, lane(id).length_m()}};
+  };
+  parts.links.at(left.index).right = map::Neighbour{right, true, windows(left)};
+  parts.links.at(right.index).left = map::Neighbour{left, true, windows(right)};
 }
 
 void MadeMap::put_opposite(map::LaneId one, map::LaneId other) {
-  parts.links.at(one.index).left = map::Neighbour{other, false, false};
-  parts.links.at(other.index).left = map::Neighbour{one, false, false};
+  parts.links.at(one.index).left = map::Neighbour{other, false, {}};
+  parts.links.at(other.index).left = map::Neighbour{one, false, {}};
 }
 
 MadeMap straight_two_lane_road(double length_m) {

@@ -1,22 +1,19 @@
 #include "roadbed/tools/support/route_question.h"
 
-#include <map>
-
 namespace roadbed::tools {
 
-void RouteQuestion::declare(CLI::App& app) {
-  const std::map<std::string, planning::RouteCost> costs{
-      {"time", planning::RouteCost::time}, {"distance", planning::RouteCost::distance}};
+void RouteQuestion::declare(Arguments& arguments) {
   const std::string syntax = kPlaceSyntax;
-  app.add_option("--from", from_, "Start: " + syntax)->required()->check(place_syntax_fault);
-  app.add_option("--to", to_, "Goal, in the same way")->required()->check(place_syntax_fault);
-  app.add_option("--avoid", avoid_, "A closed lane, lane:NAME; may be given again")
-      ->check([](const std::string& text) {
+  arguments.add("--from", from_, "Start: " + syntax).required().checked(place_syntax_fault);
+  arguments.add("--to", to_, "Goal, in the same way").required().checked(place_syntax_fault);
+  arguments.add("--avoid", avoid_, "A closed lane, lane:NAME; may be given again")
+      .checked([](const std::string& text) {
         return text.starts_with("lane:") ? place_syntax_fault(text) : "is not lane:NAME";
       });
-  app.add_option("--cost", cost_, "What is to be least: time or distance")
-      ->transform(CLI::CheckedTransformer(costs, CLI::ignore_case))
-      ->default_str("time");
+  arguments.choice(
+      "--cost", cost_,
+      {{"time", planning::RouteCost::time}, {"distance", planning::RouteCost::distance}},
+      "What is to be least");
 }
 
 RouteQuestion::Asked RouteQuestion::on(const map::RoadMap& road_map) const {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "roadbed/planning/route.h"
+#include "roadbed/tools/support/arguments.h"
 #include "roadbed/tools/support/place.h"
 
 namespace roadbed::tools {
@@ -12,7 +12,7 @@ namespace roadbed::tools {
 /// The options `--from --to --avoid --cost` of commands that look for a route.
 class RouteQuestion {
  public:
-  void declare(CLI::App& app);
+  void declare(Arguments& arguments);
 
   /// What they ask for on a map.
   struct Asked {

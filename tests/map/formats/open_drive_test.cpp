@@ -97,10 +97,10 @@ TEST(OpenDrive, NeighboursAreLeftAndRightOfTheDriver) {
   ASSERT_TRUE(inner.left && inner.right);
   EXPECT_EQ(road_map.lane(inner.left->lane).name, "A/0/1");
   EXPECT_FALSE(inner.left->same_direction);
-  EXPECT_FALSE(inner.left->change_allowed);  // solid
+  EXPECT_FALSE(inner.left->change_allowed());  // solid
   EXPECT_EQ(road_map.lane(inner.right->lane).name, "A/0/-2");
   EXPECT_TRUE(inner.right->same_direction);
-  EXPECT_TRUE(inner.right->change_allowed);  // broken
+  EXPECT_TRUE(inner.right->change_allowed());  // broken
   const LaneLinks& oncoming = road_map.graph().of(*road_map.find_lane("A/0/1"));
   ASSERT_TRUE(oncoming.left);
   EXPECT_EQ(road_map.lane(oncoming.left->lane).name, "A/0/-1");
@@ -111,16 +111,16 @@ TEST(OpenDrive, OneSidedMarkingAllowsTheChangeFromItsBrokenSideOnly) {
   // Lane −1's outer marking: "broken solid" is broken for who drives inside.
   const RoadMap road_map =
       parse(straight_road("A", 0, "", "", "", R"(<roadMark sOffset="0" type="broken solid"/>)"));
-  EXPECT_TRUE(road_map.graph().of(*road_map.find_lane("A/0/-1")).right->change_allowed);
-  EXPECT_FALSE(road_map.graph().of(*road_map.find_lane("A/0/-2")).left->change_allowed);
+  EXPECT_TRUE(road_map.graph().of(*road_map.find_lane("A/0/-1")).right->change_allowed());
+  EXPECT_FALSE(road_map.graph().of(*road_map.find_lane("A/0/-2")).left->change_allowed());
 }
 
 TEST(OpenDrive, LaneChangeAttributeOverridesTheLineType) {
   // "increase": only towards larger ids, that is from −2 to −1.
   const RoadMap road_map = parse(straight_road(
       "A", 0, "", "", "", R"(<roadMark sOffset="0" type="solid" laneChange="increase"/>)"));
-  EXPECT_FALSE(road_map.graph().of(*road_map.find_lane("A/0/-1")).right->change_allowed);
-  EXPECT_TRUE(road_map.graph().of(*road_map.find_lane("A/0/-2")).left->change_allowed);
+  EXPECT_FALSE(road_map.graph().of(*road_map.find_lane("A/0/-1")).right->change_allowed());
+  EXPECT_TRUE(road_map.graph().of(*road_map.find_lane("A/0/-2")).left->change_allowed());
 }
 
 TEST(OpenDrive, LeftHandTrafficTurnsDirectionsRound) {
@@ -133,8 +133,8 @@ TEST(OpenDrive, LeftHandTrafficTurnsDirectionsRound) {
 
 TEST(OpenDrive, ALanesOwnSpeedLimitOverridesTheRoads) {
   const RoadMap road_map = two_roads();
-  EXPECT_NEAR(lane(road_map, "A/0/-1").speed_limit_mps.value(), 50.0 / 3.6, 1e-12);
-  EXPECT_NEAR(lane(road_map, "A/0/-2").speed_limit_mps.value(), 10.0, 1e-12);
+  EXPECT_NEAR(lane(road_map, "A/0/-1").speed_limit_at_mps(0.0).value(), 50.0 / 3.6, 1e-12);
+  EXPECT_NEAR(lane(road_map, "A/0/-2").speed_limit_at_mps(0.0).value(), 10.0, 1e-12);
 }
 
 TEST(OpenDrive, ALinkToAMissingRoadIsRemarkedNotRefused) {

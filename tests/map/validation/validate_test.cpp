@@ -186,12 +186,12 @@ TEST(Validate, NotesPartsThatNothingLeadsTo) {
 
 TEST(Validate, NotesMissingSpeedsOncePerRoadOrOncePerMap) {
   tests::MadeMap made = tests::three_roads_in_a_row();
-  made.lane(LaneId{1}).speed_limit_mps.reset();
+  made.lane(LaneId{1}).speed_limits.clear();
   auto findings = of_rule(made.build(), "speed.missing");
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].element, "road 2");
-  made.lane(LaneId{0}).speed_limit_mps.reset();
-  made.lane(LaneId{2}).speed_limit_mps.reset();
+  made.lane(LaneId{0}).speed_limits.clear();
+  made.lane(LaneId{2}).speed_limits.clear();
   findings = of_rule(made.build(), "speed.missing");
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].element, "map");

@@ -1,0 +1,137 @@
+#include "roadbed/tools/support/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+namespace roadbed::tools {
+
+Argument& Argument::required() {
+  option_->required();
+  return *this;
+}
+
+Argument& Argument::with_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Argument& Argument::within(double least, double most) {
+  option_->check(CLI::Range(least, most));
+  return *this;
+}
+
+Argument& Argument::positive() {
+  option_->check(CLI::PositiveNumber);
+  return *this;
+}
+
+Argument& Argument::not_negative() {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+Argument& Argument::values(int count) {
+  option_->expected(count);
+  return *this;
+}
+
+Argument& Argument::separated_by(char sign) {
+  option_->delimiter(sign);
+  return *this;
+}
+
+Argument& Argument::one_of(const std::vector<std::string>& accepted) {
+  option_->check(CLI::IsMember(accepted));
+  return *this;
+}
+
+Argument& Argument::checked(std::function<std::string(const std::string&)> fault) {
+  option_->check(std::move(fault));
+  return *this;
+}
+
+Argument& Argument::excludes(const Argument& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+void Arguments::description(const std::string& text) { app_->description(text); }
+
+void Arguments::example(const std::string& lines) { app_->footer("Example:\n" + lines); }
+
+Argument Arguments::add(const std::string& names, std::string& value, const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, std::filesystem::path& value,
+                        const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, double& value, const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, int& value, const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, std::size_t& value, const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, std::optional<double>& value,
+                        const std::string& help) {
+  return Argument(*app_->add_option(names, value, help));
+}
+
+Argument Arguments::add(const std::string& names, std::vector<double>& values,
+                        const std::string& help) {
+  return Argument(*app_->add_option(names, values, help));
+}
+
+Argument Arguments::add(const std::string& names, std::vector<std::string>& values,
+                        const std::string& help) {
+  return Argument(*app_->add_option(names, values, help));
+}
+
+Argument Arguments::add(const std::string& names, std::vector<std::filesystem::path>& values,
+                        const std::string& help) {
+  return Argument(*app_->add_option(names, values, help));
+}
+
+Argument Arguments::flag(const std::string& names, bool& value, const std::string& help) {
+  return Argument(*app_->add_flag(names, value, help));
+}
+
+Arguments Arguments::part(const std::string& name) {
+  app_->require_subcommand(1);
+  return Arguments(*app_->add_subcommand(name));
+}
+
+bool Arguments::given() const { return app_->parsed(); }
+
+void Arguments::require(std::function<std::string()> fault) {
+  app_->callback([fault = std::move(fault)] {
+    const std::string missing = fault();
+    if (!missing.empty()) throw CLI::RequiredError(missing);
+  });
+}
+
+Argument Arguments::choose(const std::string& names, const std::vector<std::string>& words,
+                           const std::string& standing, std::function<void(std::size_t)> take,
+                           const std::string& help) {
+  const auto take_word = [words, take = std::move(take)](const std::string& word) {
+    const auto found = std::find(words.begin(), words.end(), CLI::detail::to_lower(word));
+    take(static_cast<std::size_t>(found - words.begin()));
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(names, take_word, help);
+  option->check(CLI::IsMember(words, CLI::ignore_case));
+  option->option_text(fmt::format("{} [{}]", fmt::join(words, "|"), standing));
+  return Argument(*option);
+}
+
+}  // namespace roadbed::tools

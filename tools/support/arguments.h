@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace roadbed::tools {
+
+/// One option or positional argument of a command; its functions narrow what is accepted.
+class Argument {
+ public:
+  explicit Argument(CLI::Option& option) : option_(&option) {}
+
+  Argument& required();
+  /// Shows the value that stands now as the default in the help.
+  Argument& with_default();
+  /// Number from `least` to `most`, both allowed.
+  Argument& within(double least, double most);
+  Argument& positive();
+  Argument& not_negative();
+  /// Takes just so many values.
+  Argument& values(int count);
+  /// Takes its values as one text, with this sign between them.
+  Argument& separated_by(char sign);
+  Argument& one_of(const std::vector<std::string>& accepted);
+  /// `fault` says what is wrong with a text, and nothing if it is fine.
+  Argument& checked(std::function<std::string(const std::string& text)> fault);
+  /// May not stand beside another.
+  Argument& excludes(const Argument& other);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// Declares the arguments of one command. It hides CLI11, whose templates cost the compiler ten
+/// seconds in every file that sees them. Names are as in CLI11: "MAP" for a positional, "--at" or
+/// "-o,--output" for an option. The variables are set while the command line is parsed, and must
+/// live until then.
+class Arguments {
+ public:
+  explicit Arguments(CLI::App& app) : app_(&app) {}
+
+  void description(const std::string& text);
+  /// Command lines that a reader of the help can copy.
+  void example(const std::string& lines);
+
+  Argument add(const std::string& names, std::string& value, const std::string& help);
+  Argument add(const std::string& names, std::filesystem::path& value, const std::string& help);
+  Argument add(const std::string& names, double& value, const std::string& help);
+  Argument add(const std::string& names, int& value, const std::string& help);
+  Argument add(const std::string& names, std::size_t& value, const std::string& help);
+  Argument add(const std::string& names, std::optional<double>& value, const std::string& help);
+  Argument add(const std::string& names, std::vector<double>& values, const std::string& help);
+  Argument add(const std::string& names, std::vector<std::string>& values, const std::string& help);
+  Argument add(const std::string& names, std::vector<std::filesystem::path>& values,
+               const std::string& help);
+  Argument flag(const std::string& names, bool& value, const std::string& help);
+
+  /// One of several words, in any case; the one whose meaning `value` has is the default.
+  template <class Meaning>
+  Argument choice(const std::string& names, Meaning& value,
+                  const std::vector<std::pair<std::string, Meaning>>& choices,
+                  const std::string& help) {
+    std::vector<std::string> words;
+    std::string standing;
+    for (const auto& [word, meaning] : choices) {
+      words.push_back(word);
+      if (meaning == value) standing = word;
+    }
+    const auto take = [choices, &value](std::size_t index) { value = choices[index].second; };
+    return choose(names, words, standing, take, help);
+  }
+
+  /// A part of the command, as `design` of `control design`; just one must be given.
+  Arguments part(const std::string& name);
+  /// Whether the command line names this command or part.
+  bool given() const;
+
+  /// Looks at all arguments together; `fault` says what is missing, and nothing if all is there.
+  void require(std::function<std::string()> fault);
+
+ private:
+  Argument choose(const std::string& names, const std::vector<std::string>& words,
+                  const std::string& standing, std::function<void(std::size_t)> take,
+                  const std::string& help);
+
+  CLI::App* app_;
+};
+
+}  // namespace roadbed::tools
