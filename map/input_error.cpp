@@ -22,11 +22,14 @@ std::string printable(const std::string& text) {
 
 std::string one_line(const InputError::Parts& parts) {
   std::string message = printable(parts.file);
-  if (!parts.place.empty()) message += ":" + printable(parts.place);
-  if (!parts.element.empty()) message += ": " + printable(parts.element);
-  message += ": " + printable(parts.found);
-  if (!parts.needed.empty()) message += ", needs " + printable(parts.needed);
-  if (!parts.remedy.empty()) message += "; " + printable(parts.remedy);
+  const auto append = [&message](const char* sign, const std::string& part) {
+    if (!part.empty()) message.append(sign).append(printable(part));
+  };
+  append(":", parts.place);
+  append(": ", parts.element);
+  append(": ", parts.found);
+  append(", needs ", parts.needed);
+  append("; ", parts.remedy);
   return message;
 }
 
