@@ -35,6 +35,7 @@ std::string one_line(const InputError::Parts& parts) {
 
 }  // namespace
 
-InputError::InputError(const Parts& parts) : std::runtime_error(one_line(parts)) {}
+InputError::InputError(const Parts& parts)
+    : std::runtime_error(one_line(parts)), parts_(std::make_shared<const Parts>(parts)) {}
 
 }  // namespace roadbed::map

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,11 @@ class InputError : public std::runtime_error {
     std::string remedy;   ///< what the user can do
   };
   explicit InputError(const Parts& parts);
+
+  const Parts& parts() const { return *parts_; }
+
+ private:
+  std::shared_ptr<const Parts> parts_;  // shared: copying an exception must not throw
 };
 
 }  // namespace roadbed::map

@@ -63,7 +63,10 @@ void check_road_ids(const RoadMapParts& parts) {
   for (const Signal& signal : parts.signals) {
     const bool lanes_there = std::all_of(signal.lanes.begin(), signal.lanes.end(),
                                          [&](LaneId id) { return id.index < parts.lanes.size(); });
-    if (!lanes_there || (signal.road && signal.road->index >= parts.roads.size())) {
+    const bool stations_there =
+        signal.lane_s_m.empty() || signal.lane_s_m.size() == signal.lanes.size();
+    if (!lanes_there || !stations_there ||
+        (signal.road && signal.road->index >= parts.roads.size())) {
       throw std::invalid_argument(
           fmt::format("RoadMap: signal {} names what is not there", signal.source_id));
     }

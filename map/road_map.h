@@ -56,10 +56,18 @@ struct UnusedContent {
   std::size_t count = 0;
 };
 
+/// How source coordinates lie in the CRS: turned about the origin, then moved (OpenDRIVE's header
+/// offset). Used on the way to the CRS only.
+struct CrsOffset {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
+  bool operator==(const CrsOffset&) const = default;
+};
+
 /// Everything a RoadMap is made of, filled by a reader of a format.
 struct RoadMapParts {
   std::string format;  ///< "OpenDRIVE 1.4", …
   std::string crs;     ///< as the file says, may be empty
+  CrsOffset offset_in_crs;
   Eigen::Vector2d origin_in_source{0, 0};
   std::vector<Road> roads;
   std::vector<Junction> junctions;
@@ -96,6 +104,7 @@ class RoadMap {
 
   const std::string& format() const { return parts_.format; }
   const std::string& crs() const { return parts_.crs; }
+  const CrsOffset& offset_in_crs() const { return parts_.offset_in_crs; }
   const Eigen::Vector2d& origin_in_source() const { return parts_.origin_in_source; }
   Eigen::Vector2d to_map(const Eigen::Vector2d& in_source) const;
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const;

@@ -23,8 +23,9 @@ struct Signal {
   std::optional<double> value;
   std::string unit;
   std::string text;
-  bool dynamic = false;       ///< changes, as a light does
-  std::vector<LaneId> lanes;  ///< that it speaks to
+  bool dynamic = false;          ///< changes, as a light does
+  std::vector<LaneId> lanes;     ///< that it speaks to
+  std::vector<double> lane_s_m;  ///< its station on each of them; empty: unknown
   Attributes attributes;
 };
 
@@ -32,6 +33,7 @@ struct Signal {
 struct Controller {
   std::string source_id, name;
   std::vector<std::string> signals;  ///< source ids
+  Attributes attributes;
 };
 
 /// Where vehicles of some lanes stop.
