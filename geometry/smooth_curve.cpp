@@ -89,6 +89,7 @@ SmoothCurve::SmoothCurve(std::span<const Eigen::Vector2d> control_points, double
     knot_points_.push_back(derivative(u, 0));
   }
   arc_length_ = ArcLength(std::move(parameters), [this](double u) { return speed(u); });
+  table_ = make_table();
 }
 
 std::size_t SmoothCurve::span_of(double u) const {
@@ -105,23 +106,38 @@ Eigen::Vector2d SmoothCurve::derivative(double u, int order) const {
   return order == 0 ? Eigen::Vector2d(spans_[k].origin + value) : Eigen::Vector2d(scale * value);
 }
 
-CurvePoint SmoothCurve::point_at(double u, double s_m) const {
-  const std::size_t k = span_of(u);
-  const double t = u / knot_distance_ - static_cast<double>(k);
+CurvePoint SmoothCurve::point_at(std::size_t k, double t, double s_m) const {
   const Taylor<6> dx = first_derivative_series(spans_[k].x, t, knot_distance_);
   const Taylor<6> dy = first_derivative_series(spans_[k].y, t, knot_distance_);
   const double turned = wrap_angle(std::atan2(dy[0], dx[0]) - knot_headings_rad_[k]);
-  return {s_m, derivative(u, 0), knot_headings_rad_[k] + turned, curvatures(dx, dy)};
+  const Eigen::Vector2d relative(evaluate(spans_[k].x, t), evaluate(spans_[k].y, t));
+  return {s_m, spans_[k].origin + relative, knot_headings_rad_[k] + turned, curvatures(dx, dy)};
+}
+
+CurveTable SmoothCurve::make_table() const {
+  constexpr int kPieces = 4;  // per span
+  std::vector<CurvePoint> nodes;
+  nodes.reserve(kPieces * spans_.size() + 1);
+  for (std::size_t k = 0; k < spans_.size(); ++k) {
+    const double knot = static_cast<double>(k) * knot_distance_;
+    for (int i = 0; i < kPieces; ++i) {
+      const double t = static_cast<double>(i) / kPieces;
+      const double within =
+          integrate([this](double u) { return speed(u); }, knot, knot + t * knot_distance_);
+      nodes.push_back(point_at(k, t, arc_length_.stations_m()[k] + within));
+    }
+  }
+  nodes.push_back(point_at(spans_.size() - 1, 1.0, length_m()));
+  return CurveTable(nodes);
 }
 
 CurvePoint SmoothCurve::at(double s_m) const {
-  const double within = std::clamp(s_m, 0.0, length_m());
-  const double u = arc_length_.parameter_at(within, [this](double v) { return speed(v); });
-  CurvePoint point = point_at(u, s_m);
-  if (s_m != within) {
-    const Eigen::Vector2d ahead(std::cos(point.heading_rad), std::sin(point.heading_rad));
-    point.position += (s_m - within) * ahead;
+  CurvePoint point = table_.at(s_m);
+  if (const double beyond_m = s_m - point.s_m; beyond_m != 0.0) {
+    point.position +=
+        beyond_m * Eigen::Vector2d(std::cos(point.heading_rad), std::sin(point.heading_rad));
     point.curvature_per_m = {};
+    point.s_m = s_m;
   }
   return point;
 }

@@ -1,28 +1,23 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "roadbed/geometry/arc_length.h"
 #include "roadbed/geometry/cardinal_spline.h"
+#include "roadbed/geometry/curve_table.h"
 #include "roadbed/geometry/polyline.h"
 
 namespace roadbed::geometry {
 
-/// A place on a smooth curve. Derivatives are with respect to arc length.
-struct CurvePoint {
-  double s_m = 0.0;
-  Eigen::Vector2d position{0, 0};
-  double heading_rad = 0.0;                 ///< continuous along the curve, not wrapped
-  std::array<double, 5> curvature_per_m{};  ///< κ, κ′, κ″, κ‴, κ⁗ [1/m … 1/m⁵], + to the left
-};
-
 /// A uniform B-spline of degree seven in the plane, measured by true arc length: position, heading,
 /// κ, κ′, κ″, κ‴ and κ⁗ are continuous, and all of them are exact derivatives of the same curve.
 /// Before its start and past its end the curve goes on straight. Immutable.
+///
+/// Points by arc length come from a CurveTable of four pieces per span, which keeps to the spline
+/// within 1e-10 of the knot distance.
 class SmoothCurve {
  public:
   SmoothCurve() = default;
@@ -38,7 +33,7 @@ class SmoothCurve {
   /// Stations of the knots.
   const std::vector<double>& knots_m() const { return arc_length_.stations_m(); }
 
-  /// Point at arc length `s_m`. O(log N), a few µs.
+  /// Point at arc length `s_m`. O(1), about 0.1 µs.
   CurvePoint at(double s_m) const;
 
   /// Foot of the perpendicular from a point: the nearest one of the whole curve, O(N); with
@@ -55,7 +50,8 @@ class SmoothCurve {
   std::size_t span_of(double u) const;
   Eigen::Vector2d derivative(double u, int order) const;
   double speed(double u) const { return derivative(u, 1).norm(); }
-  CurvePoint point_at(double u, double s_m) const;
+  CurvePoint point_at(std::size_t span, double t, double s_m) const;
+  CurveTable make_table() const;
   double foot_near(const Eigen::Vector2d& point, std::size_t knot) const;
   std::size_t downhill(const Eigen::Vector2d& point, std::size_t knot) const;
   double nearest_foot(const Eigen::Vector2d& point) const;
@@ -66,6 +62,7 @@ class SmoothCurve {
   std::vector<Eigen::Vector2d> knot_points_;
   std::vector<double> knot_headings_rad_;
   ArcLength arc_length_;
+  CurveTable table_;
 };
 
 }  // namespace roadbed::geometry

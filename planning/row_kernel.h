@@ -28,7 +28,7 @@ struct KernelSums {
 
 /// Runs over all points of all lanes of a row; one square root and one division per point, and
 /// vector lanes over d_e. In a lane with g = 0 somewhere the sums are not finite or meaningless.
-/// The same bits come out on every instruction set.
+/// Rounding depends on the instruction set: those with fused multiply-adds use them.
 void run_kernel(std::span<const KernelPoint> points, std::span<const double> end_d_m,
                 const KernelSums& sums);
 

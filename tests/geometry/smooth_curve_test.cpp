@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-SmoothCurve winding_curve(unsigned seed) {
+Points winding_points(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> turn(-0.15, 0.15), step(0.8, 1.2);
   std::vector<Eigen::Vector2d> points{{4000.0, -2500.0}};
@@ -24,7 +24,33 @@ SmoothCurve winding_curve(unsigned seed) {
     points.push_back(points.back() +
                      step(random) * Eigen::Vector2d(std::cos(heading), std::sin(heading)));
   }
-  return SmoothCurve(points, 1.0);
+  return points;
+}
+
+SmoothCurve winding_curve(unsigned seed) { return SmoothCurve(winding_points(seed), 1.0); }
+
+// De Boor's algorithm on the knots … −1, 0, 1, …: the spline of this degree at t, whose first span
+// is [0, 1].
+Eigen::Vector2d de_boor(const Points& control, int degree, double t) {
+  const int span = std::min(static_cast<int>(t), static_cast<int>(control.size()) - degree - 1);
+  Points d(control.begin() + span, control.begin() + span + degree + 1);
+  for (int r = 1; r <= degree; ++r) {
+    for (int j = degree; j >= r; --j) {
+      const double knot = span - degree + j;
+      const double share = (t - knot) / (degree - r + 1);
+      d[static_cast<std::size_t>(j)] = (1.0 - share) * d[static_cast<std::size_t>(j - 1)] +
+                                       share * d[static_cast<std::size_t>(j)];
+    }
+  }
+  return d.back();
+}
+
+// Control points of the derivative.
+Points differences(const Points& control) {
+  Points result;
+  for (std::size_t i = 0; i + 1 < control.size(); ++i)
+    result.push_back(control[i + 1] - control[i]);
+  return result;
 }
 
 // Stencils of fourth order for the first derivative.
@@ -72,6 +98,22 @@ TEST(SmoothCurve, NothingUpToTheFourthDerivativeOfCurvatureJumpsAtKnots) {
       EXPECT_NEAR(after.curvature_per_m[order], before.curvature_per_m[order], tolerances[order])
           << "order " << order << " at knot " << k;
     }
+  }
+}
+
+TEST(SmoothCurve, KeepsToTheSplineOfItsControlPoints) {
+  const Points control = winding_points(12), first = differences(control),
+               second = differences(first);
+  const SmoothCurve curve(control, 1.0);
+  for (double t = 0.003; t < static_cast<double>(control.size()) - 7.0; t += 0.0371) {
+    const LinePosition foot = curve.project(de_boor(control, 7, t));
+    const CurvePoint point = curve.at(foot.s_m);
+    EXPECT_NEAR((point.position - de_boor(control, 7, t)).norm(), 0.0, 1e-10) << "at " << t;
+    const Eigen::Vector2d p1 = de_boor(first, 6, t), p2 = de_boor(second, 5, t);
+    const double curvature = (p1.x() * p2.y() - p1.y() * p2.x()) / std::pow(p1.norm(), 3.0);
+    EXPECT_NEAR(point.curvature_per_m[0], curvature, 1e-10) << "at " << t;
+    EXPECT_NEAR(std::remainder(point.heading_rad - std::atan2(p1.y(), p1.x()), 2.0 * M_PI), 0.0,
+                1e-10);
   }
 }
 
