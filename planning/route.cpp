@@ -4,101 +4,200 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "roadbed/planning/route_obstacle.h"
-#include "roadbed/planning/route_search.h"
+#include "roadbed/planning/route_solver.h"
 
 namespace roadbed::planning {
 namespace {
 
 constexpr double kStationSlack_m = 1e-6;
 
-void check(const map::RoadMap& road_map, const map::LanePlace& place, const char* what) {
+void check(const map::RoadMap& road_map, const map::LanePlace& place) {
   if (place.lane.index >= road_map.lanes().size()) {
-    throw std::invalid_argument(fmt::format("find_route: the {} names no lane of the map", what));
+    throw std::invalid_argument("Router: a place names no lane of the map");
   }
   const map::Lane& lane = road_map.lane(place.lane);
   if (!(place.s_m >= -kStationSlack_m && place.s_m <= lane.length_m() + kStationSlack_m)) {
-    throw std::invalid_argument(
-        fmt::format("find_route: the {} is at {} m of lane {}, which is {} m long", what, place.s_m,
-                    lane.name, lane.length_m()));
+    throw std::invalid_argument(fmt::format("Router: a place is at {} m of lane {}, {} m long",
+                                            place.s_m, lane.name, lane.length_m()));
   }
 }
 
-std::string unfit(const map::Lane& lane, const char* what) {
-  return fmt::format("the {} is on lane {}, where a car may not drive: its type is {}", what,
-                     lane.name, map::name(lane.type));
+bool knows_limit(const RouteNetwork& network, std::uint32_t lane) {
+  const auto pieces = network.speeds.of(lane);
+  return std::all_of(pieces.begin(), pieces.end(),
+                     [](const SpeedPiece& piece) { return piece.limit_mps > 0.0; });
 }
 
-LegExit side_of(const map::LaneLinks& links, map::LaneId to) {
-  return links.left && links.left->lane == to ? LegExit::change_left : LegExit::change_right;
-}
+/// Lays passages behind one another as legs, priced by both measures.
+class Assembly {
+ public:
+  Assembly(const RouteNetwork& network, const RouteOptions& options)
+      : network_(network),
+        by_time_(options),
+        by_distance_(options),
+        time_(network, by_time_),
+        distance_(network, by_distance_) {
+    by_time_.cost = RouteCost::time;
+    by_distance_.cost = RouteCost::distance;
+  }
 
-// Each of k changes has a k-th of the passage, and happens in the middle of it.
-double fraction_left(const Passage& passage, std::size_t leg) {
-  const std::size_t changes = passage.lanes.size() - 1;
-  if (leg == changes) return passage.to;
-  const double share = (static_cast<double>(leg) + 0.5) / static_cast<double>(changes);
-  return std::lerp(passage.from, passage.to, share);
-}
-
-void add_passage(Route& route, const Passage& passage, const map::RoadMap& road_map, bool last) {
-  for (std::size_t i = 0; i < passage.lanes.size(); ++i) {
-    const map::Lane& lane = road_map.lane(passage.lanes[i]);
-    const double from = i == 0 ? passage.from : fraction_left(passage, i - 1);
-    RouteLeg leg{lane.id, from * lane.length_m(), fraction_left(passage, i) * lane.length_m(),
-                 last ? LegExit::goal : LegExit::successor};
-    if (i + 1 < passage.lanes.size()) {
-      leg.exit = side_of(road_map.graph().of(lane.id), passage.lanes[i + 1]);
+  void add(const Passage& passage, bool is_first) {
+    double from = passage.range.from;
+    for (std::size_t i = 0; i < passage.chain.size(); ++i) {
+      const bool changes = i + 1 < passage.chain.size();
+      const double to =
+          changes ? std::midpoint(passage.changes.ranges[i].from, passage.changes.ranges[i].to)
+                  : passage.range.to;
+      route_.legs.push_back(leg(passage, i, {from, to}));
+      if (i == 0 && !is_first) enter(route_.legs.back());
+      from = to;
     }
-    route.legs.push_back(leg);
-    route.legs_of_unknown_speed += lane.least_speed_limit_mps() ? 0 : 1;
+    route_.lane_changes += static_cast<int>(passage.chain.size()) - 1;
   }
+
+  Route take() && {
+    route_.legs.back().exit = LegExit::goal;
+    for (const RouteLeg& leg : route_.legs) {
+      route_.cost_s += leg.cost_s;
+      route_.cost_m += leg.cost_m;
+      route_.length_m += leg.length_m;
+      route_.legs_of_unknown_speed += leg.limit_known ? 0 : 1;
+    }
+    return std::move(route_);
+  }
+
+ private:
+  RouteLeg leg(const Passage& passage, std::size_t i, ShareRange part) const {
+    const std::uint32_t lane = passage.chain[i], last = passage.chain.back();
+    const double lane_m = network_.lanes[lane].length_m, last_m = network_.lanes[last].length_m;
+    RouteLeg leg{.lane = {lane},
+                 .from_s_m = part.from * lane_m,
+                 .to_s_m = part.to * lane_m,
+                 .exit = LegExit::successor,
+                 .turn = network_.lanes[lane].turn,
+                 .change_window = {},
+                 .length_m = (part.to - part.from) * last_m,
+                 .cost_s = time_.travel_cost(last, part.from * last_m, part.to * last_m),
+                 .cost_m = distance_.travel_cost(last, part.from * last_m, part.to * last_m),
+                 .limit_known = knows_limit(network_, lane)};
+    if (i + 1 < passage.chain.size()) {
+      const ShareRange& window = passage.changes.ranges[i];
+      leg.change_window = {window.from * lane_m, window.to * lane_m};
+      leg.exit = network_.lanes[lane].left == passage.chain[i + 1] ? LegExit::change_left
+                                                                   : LegExit::change_right;
+      leg.cost_s += time_.change_cost(1, passage.changes.room_m);
+      leg.cost_m += distance_.change_cost(1, passage.changes.room_m);
+    }
+    return leg;
+  }
+
+  void enter(RouteLeg& leg) const {
+    leg.cost_s += time_.turn_cost(leg.lane.index);
+    leg.cost_m += distance_.turn_cost(leg.lane.index);
+  }
+
+  const RouteNetwork& network_;
+  RouteOptions by_time_, by_distance_;
+  TravelRules time_, distance_;
+  Route route_;
+};
+
+// Goes on with a route that starts where this one ends, on the same lane.
+void append(Route& route, const Route& next) {
+  RouteLeg& last = route.legs.back();
+  const RouteLeg& first = next.legs.front();
+  route.stops.push_back({route.legs.size() - 1, last.to_s_m});
+  last.to_s_m = first.to_s_m;
+  last.exit = first.exit;
+  last.change_window = first.change_window;
+  last.length_m += first.length_m;
+  last.cost_s += first.cost_s;
+  last.cost_m += first.cost_m;
+  route.legs.insert(route.legs.end(), next.legs.begin() + 1, next.legs.end());
+  route.cost_s += next.cost_s;
+  route.cost_m += next.cost_m;
+  route.length_m += next.length_m;
+  route.lane_changes += next.lane_changes;
+  route.legs_of_unknown_speed += next.legs_of_unknown_speed - (first.limit_known ? 0 : 1);
 }
 
-// What a passage costs by one measure.
-double cost_of(const Passage& passage, const TravelRules& rules) {
-  double cost = rules.travel_cost(passage.lanes.back(), passage.to - passage.from);
-  const double share = 1.0 - passage.from;  // as the search prices it, also where the goal is in it
-  for (std::size_t i = 0; i + 1 < passage.lanes.size(); ++i) {
-    cost += rules.change_cost(passage.lanes[i], static_cast<int>(i), share);
-  }
-  return cost;
-}
-
-Route assemble(const std::vector<Passage>& passages, const map::RoadMap& road_map,
-               const RouteOptions& options) {
-  RouteOptions by_time = options, by_distance = options;
-  by_time.cost = RouteCost::time;
-  by_distance.cost = RouteCost::distance;
-  const TravelRules time(road_map, by_time, {}), distance(road_map, by_distance, {});
-  Route route;
-  for (std::size_t i = 0; i < passages.size(); ++i) {
-    const Passage& passage = passages[i];
-    add_passage(route, passage, road_map, i + 1 == passages.size());
-    route.cost_s += cost_of(passage, time);
-    route.cost_m += cost_of(passage, distance);
-    route.length_m += (passage.to - passage.from) * road_map.lane(passage.lanes.back()).length_m();
-    route.lane_changes += static_cast<int>(passage.lanes.size()) - 1;
-  }
-  return route;
+std::string place_name(std::size_t index, std::size_t count) {
+  if (index == 0) return "start";
+  return index + 1 == count ? "goal" : fmt::format("via point {}", index);
 }
 
 }  // namespace
 
+Router::Router(const map::RoadMap& road_map, RouteOptions options)
+    : road_map_(&road_map), options_(std::move(options)) {
+  for (const map::LaneId lane : options_.avoid) {
+    if (lane.index >= road_map.lanes().size()) {
+      throw std::invalid_argument("Router: a closed lane is not in the map");
+    }
+  }
+  solver_ = std::make_unique<RouteSolver>(
+      std::make_shared<const RouteNetwork>(make_route_network(road_map)), options_);
+}
+
+Router::~Router() = default;
+Router::Router(Router&&) noexcept = default;
+Router& Router::operator=(Router&&) noexcept = default;
+
+std::string Router::unfit(const map::LanePlace& place, const std::string& what) const {
+  const map::Lane& lane = road_map_->lane(place.lane);
+  const TravelRules& rules = solver_->rules();
+  if (!rules.may_be_used(place.lane.index)) {
+    return fmt::format("the {} is on lane {}, where a {} may not drive: its type is {}", what,
+                       lane.name, name(options_.participant), map::name(lane.type));
+  }
+  if (rules.is_closed(place.lane.index)) {
+    return fmt::format("the {} is on lane {}, which is closed", what, lane.name);
+  }
+  return "";
+}
+
+Route Router::route_along(const Way& way) const {
+  Assembly assembly(solver_->network(), options_);
+  for (std::size_t i = 0; i < way.passages.size(); ++i) assembly.add(way.passages[i], i == 0);
+  return std::move(assembly).take();
+}
+
+RouteAnswer Router::find(const map::LanePlace& from, const map::LanePlace& to) {
+  const map::LanePlace places[] = {from, to};
+  return find(places);
+}
+
+RouteAnswer Router::find(std::span<const map::LanePlace> places) {
+  if (places.size() < 2) throw std::invalid_argument("Router: a route needs two places");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    check(*road_map_, places[i]);
+    std::string fault = unfit(places[i], place_name(i, places.size()));
+    if (!fault.empty()) return {{}, std::move(fault), {}, i == 0 ? 0 : i - 1};
+  }
+  RouteAnswer answer;
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const auto way = solver_->solve(places[i], places[i + 1]);
+    if (!way) {
+      const RouteObstacle obstacle = find_obstacle(*road_map_, *solver_, places[i], places[i + 1]);
+      return {{}, describe(*road_map_, places[i], places[i + 1], obstacle), obstacle, i};
+    }
+    const Route part = route_along(*way);
+    if (answer.route) {
+      append(*answer.route, part);
+    } else {
+      answer.route = part;
+    }
+  }
+  return answer;
+}
+
 RouteAnswer find_route(const map::RoadMap& road_map, const map::LanePlace& from,
                        const map::LanePlace& to, const RouteOptions& options) {
-  check(road_map, from, "start");
-  check(road_map, to, "goal");
-  const map::Lane& start = road_map.lane(from.lane);
-  const map::Lane& goal = road_map.lane(to.lane);
-  if (!is_drivable(start.type)) return {std::nullopt, unfit(start, "start"), std::nullopt};
-  if (!is_drivable(goal.type)) return {std::nullopt, unfit(goal, "goal"), std::nullopt};
-  const SearchResult result = search(TravelRules(road_map, options, {}), from, to);
-  if (result.passages) return {assemble(*result.passages, road_map, options), "", std::nullopt};
-  const RouteObstacle obstacle = find_obstacle(road_map, from, to, options, result.reached);
-  return {std::nullopt, describe(road_map, from, to, obstacle), obstacle};
+  return Router(road_map, options).find(from, to);
 }
 
 }  // namespace roadbed::planning

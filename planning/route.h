@@ -1,25 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "roadbed/map/road_map.h"
+#include "roadbed/planning/route_network.h"
+#include "roadbed/planning/route_options.h"
 
 namespace roadbed::planning {
 
-enum class RouteCost { time, distance };
-
-struct RouteOptions {
-  RouteCost cost = RouteCost::time;
-  double default_speed_mps = 50.0 / 3.6;    ///< where the map gives no limit; its use is reported
-  double max_speed_mps = 130.0 / 3.6;       ///< of the vehicle
-  double lane_change_cost_s = 5.0;          ///< each, where there is comfortable room
-  double lane_change_cost_m = 50.0;         ///< the same where distance is the cost
-  double least_lane_change_m = 10.0;        ///< length that a lane change needs
-  double comfortable_lane_change_m = 40.0;  ///< with less room its cost grows in proportion
-  std::vector<map::LaneId> avoid;           ///< lanes that are closed
-};
+class RouteSolver;
+struct Way;
 
 /// How a leg of a route is left.
 enum class LegExit { goal, successor, change_left, change_right };
@@ -31,16 +25,34 @@ struct RouteLeg {
   double from_s_m = 0.0;
   double to_s_m = 0.0;
   LegExit exit = LegExit::goal;
+  Turn turn = Turn::none;  ///< of the lane
+  /// Stations of the lane between which the change is made by which the leg is left.
+  std::optional<map::StationRange> change_window;
+  double length_m = 0.0;  ///< along the last lane of the passage, so that lengths add up
+  double cost_s = 0.0;    ///< of this leg, with the change that leaves it and the turn that it is
+  double cost_m = 0.0;
+  bool limit_known = true;  ///< everywhere on the lane
+};
+
+/// A place that a route was to pass.
+struct RouteStop {
+  std::size_t leg = 0;
+  double s_m = 0.0;  ///< station of that leg's lane
 };
 
 struct Route {
   std::vector<RouteLeg> legs;
-  double cost_s = 0.0;    ///< travel time at the limits, and lane changes
-  double cost_m = 0.0;    ///< length, and lane changes
+  double cost_s = 0.0;    ///< travel time at the limits, and manoeuvres: the sum of the legs'
+  double cost_m = 0.0;    ///< length, and manoeuvres: the sum of the legs'
   double length_m = 0.0;  ///< along the centrelines; parallel lanes count once, as the last of them
   int lane_changes = 0;
   int legs_of_unknown_speed = 0;
+  std::vector<RouteStop> stops;  ///< the places between start and goal, in order
 };
+
+/// What keeps a route from being found.
+enum class Barrier { closed, length, marking, participant, one_way, map_gap };
+std::string_view name(Barrier barrier);
 
 /// What stands between a start and a goal that no route connects.
 struct RouteObstacle {
@@ -48,9 +60,11 @@ struct RouteObstacle {
   std::size_t lanes_to_goal = 0;     ///< from which the goal can be reached
   double gap_m = 0.0;                ///< least distance from an end of those to a start of these
   std::optional<map::LaneId> gap_from, gap_to;
-  bool closed_lanes = false;  ///< with them open there would be a route
-  bool markings = false;      ///< with every marking crossed there would be one
-  bool length = false;        ///< with shorter lane changes there would be one
+  /// A least set of rules without which there would be a route; just `map_gap` if there is none
+  /// even without all of them.
+  std::vector<Barrier> barriers;
+  /// Where the route that would be there then leaves the lanes that can be reached.
+  std::optional<map::LaneId> blocked_from, blocked_to;
 };
 
 /// A route, or why there is none.
@@ -58,19 +72,54 @@ struct RouteAnswer {
   std::optional<Route> route;
   std::string reason;                     ///< one line; empty if there is a route
   std::optional<RouteObstacle> obstacle;  ///< none if start or goal themselves are unfit
+  std::size_t failed_part = 0;            ///< between which two places there is no route, from 0
 };
 
-/// Cheapest lane-level route over successors and permitted lane changes, by A*.
+/// Routes of one map by one set of options: prepared once, asked many times. For one thread.
 ///
 /// Between two section ends, parallel lanes form one passage: it is driven along its share of each
-/// lane, and changes cost extra wherever in it they happen. The k-th change of a passage needs k
-/// times `least_lane_change_m` of the lane that it leaves. A passage costs what its last lane
-/// costs. Closed lanes are entered nowhere, but a start on one may be left. Of equally cheap routes
-/// the one with the lower lane ids is taken. About 1 ms for 1,000 lanes.
+/// lane. Changes are made within the stations where the marking permits them, each in a range of
+/// its own that is as long as all of them can have, and `least_lane_change_m` at least; with less
+/// than `comfortable_lane_change_m` they cost more in proportion. A passage costs what its last
+/// lane costs. Closed lanes are used nowhere. Costs are compared to 0.1 ms or 1 mm an arc; of
+/// equally cheap routes the one with the lower lane ids is taken.
 ///
 /// A* is guided by the straight-line distance times the least cost per metre that any link of the
 /// map has, so that it is right on maps with gaps, too.
-/// @throws std::invalid_argument if a lane is not in the map or a station not on its lane.
+class Router {
+ public:
+  /// Refers to the map. O(points of the map).
+  /// @throws std::invalid_argument if a closed lane is not in the map.
+  explicit Router(const map::RoadMap& road_map, RouteOptions options = {});
+  ~Router();
+  Router(Router&&) noexcept;
+  Router& operator=(Router&&) noexcept;
+
+  /// @throws std::invalid_argument if a lane is not in the map or a station not on its lane.
+  RouteAnswer find(const map::LanePlace& from, const map::LanePlace& to);
+
+  /// From the first place over all others in their order to the last one. Loops are allowed; a
+  /// place that is passed twice counts in its turn.
+  /// @throws std::invalid_argument also if there are fewer than two places.
+  RouteAnswer find(std::span<const map::LanePlace> places);
+
+  /// A route of a way that was found elsewhere for the same options.
+  Route route_along(const Way& way) const;
+
+  /// Why the place cannot be part of any route; empty if it can.
+  std::string unfit(const map::LanePlace& place, const std::string& what) const;
+
+  const map::RoadMap& road_map() const { return *road_map_; }
+  const RouteOptions& options() const { return options_; }
+  RouteSolver& solver() { return *solver_; }
+
+ private:
+  const map::RoadMap* road_map_;
+  RouteOptions options_;
+  std::unique_ptr<RouteSolver> solver_;
+};
+
+/// One question to a router that nobody needs again.
 RouteAnswer find_route(const map::RoadMap& road_map, const map::LanePlace& from,
                        const map::LanePlace& to, const RouteOptions& options = {});
 

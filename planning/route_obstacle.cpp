@@ -3,87 +3,147 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "roadbed/geometry/point_index.h"
-#include "roadbed/planning/route_search.h"
 
 namespace roadbed::planning {
 namespace {
 
 using map::LaneId;
 
-// Lanes that lead to `goal`, by links and permitted changes, in order of id.
-std::vector<LaneId> lanes_to(const TravelRules& rules, LaneId goal) {
-  const map::LaneGraph& graph = rules.road_map().graph();
-  std::vector<bool> seen(graph.size(), false);
-  if (!rules.may_enter(goal)) return {goal};
-  std::vector<LaneId> open{goal}, found;
-  seen[goal.index] = true;
-  const auto visit = [&](LaneId lane) {
-    if (seen[lane.index] || !rules.may_enter(lane)) return;
-    seen[lane.index] = true;
-    open.push_back(lane);
-  };
-  while (!open.empty()) {
-    const LaneId lane = open.back();
-    open.pop_back();
-    found.push_back(lane);
-    const map::LaneLinks& links = graph.of(lane);
-    for (const LaneId before : links.predecessors) visit(before);
-    for (const auto& beside : {links.left, links.right}) {
-      if (!beside) continue;
-      const map::LaneLinks& back = graph.of(beside->lane);
-      for (const auto& there : {back.left, back.right}) {
-        if (there && there->lane == lane && rules.may_change(beside->lane, *there, 0, 1.0)) {
-          visit(beside->lane);
-        }
-      }
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+// Least natural first: the first ones are tried to do without.
+constexpr std::array kRules = {Barrier::one_way, Barrier::participant, Barrier::marking,
+                               Barrier::length, Barrier::closed};
+
+bool holds(const std::vector<Barrier>& rules, Barrier rule) {
+  return std::find(rules.begin(), rules.end(), rule) != rules.end();
 }
 
-void find_gap(const map::RoadMap& road_map, const std::vector<LaneId>& from_start,
-              const std::vector<LaneId>& to_goal, RouteObstacle& obstacle) {
+std::optional<Way> way_without(const map::RoadMap& road_map, const RouteSolver& solver,
+                               const map::LanePlace& from, const map::LanePlace& to,
+                               const std::vector<Barrier>& rules) {
+  const Leniency leniency{.closed_lanes = holds(rules, Barrier::closed),
+                          .participants = holds(rules, Barrier::participant),
+                          .length = holds(rules, Barrier::length)};
+  const NetworkOptions options{.across_markings = holds(rules, Barrier::marking),
+                               .against_traffic = holds(rules, Barrier::one_way)};
+  if (!options.across_markings && !options.against_traffic) {
+    return RouteSolver(solver, solver.options(), leniency).solve(from, to);
+  }
+  return RouteSolver(std::make_shared<const RouteNetwork>(make_route_network(road_map, options)),
+                     solver.options(), leniency)
+      .solve(from, to);
+}
+
+void find_gap(const RouteNetwork& network, const std::vector<std::uint32_t>& from_start,
+              const std::vector<std::uint32_t>& to_goal, RouteObstacle& obstacle) {
   std::vector<Eigen::Vector2d> starts;
-  for (const LaneId lane : to_goal) starts.push_back(road_map.lane(lane).pose_at(0.0).position());
+  for (const std::uint32_t lane : to_goal) starts.push_back(network.lanes[lane].start_in_map);
   const geometry::PointIndex index(std::move(starts));
   obstacle.gap_m = std::numeric_limits<double>::infinity();
-  for (const LaneId id : from_start) {
-    const map::Lane& lane = road_map.lane(id);
-    const auto nearest = index.nearest(lane.pose_at(lane.length_m()).position());
+  for (const std::uint32_t lane : from_start) {
+    const auto nearest = index.nearest(network.lanes[lane].end_in_map);
     if (!nearest || nearest->distance_m >= obstacle.gap_m) continue;
     obstacle.gap_m = nearest->distance_m;
-    obstacle.gap_from = id;
-    obstacle.gap_to = to_goal[nearest->index];
+    obstacle.gap_from = LaneId{lane};
+    obstacle.gap_to = LaneId{to_goal[nearest->index]};
   }
 }
 
-std::string cause(const RouteObstacle& obstacle) {
-  if (obstacle.closed_lanes) return "; closed lanes stand between";
-  if (obstacle.markings) return "; only across markings that may not be crossed there is a way";
-  if (obstacle.length) return "; the lanes are too short for the lane changes that it takes";
+// The last lane of the way that can be reached with all rules, and the one behind it.
+void find_block(const Way& way, const std::vector<std::uint32_t>& from_start,
+                RouteObstacle& obstacle) {
+  std::optional<LaneId> before;
+  for (const Passage& passage : way.passages) {
+    for (const std::uint32_t lane : passage.chain) {
+      const bool reached = std::binary_search(from_start.begin(), from_start.end(), lane);
+      if (reached) before = LaneId{lane};
+      if (reached || obstacle.blocked_to) continue;
+      obstacle.blocked_from = before;
+      obstacle.blocked_to = LaneId{lane};
+    }
+  }
+}
+
+std::string words(Barrier barrier) {
+  switch (barrier) {
+    case Barrier::closed:
+      return "closed lanes";
+    case Barrier::length:
+      return "lanes too short for the lane changes that it takes";
+    case Barrier::marking:
+      return "markings that may not be crossed";
+    case Barrier::participant:
+      return "lanes of other road users";
+    case Barrier::one_way:
+      return "lanes of the other direction";
+    case Barrier::map_gap:
+      return "a gap of the map";
+  }
   return "";
+}
+
+std::string cause(const map::RoadMap& road_map, const RouteObstacle& obstacle) {
+  std::string text;
+  for (const Barrier barrier : obstacle.barriers) {
+    text += (text.empty() ? "; between them stand " : " and ") + words(barrier);
+  }
+  if (obstacle.barriers == std::vector{Barrier::map_gap}) {
+    text = "; nothing in the map connects them, whatever the rules";
+  }
+  if (obstacle.blocked_from && obstacle.blocked_to) {
+    text +=
+        fmt::format(", first from lane {} to lane {}", road_map.lane(*obstacle.blocked_from).name,
+                    road_map.lane(*obstacle.blocked_to).name);
+  }
+  return text;
 }
 
 }  // namespace
 
-RouteObstacle find_obstacle(const map::RoadMap& road_map, const map::LanePlace& from,
-                            const map::LanePlace& to, const RouteOptions& options,
-                            const std::vector<LaneId>& reached) {
-  const auto with = [&](Leniency leniency) {
-    return search(TravelRules(road_map, options, leniency), from, to).passages.has_value();
-  };
+std::string_view name(Barrier barrier) {
+  switch (barrier) {
+    case Barrier::closed:
+      return "closed";
+    case Barrier::length:
+      return "lane_change_length";
+    case Barrier::marking:
+      return "marking";
+    case Barrier::participant:
+      return "participant";
+    case Barrier::one_way:
+      return "one_way";
+    case Barrier::map_gap:
+      return "map_gap";
+  }
+  return "";
+}
+
+RouteObstacle find_obstacle(const map::RoadMap& road_map, RouteSolver& solver,
+                            const map::LanePlace& from, const map::LanePlace& to) {
   RouteObstacle obstacle;
-  const std::vector<LaneId> to_goal = lanes_to(TravelRules(road_map, options, {}), to.lane);
-  obstacle.lanes_from_start = reached.size();
+  const auto from_start = solver.lanes_from(from), to_goal = solver.lanes_to(to);
+  obstacle.lanes_from_start = from_start.size();
   obstacle.lanes_to_goal = to_goal.size();
-  find_gap(road_map, reached, to_goal, obstacle);
-  obstacle.closed_lanes = with({.closed_lanes = true});
-  obstacle.markings = with({.markings = true});
-  obstacle.length = with({.length = true});
+  find_gap(solver.network(), from_start, to_goal, obstacle);
+  std::vector<Barrier> left_out(kRules.begin(), kRules.end());
+  std::optional<Way> way = way_without(road_map, solver, from, to, left_out);
+  if (!way) {
+    obstacle.barriers = {Barrier::map_gap};
+    return obstacle;
+  }
+  for (const Barrier rule : kRules) {
+    std::vector<Barrier> fewer = left_out;
+    std::erase(fewer, rule);
+    std::optional<Way> other = way_without(road_map, solver, from, to, fewer);
+    if (!other) continue;
+    left_out = fewer;
+    way = std::move(other);
+  }
+  obstacle.barriers = left_out;
+  find_block(*way, from_start, obstacle);
   return obstacle;
 }
 
@@ -99,7 +159,7 @@ std::string describe(const map::RoadMap& road_map, const map::LanePlace& from,
                         road_map.lane(*obstacle.gap_from).name, obstacle.gap_m,
                         road_map.lane(*obstacle.gap_to).name);
   }
-  return text + cause(obstacle);
+  return text + cause(road_map, obstacle);
 }
 
 }  // namespace roadbed::planning

@@ -1,45 +1,161 @@
 #include "roadbed/planning/travel_rules.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace roadbed::planning {
+namespace {
 
-double route_speed_mps(const map::Lane& lane, const RouteOptions& options) {
-  const double limit_mps = lane.least_speed_limit_mps().value_or(options.default_speed_mps);
-  return std::min(limit_mps > 0.0 ? limit_mps : options.default_speed_mps, options.max_speed_mps);
+constexpr double kLeastRoom_m = 0.1;  // a change takes some length, whatever the options say
+constexpr double kSlack_m = 1e-9;
+constexpr int kBisections = 60;
+
+std::span<const map::StationRange> windows_to(const RouteNetwork& network, std::uint32_t lane,
+                                              std::uint32_t beside) {
+  return network.lanes[lane].left == beside ? network.left_windows.of(lane)
+                                            : network.right_windows.of(lane);
 }
 
-TravelRules::TravelRules(const map::RoadMap& road_map, const RouteOptions& options,
+void extend(const RouteNetwork& network, std::vector<std::uint32_t> chain,
+            std::uint32_t NetworkLane::*side, std::vector<std::vector<std::uint32_t>>& chains) {
+  for (;;) {
+    const std::uint32_t next = network.lanes[chain.back()].*side;
+    if (next == kNoLane || std::find(chain.begin(), chain.end(), next) != chain.end()) return;
+    chain.push_back(next);
+    chains.push_back(chain);
+  }
+}
+
+}  // namespace
+
+TravelRules::TravelRules(const RouteNetwork& network, const RouteOptions& options,
                          Leniency leniency)
-    : road_map_(road_map), options_(options), leniency_(leniency) {
-  for (const map::Lane& lane : road_map.lanes()) open_.push_back(is_drivable(lane.type));
+    : network_(network),
+      options_(options),
+      leniency_(leniency),
+      closed_(network.lanes.size(), false) {
   if (leniency.closed_lanes) return;
-  for (const map::LaneId lane : options.avoid) open_.at(lane.index) = false;
+  for (const map::LaneId lane : options.avoid) closed_.at(lane.index) = true;
 }
 
-bool TravelRules::may_change(map::LaneId from, const map::Neighbour& to, int changes,
-                             double share) const {
-  return to.same_direction && (to.change_allowed() || leniency_.markings) && may_enter(to.lane) &&
-         has_room(from, changes + 1, share);
+double TravelRules::speed_mps(std::uint32_t lane, const SpeedPiece& piece) const {
+  double limit_mps = piece.limit_mps;
+  if (!(limit_mps > 0.0)) {
+    limit_mps = options_.default_speed_mps.value_or(default_speed_mps(network_.lanes[lane].type));
+  }
+  if (piece.curvature_per_m > 0.0) {
+    limit_mps =
+        std::min(limit_mps, std::sqrt(options_.lateral_acceleration_mps2 / piece.curvature_per_m));
+  }
+  return std::min(limit_mps, options_.max_speed_mps);
 }
 
-bool TravelRules::has_room(map::LaneId lane, int changes, double share) const {
-  const double room_m = share * road_map_.lane(lane).length_m();
-  return changes == 0 || leniency_.length || changes * options_.least_lane_change_m <= room_m;
+double TravelRules::travel_cost(std::uint32_t lane, double from_s_m, double to_s_m) const {
+  const double signal_s_m = network_.lanes[lane].signal_s_m;
+  double cost =
+      signal_s_m >= from_s_m && signal_s_m >= 0.0 && signal_s_m < to_s_m ? prices().signal : 0.0;
+  if (options_.cost == RouteCost::distance) return cost + (to_s_m - from_s_m);
+  double s_m = from_s_m;
+  for (const SpeedPiece& piece : network_.speeds.of(lane)) {
+    if (piece.to_s_m <= s_m) continue;
+    const double end_m = std::min(piece.to_s_m, to_s_m);
+    if (end_m > s_m) cost += (end_m - s_m) / speed_mps(lane, piece);
+    s_m = std::max(s_m, end_m);
+  }
+  return cost;
 }
 
-double TravelRules::travel_cost(map::LaneId id, double share) const {
-  const map::Lane& lane = road_map_.lane(id);
-  const double length_m = share * lane.length_m();
-  return options_.cost == RouteCost::distance ? length_m
-                                              : length_m / route_speed_mps(lane, options_);
+double TravelRules::station_within(std::uint32_t lane, double from_s_m, double cost) const {
+  double low_m = from_s_m, high_m = network_.lanes[lane].length_m;
+  if (travel_cost(lane, from_s_m, high_m) <= cost) return high_m;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (travel_cost(lane, from_s_m, middle_m) <= cost ? low_m : high_m) = middle_m;
+  }
+  return low_m;
 }
 
-double TravelRules::change_cost(map::LaneId from, int changes, double share) const {
-  const double cost = options_.cost == RouteCost::distance ? options_.lane_change_cost_m
-                                                           : options_.lane_change_cost_s;
-  const double room_m = share * road_map_.lane(from).length_m() / (changes + 1);
-  return cost * std::max(1.0, options_.comfortable_lane_change_m / room_m);
+double TravelRules::turn_cost(std::uint32_t lane) const {
+  switch (network_.lanes[lane].turn) {
+    case Turn::left:
+      return prices().left_turn;
+    case Turn::right:
+      return prices().right_turn;
+    case Turn::u_turn:
+      return prices().u_turn;
+    default:
+      return 0.0;
+  }
+}
+
+// Each change as early as its windows and the one before allow.
+bool TravelRules::place(std::span<const std::uint32_t> chain, ShareRange range, double room_m,
+                        std::vector<ShareRange>* placed) const {
+  double share = range.from;
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    const double length_m = network_.lanes[chain[i]].length_m;
+    const double needed = (room_m - kSlack_m) / length_m;
+    bool fits = false;
+    for (const map::StationRange& window : windows_to(network_, chain[i], chain[i + 1])) {
+      const double from = std::max(share, window.from_s_m / length_m);
+      if (from + needed > std::min(range.to, window.to_s_m / length_m)) continue;
+      fits = true;
+      share = std::min(range.to, from + room_m / length_m);
+      if (placed != nullptr) placed->push_back({from, share});
+      break;
+    }
+    if (!fits) return false;
+  }
+  return true;
+}
+
+std::optional<ChangePlan> TravelRules::plan_changes(std::span<const std::uint32_t> chain,
+                                                    ShareRange range) const {
+  double high_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    if (!may_enter(chain[i + 1])) return {};
+    high_m = std::min(high_m, (range.to - range.from) * network_.lanes[chain[i]].length_m);
+  }
+  if (chain.size() < 2) return ChangePlan{};
+  double low_m = leniency_.length ? 0.0 : std::max(kLeastRoom_m, options_.least_lane_change_m);
+  low_m = std::max(low_m, leniency_.length ? 1e-6 : kLeastRoom_m);
+  if (!place(chain, range, low_m, nullptr)) return {};
+  high_m = std::max(low_m, high_m / static_cast<double>(chain.size() - 1));
+  if (!place(chain, range, high_m, nullptr)) {
+    for (int i = 0; i < kBisections && high_m - low_m > 1e-6; ++i) {
+      const double middle_m = 0.5 * (low_m + high_m);
+      (place(chain, range, middle_m, nullptr) ? low_m : high_m) = middle_m;
+    }
+  } else {
+    low_m = high_m;
+  }
+  ChangePlan plan;
+  plan.room_m = low_m;
+  place(chain, range, low_m, &plan.ranges);
+  return plan;
+}
+
+double TravelRules::change_cost(std::size_t changes, double room_m) const {
+  if (changes == 0) return 0.0;
+  const double tightness = std::max(1.0, options_.comfortable_lane_change_m / room_m);
+  return static_cast<double>(changes) * prices().lane_change * tightness;
+}
+
+std::vector<std::vector<std::uint32_t>> chains_from(const RouteNetwork& network,
+                                                    std::uint32_t from) {
+  std::vector<std::vector<std::uint32_t>> chains{{from}};
+  extend(network, {from}, &NetworkLane::left, chains);
+  extend(network, {from}, &NetworkLane::right, chains);
+  return chains;
+}
+
+std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint32_t from,
+                                         std::uint32_t to) {
+  for (const auto& chain : chains_from(network, from)) {
+    if (chain.back() == to) return chain;
+  }
+  return {};
 }
 
 }  // namespace roadbed::planning

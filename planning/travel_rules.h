@@ -1,45 +1,87 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/planning/route_network.h"
+#include "roadbed/planning/route_options.h"
 
 namespace roadbed::planning {
 
-/// Which rules a search leaves out, to find out what stands in the way.
+/// Which rules a search leaves out, to find out what stands in the way. Markings and one-way lanes
+/// are left out of the network itself, see NetworkOptions.
 struct Leniency {
-  bool closed_lanes = false, markings = false, length = false;
+  bool closed_lanes = false, participants = false, length = false;
 };
 
-/// The rules and costs of travel, shared by the search and its explanation.
+/// Part of a passage, as shares of the length of each of its lanes.
+struct ShareRange {
+  double from = 0.0, to = 1.0;
+};
+
+/// Where the changes of a passage are made: one range a change, in order and apart, as shares.
+struct ChangePlan {
+  std::vector<ShareRange> ranges;
+  double room_m = 0.0;  ///< that each of them has
+};
+
+/// The rules and costs of travel over a network, by one measure. Refers to its arguments.
 class TravelRules {
  public:
-  TravelRules(const map::RoadMap& road_map, const RouteOptions& options, Leniency leniency);
+  TravelRules(const RouteNetwork& network, const RouteOptions& options, Leniency leniency = {});
 
-  /// Whether a route may enter the lane.
-  bool may_enter(map::LaneId lane) const { return open_[lane.index]; }
+  const RouteNetwork& network() const { return network_; }
+  const RouteOptions& options() const { return options_; }
 
-  /// Whether a route may change from a lane to its neighbour, `changes` others having been made in
-  /// the same passage, `share` of which there is.
-  bool may_change(map::LaneId from, const map::Neighbour& to, int changes, double share) const;
+  bool may_enter(std::uint32_t lane) const { return !closed_[lane] && may_be_used(lane); }
+  bool is_closed(std::uint32_t lane) const { return closed_[lane]; }
+  bool may_be_used(std::uint32_t lane) const {
+    return leniency_.participants || network_.lanes[lane].users.has(options_.participant);
+  }
+  void close(std::uint32_t lane, bool closed = true) { closed_[lane] = closed; }
 
-  /// Whether a passage of that share has room for so many changes that end in the lane.
-  bool has_room(map::LaneId lane, int changes, double share) const;
+  /// Speed on a piece of a lane: the least of limit, bend and vehicle [m/s].
+  double speed_mps(std::uint32_t lane, const SpeedPiece& piece) const;
 
-  double travel_cost(map::LaneId lane, double share) const;
-  double change_cost(map::LaneId from, int changes, double share) const;
+  /// Cost of driving between two stations of a lane, with the light that stands there.
+  double travel_cost(std::uint32_t lane, double from_s_m, double to_s_m) const;
 
-  const map::RoadMap& road_map() const { return road_map_; }
+  /// The station of a lane that is reached from another one at no more than that cost.
+  double station_within(std::uint32_t lane, double from_s_m, double cost) const;
+
+  /// What the turn costs that the lane is.
+  double turn_cost(std::uint32_t lane) const;
+
+  /// Room for changes along a chain of neighbours, from its first to its last, within a part of
+  /// the passage: as much for each of them as all can have. None if one would have less than the
+  /// least length, or a lane may not be entered.
+  std::optional<ChangePlan> plan_changes(std::span<const std::uint32_t> chain,
+                                         ShareRange range) const;
+
+  /// What so many changes cost, each of which has that room.
+  double change_cost(std::size_t changes, double room_m) const;
 
  private:
-  const map::RoadMap& road_map_;
+  const ManoeuvrePrices& prices() const {
+    return options_.cost == RouteCost::time ? options_.prices_s : options_.prices_m;
+  }
+  bool place(std::span<const std::uint32_t> chain, ShareRange range, double room_m,
+             std::vector<ShareRange>* placed) const;
+
+  const RouteNetwork& network_;
   const RouteOptions& options_;
   Leniency leniency_;
-  std::vector<bool> open_;
+  std::vector<bool> closed_;
 };
 
-/// Speed at which a lane is driven [m/s].
-double route_speed_mps(const map::Lane& lane, const RouteOptions& options);
+/// The chain of neighbours that leads from one lane of a passage to another; empty if none does.
+std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint32_t from,
+                                         std::uint32_t to);
+
+/// Lanes of the passage that can be changed to from one: chains to each of them, itself first.
+std::vector<std::vector<std::uint32_t>> chains_from(const RouteNetwork& network,
+                                                    std::uint32_t from);
 
 }  // namespace roadbed::planning

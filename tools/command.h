@@ -42,6 +42,7 @@ std::unique_ptr<Command> make_validate_command();
 std::unique_ptr<Command> make_export_command();
 std::unique_ptr<Command> make_locate_command();
 std::unique_ptr<Command> make_route_command();
+std::unique_ptr<Command> make_reach_command();
 std::unique_ptr<Command> make_reference_command();
 std::unique_ptr<Command> make_plan_command();
 std::unique_ptr<Command> make_control_command();

@@ -74,7 +74,7 @@ class ReferenceCommand : public Command {
     const map::RoadMap road_map = map::load_map(map_file_);
     const RouteQuestion::Asked asked = question_.on(road_map);
     const planning::RouteAnswer answer =
-        planning::find_route(road_map, asked.from.on_lane, asked.to.on_lane, asked.options);
+        planning::Router(road_map, asked.options).find(asked.places());
     if (!answer.route) {
       fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
       return Exit::failed;

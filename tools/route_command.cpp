@@ -7,100 +7,31 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/alternatives.h"
 #include "roadbed/planning/route.h"
-#include "roadbed/planning/route_path.h"
+#include "roadbed/planning/route_area.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/support/route_batch.h"
+#include "roadbed/tools/support/route_output.h"
 #include "roadbed/tools/support/route_question.h"
 
 namespace roadbed::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Routes = std::vector<planning::Route>;
 
-/// Names of sources are not always valid UTF-8; JSON has to be.
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-const char* word(planning::LegExit exit) {
-  switch (exit) {
-    case planning::LegExit::goal:
-      return "goal";
-    case planning::LegExit::successor:
-      return "successor";
-    case planning::LegExit::change_left:
-      return "change_left";
-    case planning::LegExit::change_right:
-      return "change_right";
+std::string file_text(const std::filesystem::path& file, const map::RoadMap& road_map,
+                      const Routes& routes) {
+  if (file.extension() == ".csv") return route_csv(road_map, routes);
+  if (file.extension() != ".svg") return route_geojson(road_map, routes);
+  std::vector<planning::LanePart> parts;
+  for (const planning::Route& route : routes) {
+    const auto corridor = planning::corridor_of(road_map, route);
+    parts.insert(parts.end(), corridor.begin(), corridor.end());
   }
-  return "";
-}
-
-Json found_json(const map::RoadMap& road_map, const planning::Route& route) {
-  Json lanes = Json::array();
-  for (const planning::RouteLeg& leg : route.legs) {
-    lanes.push_back({{"lane", road_map.lane(leg.lane).name},
-                     {"from_s_m", leg.from_s_m},
-                     {"to_s_m", leg.to_s_m},
-                     {"exit", word(leg.exit)}});
-  }
-  return {{"found", true},
-          {"cost_s", route.cost_s},
-          {"cost_m", route.cost_m},
-          {"length_m", route.length_m},
-          {"lanes", std::move(lanes)},
-          {"lane_changes", route.lane_changes},
-          {"legs_of_unknown_speed", route.legs_of_unknown_speed}};
-}
-
-Json none_json(const map::RoadMap& road_map, const planning::RouteAnswer& answer) {
-  Json json = {{"found", false}, {"reason", answer.reason}};
-  if (!answer.obstacle) return json;
-  const planning::RouteObstacle& obstacle = *answer.obstacle;
-  const auto lane_name = [&](const std::optional<map::LaneId>& lane) {
-    return lane ? Json(road_map.lane(*lane).name) : Json();
-  };
-  json["lanes_from_start"] = obstacle.lanes_from_start;
-  json["lanes_to_goal"] = obstacle.lanes_to_goal;
-  json["gap_m"] = obstacle.gap_from ? Json(obstacle.gap_m) : Json();
-  json["gap_from_lane"] = lane_name(obstacle.gap_from);
-  json["gap_to_lane"] = lane_name(obstacle.gap_to);
-  json["found_with_closed_lanes_open"] = obstacle.closed_lanes;
-  json["found_across_all_markings"] = obstacle.markings;
-  json["found_with_shorter_lane_changes"] = obstacle.length;
-  return json;
-}
-
-/// The way as one line in source coordinates; see map::write_geojson for its `crs`.
-std::string geojson(const map::RoadMap& road_map, const planning::Route& route) {
-  const planning::RoutePath path =
-      planning::path_along(road_map, route, {.lead_m = 0.0, .extend_m = 0.0});
-  Json line = Json::array();
-  for (const planning::RoutePathPoint& point : path.points) {
-    const Eigen::Vector2d in_source = road_map.to_source(point.in_map);
-    line.push_back({in_source.x(), in_source.y()});
-  }
-  Json crs = road_map.crs().empty()
-                 ? Json()
-                 : Json{{"type", "name"}, {"properties", {{"name", road_map.crs()}}}};
-  const Json feature = {{"type", "Feature"},
-                        {"geometry", {{"type", "LineString"}, {"coordinates", std::move(line)}}},
-                        {"properties", found_json(road_map, route)}};
-  return text_of({{"type", "FeatureCollection"},
-                  {"crs", std::move(crs)},
-                  {"features", Json::array({feature})}},
-                 -1) +
-         "\n";
-}
-
-void print(std::ostream& out, const map::RoadMap& road_map, const planning::Route& route) {
-  fmt::print(out, "{:.1f} m, {:.1f} s, {} lane changes\n", route.length_m, route.cost_s,
-             route.lane_changes);
-  for (const planning::RouteLeg& leg : route.legs) {
-    fmt::print(out, "  {:<16} {:>9.2f} to {:>9.2f} m  {}\n", road_map.lane(leg.lane).name,
-               leg.from_s_m, leg.to_s_m, word(leg.exit));
-  }
+  return area_svg(road_map, planning::area_of(road_map, parts), routes);
 }
 
 class RouteCommand : public Command {
@@ -108,45 +39,141 @@ class RouteCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Find the cheapest route over lanes, or say why there is none");
     arguments.add("MAP", map_file_, "Any readable map").required();
-    question_.declare(arguments);
+    question_.declare(arguments, true);
+    arguments
+        .add("--alternatives", alternatives_,
+             "Up to so many routes; each shares at most 70 % of its length with any before and "
+             "costs at most 1.5 times the first")
+        .within(1, 20);
+    arguments.add("--batch", batch_,
+                  "Pairs instead of --from and --to: CSV with the columns from and to, places in "
+                  "quotes; one row of answers each");
+    arguments.flag("--matrix", matrix_, "With --batch: from every from to every to");
     arguments.flag("--json", json_, "Print one JSON document");
-    arguments.add("-o,--output", output_, "Write the way as GeoJSON too");
+    arguments.add("-o,--output", output_,
+                  "Write too: .geojson with the corridor, .csv a row per leg, .svg a picture; with "
+                  "--batch the rows, as .csv");
     arguments.flag("--force", force_, "Replace the output if it exists");
-    arguments.example("  roadbed route town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55");
+    arguments.require([this] { return missing(); });
+    arguments.example(
+        "  roadbed route town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55\n"
+        "  roadbed route town.xodr --from 270,203 --to lane:7/0/1@55 --avoid road:4 -o way.svg\n"
+        "  roadbed route town.xodr --batch pairs.csv -o answers.csv --threads 2");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!output_.empty()) check_writable(output_, force_);
+    if (!batch_.empty()) return run_batch(streams, common);
     const map::RoadMap road_map = map::load_map(map_file_);
     const RouteQuestion::Asked asked = question_.on(road_map);
-    const planning::RouteAnswer answer =
-        planning::find_route(road_map, asked.from.on_lane, asked.to.on_lane, asked.options);
-    if (!answer.route) return refuse(streams, road_map, answer);
-    if (!output_.empty()) write_output(output_, geojson(road_map, *answer.route));
-    if (json_) {
-      fmt::print(streams.out, "{}\n", text_of(found_json(road_map, *answer.route), 2));
-    } else {
-      print(streams.out, road_map, *answer.route);
+    planning::Router router(road_map, asked.options);
+    const planning::RouteAnswer answer = router.find(asked.places());
+    if (!answer.route) return refuse(streams, road_map, asked, answer);
+    Routes routes{*answer.route};
+    std::vector<double> shared{0.0};
+    if (alternatives_ > 1) {
+      auto others = planning::find_alternatives(router, asked.from.on_lane, asked.to.on_lane,
+                                                {.count = alternatives_});
+      for (std::size_t i = 1; i < others.size(); ++i) {  // the first one is the answer itself
+        shared.push_back(others[i].shared);
+        routes.push_back(std::move(others[i].route));
+      }
     }
-    if (!common.quiet && answer.route->legs_of_unknown_speed > 0) {
-      fmt::print(streams.err, "note: {} of {} lanes give no speed limit, {:.1f} km/h was used\n",
-                 answer.route->legs_of_unknown_speed, answer.route->legs.size(),
-                 asked.options.default_speed_mps * 3.6);
-    }
+    if (!output_.empty()) write_output(output_, file_text(output_, road_map, routes));
+    print(streams, road_map, asked, routes, shared);
+    if (!common.quiet) note_defaults(streams, routes.front());
     return Exit::ok;
   }
 
  private:
+  std::string missing() const {
+    if (!batch_.empty()) {
+      if (question_.has_any_place()) return "--batch excludes --from, --via and --to";
+      if (alternatives_ > 1) return "--batch excludes --alternatives";
+      return "";
+    }
+    if (matrix_) return "--matrix needs --batch";
+    if (!question_.has_places()) return "--from and --to are required";
+    if (alternatives_ > 1 && question_.has_via()) return "--alternatives excludes --via";
+    return "";
+  }
+
+  Exit run_batch(const Streams& streams, const CommonOptions& common) const {
+    const map::RoadMap road_map = map::load_map(map_file_);
+    const BatchAnswer answer = route_batch(road_map, batch_, question_.rules().on(road_map),
+                                           {.matrix = matrix_, .threads = common.threads});
+    if (output_.empty()) {
+      fmt::print(streams.out, "{}", json_ ? answer.json : answer.csv);
+    } else {
+      write_output(output_, answer.csv);
+      if (json_) fmt::print(streams.out, "{}", answer.json);
+    }
+    for (const std::string& fault : answer.faults) {
+      fmt::print(streams.err, "roadbed: {}\n", fault);
+    }
+    if (!common.quiet) {
+      fmt::print(streams.err, "{} pairs: {} routes, {} without a route, {} rows unusable\n",
+                 answer.found + answer.none + answer.faults.size(), answer.found, answer.none,
+                 answer.faults.size());
+    }
+    return answer.faults.empty() && answer.none == 0 ? Exit::ok : Exit::failed;
+  }
+
+  void print(const Streams& streams, const map::RoadMap& road_map,
+             const RouteQuestion::Asked& asked, const Routes& routes,
+             const std::vector<double>& shared) const {
+    if (json_) {
+      Json json = route_json(road_map, routes.front());
+      json["from"] = place_json(road_map, asked.from);
+      json["to"] = place_json(road_map, asked.to);
+      for (std::size_t i = 1; i < routes.size(); ++i) {
+        Json other = route_json(road_map, routes[i]);
+        other["shared_length_share"] = shared[i];
+        json["alternatives"].push_back(std::move(other));
+      }
+      fmt::print(streams.out, "{}\n", text_of(json, 2));
+      return;
+    }
+    print_choice(streams, road_map, "start", asked.from);
+    print_choice(streams, road_map, "goal", asked.to);
+    for (std::size_t i = 0; i < routes.size(); ++i) {
+      if (i > 0) {
+        fmt::print(streams.out, "alternative {}, {:.0f} % shared:\n", i, 100.0 * shared[i]);
+      }
+      fmt::print(streams.out, "{}", route_text(road_map, routes[i]));
+    }
+  }
+
+  static void print_choice(const Streams& streams, const map::RoadMap& road_map, const char* what,
+                           const Place& place) {
+    if (place.candidates.size() < 2) return;
+    fmt::print(streams.out, "{} on lane {}, chosen of {} lanes there\n", what,
+               road_map.lane(place.on_lane.lane).name, place.candidates.size());
+  }
+
+  static void note_defaults(const Streams& streams, const planning::Route& route) {
+    if (route.legs_of_unknown_speed == 0) return;
+    fmt::print(streams.err,
+               "note: {} of {} lanes give no speed limit: the default of their type was used\n",
+               route.legs_of_unknown_speed, route.legs.size());
+  }
+
   Exit refuse(const Streams& streams, const map::RoadMap& road_map,
-              const planning::RouteAnswer& answer) const {
-    if (json_) fmt::print(streams.out, "{}\n", text_of(none_json(road_map, answer), 2));
+              const RouteQuestion::Asked& asked, const planning::RouteAnswer& answer) const {
+    if (json_) {
+      Json json = no_route_json(road_map, answer);
+      json["from"] = place_json(road_map, asked.from);
+      json["to"] = place_json(road_map, asked.to);
+      fmt::print(streams.out, "{}\n", text_of(json, 2));
+    }
     fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
     return Exit::failed;
   }
 
-  std::filesystem::path map_file_, output_;
+  std::filesystem::path map_file_, output_, batch_;
   RouteQuestion question_;
-  bool json_ = false, force_ = false;
+  int alternatives_ = 1;
+  bool json_ = false, force_ = false, matrix_ = false;
 };
 
 }  // namespace

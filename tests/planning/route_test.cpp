@@ -20,39 +20,53 @@ using map::LaneId;
 using map::LanePlace;
 using map::RoadMap;
 
-// The documented rules as a plain graph, solved by Boost: nodes are (lane, changes so far in the
-// passage, whether the passage is the first one), and one more for the goal.
+// The documented rules as a plain graph, solved by Boost: each lane has an entry, at which changes
+// may still be made, and an exit, at which the rest of it is driven. Markings are all or nothing.
 class BoostOracle {
  public:
   BoostOracle(const RoadMap& road_map, const RouteOptions& options)
       : road_map_(road_map), options_(options) {}
 
   double cost(const LanePlace& from, const LanePlace& to) const {
-    const std::size_t lanes = road_map_.lanes().size();
-    const std::size_t goal = 2 * lanes * kChanges;
+    const std::size_t lanes = road_map_.lanes().size(), start = 2 * lanes, goal = start + 1;
     Graph graph(goal + 1);
     for (const map::Lane& lane : road_map_.lanes()) {
-      for (int changes = 0; changes < kChanges; ++changes) {
-        for (const bool first : {false, true})
-          add_edges(graph, lane, changes, first, from, to, goal);
+      if (!usable(lane.id)) continue;
+      for (const auto& [last, price] : changes(lane.id, 1.0)) {
+        add_edge(lane.id.index, lanes + last.index, price, graph);
+        if (last != to.lane) continue;
+        const double end = to.s_m / road_map_.lane(last).length_m();
+        for (const auto& [same, at_goal] : changes(lane.id, end)) {
+          if (same == last) add_edge(lane.id.index, goal, at_goal + travel(last, 0, end), graph);
+        }
+      }
+      for (const LaneId next : road_map_.graph().of(lane.id).successors) {
+        if (usable(next)) add_edge(lanes + lane.id.index, next.index, travel(lane.id, 0, 1), graph);
+      }
+    }
+    const double begin = from.s_m / road_map_.lane(from.lane).length_m();
+    const double end = to.s_m / road_map_.lane(to.lane).length_m();
+    for (const auto& [last, price] : changes(from.lane, 1.0 - begin)) {
+      for (const LaneId next : road_map_.graph().of(last).successors) {
+        if (usable(next)) add_edge(start, next.index, price + travel(last, begin, 1.0), graph);
+      }
+    }
+    if (begin <= end) {
+      for (const auto& [last, price] : changes(from.lane, end - begin)) {
+        if (last == to.lane) add_edge(start, goal, price + travel(last, begin, end), graph);
       }
     }
     std::vector<double> distance(goal + 1);
     boost::dijkstra_shortest_paths(
-        graph, node(from.lane, 0, true),
+        graph, start,
         boost::distance_map(distance.data()).distance_inf(std::numeric_limits<double>::infinity()));
     return distance[goal];
   }
 
  private:
-  static constexpr int kChanges = 6;
   using Graph =
       boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property,
                             boost::property<boost::edge_weight_t, double>>;
-
-  static std::size_t node(LaneId lane, int changes, bool first) {
-    return (2 * lane.index + (first ? 1U : 0U)) * kChanges + static_cast<std::size_t>(changes);
-  }
 
   bool usable(LaneId lane) const {
     const bool closed =
@@ -60,41 +74,45 @@ class BoostOracle {
     return is_drivable(road_map_.lane(lane).type) && !closed;
   }
 
-  double travel(const map::Lane& lane, double length_m) const {
-    if (options_.cost == RouteCost::distance) return length_m;
-    const double limit = lane.least_speed_limit_mps().value_or(options_.default_speed_mps);
-    return length_m / std::min(limit, options_.max_speed_mps);
+  double travel(LaneId id, double begin, double end) const {
+    const map::Lane& lane = road_map_.lane(id);
+    const double from_m = begin * lane.length_m(), to_m = end * lane.length_m();
+    if (options_.cost == RouteCost::distance) return to_m - from_m;
+    double time_s = 0.0;
+    for (std::size_t i = 0; i <= lane.speed_limits.size(); ++i) {
+      const double first_m = i == 0 ? 0.0 : lane.speed_limits[i - 1].from_s_m;
+      const double last_m =
+          i < lane.speed_limits.size() ? lane.speed_limits[i].from_s_m : lane.length_m();
+      const double part_m = std::min(to_m, last_m) - std::max(from_m, first_m);
+      if (part_m <= 0.0) continue;
+      const auto limit = i == 0 ? std::nullopt : lane.speed_limits[i - 1].limit_mps;
+      time_s += part_m / std::min(limit && *limit > 0.0 ? *limit : default_speed_mps(lane.type),
+                                  options_.max_speed_mps);
+    }
+    return time_s;
   }
 
-  void add_edges(Graph& graph, const map::Lane& lane, int changes, bool first,
-                 const LanePlace& from, const LanePlace& to, std::size_t goal) const {
-    const double begin = first ? from.s_m / road_map_.lane(from.lane).length_m() : 0.0;
-    const double end = to.s_m / road_map_.lane(to.lane).length_m();
-    const double rest_m = (1.0 - begin) * lane.length_m();
-    const std::size_t here = node(lane.id, changes, first);
-    const map::LaneLinks& links = road_map_.graph().of(lane.id);
-    const auto fits = [&](int count, double room_m) {
-      return count == 0 || count * options_.least_lane_change_m <= room_m;
-    };
-    if (fits(changes, rest_m)) {
-      for (const LaneId next : links.successors) {
-        if (usable(next)) add_edge(here, node(next, 0, false), travel(lane, rest_m), graph);
+  // Lanes that a chain of changes leads to within a share of the passage, and what it costs.
+  std::vector<std::pair<LaneId, double>> changes(LaneId from, double share) const {
+    std::vector<std::pair<LaneId, double>> reached{{from, 0.0}};
+    for (const bool leftwards : {true, false}) {
+      double least_m = std::numeric_limits<double>::infinity();
+      LaneId lane = from;
+      for (int count = 1;; ++count) {
+        const map::LaneLinks& links = road_map_.graph().of(lane);
+        const auto& next = leftwards ? links.left : links.right;
+        if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane)) break;
+        least_m = std::min(least_m, share * road_map_.lane(lane).length_m());
+        const double room_m = least_m / count;
+        if (room_m < options_.least_lane_change_m - 1e-9) break;
+        const double price = options_.cost == RouteCost::distance ? options_.prices_m.lane_change
+                                                                  : options_.prices_s.lane_change;
+        lane = next->lane;
+        reached.push_back(
+            {lane, count * price * std::max(1.0, options_.comfortable_lane_change_m / room_m)});
       }
     }
-    for (const auto& next : {links.left, links.right}) {
-      if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane))
-        continue;
-      if (changes + 1 >= kChanges || !fits(changes + 1, rest_m)) continue;
-      const double least = options_.cost == RouteCost::distance ? options_.lane_change_cost_m
-                                                                : options_.lane_change_cost_s;
-      const double room_m = rest_m / (changes + 1);
-      const double cost = least * std::max(1.0, options_.comfortable_lane_change_m / room_m);
-      add_edge(here, node(next->lane, changes + 1, first), cost, graph);
-    }
-    const double ahead_m = (end - begin) * lane.length_m();
-    if (lane.id == to.lane && ahead_m >= 0.0 && fits(changes, ahead_m)) {
-      add_edge(here, goal, travel(lane, ahead_m), graph);
-    }
+    return reached;
   }
 
   const RoadMap& road_map_;
@@ -201,9 +219,11 @@ struct Tally {
 void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs,
                         const RouteOptions& options, Tally& tally) {
   const BoostOracle oracle(road_map, options);
+  Router router(road_map, options);
   for (int i = 0; i < pairs; ++i) {
     const LanePlace from = random_place(random, road_map), to = random_place(random, road_map);
-    const RouteAnswer answer = find_route(road_map, from, to, options);
+    if (!router.unfit(from, "start").empty() || !router.unfit(to, "goal").empty()) continue;
+    const RouteAnswer answer = router.find(from, to);
     const double expected = oracle.cost(from, to);
     ASSERT_EQ(answer.route.has_value(), std::isfinite(expected))
         << road_map.lane(from.lane).name << " to " << road_map.lane(to.lane).name;
@@ -216,7 +236,9 @@ void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs
     tally.with_changes += answer.route->lane_changes > 0 ? 1 : 0;
     const double cost =
         options.cost == RouteCost::time ? answer.route->cost_s : answer.route->cost_m;
-    ASSERT_NEAR(cost, expected, 1e-9 * (1.0 + expected));
+    // Each arc is rounded to 0.1 ms or 1 mm before ways are compared.
+    ASSERT_NEAR(cost, expected, 1e-3 * static_cast<double>(answer.route->legs.size() + 1));
+    ASSERT_GE(cost, expected - 1e-9 * (1.0 + expected));
     expect_connected(road_map, *answer.route, from, to, options);
   }
 }
@@ -228,7 +250,7 @@ TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRandomGrids) {
     const RoadMap road_map = random_grid(random, 3 + trial % 3, 2 + trial % 2);
     RouteOptions options;
     options.cost = trial % 2 == 0 ? RouteCost::time : RouteCost::distance;
-    if (trial % 3 == 1) options.lane_change_cost_s = options.lane_change_cost_m = 0.0;
+    if (trial % 3 == 1) options.prices_s.lane_change = options.prices_m.lane_change = 0.0;
     if (trial % 3 == 2) options.least_lane_change_m = 45.0;
     for (int i = 0; i < trial % 4; ++i)
       options.avoid.push_back(random_place(random, road_map).lane);
@@ -247,7 +269,11 @@ TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
        {"BerkeleyLearnVerify+Scenic/Town10HD.xodr", "esmini+esmini/multi_intersections.xodr",
         "esmini+esmini/highway_example_with_merge_and_split.xodr"}) {
     const RoadMap road_map = map::load_map(folder / "opendrive" / file);
-    compare_with_boost(road_map, random, 40, {}, tally);
+    // Marking windows and bends are left to tests of their own.
+    RouteOptions options;
+    options.lateral_acceleration_mps2 = 1e9;
+    options.prices_s.u_turn = 0.0;
+    compare_with_boost(road_map, random, 40, options, tally);
   }
   EXPECT_GT(tally.found, 60);
 }
@@ -293,8 +319,7 @@ TEST(FindRoute, NeedsTheLengthOfALaneChange) {
       find_route(road_map, {lanes.left, 90.1, 0.0}, {lanes.after_right, 50.0, 0.0});
   EXPECT_FALSE(answer.route);
   ASSERT_TRUE(answer.obstacle);
-  EXPECT_TRUE(answer.obstacle->length);
-  EXPECT_FALSE(answer.obstacle->markings);
+  EXPECT_EQ(answer.obstacle->barriers, std::vector{Barrier::length});
 }
 
 TEST(FindRoute, AGoalBehindTheStartOnTheSameLaneTakesALoopOrIsRefused) {
@@ -315,33 +340,6 @@ TEST(FindRoute, StartingAtTheGoalIsARouteOfNoLength) {
   ASSERT_TRUE(answer.route);
   EXPECT_EQ(answer.route->legs.size(), 1U);
   EXPECT_EQ(answer.route->length_m, 0.0);
-}
-
-TEST(FindRoute, SaysWhatStandsBetween) {
-  const TwoLanes solid(false);
-  const RoadMap marked = solid.made.build();
-  const LanePlace start{solid.left, 10.0, 0.0}, goal{solid.after_right, 10.0, 0.0};
-  const RouteAnswer by_marking = find_route(marked, start, goal);
-  ASSERT_TRUE(by_marking.obstacle);
-  EXPECT_TRUE(by_marking.obstacle->markings);
-  EXPECT_FALSE(by_marking.obstacle->closed_lanes);
-  EXPECT_EQ(by_marking.obstacle->lanes_from_start, 2U);
-  EXPECT_EQ(by_marking.obstacle->lanes_to_goal, 2U);
-  EXPECT_NE(by_marking.reason.find("markings"), std::string::npos);
-
-  const TwoLanes open;
-  RouteOptions closed;
-  closed.avoid = {open.right};
-  const RouteAnswer by_closure = find_route(open.made.build(), start, goal, closed);
-  ASSERT_TRUE(by_closure.obstacle);
-  EXPECT_TRUE(by_closure.obstacle->closed_lanes);
-  EXPECT_NE(by_closure.reason.find("closed"), std::string::npos);
-
-  const RouteAnswer apart =
-      find_route(marked, {solid.after_left, 10.0, 0.0}, {solid.left, 10.0, 0.0});
-  ASSERT_TRUE(apart.obstacle && apart.obstacle->gap_from);
-  EXPECT_NEAR(apart.obstacle->gap_m, 200.0, 1e-9);
-  EXPECT_EQ(*apart.obstacle->gap_from, solid.after_left);
 }
 
 TEST(FindRoute, RefusesLanesThatACarMayNotDriveOn) {

@@ -72,9 +72,135 @@ TEST(RouteCommand, GoesRoundAClosedLaneOrSaysWhyItCannot) {
   EXPECT_EQ(none.status, 1);
   const json answer = json::parse(none.out);
   EXPECT_FALSE(answer["found"]);
-  EXPECT_THAT(answer["reason"].get<std::string>(), HasSubstr("closed"));
-  EXPECT_TRUE(answer["found_with_closed_lanes_open"]);
-  EXPECT_EQ(answer["gap_to_lane"], "7/0/1");
+  EXPECT_THAT(answer["reason"].get<std::string>(), HasSubstr("goal is on lane 7/0/1"));
+  const ProgramRun start = route_with("road:1");
+  EXPECT_EQ(start.status, 1);
+  EXPECT_THAT(start.err, HasSubstr("start is on lane 1/0/-1, which is closed"));
+  EXPECT_EQ(route_with("road:none").status, 1);
+  EXPECT_EQ(route_with("polygon:1,2,3").status, 2);
+  EXPECT_EQ(route_with("everything").status, 2);
+}
+
+TEST(RouteCommand, APolygonClosesWhatItTouchesAndOffTheMapNothing) {
+  const auto route_with = [&](const std::string& polygon) {
+    return run_roadbed(
+        {"route", kTown, "--from", kFrom, "--to", kTo, "--json", "--avoid", "polygon:" + polygon});
+  };
+  const ProgramRun free = run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--json"});
+  EXPECT_EQ(route_with("-10000,-10000,-9999,-10000,-9999,-9999").out, free.out);
+  const ProgramRun start = route_with("269,202,271,202,271,204,269,204");
+  EXPECT_EQ(start.status, 1);
+  EXPECT_THAT(start.err, HasSubstr("start is on lane 1/0/-1, which is closed"));
+}
+
+TEST(RouteCommand, ListsTheLanesThatAPlaceMayBeOn) {
+  const ProgramRun run =
+      run_roadbed({"route", kTown, "--from", "270,205.2", "--to", kTo, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json from = json::parse(run.out)["from"];
+  ASSERT_GE(from["candidates"].size(), 2U);
+  EXPECT_EQ(from["candidates"][0]["verdict"], "chosen");
+  EXPECT_EQ(from["candidates"][0]["lane"], from["lane"]);
+}
+
+TEST(RouteCommand, PassesViaPointsInOrder) {
+  const ProgramRun run = run_roadbed({"route", kTown, "--from", kFrom, "--via", kTo, "--via",
+                                      "lane:1/0/-1@12", "--to", kTo, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json route = json::parse(run.out);
+  ASSERT_EQ(route["via"].size(), 2U);
+  EXPECT_EQ(route["via"][0]["lane"], "7/0/1");
+  EXPECT_EQ(route["via"][1]["s_m"], 12.0);
+  double cost_s = 0.0;
+  for (const json& lane : route["lanes"]) cost_s += lane["cost_s"].get<double>();
+  EXPECT_NEAR(cost_s, route["cost_s"].get<double>(), 1e-6);
+}
+
+TEST(RouteCommand, GivesAlternativesWithTheirShare) {
+  const ProgramRun run =
+      run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--alternatives", "3", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json route = json::parse(run.out);
+  ASSERT_GE(route["alternatives"].size(), 1U);
+  for (const json& other : route["alternatives"]) {
+    EXPECT_LE(other["shared_length_share"].get<double>(), 0.7);
+    EXPECT_GE(other["cost_s"].get<double>(), route["cost_s"].get<double>());
+  }
+}
+
+TEST(RouteCommand, AnswersGoodRowsOfABatchAndNamesTheBadOnes) {
+  const TemporaryFolder folder;
+  const std::string pairs = folder.write(
+      "pairs.csv",
+      "id,from,to\n1,lane:1/0/-1@10,lane:7/0/1@55\n2,\"270,203.375\",lane:7/0/1@55\n"
+      "3,lane:99/0/1,lane:7/0/1@55\n4,only\n5,\"-1000,50\",lane:7/0/1\n6,,lane:7/0/1\n");
+  const ProgramRun run = run_roadbed({"route", kTown, "--batch", pairs});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("pairs.csv:4: "));
+  EXPECT_THAT(run.err, HasSubstr("no lane 99/0/1"));
+  EXPECT_THAT(run.err, HasSubstr("pairs.csv:5: 2 fields, the header has 3"));
+  EXPECT_THAT(run.err, HasSubstr("pairs.csv:6: "));
+  EXPECT_THAT(run.err, HasSubstr("pairs.csv:7: "));
+  std::istringstream lines(run.out);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "row,from,to,found,cost_s,cost_m,length_m,lane_changes,lanes,reason");
+  std::getline(lines, line);
+  const json single =
+      json::parse(run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--json"}).out);
+  char expected[64];
+  std::snprintf(expected, sizeof expected, "2,lane:1/0/-1@10,lane:7/0/1@55,1,%.4f,",
+                single["cost_s"].get<double>());
+  EXPECT_TRUE(line.starts_with(expected)) << line;
+  const ProgramRun two = run_roadbed({"route", kTown, "--batch", pairs, "--threads", "2"});
+  EXPECT_EQ(two.out, run.out);
+  const std::string bad = folder.write("bad.csv", "a,b\n1,2\n");
+  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", bad}).status, 1);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", folder / "none.csv"}).status, 1);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", pairs, "--from", kFrom}).status, 2);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--matrix"}).status, 2);
+}
+
+TEST(RouteCommand, AMatrixHoldsEveryPairAsSingleQuestionsDo) {
+  const TemporaryFolder folder;
+  const std::string pairs = folder.write(
+      "pairs.csv", "from,to\nlane:1/0/-1@10,lane:7/0/1@55\nlane:7/0/1@20,lane:1/0/-1@14\n");
+  const ProgramRun run = run_roadbed({"route", kTown, "--batch", pairs, "--matrix", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json cells = json::parse(run.out)["answers"];
+  ASSERT_EQ(cells.size(), 4U);
+  const char* froms[] = {"lane:1/0/-1@10", "lane:7/0/1@20"};
+  const char* tos[] = {"lane:7/0/1@55", "lane:1/0/-1@14"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const json single = json::parse(
+        run_roadbed({"route", kTown, "--from", froms[i / 2], "--to", tos[i % 2], "--json"}).out);
+    EXPECT_NEAR(cells[i]["cost_s"].get<double>(), single["cost_s"].get<double>(), 0.01);
+  }
+}
+
+TEST(RouteCommand, WritesLegsAsCsvAndAPictureOfTheWay) {
+  const TemporaryFolder folder;
+  const std::string csv = folder / "way.csv", svg = folder / "way.svg";
+  ASSERT_EQ(run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "-o", csv}).status, 0);
+  EXPECT_THAT(bytes_of(csv), HasSubstr("\n0,0,1/0/-1,10.000,"));
+  ASSERT_EQ(run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "-o", svg}).status, 0);
+  EXPECT_THAT(bytes_of(svg), HasSubstr("<svg"));
+}
+
+TEST(ReachCommand, GivesLanesAndTheirArea) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "reach.geojson";
+  const ProgramRun run =
+      run_roadbed({"reach", kTown, "--from", kFrom, "--within", "150m", "--json", "-o", file});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json reached = json::parse(run.out);
+  EXPECT_GT(reached["lanes"].size(), 1U);
+  for (const json& lane : reached["lanes"]) EXPECT_LE(lane["cost_m"].get<double>(), 150.0);
+  const json area = json::parse(bytes_of(file))["features"][0];
+  EXPECT_EQ(area["geometry"]["type"], "MultiPolygon");
+  EXPECT_EQ(run_roadbed({"reach", kTown, "--from", kFrom, "--within", "150"}).status, 2);
+  EXPECT_EQ(run_roadbed({"reach", kTown, "--from", kFrom, "--within", "-5s"}).status, 2);
+  EXPECT_EQ(run_roadbed({"reach", kTown, "--from", "lane:1/3/3@1", "--within", "5s"}).status, 1);
 }
 
 TEST(RouteCommand, WritesTheWayAsGeoJson) {
@@ -91,6 +217,7 @@ TEST(RouteCommand, RefusesPlacesThatAreNotOnTheMap) {
   const ProgramRun off = run_roadbed({"route", kTown, "--from", "-1000,50", "--to", kTo});
   EXPECT_EQ(off.status, 1);
   EXPECT_THAT(off.err, HasSubstr("nearest drivable lane is"));
+  EXPECT_THAT(off.err, HasSubstr(" m away"));
   EXPECT_EQ(run_roadbed({"route", kTown, "--from", "lane:99/0/1", "--to", kTo}).status, 1);
   EXPECT_EQ(
       run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", "lane:99/0/1"}).status,

@@ -2,23 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "roadbed/geometry/angle.h"
 #include "roadbed/map/input_error.h"
+#include "roadbed/planning/route_options.h"
 
 namespace roadbed::tools {
 namespace {
 
 constexpr std::string_view kLanePrefix = "lane:";
-constexpr double kReach_m = 0.5;
-constexpr double kSearch_m[] = {10.0, 100.0, 1e3, 1e4, 1e5};
-constexpr double kMetresPerRadian = 2.0;
-constexpr double kOffsetWeight = 0.1;
 
 std::optional<double> number(std::string_view text) {
   double value = 0.0;
@@ -83,55 +78,51 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
     refuse(text, fmt::format("station {} m", s_m),
            fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
   }
-  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false};
+  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false, {}};
 }
 
-[[noreturn]] void refuse_far(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
-                             const std::string& text) {
-  for (const double radius_m : kSearch_m) {
-    const auto matches = road_map.locate(in_map, radius_m, true);
-    if (matches.empty()) continue;
-    const map::LaneMatch& nearest = matches.front();
-    const map::Lane& lane = road_map.lane(nearest.place.lane);
-    const Eigen::Vector2d on_lane = road_map.to_source(lane.pose_at(nearest.place.s_m).position());
-    refuse(text, "is off the road", "",
-           fmt::format("the nearest drivable lane is {}, {:.2f} m away; its centre there is at "
-                       "{:.3f},{:.3f}",
-                       lane.name, nearest.distance_m, on_lane.x(), on_lane.y()));
+[[noreturn]] void refuse_far(const map::RoadMap& road_map, const std::string& text,
+                             const std::vector<planning::PlaceCandidate>& candidates,
+                             map::Participant participant) {
+  std::string found = "is off the road", remedy;
+  for (const planning::PlaceCandidate& candidate : candidates) {
+    const map::Lane& lane = road_map.lane(candidate.place.lane);
+    if (candidate.verdict == planning::MatchVerdict::not_for_participant) {
+      found = fmt::format("is on lane {}, where a {} may not drive: its type is {}", lane.name,
+                          planning::name(participant), map::name(lane.type));
+      break;
+    }
+    const Eigen::Vector2d on_lane =
+        road_map.to_source(lane.pose_at(candidate.place.s_m).position());
+    remedy += remedy.empty()
+                  ? fmt::format(
+                        "the nearest drivable lane is {}, {:.2f} m away; its centre there "
+                        "is at {:.3f},{:.3f}",
+                        lane.name, candidate.distance_m, on_lane.x(), on_lane.y())
+                  : fmt::format("; next {}, {:.2f} m", lane.name, candidate.distance_m);
   }
-  refuse(text, "is off the road", "", "no drivable lane is within 100 km: mind the coordinates");
+  if (remedy.empty()) remedy = "no drivable lane is within 100 km: mind the coordinates";
+  refuse(text, found, "", remedy);
 }
 
-double turn_from(const map::LaneMatch& match, double heading_rad) {
-  return std::abs(geometry::wrap_angle(match.heading_rad - heading_rad));
-}
-
-map::LaneMatch best_match(std::vector<map::LaneMatch> matches, std::optional<double> heading_rad) {
-  if (heading_rad) {
-    const auto against = [&](const map::LaneMatch& match) {
-      return turn_from(match, *heading_rad) > 0.5 * std::numbers::pi;
-    };
-    if (!std::all_of(matches.begin(), matches.end(), against)) std::erase_if(matches, against);
-  }
-  const auto misfit = [&](const map::LaneMatch& match) {
-    const double turn = heading_rad ? turn_from(match, *heading_rad) : 0.0;
-    return match.distance_m + kMetresPerRadian * turn + kOffsetWeight * std::abs(match.place.d_m);
-  };
-  return *std::min_element(matches.begin(), matches.end(),
-                           [&](const auto& a, const auto& b) { return misfit(a) < misfit(b); });
-}
-
-Place at_point(const map::RoadMap& road_map, const std::string& text) {
+Place at_point(const map::RoadMap& road_map, const std::string& text,
+               map::Participant participant) {
   const auto parts = split(text);
   const Eigen::Vector2d in_map =
       road_map.to_map({number(parts[0]).value(), number(parts[1]).value()});
   const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
-  const auto matches = road_map.locate(in_map, kReach_m, true);
-  if (matches.empty()) refuse_far(road_map, in_map, text);
-  const map::LaneMatch match = best_match(matches, heading_rad);
-  return {match.place,
-          {in_map.x(), in_map.y(), heading_rad.value_or(match.heading_rad)},
-          heading_rad.has_value()};
+  auto candidates =
+      planning::match_place(road_map, in_map, heading_rad, {.participant = participant});
+  if (candidates.empty() || candidates.front().verdict != planning::MatchVerdict::chosen) {
+    refuse_far(road_map, text, candidates, participant);
+  }
+  const planning::PlaceCandidate& chosen = candidates.front();
+  Place place{chosen.place,
+              {in_map.x(), in_map.y(), heading_rad.value_or(chosen.heading_rad)},
+              heading_rad.has_value(),
+              {}};
+  place.candidates = std::move(candidates);
+  return place;
 }
 
 }  // namespace
@@ -160,10 +151,12 @@ std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
   return x && y ? std::optional(Eigen::Vector2d(*x, *y)) : std::nullopt;
 }
 
-Place find_place(const map::RoadMap& road_map, const std::string& text) {
+Place find_place(const map::RoadMap& road_map, const std::string& text,
+                 map::Participant participant) {
   const std::string fault = place_syntax_fault(text);
   if (!fault.empty()) refuse(text, fault, "", "");
-  return text.starts_with(kLanePrefix) ? at_lane(road_map, text) : at_point(road_map, text);
+  return text.starts_with(kLanePrefix) ? at_lane(road_map, text)
+                                       : at_point(road_map, text, participant);
 }
 
 }  // namespace roadbed::tools

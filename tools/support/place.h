@@ -4,9 +4,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/geometry/pose2.h"
 #include "roadbed/map/road_map.h"
+#include "roadbed/planning/match_place.h"
 
 namespace roadbed::tools {
 
@@ -19,6 +21,7 @@ struct Place {
   map::LanePlace on_lane;
   geometry::Pose2 map_from_vehicle;  ///< as given; heading of the lane where none is given
   bool has_heading = false;          ///< given, not the lane's
+  std::vector<planning::PlaceCandidate> candidates;  ///< of a point; the chosen one first
 };
 
 /// What is wrong with the writing of a place, empty if nothing is. Needs no map.
@@ -27,12 +30,10 @@ std::string place_syntax_fault(const std::string& text);
 /// Two numbers "X,Y", in source coordinates.
 std::optional<Eigen::Vector2d> parse_point(std::string_view text);
 
-/// Finds a place on the map. A point belongs to the drivable lane that it is on, or at most 0.5 m
-/// beside. Of several, as in a junction, the one is taken whose heading fits best: an angle of 0.1
-/// rad counts as much as 0.2 m beside the lane or 2 m off its centreline. Lanes that run against a
-/// given heading are left out where another is there.
+/// Finds a place on the map. Which lane a point belongs to says planning::match_place().
 /// @throws InputError, whose element is the text, if it is no place, its lane is not there or not
 ///         that long, or there is no drivable lane near the point; it names the nearest.
-Place find_place(const map::RoadMap& road_map, const std::string& text);
+Place find_place(const map::RoadMap& road_map, const std::string& text,
+                 map::Participant participant = map::Participant::car);
 
 }  // namespace roadbed::tools

@@ -1,0 +1,137 @@
+#include "roadbed/planning/hierarchy.h"
+
+#include <algorithm>
+
+namespace roadbed::planning {
+namespace {
+
+using Rank = std::uint32_t;
+
+// The ranks above of each rank, as runs: what it is linked to and what its children lead to.
+class Elimination {
+ public:
+  Elimination(const RouteGraph& graph, Hierarchy& hierarchy)
+      : graph_(graph),
+        hierarchy_(hierarchy),
+        first_child_(graph.nodes(), kNoNode),
+        next_child_(graph.nodes(), kNoNode) {}
+
+  void run() {
+    hierarchy_.parent.resize(graph_.nodes());
+    for (Rank rank = 0; rank < graph_.nodes(); ++rank) {
+      gather(rank);
+      store(rank);
+    }
+  }
+
+ private:
+  void take(Rank rank, Rank other) {
+    if (other > rank) row_.push_back(other);
+  }
+
+  void gather(Rank rank) {
+    row_.clear();
+    const std::uint32_t node = hierarchy_.node_of_rank[rank];
+    for (std::uint32_t i = graph_.first_out[node]; i < graph_.first_out[node + 1]; ++i) {
+      take(rank, hierarchy_.rank_of_node[graph_.head[i]]);
+    }
+    for (std::uint32_t i = graph_.first_in[node]; i < graph_.first_in[node + 1]; ++i) {
+      take(rank, hierarchy_.rank_of_node[graph_.tail[graph_.in_arc[i]]]);
+    }
+    std::sort(row_.begin(), row_.end());
+    row_.erase(std::unique(row_.begin(), row_.end()), row_.end());
+    for (Rank child = first_child_[rank]; child != kNoNode; child = next_child_[child]) {
+      merge_runs(rank, child);
+    }
+  }
+
+  // Both are sorted; the child's first one is the rank itself.
+  void merge_runs(Rank rank, Rank child) {
+    other_.clear();
+    for (const RankRun& run : hierarchy_.above.of(child)) {
+      for (Rank i = 0; i < run.count; ++i) {
+        if (run.first + i > rank) other_.push_back(run.first + i);
+      }
+    }
+    merged_.clear();
+    std::set_union(row_.begin(), row_.end(), other_.begin(), other_.end(),
+                   std::back_inserter(merged_));
+    row_.swap(merged_);
+  }
+
+  void store(Rank rank) {
+    auto& runs = hierarchy_.above.items;
+    const std::size_t first = runs.size();
+    for (const Rank other : row_) {
+      if (runs.size() > first && runs.back().first + runs.back().count == other) {
+        ++runs.back().count;
+      } else {
+        runs.push_back({other, 1, hierarchy_.arcs});
+      }
+      ++hierarchy_.arcs;
+    }
+    hierarchy_.above.end_group();
+    hierarchy_.parent[rank] = row_.empty() ? rank : row_.front();
+    if (row_.empty()) return;
+    next_child_[rank] = first_child_[row_.front()];
+    first_child_[row_.front()] = rank;
+  }
+
+  const RouteGraph& graph_;
+  Hierarchy& hierarchy_;
+  std::vector<Rank> first_child_, next_child_, row_, other_, merged_;
+};
+
+// Counting sort of pairs (group, item) into rows; `visit` names all of them, items ascending.
+template <typename Visit>
+Grouped<std::uint32_t> grouped_by(std::size_t groups, const Visit& visit) {
+  Grouped<std::uint32_t> rows;
+  rows.first.assign(groups + 1, 0);
+  visit([&](std::uint32_t group, std::uint32_t) { ++rows.first[group + 1]; });
+  for (std::size_t i = 0; i < groups; ++i) rows.first[i + 1] += rows.first[i];
+  rows.items.resize(rows.first.back());
+  std::vector<std::uint32_t> next(rows.first.begin(), rows.first.end() - 1);
+  visit([&](std::uint32_t group, std::uint32_t item) { rows.items[next[group]++] = item; });
+  return rows;
+}
+
+}  // namespace
+
+std::uint32_t Hierarchy::arc_between(std::uint32_t low, std::uint32_t high) const {
+  const auto runs = above.of(low);
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), high,
+                       [](std::uint32_t rank, const RankRun& run) { return rank < run.first; });
+  if (after == runs.begin()) return kNoNode;
+  const RankRun& run = *(after - 1);
+  return high - run.first < run.count ? run.first_arc + (high - run.first) : kNoNode;
+}
+
+Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_t>& order) {
+  Hierarchy made;
+  made.node_of_rank = order;
+  made.rank_of_node.resize(graph.nodes());
+  for (Rank rank = 0; rank < order.size(); ++rank) made.rank_of_node[order[rank]] = rank;
+  Elimination(graph, made).run();
+  made.below = grouped_by(graph.nodes(), [&](const auto& take) {
+    for (Rank rank = 0; rank < graph.nodes(); ++rank) {
+      for (const RankRun& run : made.above.of(rank)) {
+        for (Rank i = 0; i < run.count; ++i) take(run.first + i, rank);
+      }
+    }
+  });
+  made.arc_of.assign(graph.arcs(), kNoNode);
+  for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
+    const auto [low, high] =
+        std::minmax(made.rank_of_node[graph.tail[arc]], made.rank_of_node[graph.head[arc]]);
+    if (low != high) made.arc_of[arc] = made.arc_between(low, high);
+  }
+  made.arcs_at = grouped_by(made.arcs, [&](const auto& take) {
+    for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
+      if (made.arc_of[arc] != kNoNode) take(made.arc_of[arc], arc);
+    }
+  });
+  return made;
+}
+
+}  // namespace roadbed::planning

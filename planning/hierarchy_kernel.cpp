@@ -1,0 +1,32 @@
+#include "roadbed/planning/hierarchy_kernel.h"
+
+// One compiled copy per instruction set, chosen when the program starts, as in row_kernel.cpp.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define ROADBED_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define ROADBED_CLONES
+#endif
+
+namespace roadbed::planning {
+
+ROADBED_CLONES void relax_run(std::size_t count, std::int32_t base,
+                              const std::int32_t* __restrict weight, std::int32_t* __restrict cost,
+                              std::uint32_t* __restrict parent, std::uint32_t from) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t other = base + weight[i];
+    const bool better = other < cost[i];
+    cost[i] = better ? other : cost[i];
+    parent[i] = better ? from : parent[i];
+  }
+}
+
+ROADBED_CLONES void lower_run(std::size_t count, std::int32_t base,
+                              const std::int32_t* __restrict weight,
+                              std::int32_t* __restrict cost) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t other = base + weight[i];
+    cost[i] = other < cost[i] ? other : cost[i];
+  }
+}
+
+}  // namespace roadbed::planning

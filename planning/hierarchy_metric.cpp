@@ -1,0 +1,163 @@
+#include "roadbed/planning/hierarchy_metric.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+#include "roadbed/planning/hierarchy_kernel.h"
+
+namespace roadbed::planning {
+namespace {
+
+constexpr auto kFar = static_cast<std::int32_t>(kNever);
+
+// An arc of the hierarchy that has to be computed again; lower ones first.
+struct Touched {
+  std::uint32_t low, high, arc;
+  bool operator>(const Touched& other) const {
+    return std::tie(low, high) > std::tie(other.low, other.high);
+  }
+};
+
+}  // namespace
+
+HierarchyMetric::HierarchyMetric(const RouteGraph& graph, const Hierarchy& hierarchy,
+                                 std::span<const Ticks> weights)
+    : graph_(graph),
+      hierarchy_(hierarchy),
+      weights_(weights.begin(), weights.end()),
+      up_(hierarchy.arcs, kFar),
+      down_(hierarchy.arcs, kFar) {
+  for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
+    const std::uint32_t at = hierarchy.arc_of[arc];
+    if (at == kNoNode) continue;
+    const bool upwards =
+        hierarchy.rank_of_node[graph.tail[arc]] < hierarchy.rank_of_node[graph.head[arc]];
+    std::int32_t& weight = upwards ? up_[at] : down_[at];
+    weight = std::min(weight, static_cast<std::int32_t>(weights_[arc]));
+  }
+  for (std::uint32_t rank = 0; rank < graph.nodes(); ++rank) customise(rank);
+}
+
+// The ranks above a rank are joined to each other over it.
+void HierarchyMetric::customise(std::uint32_t rank) {
+  const auto runs = hierarchy_.above.of(rank);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (std::uint32_t i = 0; i < runs[r].count; ++i) {
+      const std::uint32_t low = runs[r].first + i, over = runs[r].first_arc + i;
+      const std::int32_t down = down_[over], up = up_[over];
+      if (down == kFar && up == kFar) continue;
+      auto target = hierarchy_.above.of(low).begin();
+      for (std::size_t q = r; q < runs.size(); ++q) {
+        const std::uint32_t skip = q == r ? i + 1 : 0, count = runs[q].count - skip;
+        if (count == 0) continue;
+        const std::uint32_t first = runs[q].first + skip, from = runs[q].first_arc + skip;
+        while (target->first + target->count <= first) ++target;
+        const std::uint32_t to = target->first_arc + (first - target->first);
+        if (down != kFar) lower_run(count, down, &up_[from], &up_[to]);
+        if (up != kFar) lower_run(count, up, &down_[from], &down_[to]);
+      }
+    }
+  }
+}
+
+HierarchyMetric::Both HierarchyMetric::own_weight(std::uint32_t arc, std::uint32_t low) const {
+  Both both{kFar, kFar};
+  for (const std::uint32_t of_graph : hierarchy_.arcs_at.of(arc)) {
+    const bool upwards = hierarchy_.rank_of_node[graph_.tail[of_graph]] == low;
+    std::int32_t& weight = upwards ? both.up : both.down;
+    weight = std::min(weight, static_cast<std::int32_t>(weights_[of_graph]));
+  }
+  return both;
+}
+
+HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t arc, std::uint32_t low,
+                                               std::uint32_t high) const {
+  Both both = own_weight(arc, low);
+  const auto of_high = hierarchy_.below.of(high);
+  auto candidate = of_high.begin();
+  for (const std::uint32_t rank : hierarchy_.below.of(low)) {
+    candidate = std::lower_bound(candidate, of_high.end(), rank);
+    if (candidate == of_high.end()) break;
+    if (*candidate != rank) continue;
+    const std::uint32_t to_low = hierarchy_.arc_between(rank, low);
+    const std::uint32_t to_high = hierarchy_.arc_between(rank, high);
+    both.up = std::min(both.up, down_[to_low] + up_[to_high]);
+    both.down = std::min(both.down, down_[to_high] + up_[to_low]);
+  }
+  return {std::min(both.up, kFar), std::min(both.down, kFar)};
+}
+
+std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
+                                    std::span<const Ticks> weights) {
+  std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
+  for (std::size_t i = 0; i < graph_arcs.size(); ++i) {
+    const std::uint32_t arc = graph_arcs[i], at = hierarchy_.arc_of[arc];
+    if (weights_[arc] == weights[i]) continue;
+    weights_[arc] = weights[i];
+    if (at == kNoNode) continue;
+    const auto [low, high] = std::minmax(hierarchy_.rank_of_node[graph_.tail[arc]],
+                                         hierarchy_.rank_of_node[graph_.head[arc]]);
+    touched.push({low, high, at});
+  }
+  std::size_t computed = 0;
+  std::uint32_t done = kNoNode;
+  while (!touched.empty()) {
+    const Touched next = touched.top();
+    touched.pop();
+    if (next.arc == done) continue;
+    done = next.arc;
+    ++computed;
+    const Both old{up_[next.arc], down_[next.arc]};
+    const Both now = compute(next.arc, next.low, next.high);
+    if (now == old) continue;
+    // Arcs above are affected where they rested on the old weight, or the new one is less.
+    for (const RankRun& run : hierarchy_.above.of(next.low)) {
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        const std::uint32_t other = run.first + i, beside = run.first_arc + i;
+        if (other == next.high) continue;
+        const std::uint32_t low = std::min(other, next.high), high = std::max(other, next.high);
+        const std::uint32_t arc = hierarchy_.arc_between(low, high);
+        // next → other and other → next, over their common low rank.
+        const bool next_is_low = next.high < other;
+        const std::int32_t from_next = next_is_low ? up_[arc] : down_[arc];
+        const std::int32_t to_next = next_is_low ? down_[arc] : up_[arc];
+        const bool out = old.down + up_[beside] <= from_next || now.down + up_[beside] < from_next;
+        const bool in = old.up + down_[beside] <= to_next || now.up + down_[beside] < to_next;
+        if (out || in) touched.push({low, high, arc});
+      }
+    }
+    up_[next.arc] = now.up;
+    down_[next.arc] = now.down;
+  }
+  return computed;
+}
+
+void HierarchyMetric::unpack(std::uint32_t low, std::uint32_t high, bool upwards,
+                             std::vector<std::uint32_t>& arcs) const {
+  const std::uint32_t arc = hierarchy_.arc_between(low, high);
+  const std::int32_t weight = upwards ? up_[arc] : down_[arc];
+  for (const std::uint32_t of_graph : hierarchy_.arcs_at.of(arc)) {
+    const bool is_up = hierarchy_.rank_of_node[graph_.tail[of_graph]] == low;
+    if (is_up == upwards && static_cast<std::int32_t>(weights_[of_graph]) == weight) {
+      arcs.push_back(of_graph);
+      return;
+    }
+  }
+  const auto of_high = hierarchy_.below.of(high);
+  auto candidate = of_high.begin();
+  for (const std::uint32_t rank : hierarchy_.below.of(low)) {
+    candidate = std::lower_bound(candidate, of_high.end(), rank);
+    if (candidate == of_high.end()) return;
+    if (*candidate != rank) continue;
+    const std::uint32_t to_low = hierarchy_.arc_between(rank, low);
+    const std::uint32_t to_high = hierarchy_.arc_between(rank, high);
+    const std::int32_t way = upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];
+    if (way != weight) continue;
+    unpack(rank, upwards ? low : high, false, arcs);
+    unpack(rank, upwards ? high : low, true, arcs);
+    return;
+  }
+}
+
+}  // namespace roadbed::planning

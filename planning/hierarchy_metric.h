@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roadbed/planning/hierarchy.h"
+
+namespace roadbed::planning {
+
+/// Weights of a hierarchy's arcs, for both directions.
+class HierarchyMetric {
+ public:
+  /// Customisation: every arc becomes as cheap as the way over lower nodes. Refers to its
+  /// arguments but the weights. O(triangles).
+  HierarchyMetric(const RouteGraph& graph, const Hierarchy& hierarchy,
+                  std::span<const Ticks> weights);
+
+  /// Arcs of the graph have got other weights. Only what they touch is computed again.
+  /// @returns  how many arcs of the hierarchy that were.
+  std::size_t change(std::span<const std::uint32_t> graph_arcs, std::span<const Ticks> weights);
+
+  const Hierarchy& hierarchy() const { return hierarchy_; }
+  const RouteGraph& graph() const { return graph_; }
+  const std::vector<Ticks>& weights() const { return weights_; }
+  const std::vector<std::int32_t>& up() const { return up_; }
+  const std::vector<std::int32_t>& down() const { return down_; }
+
+  /// Arcs of the graph that an arc of the hierarchy stands for, appended in driving order.
+  void unpack(std::uint32_t low, std::uint32_t high, bool upwards,
+              std::vector<std::uint32_t>& arcs) const;
+
+ private:
+  struct Both {
+    std::int32_t up, down;
+    bool operator==(const Both&) const = default;
+  };
+  void customise(std::uint32_t rank);
+  Both own_weight(std::uint32_t arc, std::uint32_t low) const;
+  Both compute(std::uint32_t arc, std::uint32_t low, std::uint32_t high) const;
+
+  const RouteGraph& graph_;
+  const Hierarchy& hierarchy_;
+  std::vector<Ticks> weights_;
+  std::vector<std::int32_t> up_, down_;
+};
+
+}  // namespace roadbed::planning

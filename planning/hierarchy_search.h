@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roadbed/planning/hierarchy_metric.h"
+
+namespace roadbed::planning {
+
+/// What one side of a search has seen: the ranks on the way up from its seeds, ascending, and what
+/// it costs to get there (or on from there).
+struct ClimbedSpace {
+  std::vector<std::uint32_t> ranks;
+  std::vector<std::int32_t> costs;
+};
+
+/// Searches a customised hierarchy along its elimination tree: every rank that can matter lies on
+/// the way from a seed to the root, so there is no queue. Keeps its working memory; one per thread.
+class HierarchySearch {
+ public:
+  explicit HierarchySearch(const HierarchyMetric& metric);
+
+  /// As GraphSearch::find().
+  GraphPath find(std::span<const Seed> from, std::span<const Seed> to);
+
+  /// Just its cost.
+  Ticks cost(std::span<const Seed> from, std::span<const Seed> to);
+
+  /// One side for many pairs; see cost_between.
+  ClimbedSpace climb(std::span<const Seed> seeds, bool backward);
+
+ private:
+  struct Side {
+    std::vector<std::int32_t> cost;
+    std::vector<std::uint32_t> parent;  ///< rank, or seed with kSeedBit
+    std::vector<std::uint32_t> open;    ///< where its ways up stand, lowest last
+  };
+  struct Meeting {
+    std::int32_t cost;
+    std::uint32_t rank = 0;
+  };
+  static constexpr std::uint32_t kSeedBit = 1U << 31;
+
+  void start(Side& side, std::span<const Seed> seeds) const;
+  void step(Side& side, std::uint32_t rank) const;
+  void relax(Side& side, const std::vector<std::int32_t>& weights, std::uint32_t rank) const;
+  Meeting meet(std::span<const Seed> from, std::span<const Seed> to);
+  void clear();
+  std::uint32_t seed_of(const Side& side, std::uint32_t rank,
+                        std::vector<std::uint32_t>& chain) const;
+
+  const HierarchyMetric& metric_;
+  Side forward_, backward_;
+  std::vector<std::uint32_t> visited_;
+};
+
+/// Least cost between what a forward and a backward climb have seen. O(ranks of both).
+Ticks cost_between(const ClimbedSpace& forward, const ClimbedSpace& backward);
+
+}  // namespace roadbed::planning

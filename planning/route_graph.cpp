@@ -1,0 +1,135 @@
+#include "roadbed/planning/route_graph.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::planning {
+namespace {
+
+bool has_neighbour(const NetworkLane& lane) {
+  return lane.left != kNoLane || lane.right != kNoLane;
+}
+
+std::vector<bool> lanes_changed_to(const RouteNetwork& network) {
+  std::vector<bool> changed_to(network.lanes.size(), false);
+  for (const NetworkLane& lane : network.lanes) {
+    for (const std::uint32_t beside : {lane.left, lane.right}) {
+      if (beside != kNoLane) changed_to[beside] = true;
+    }
+  }
+  return changed_to;
+}
+
+void add_nodes(const RouteNetwork& network, RouteGraph& graph) {
+  const std::vector<bool> changed_to = lanes_changed_to(network);
+  for (std::uint32_t lane = 0; lane < network.lanes.size(); ++lane) {
+    graph.entry_of_lane.push_back(static_cast<std::uint32_t>(graph.nodes()));
+    graph.lane_of_node.push_back(lane);
+    if (changed_to[lane]) graph.lane_of_node.push_back(lane);
+    graph.exit_of_lane.push_back(static_cast<std::uint32_t>(graph.nodes()) - 1);
+  }
+}
+
+void add_arc(RouteGraph& graph, std::uint32_t from, std::uint32_t to) {
+  graph.tail.push_back(from);
+  graph.head.push_back(to);
+}
+
+void add_arcs_of(const RouteNetwork& network, std::uint32_t node, RouteGraph& graph) {
+  const std::uint32_t lane = graph.lane_of_node[node];
+  const bool is_entry = graph.entry_of_lane[lane] == node;
+  const bool is_exit = graph.exit_of_lane[lane] == node;
+  graph.first_out.push_back(static_cast<std::uint32_t>(graph.arcs()));
+  if (is_entry && (!is_exit || has_neighbour(network.lanes[lane]))) {
+    for (const auto& chain : chains_from(network, lane)) {
+      const std::uint32_t to = graph.exit_of_lane[chain.back()];
+      if (to != node) add_arc(graph, node, to);
+    }
+  }
+  graph.first_advance.push_back(static_cast<std::uint32_t>(graph.arcs()));
+  if (!is_exit) return;
+  for (const std::uint32_t next : network.successors.of(lane)) {
+    add_arc(graph, node, graph.entry_of_lane[next]);
+  }
+}
+
+void add_backward_rows(RouteGraph& graph) {
+  graph.first_in.assign(graph.nodes() + 1, 0);
+  for (const std::uint32_t to : graph.head) ++graph.first_in[to + 1];
+  for (std::size_t i = 0; i < graph.nodes(); ++i) graph.first_in[i + 1] += graph.first_in[i];
+  std::vector<std::uint32_t> next(graph.first_in.begin(), graph.first_in.end() - 1);
+  graph.in_arc.resize(graph.arcs());
+  for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc)
+    graph.in_arc[next[graph.head[arc]]++] = arc;
+}
+
+Ticks weigh_change(const RouteNetwork& network, const TravelRules& rules, std::uint32_t from,
+                   std::uint32_t to) {
+  const auto chain = chain_between(network, from, to);
+  const auto plan = rules.plan_changes(chain, {});
+  return plan ? to_ticks(rules.change_cost(chain.size() - 1, plan->room_m), rules.options().cost)
+              : kNever;
+}
+
+}  // namespace
+
+double ticks_per_unit(RouteCost cost) { return cost == RouteCost::time ? 1e4 : 1e3; }
+
+Ticks to_ticks(double cost, RouteCost measure) {
+  const double ticks = std::round(cost * ticks_per_unit(measure));
+  return ticks < static_cast<double>(kNever) ? static_cast<Ticks>(ticks) : kNever;
+}
+
+RouteGraph make_route_graph(const RouteNetwork& network) {
+  RouteGraph graph;
+  add_nodes(network, graph);
+  for (std::uint32_t node = 0; node < graph.nodes(); ++node) add_arcs_of(network, node, graph);
+  graph.first_out.push_back(static_cast<std::uint32_t>(graph.arcs()));
+  add_backward_rows(graph);
+  return graph;
+}
+
+Ticks weigh(const RouteGraph& graph, const TravelRules& rules, std::uint32_t arc) {
+  const std::uint32_t from = graph.lane_of_node[graph.tail[arc]];
+  const std::uint32_t to = graph.lane_of_node[graph.head[arc]];
+  if (!rules.may_enter(from) || !rules.may_enter(to)) return kNever;
+  if (graph.is_change(arc)) return weigh_change(rules.network(), rules, from, to);
+  const double length_m = rules.network().lanes[from].length_m;
+  return to_ticks(rules.travel_cost(from, 0.0, length_m) + rules.turn_cost(to),
+                  rules.options().cost);
+}
+
+std::vector<Ticks> weigh_all(const RouteGraph& graph, const TravelRules& rules) {
+  std::vector<Ticks> weights;
+  weights.reserve(graph.arcs());
+  for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
+    weights.push_back(weigh(graph, rules, arc));
+  }
+  return weights;
+}
+
+std::vector<std::uint32_t> arcs_of_lane(const RouteGraph& graph, std::uint32_t lane) {
+  std::vector<std::uint32_t> arcs;
+  const auto add_out = [&](std::uint32_t node) {
+    for (std::uint32_t arc = graph.first_out[node]; arc < graph.first_out[node + 1]; ++arc) {
+      arcs.push_back(arc);
+    }
+  };
+  const auto add_in = [&](std::uint32_t node) {
+    for (std::uint32_t i = graph.first_in[node]; i < graph.first_in[node + 1]; ++i) {
+      const std::uint32_t arc = graph.in_arc[i];
+      arcs.push_back(arc);
+      // A change over several lanes passes over those between.
+      if (graph.is_change(arc)) add_out(graph.tail[arc]);
+    }
+  };
+  for (const std::uint32_t node : {graph.entry_of_lane[lane], graph.exit_of_lane[lane]}) {
+    add_out(node);
+    add_in(node);
+  }
+  std::sort(arcs.begin(), arcs.end());
+  arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
+  return arcs;
+}
+
+}  // namespace roadbed::planning

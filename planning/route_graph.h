@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roadbed/planning/route_network.h"
+#include "roadbed/planning/travel_rules.h"
+
+namespace roadbed::planning {
+
+/// Cost of an arc in ticks: 0.1 ms or 1 mm. Whole numbers, so that every way of adding them up
+/// gives the same sum.
+using Ticks = std::uint32_t;
+
+/// No way. Routes have to cost less: 29 hours, or 1073 km. Two of them can be added as int32.
+inline constexpr Ticks kNever = (1U << 30) - 1;
+
+inline constexpr std::uint32_t kNoNode = 0xffffffffU;
+
+double ticks_per_unit(RouteCost cost);
+
+/// Rounded; kNever for what is too much.
+Ticks to_ticks(double cost, RouteCost measure);
+
+/// A network as a plain directed graph, forward and backward, in compressed rows.
+///
+/// A node is "at the start of this lane's passage". A lane that can be changed to has two: at the
+/// entry of the passage changes are still possible, at its exit they are made. Arcs are
+/// changes, from the entry of a lane to the exit of each lane of the passage that its neighbours
+/// lead to (of itself, too), and advances, from the exit of a lane to the entries of its
+/// successors. So the number of changes in a passage is known to the arc that pays for them.
+struct RouteGraph {
+  std::vector<std::uint32_t> lane_of_node;
+  std::vector<std::uint32_t> entry_of_lane, exit_of_lane;  ///< the same node where one will do
+  std::vector<std::uint32_t> first_out;      ///< arcs of a node: first_out[n] … first_out[n + 1]
+  std::vector<std::uint32_t> first_advance;  ///< of a node: its changes come first
+  std::vector<std::uint32_t> head, tail;     ///< of an arc
+  std::vector<std::uint32_t> first_in, in_arc;  ///< arcs that lead to a node
+
+  std::size_t nodes() const { return lane_of_node.size(); }
+  std::size_t arcs() const { return head.size(); }
+  bool is_change(std::uint32_t arc) const { return arc < first_advance[tail[arc]]; }
+};
+
+/// O(lanes + links); passages are as wide as neighbours lead.
+RouteGraph make_route_graph(const RouteNetwork& network);
+
+/// What one arc costs by the rules.
+Ticks weigh(const RouteGraph& graph, const TravelRules& rules, std::uint32_t arc);
+
+/// What each arc costs by the rules.
+std::vector<Ticks> weigh_all(const RouteGraph& graph, const TravelRules& rules);
+
+/// Arcs whose cost depends on whether the lane is closed.
+std::vector<std::uint32_t> arcs_of_lane(const RouteGraph& graph, std::uint32_t lane);
+
+}  // namespace roadbed::planning
