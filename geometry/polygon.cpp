@@ -237,12 +237,17 @@ double perimeter_m(const Ring& ring) {
   return sum_m;
 }
 
+RayCrossing crossing(const Vector2d& from, const Vector2d& to, const Vector2d& point) {
+  if (is_on_edge(from, to, point)) return RayCrossing::on_edge;
+  return is_right_of(from, to, point) ? RayCrossing::crosses : RayCrossing::misses;
+}
+
 bool contains(const Ring& ring, const Vector2d& point) {
   bool inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if (is_on_edge(a, b, point)) return true;
-    if (is_right_of(a, b, point)) inside = !inside;
+    const RayCrossing met = crossing(ring[i], ring[(i + 1) % ring.size()], point);
+    if (met == RayCrossing::on_edge) return true;
+    if (met == RayCrossing::crosses) inside = !inside;
   }
   return inside;
 }
@@ -261,16 +266,22 @@ bool is_simple(const Ring& ring) {
 
 std::vector<Polygon> make_simple(const Ring& ring) {
   check_finite(ring, "make_simple");
-  const std::vector<Ring> cleaned = weld({ring}, 0.0);
+  const std::vector<Ring> cleaned = weld({ring}, 0.0).rings;
   if (is_simple(cleaned.front())) return {{oriented(cleaned.front(), true), {}}};
   return simple_region(cleaned);
 }
 
-std::vector<Polygon> unite(std::span<const Polygon> polygons, double weld_m) {
+United unite_and_report(std::span<const Polygon> polygons, double weld_m) {
   for (const Ring& ring : rings_of(polygons)) check_finite(ring, "unite");
-  auto united = simple_region(without_folds(weld(oriented_rings(polygons), weld_m)));
-  drop_thin(united, weld_m);
+  const Welded welded = weld(oriented_rings(polygons), weld_m);
+  United united{simple_region(without_folds(welded.rings)), welded.moved_points,
+                welded.most_moved_m};
+  drop_thin(united.polygons, weld_m);
   return united;
+}
+
+std::vector<Polygon> unite(std::span<const Polygon> polygons, double weld_m) {
+  return unite_and_report(polygons, weld_m).polygons;
 }
 
 }  // namespace roadbed::geometry

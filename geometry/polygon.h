@@ -30,6 +30,15 @@ double perimeter_m(const Ring& ring);
 bool contains(const Ring& ring, const Eigen::Vector2d& point);
 bool contains(const Polygon& polygon, const Eigen::Vector2d& point);
 
+/// How a ray from a point along the x axis meets an edge.
+enum class RayCrossing { misses, crosses, on_edge };
+
+/// Exact: over all edges of a region's rings, a point is inside where the number of edges that its
+/// ray crosses is odd; `on_edge` if the edge passes the point. An edge's upper end is not part of
+/// it, so that a ray through a shared end crosses one of two edges.
+RayCrossing crossing(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                     const Eigen::Vector2d& point);
+
 /// Whether no two edges meet except neighbours at their shared point. Exact predicates (CGAL).
 bool is_simple(const Ring& ring);
 

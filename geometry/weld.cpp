@@ -123,7 +123,19 @@ double even_cell_m(const std::vector<Vector2d>& points, double least_m) {
 struct OnEdge {
   double share;  ///< of the edge's length from its start
   Vector2d point;
+  double off_m;  ///< from the edge
 };
+
+void note(double moved_m, Welded& welded) {
+  if (moved_m <= 0.0) return;
+  ++welded.moved_points;
+  welded.most_moved_m = std::max(welded.most_moved_m, moved_m);
+}
+
+void note_move(Vector2d& point, const Vector2d& to, Welded& welded) {
+  note((to - point).norm(), welded);
+  point = to;
+}
 
 /// Range of the edge's y where its x is within [from_x, to_x].
 std::pair<double, double> y_range(const Vector2d& a, const Vector2d& b, double from_x,
@@ -143,12 +155,15 @@ class EdgeSplitter {
     for (const Vector2d& point : points) grid_.add(point);
   }
 
-  Ring split(const Ring& ring) const {
+  Ring split(const Ring& ring, Welded& welded) const {
     Ring result;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
       result.push_back(a);
-      for (const OnEdge& on : passed(a, b)) result.push_back(on.point);
+      for (const OnEdge& on : passed(a, b)) {
+        note(on.off_m, welded);
+        result.push_back(on.point);
+      }
     }
     return result;
   }
@@ -181,7 +196,8 @@ class EdgeSplitter {
     const Vector2d along = b - a;
     const double share = (point - a).dot(along) / along.squaredNorm();
     if (!(share > 0.0 && share < 1.0)) return;
-    if ((a + share * along - point).norm() <= weld_m_) found.push_back({share, point});
+    const double off_m = (a + share * along - point).norm();
+    if (off_m <= weld_m_) found.push_back({share, point, off_m});
   }
 
   double weld_m_;
@@ -190,21 +206,24 @@ class EdgeSplitter {
 
 }  // namespace
 
-std::vector<Ring> weld(std::vector<Ring> rings, double weld_m) {
+Welded weld(std::vector<Ring> rings, double weld_m) {
   if (!(weld_m >= 0.0) || !std::isfinite(weld_m)) {
     throw std::invalid_argument(
         fmt::format("weld: distance must be finite and not negative, got {} m", weld_m));
   }
+  Welded welded;
   for (Ring& ring : rings) drop_repeated(ring);
-  if (weld_m == 0.0) return rings;
-  const KeptPoints kept(sorted_points(rings), weld_m);
-  const EdgeSplitter splitter(kept.points(), weld_m);
-  for (Ring& ring : rings) {
-    for (Vector2d& point : ring) point = *kept.find(point);
-    drop_repeated(ring);
-    ring = splitter.split(ring);
+  if (weld_m > 0.0) {
+    const KeptPoints kept(sorted_points(rings), weld_m);
+    const EdgeSplitter splitter(kept.points(), weld_m);
+    for (Ring& ring : rings) {
+      for (Vector2d& point : ring) note_move(point, *kept.find(point), welded);
+      drop_repeated(ring);
+      ring = splitter.split(ring, welded);
+    }
   }
-  return rings;
+  welded.rings = std::move(rings);
+  return welded;
 }
 
 }  // namespace roadbed::geometry

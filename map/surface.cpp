@@ -1,7 +1,10 @@
 #include "roadbed/map/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "roadbed/geometry/weld.h"
 
 namespace roadbed::map {
 namespace {
@@ -9,8 +12,12 @@ namespace {
 using geometry::Polygon;
 using geometry::Ring;
 
-/// Lanes as yes or no, one per lane of the map.
-using LaneSet = std::vector<bool>;
+/// Lanes in order of id.
+using LaneSet = std::vector<LaneId>;
+
+bool has(const LaneSet& lanes, LaneId id) {
+  return std::binary_search(lanes.begin(), lanes.end(), id);
+}
 
 bool is_beside(const RoadMap& road_map, const Lane& lane, const std::optional<Neighbour>& other) {
   if (!other) return false;
@@ -23,37 +30,57 @@ struct Strip {
   std::vector<LaneId> lanes;
 };
 
-/// The lane and those to its right, as far as they are left to take; takes them.
-Strip take_strip(const RoadMap& road_map, LaneId leftmost, LaneSet& left_to_take) {
-  Strip strip;
-  for (LaneId id = leftmost;;) {
-    strip.lanes.push_back(id);
-    left_to_take[id.index] = false;
-    const std::optional<Neighbour>& right = road_map.graph().of(id).right;
-    if (!is_beside(road_map, road_map.lane(id), right) || !right->same_direction) return strip;
-    if (!left_to_take[right->lane.index]) return strip;
-    id = right->lane;
+/// Cuts the wanted lanes into strips, each lane in one.
+class StripCutter {
+ public:
+  StripCutter(const RoadMap& road_map, std::span<const LaneId> wanted)
+      : road_map_(road_map), wanted_(wanted.begin(), wanted.end()) {
+    std::sort(wanted_.begin(), wanted_.end());
+    wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    taken_.assign(wanted_.size(), false);
   }
-}
 
-bool is_leftmost(const RoadMap& road_map, LaneId id, const LaneSet& wanted) {
-  const std::optional<Neighbour>& left = road_map.graph().of(id).left;
-  return !is_beside(road_map, road_map.lane(id), left) || !left->same_direction ||
-         !wanted[left->lane.index];
-}
+  std::vector<Strip> strips() {
+    std::vector<Strip> strips;
+    for (const bool only_leftmost : {true, false}) {  // the second pass: neighbours in a circle
+      for (const LaneId id : wanted_) {
+        if (is_taken(id) || (only_leftmost && !is_leftmost(id))) continue;
+        strips.push_back(take(id));
+      }
+    }
+    return strips;
+  }
 
-std::vector<Strip> strips_of(const RoadMap& road_map, const LaneSet& wanted) {
-  LaneSet left_to_take = wanted;
-  std::vector<Strip> strips;
-  for (const bool only_leftmost : {true, false}) {  // the second pass: neighbours in a circle
-    for (const Lane& lane : road_map.lanes()) {
-      if (!left_to_take[lane.id.index]) continue;
-      if (only_leftmost && !is_leftmost(road_map, lane.id, wanted)) continue;
-      strips.push_back(take_strip(road_map, lane.id, left_to_take));
+ private:
+  std::vector<bool>::reference taken(LaneId id) {
+    const auto place = std::lower_bound(wanted_.begin(), wanted_.end(), id) - wanted_.begin();
+    return taken_[static_cast<std::size_t>(place)];
+  }
+  bool is_taken(LaneId id) { return !has(wanted_, id) || taken(id); }
+
+  bool is_leftmost(LaneId id) const {
+    const std::optional<Neighbour>& left = road_map_.graph().of(id).left;
+    return !is_beside(road_map_, road_map_.lane(id), left) || !left->same_direction ||
+           !has(wanted_, left->lane);
+  }
+
+  /// The lane and those to its right, as far as they are left to take.
+  Strip take(LaneId leftmost) {
+    Strip strip;
+    for (LaneId id = leftmost;;) {
+      strip.lanes.push_back(id);
+      taken(id) = true;
+      const std::optional<Neighbour>& right = road_map_.graph().of(id).right;
+      if (!is_beside(road_map_, road_map_.lane(id), right) || !right->same_direction) return strip;
+      if (is_taken(right->lane)) return strip;
+      id = right->lane;
     }
   }
-  return strips;
-}
+
+  const RoadMap& road_map_;
+  LaneSet wanted_;
+  std::vector<bool> taken_;
+};
 
 /// Left border of the first lane, then the right border of the last one backwards.
 Ring outline(const RoadMap& road_map, const Strip& strip) {
@@ -79,10 +106,21 @@ std::optional<Polygon> merged(const RoadMap& road_map, const Strip& strip) {
   return pieces.front();
 }
 
-std::vector<Polygon> surface(const RoadMap& road_map, const LaneSet& wanted,
-                             const SurfaceOptions& options) {
+template <typename Wants>
+std::vector<LaneId> lanes_where(const RoadMap& road_map, const Wants& wants) {
+  std::vector<LaneId> wanted;
+  for (const Lane& lane : road_map.lanes()) {
+    if (wants(lane)) wanted.push_back(lane.id);
+  }
+  return wanted;
+}
+
+}  // namespace
+
+Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
+                      const SurfaceOptions& options) {
   std::vector<Polygon> polygons;
-  for (const Strip& strip : strips_of(road_map, wanted)) {
+  for (const Strip& strip : StripCutter(road_map, lanes).strips()) {
     if (std::optional<Polygon> whole = merged(road_map, strip)) {
       polygons.push_back(std::move(*whole));
       continue;
@@ -91,36 +129,38 @@ std::vector<Polygon> surface(const RoadMap& road_map, const LaneSet& wanted,
       if (road_map.lane(id).polygon.size() > 2) polygons.push_back({road_map.lane(id).polygon, {}});
     }
   }
-  return geometry::unite(polygons, options.weld_m);
+  geometry::United united = geometry::unite_and_report(polygons, options.weld_m);
+  return {std::move(united.polygons), united.moved_points, united.most_moved_m};
 }
 
-template <typename Wants>
-LaneSet lanes_where(const RoadMap& road_map, const Wants& wants) {
-  LaneSet wanted(road_map.lanes().size());
-  for (const Lane& lane : road_map.lanes()) wanted[lane.id.index] = wants(lane);
-  return wanted;
+std::vector<LaneId> drivable_lanes(const RoadMap& road_map) {
+  return lanes_where(road_map, [](const Lane& lane) { return is_drivable(lane.type); });
 }
 
-}  // namespace
+std::vector<LaneId> drivable_lanes(const RoadMap& road_map, JunctionId junction) {
+  std::vector<LaneId> lanes;
+  for (const RoadId road : road_map.junction(junction).connecting_roads) {
+    for (const LaneId id : road_map.road(road).lanes) {
+      const Lane& lane = road_map.lane(id);
+      if (lane.junction == junction && is_drivable(lane.type)) lanes.push_back(id);
+    }
+  }
+  std::sort(lanes.begin(), lanes.end());
+  return lanes;
+}
 
 std::vector<Polygon> road_surface(const RoadMap& road_map, RoadId road,
                                   const SurfaceOptions& options) {
-  LaneSet wanted(road_map.lanes().size());
-  for (const LaneId id : road_map.road(road).lanes) wanted[id.index] = true;
-  return surface(road_map, wanted, options);
+  return lanes_surface(road_map, road_map.road(road).lanes, options).polygons;
 }
 
 std::vector<Polygon> junction_surface(const RoadMap& road_map, JunctionId junction,
                                       const SurfaceOptions& options) {
-  const auto wants = [&](const Lane& lane) {
-    return lane.junction == junction && is_drivable(lane.type);
-  };
-  return surface(road_map, lanes_where(road_map, wants), options);
+  return lanes_surface(road_map, drivable_lanes(road_map, junction), options).polygons;
 }
 
 std::vector<Polygon> drivable_surface(const RoadMap& road_map, const SurfaceOptions& options) {
-  const auto wants = [](const Lane& lane) { return is_drivable(lane.type); };
-  return surface(road_map, lanes_where(road_map, wants), options);
+  return lanes_surface(road_map, drivable_lanes(road_map), options).polygons;
 }
 
 }  // namespace roadbed::map

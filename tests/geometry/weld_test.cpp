@@ -29,20 +29,32 @@ Ring random_ring(std::mt19937& random) {
 }
 
 TEST(Weld, GivesNearPointsOfTwoRingsTheSameCoordinates) {
-  const auto rings = weld({{{0, 0}, {1, 0}, {1, 1}}, {{1.0004, 0.0003}, {2, 0}, {2, 1}}}, 1e-3);
+  const auto rings =
+      weld({{{0, 0}, {1, 0}, {1, 1}}, {{1.0004, 0.0003}, {2, 0}, {2, 1}}}, 1e-3).rings;
   EXPECT_EQ(rings[0][1], Vector2d(1, 0));
   EXPECT_EQ(rings[1][0], Vector2d(1, 0));
 }
 
+TEST(Weld, SaysHowFarItMovedWhat) {
+  const Welded points = weld({{{0, 0}, {1, 0}, {1, 1}}, {{1.0004, 0.0003}, {2, 0}, {2, 1}}}, 1e-3);
+  EXPECT_EQ(points.moved_points, 1u);
+  EXPECT_NEAR(points.most_moved_m, 5e-4, 1e-12);
+  const Welded edge = weld({{{10, 0}, {0, 0}, {0, -5}}, {{3, 0.0007}, {7, 3}, {3, 3}}}, 1e-3);
+  EXPECT_EQ(edge.moved_points, 1u);
+  EXPECT_NEAR(edge.most_moved_m, 7e-4, 1e-12);
+  EXPECT_EQ(weld({{{0, 0}, {1, 0}, {1, 1}}, {{1, 0}, {2, 0}, {2, 1}}}, 1e-3).moved_points, 0u);
+}
+
 TEST(Weld, GivesAnEdgeThePointsThatItPassesNearlyInItsDirection) {
   const auto rings =
-      weld({{{10, 0}, {0, 0}, {0, -5}}, {{3, 0.0005}, {7, -0.0005}, {7, 3}, {3, 3}}}, 1e-3);
+      weld({{{10, 0}, {0, 0}, {0, -5}}, {{3, 0.0005}, {7, -0.0005}, {7, 3}, {3, 3}}}, 1e-3).rings;
   const Ring expected = {{10, 0}, {7, -0.0005}, {3, 0.0005}, {0, 0}, {0, -5}};
   EXPECT_EQ(rings[0], expected);
 }
 
 TEST(Weld, WithZeroOnlyDropsRepeatedPoints) {
-  const auto rings = weld({{{0, 0}, {0, 0}, {1, 0}, {1, 1e-9}, {0, 0}}, {{0, 0}, {1, 1}}}, 0.0);
+  const auto rings =
+      weld({{{0, 0}, {0, 0}, {1, 0}, {1, 1e-9}, {0, 0}}, {{0, 0}, {1, 1}}}, 0.0).rings;
   EXPECT_EQ(rings[0], (Ring{{0, 0}, {1, 0}, {1, 1e-9}}));
   EXPECT_TRUE(rings[1].empty());
 }
@@ -53,7 +65,7 @@ TEST(Weld, LeavesNoTwoDifferentPointsTooNear) {
   for (int i = 0; i < 100; ++i) {
     const std::vector<Ring> before = {random_ring(random), random_ring(random),
                                       random_ring(random)};
-    const auto after = weld(before, kWeld);
+    const auto after = weld(before, kWeld).rings;
     for (const Ring& one : after) {
       for (const Ring& other : after) {
         for (const Vector2d& a : one) {
@@ -69,7 +81,7 @@ TEST(Weld, MovesNoPointFartherThanTheDistance) {
   std::mt19937 random(20261122);
   for (int i = 0; i < 100; ++i) {
     const std::vector<Ring> before = {random_ring(random), random_ring(random)};
-    const auto after = weld(before, kWeld);
+    const auto after = weld(before, kWeld).rings;
     for (std::size_t k = 0; k < before.size(); ++k) {
       for (const Vector2d& point : before[k]) {
         EXPECT_LE(distance_to_ring_m(after[k], point), kWeld + 1e-12);
@@ -85,8 +97,8 @@ TEST(Weld, DoesNotDependOnTheOrderOfTheRings) {
   std::mt19937 random(20261123);
   for (int i = 0; i < 50; ++i) {
     const std::vector<Ring> rings = {random_ring(random), random_ring(random), random_ring(random)};
-    const auto forwards = weld(rings, 0.1);
-    const auto backwards = weld({rings.rbegin(), rings.rend()}, 0.1);
+    const auto forwards = weld(rings, 0.1).rings;
+    const auto backwards = weld({rings.rbegin(), rings.rend()}, 0.1).rings;
     EXPECT_EQ(forwards, std::vector<Ring>(backwards.rbegin(), backwards.rend()));
   }
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/geometry/box_tree.h"
+#include "roadbed/map/road_map.h"
+
+namespace roadbed::map {
+
+/// A lane between two of its cross-sections, which go straight from border to border.
+struct LanePiece {
+  LaneId lane;
+  StationRange range;
+  Eigen::Vector2d left_from, left_to, right_from, right_to;
+  double z_m;  ///< of the centreline halfway
+
+  geometry::Box box() const;
+};
+
+/// All drivable lanes piece by piece, cut where either border has a vertex; by lane, then station.
+std::vector<LanePiece> drivable_pieces(const RoadMap& road_map);
+
+}  // namespace roadbed::map
