@@ -1,7 +1,10 @@
 #include "roadbed/map/formats/write_geojson.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 namespace roadbed::map {
 namespace {
@@ -13,106 +16,113 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json position(const RoadMap& road_map, const Eigen::Vector2d& in_map) {
-  const Eigen::Vector2d in_source = road_map.to_source(in_map);
-  return {in_source.x(), in_source.y()};
+Json json_of(const Value& value) {
+  return std::visit(
+      [](const auto& held) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) {
+          return nullptr;
+        } else {
+          return held;
+        }
+      },
+      value);
 }
 
-Json feature(Json geometry, Json properties) {
-  return {{"type", "Feature"},
-          {"geometry", std::move(geometry)},
-          {"properties", std::move(properties)}};
-}
+class Writer {
+ public:
+  explicit Writer(bool lon_lat) : lon_lat_(lon_lat) {}
 
-template <typename Ids>
-Json names_of(const RoadMap& road_map, const Ids& lanes) {
-  Json names = Json::array();
-  for (const LaneId id : lanes) names.push_back(road_map.lane(id).name);
-  return names;
-}
-
-Json neighbour_name(const RoadMap& road_map, const std::optional<Neighbour>& neighbour) {
-  return neighbour ? Json(road_map.lane(neighbour->lane).name) : Json();
-}
-
-Json lane_properties(const RoadMap& road_map, const Lane& lane, const char* kind) {
-  Json properties = {{"kind", kind}, {"lane", lane.name}};
-  properties["road"] = lane.road ? Json(road_map.road(*lane.road).source_id) : Json();
-  properties["section"] = lane.origin.section;
-  properties["junction"] =
-      lane.junction ? Json(road_map.junction(*lane.junction).source_id) : Json();
-  properties["type"] = name(lane.type);
-  properties["length_m"] = lane.length_m();
-  const auto limit_mps = lane.least_speed_limit_mps();
-  properties["speed_limit_mps"] = limit_mps ? Json(*limit_mps) : Json();
-  return properties;
-}
-
-Json lane_feature(const RoadMap& road_map, const Lane& lane) {
-  Json ring = Json::array();
-  for (const auto& point : lane.polygon) ring.push_back(position(road_map, point));
-  if (!lane.polygon.empty()) ring.push_back(position(road_map, lane.polygon.front()));
-  Json properties = lane_properties(road_map, lane, "lane");
-  properties["area_m2"] = geometry::signed_area_m2(lane.polygon);
-  const LaneLinks& links = road_map.graph().of(lane.id);
-  properties["successors"] = names_of(road_map, links.successors);
-  properties["predecessors"] = names_of(road_map, links.predecessors);
-  properties["left"] = neighbour_name(road_map, links.left);
-  properties["right"] = neighbour_name(road_map, links.right);
-  if (lane.polygon.empty()) return feature(nullptr, std::move(properties));
-  return feature({{"type", "Polygon"}, {"coordinates", Json::array({std::move(ring)})}},
-                 std::move(properties));
-}
-
-Json centreline_feature(const RoadMap& road_map, const Lane& lane) {
-  Json line = Json::array();
-  const auto& points = lane.centre.in_map.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    Json at = position(road_map, points[i]);
-    at.push_back(lane.centre.z_m[i]);
-    line.push_back(std::move(at));
+  std::string feature(const Layer& layer, const Feature& feature) const {
+    Json properties = {{"kind", layer.kind}};
+    for (std::size_t i = 0; i < layer.columns.size(); ++i) {
+      properties[layer.columns[i].name] = json_of(feature.values[i]);
+    }
+    return R"({"type":"Feature","geometry":)" + geometry(layer, feature.shape) +
+           R"(,"properties":)" + text_of(properties) + "}";
   }
-  return feature({{"type", "LineString"}, {"coordinates", std::move(line)}},
-                 lane_properties(road_map, lane, "centreline"));
-}
 
-Json signal_feature(const RoadMap& road_map, const Signal& signal) {
-  Json properties = {{"kind", "signal"},
-                     {"signal", signal.source_id},
-                     {"name", signal.name},
-                     {"road", signal.road ? Json(road_map.road(*signal.road).source_id) : Json()},
-                     {"dynamic", signal.dynamic},
-                     {"country", signal.country},
-                     {"type", signal.type},
-                     {"subtype", signal.subtype}};
-  properties["value"] = signal.value ? Json(*signal.value) : Json();
-  properties["unit"] = signal.unit;
-  properties["lanes"] = names_of(road_map, signal.lanes);
-  return feature({{"type", "Point"}, {"coordinates", position(road_map, signal.in_map)}},
-                 std::move(properties));
-}
+ private:
+  void add_number(double number, std::string& text) const {
+    // As a whole number of the unit in the last place, so that the shortest text is short.
+    const double shown = lon_lat_ ? std::round(number * 1e9) / 1e9 : number;
+    fmt::format_to(std::back_inserter(text), "{}", shown == 0.0 ? 0.0 : shown);  // never "-0"
+  }
 
-Json crs_member(const std::string& crs) {
-  if (crs.empty()) return nullptr;
-  return {{"type", "name"}, {"properties", {{"name", crs}}}};
-}
+  std::string position(const Eigen::Vector3d& point, bool has_z) const {
+    std::string text = "[";
+    add_number(point.x(), text);
+    text += ',';
+    add_number(point.y(), text);
+    if (has_z) fmt::format_to(std::back_inserter(text), ",{}", point.z() == 0.0 ? 0.0 : point.z());
+    return text + ']';
+  }
+
+  std::string line(const Points& points, bool has_z, bool close) const {
+    std::string text = "[";
+    for (const Eigen::Vector3d& point : points) {
+      if (text.size() > 1) text += ',';
+      text += position(point, has_z);
+    }
+    if (close) text += ',' + position(points.front(), has_z);
+    return text + ']';
+  }
+
+  std::string polygon(const std::vector<Points>& rings, bool has_z) const {
+    std::string text = "[";
+    for (const Points& ring : rings) {
+      if (text.size() > 1) text += ',';
+      text += line(ring, has_z, true);
+    }
+    return text + ']';
+  }
+
+  std::string multi_polygon(const Shape& shape, bool has_z) const {
+    std::string text = "[";
+    for (const auto& rings : shape) {
+      if (text.size() > 1) text += ',';
+      text += polygon(rings, has_z);
+    }
+    return text + ']';
+  }
+
+  std::string geometry(const Layer& layer, const Shape& shape) const {
+    if (shape.empty()) return "null";
+    const auto typed = [](const char* type, const std::string& coordinates) {
+      return fmt::format(R"({{"type":"{}","coordinates":{}}})", type, coordinates);
+    };
+    switch (layer.shape) {
+      case ShapeKind::point:
+        return typed("Point", position(shape[0][0][0], layer.has_z));
+      case ShapeKind::line:
+        return typed("LineString", line(shape[0][0], layer.has_z, false));
+      case ShapeKind::polygon:
+        return typed("Polygon", polygon(shape[0], layer.has_z));
+      case ShapeKind::multi_polygon:
+        return typed("MultiPolygon", multi_polygon(shape, layer.has_z));
+    }
+    return "null";
+  }
+
+  bool lon_lat_;
+};
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 }  // namespace
 
-std::string write_geojson(const RoadMap& road_map) {
-  std::string text =
-      "{\"type\":\"FeatureCollection\",\n\"crs\":" + text_of(crs_member(road_map.crs())) +
-      ",\n\"source_format\":" + text_of(road_map.format()) + ",\n\"features\":[";
-  std::string separator = "\n";
-  const auto add = [&](const Json& json) {
-    text += separator + text_of(json);
-    separator = ",\n";
-  };
-  for (const Lane& lane : road_map.lanes()) {
-    add(lane_feature(road_map, lane));
-    add(centreline_feature(road_map, lane));
+std::string write_geojson(std::span<const Layer> layers, const GeojsonHead& head) {
+  std::string text = R"({"type":"FeatureCollection",)";
+  if (!head.lon_lat) text += "\n\"crs\":null,";
+  text += "\n\"source_format\":" + text_of(head.source_format) +
+          ",\n\"source_crs\":" + text_of(text_or_null(head.source_crs)) + ",\n\"features\":[";
+  const Writer writer(head.lon_lat);
+  const char* separator = "\n";
+  for (const Layer& layer : layers) {
+    for (const Feature& feature : layer.features) {
+      text += separator + writer.feature(layer, feature);
+      separator = ",\n";
+    }
   }
-  for (const Signal& signal : road_map.signals()) add(signal_feature(road_map, signal));
   return text + "\n]}\n";
 }
 

@@ -1,17 +1,25 @@
 #pragma once
 
+#include <span>
 #include <string>
 
-#include "roadbed/map/road_map.h"
+#include "roadbed/map/formats/layer.h"
 
 namespace roadbed::map {
 
-/// The map as a GeoJSON feature collection, a feature per line of text: per lane its polygon
-/// (`kind` "lane") and its centreline ("centreline", with elevation), then signals ("signal").
+/// What of a GeoJSON file is not in its features.
+struct GeojsonHead {
+  bool lon_lat = false;       ///< else metres in the source's raw coordinates
+  std::string source_format;  ///< "OpenDRIVE 1.4"
+  std::string source_crs;     ///< as the source names it, may be empty
+};
+
+/// Layers as one GeoJSON feature collection, a feature per line of text; the member `kind` of its
+/// properties says which layer it is of ("lane", "centreline", …).
 ///
-/// Coordinates are the source's raw ones in metres, which RFC 7946 allows only by prior agreement;
-/// the member `crs` of the older GeoJSON 2008 names the system as the source does, and is null
-/// where the source does not say. GDAL and QGIS understand both.
-std::string write_geojson(const RoadMap& road_map);
+/// In longitude and latitude it is as RFC 7946 asks, to 1e-9 degrees (0.1 mm). Raw metres, which
+/// RFC 7946 allows only by prior agreement, are written where no coordinate system is known: then
+/// the member `crs` of the older GeoJSON 2008 is there and null, which GDAL and QGIS understand.
+std::string write_geojson(std::span<const Layer> layers, const GeojsonHead& head);
 
 }  // namespace roadbed::map

@@ -1,12 +1,10 @@
 #include "roadbed/map/occupancy/cloud_filter.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-
-#include <filesystem>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/pcl_filter.h"
+#include "roadbed/map/open_module.h"
 
 namespace roadbed::map {
 namespace {
@@ -20,16 +18,9 @@ namespace {
                     .remedy = remedy});
 }
 
-// Beside the program, as it is installed, or in the build's folder of libraries.
 RoadbedPclFilter& open_module() {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  const std::filesystem::path folder = program.parent_path();
-  for (const auto& place : {folder, folder / "../lib"}) {
-    void* module = ::dlopen((place / "libroadbed_pcl.so").c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (module == nullptr) continue;
-    void* symbol = ::dlsym(module, "roadbed_pcl_filter");
-    if (symbol != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(symbol);
-  }
+  void* found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
+  if (found != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found);
   refuse("libroadbed_pcl.so cannot be opened",
          "install libpcl-dev and build roadbed again, or leave the filters out");
 }
