@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/exact.h"
+#include "roadbed/geometry/monotone_ring.h"
 #include "roadbed/geometry/weld.h"
 
 namespace roadbed::geometry {
@@ -261,7 +262,8 @@ bool contains(const Polygon& polygon, const Vector2d& point) {
 }
 
 bool is_simple(const Ring& ring) {
-  return ring.size() >= 3 && all_finite(ring) && exact::has_simple_edges(ring);
+  if (ring.size() < 3 || !all_finite(ring)) return false;
+  return is_surely_simple(ring) || exact::has_simple_edges(ring);
 }
 
 std::vector<Polygon> make_simple(const Ring& ring) {

@@ -6,7 +6,9 @@
 
 namespace roadbed::map {
 
-LaneGraph::LaneGraph(std::vector<LaneLinks> links) : links_(std::move(links)) {
+LaneGraph::LaneGraph(std::vector<LaneLinks> links) : links_(std::move(links)) { check(); }
+
+void LaneGraph::check() const {
   const auto check = [this](LaneId id) {
     if (id.index >= links_.size()) {
       throw std::invalid_argument(

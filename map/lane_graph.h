@@ -1,10 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/id.h"
+#include "roadbed/map/lazy_list.h"
 
 namespace roadbed::map {
 
@@ -40,11 +41,17 @@ class LaneGraph {
   /// @throws std::invalid_argument if a link names a lane that is not there.
   explicit LaneGraph(std::vector<LaneLinks> links);
 
+  /// The same, unchecked: for links that check themselves when they are made.
+  explicit LaneGraph(LazyList<LaneLinks> links) : links_(std::move(links)) {}
+
+  /// @throws std::invalid_argument if a link names a lane that is not there.
+  void check() const;
+
   std::size_t size() const { return links_.size(); }
   const LaneLinks& of(LaneId lane) const { return links_.at(lane.index); }
 
  private:
-  std::vector<LaneLinks> links_;
+  LazyList<LaneLinks> links_;
 };
 
 }  // namespace roadbed::map

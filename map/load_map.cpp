@@ -42,6 +42,7 @@ RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadO
 }
 
 RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) {
+  if (is_compiled_map(read_file_start(file, 16))) return open_compiled_map(file);
   return parse_map(read_file(file), file.string(), options);
 }
 

@@ -7,14 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "roadbed/map/lane_index.h"
+#include "roadbed/map/map_fields.h"
+#include "roadbed/map/road_map_index.h"
 
 namespace roadbed::map {
-
-struct RoadMap::Index {
-  LaneIndex lanes;
-  std::map<std::string, LaneId, std::less<>> by_name;
-};
 
 namespace {
 
@@ -73,18 +69,49 @@ void check_road_ids(const RoadMapParts& parts) {
   }
 }
 
-RoadMapParts checked(RoadMapParts parts) {
+void check(const RoadMapParts& parts) {
   check_lane_ids(parts);
   check_road_ids(parts);
-  return parts;
+}
+
+LazyMapContent kept(RoadMapParts parts) {
+  check(parts);
+  LazyMapContent content;
+  static_cast<MapHead&>(content) = parts;
+  const auto keep = [](const char*, const auto&, auto& into, auto& from) {
+    into = std::move(from);
+  };
+  fields::lists(keep, content, parts);
+  return content;
 }
 
 }  // namespace
 
-RoadMap::RoadMap(RoadMapParts parts) : parts_(checked(std::move(parts))), graph_(parts_.links) {
-  auto index = std::make_unique<Index>(Index{LaneIndex(parts_.lanes), {}});
-  for (const Lane& lane : parts_.lanes) index->by_name.emplace(lane.name, lane.id);
-  index_ = std::move(index);
+RoadMap::RoadMap(RoadMapParts parts)
+    : content_(kept(std::move(parts))),
+      graph_(content_.links),
+      index_(std::make_unique<const RoadMapIndex>(RoadMapIndex::of(content_.lanes))) {
+  graph_.check();
+}
+
+RoadMap::RoadMap(LazyMapContent content, RoadMapIndex index)
+    : content_(std::move(content)),
+      graph_(content_.links),
+      index_(std::make_unique<const RoadMapIndex>(std::move(index))) {
+  const bool fits = content_.links.size() == content_.lanes.size() &&
+                    index_->by_name.size() == content_.lanes.size() &&
+                    index_->lanes.data().lanes.size() == content_.lanes.size();
+  if (!fits) throw std::invalid_argument("RoadMap: its lists do not fit each other");
+}
+
+RoadMapParts RoadMap::parts() const {
+  RoadMapParts parts;
+  static_cast<MapHead&>(parts) = content_;
+  const auto copy = [](const char*, const auto&, auto& into, const auto& from) {
+    into.assign(from.begin(), from.end());
+  };
+  fields::lists(copy, parts, content_);
+  return parts;
 }
 
 RoadMap::~RoadMap() = default;
@@ -92,37 +119,35 @@ RoadMap::RoadMap(RoadMap&&) noexcept = default;
 RoadMap& RoadMap::operator=(RoadMap&&) noexcept = default;
 
 Eigen::Vector2d RoadMap::to_map(const Eigen::Vector2d& in_source) const {
-  return in_source - parts_.origin_in_source;
+  return in_source - content_.origin_in_source;
 }
 
 Eigen::Vector2d RoadMap::to_source(const Eigen::Vector2d& in_map) const {
-  return in_map + parts_.origin_in_source;
+  return in_map + content_.origin_in_source;
 }
 
 std::optional<LaneId> RoadMap::find_lane(std::string_view name) const {
-  const auto found = index_->by_name.find(name);
-  if (found == index_->by_name.end()) return {};
-  return found->second;
+  return index_->find(content_.lanes, name);
 }
 
 std::vector<LaneMatch> RoadMap::locate(const Eigen::Vector2d& point_in_map, double radius_m,
                                        bool only_drivable) const {
-  std::vector<LaneMatch> matches = index_->lanes.near(
-      parts_.lanes, point_in_map, radius_m,
-      [&](const Lane& candidate) { return !only_drivable || is_drivable(candidate.type); });
-  std::sort(matches.begin(), matches.end(), [](const LaneMatch& a, const LaneMatch& b) {
-    const auto key = [](const LaneMatch& m) {
-      return std::tuple(m.distance_m, std::abs(m.place.d_m), m.place.lane);
-    };
-    return key(a) < key(b);
-  });
-  return matches;
+  return index_->lanes.near(
+      point_in_map,
+      {.radius_m = radius_m, .types = only_drivable ? LaneTypes::drivable() : LaneTypes::all()});
+}
+
+LaneMatches RoadMap::locate(std::span<const Eigen::Vector2d> points_in_map, double radius_m,
+                            std::size_t count, bool only_drivable) const {
+  return index_->lanes.near(points_in_map,
+                            {.radius_m = radius_m,
+                             .count = count,
+                             .types = only_drivable ? LaneTypes::drivable() : LaneTypes::all()});
 }
 
 bool RoadMap::on_surface(const Eigen::Vector2d& point_in_map, double margin_m) const {
   return !index_->lanes
-              .near(parts_.lanes, point_in_map, margin_m,
-                    [](const Lane& candidate) { return is_surface(candidate.type); })
+              .near(point_in_map, {.radius_m = margin_m, .count = 1, .types = LaneTypes::surface()})
               .empty();
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +12,8 @@
 #include "roadbed/map/id.h"
 #include "roadbed/map/lane.h"
 #include "roadbed/map/lane_graph.h"
+#include "roadbed/map/lane_match.h"
+#include "roadbed/map/lazy_list.h"
 #include "roadbed/map/map_object.h"
 #include "roadbed/map/regulation.h"
 #include "roadbed/map/signal.h"
@@ -63,32 +65,41 @@ struct CrsOffset {
   bool operator==(const CrsOffset&) const = default;
 };
 
-/// Everything a RoadMap is made of, filled by a reader of a format.
-struct RoadMapParts {
+/// What a map says of itself as a whole. A new field is named in map_fields.h as well.
+struct MapHead {
   std::string format;  ///< "OpenDRIVE 1.4", …
   std::string crs;     ///< as the file says, may be empty
   CrsOffset offset_in_crs;
   Eigen::Vector2d origin_in_source{0, 0};
-  std::vector<Road> roads;
-  std::vector<Junction> junctions;
-  std::vector<Signal> signals;
-  std::vector<Controller> controllers;
-  std::vector<StopLine> stop_lines;
-  std::vector<Regulation> regulations;
-  std::vector<MapObject> objects;
-  std::vector<Area> areas;
-  std::vector<Lane> lanes;
-  std::vector<LaneLinks> links;  ///< one per lane
-  std::vector<ImportRemark> remarks;
-  std::vector<UnusedContent> unused;  ///< in order of name
 };
 
-/// A lane near a point. `distance_m` is 0 inside the lane's polygon.
-struct LaneMatch {
-  LanePlace place;
-  double distance_m = 0.0;
-  double heading_rad = 0.0;  ///< of the lane there
+/// Everything a map is made of, in lists of one kind. A new list is named in map_fields.h as well.
+template <template <typename> typename List>
+struct MapContent : MapHead {
+  List<Road> roads;
+  List<Junction> junctions;
+  List<Signal> signals;
+  List<Controller> controllers;
+  List<StopLine> stop_lines;
+  List<Regulation> regulations;
+  List<MapObject> objects;
+  List<Area> areas;
+  List<Lane> lanes;
+  List<LaneLinks> links;  ///< one per lane
+  List<ImportRemark> remarks;
+  List<UnusedContent> unused;  ///< in order of name
 };
+
+template <typename T>
+using Vector = std::vector<T>;
+
+/// What a reader of a format fills.
+struct RoadMapParts : MapContent<Vector> {};
+
+/// What a map keeps: in a compiled map things are made when they are first touched.
+using LazyMapContent = MapContent<LazyList>;
+
+struct RoadMapIndex;
 
 /// A digital road map: what is where and how it connects, whatever the format. Immutable.
 ///
@@ -98,33 +109,40 @@ class RoadMap {
  public:
   /// @throws std::invalid_argument if ids are not in order or a link names nothing.
   explicit RoadMap(RoadMapParts parts);
+
+  /// Of a compiled map, whose things check themselves when they are made.
+  RoadMap(LazyMapContent content, RoadMapIndex index);
   ~RoadMap();
   RoadMap(RoadMap&&) noexcept;
   RoadMap& operator=(RoadMap&&) noexcept;
 
-  const std::string& format() const { return parts_.format; }
-  const std::string& crs() const { return parts_.crs; }
-  const CrsOffset& offset_in_crs() const { return parts_.offset_in_crs; }
-  const Eigen::Vector2d& origin_in_source() const { return parts_.origin_in_source; }
+  const std::string& format() const { return content_.format; }
+  const std::string& crs() const { return content_.crs; }
+  const CrsOffset& offset_in_crs() const { return content_.offset_in_crs; }
+  const Eigen::Vector2d& origin_in_source() const { return content_.origin_in_source; }
   Eigen::Vector2d to_map(const Eigen::Vector2d& in_source) const;
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const;
 
-  const std::vector<Lane>& lanes() const { return parts_.lanes; }
-  const Lane& lane(LaneId id) const { return parts_.lanes.at(id.index); }
-  const std::vector<Road>& roads() const { return parts_.roads; }
-  const Road& road(RoadId id) const { return parts_.roads.at(id.index); }
-  const std::vector<Junction>& junctions() const { return parts_.junctions; }
-  const Junction& junction(JunctionId id) const { return parts_.junctions.at(id.index); }
-  const std::vector<Signal>& signals() const { return parts_.signals; }
-  const std::vector<Controller>& controllers() const { return parts_.controllers; }
-  const std::vector<StopLine>& stop_lines() const { return parts_.stop_lines; }
-  const std::vector<Regulation>& regulations() const { return parts_.regulations; }
-  const std::vector<MapObject>& objects() const { return parts_.objects; }
-  const std::vector<Area>& areas() const { return parts_.areas; }
-  const std::vector<UnusedContent>& unused() const { return parts_.unused; }
-  const std::vector<ImportRemark>& remarks() const { return parts_.remarks; }
+  const LazyList<Lane>& lanes() const { return content_.lanes; }
+  const Lane& lane(LaneId id) const { return content_.lanes.at(id.index); }
+  const LazyList<Road>& roads() const { return content_.roads; }
+  const Road& road(RoadId id) const { return content_.roads.at(id.index); }
+  const LazyList<Junction>& junctions() const { return content_.junctions; }
+  const Junction& junction(JunctionId id) const { return content_.junctions.at(id.index); }
+  const LazyList<Signal>& signals() const { return content_.signals; }
+  const LazyList<Controller>& controllers() const { return content_.controllers; }
+  const LazyList<StopLine>& stop_lines() const { return content_.stop_lines; }
+  const LazyList<Regulation>& regulations() const { return content_.regulations; }
+  const LazyList<MapObject>& objects() const { return content_.objects; }
+  const LazyList<Area>& areas() const { return content_.areas; }
+  const LazyList<UnusedContent>& unused() const { return content_.unused; }
+  const LazyList<ImportRemark>& remarks() const { return content_.remarks; }
   const LaneGraph& graph() const { return graph_; }
-  const RoadMapParts& parts() const { return parts_; }
+  const LazyMapContent& content() const { return content_; }
+  const RoadMapIndex& index() const { return *index_; }
+
+  /// A copy of everything.
+  RoadMapParts parts() const;
 
   /// Lane by its unique name ("12/0/-1").
   std::optional<LaneId> find_lane(std::string_view name) const;
@@ -134,14 +152,17 @@ class RoadMap {
   std::vector<LaneMatch> locate(const Eigen::Vector2d& point_in_map, double radius_m,
                                 bool only_drivable) const;
 
+  /// The same for many points, at most `count` lanes each; faster than one by one.
+  LaneMatches locate(std::span<const Eigen::Vector2d> points_in_map, double radius_m,
+                     std::size_t count, bool only_drivable) const;
+
   /// Whether the point is on road surface (`is_surface` lanes), or at most `margin_m` off it.
   bool on_surface(const Eigen::Vector2d& point_in_map, double margin_m) const;
 
  private:
-  struct Index;
-  RoadMapParts parts_;
+  LazyMapContent content_;
   LaneGraph graph_;
-  std::unique_ptr<const Index> index_;
+  std::unique_ptr<const RoadMapIndex> index_;
 };
 
 }  // namespace roadbed::map

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/map/compiled_map.h"
 #include "roadbed/map/components.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/surface.h"
@@ -113,6 +114,10 @@ Json info_json(const map::RoadMap& road_map) {
   return info;
 }
 
+Json verified_json(const map::VerifiedMap& verified) {
+  return {{"chunks", verified.chunks}, {"records", verified.records}};
+}
+
 /// "12 driving, 3 sidewalk"
 std::string listed(const Json& counts) {
   std::string text;
@@ -154,6 +159,10 @@ void print_info(std::ostream& out, const Json& info) {
                    number(info.at("areas").at("drivable_m2"))));
   line("connected components", components_text(info.at("drivable_component_lanes")));
   line("remarks", listed(info.at("remarks")));
+  if (info.contains("verified")) {
+    line("verified", fmt::format("{} chunks, {} records", info["verified"]["chunks"].get<int>(),
+                                 info["verified"]["records"].get<int>()));
+  }
 }
 
 class InfoCommand : public Command {
@@ -161,12 +170,14 @@ class InfoCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Say what a map holds: counts, lengths, areas, bounds, connectivity");
     arguments.add("MAP", input_, "Any readable map").required();
+    arguments.flag("--verify", verify_, "Check every byte and record of a compiled map");
     arguments.flag("--json", json_, "Print one JSON document");
     arguments.example("  roadbed info town.xodr --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    const Json info = info_json(map::load_map(input_));
+    Json info = info_json(map::load_map(input_));
+    if (verify_) info["verified"] = verified_json(map::verify_compiled_map(input_));
     if (json_) {
       streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
@@ -177,7 +188,7 @@ class InfoCommand : public Command {
 
  private:
   std::filesystem::path input_;
-  bool json_ = false;
+  bool verify_ = false, json_ = false;
 };
 
 }  // namespace

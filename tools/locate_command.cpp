@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/load_map.h"
@@ -21,17 +22,27 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSearch_m[] = {5.0, 50.0, 500.0, 5e3, 5e4};
 
-/// Nearest lanes first, at most `count`, searched ever farther until there is one.
-std::vector<map::LaneMatch> nearest_lanes(const map::RoadMap& road_map,
-                                          const Eigen::Vector2d& point_in_map, std::size_t count,
-                                          bool only_drivable) {
+/// Of each point the nearest lanes first, at most `count`, searched ever farther until there is
+/// one.
+std::vector<std::vector<map::LaneMatch>> nearest_lanes(
+    const map::RoadMap& road_map, const std::vector<Eigen::Vector2d>& points_in_map,
+    std::size_t count, bool only_drivable) {
+  std::vector<std::vector<map::LaneMatch>> nearest(points_in_map.size());
+  std::vector<std::size_t> open(points_in_map.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
   for (const double radius_m : kSearch_m) {
-    auto matches = road_map.locate(point_in_map, radius_m, only_drivable);
-    if (matches.empty()) continue;
-    matches.resize(std::min(matches.size(), count));
-    return matches;
+    std::vector<Eigen::Vector2d> points;
+    for (const std::size_t i : open) points.push_back(points_in_map[i]);
+    const auto matches = road_map.locate(points, radius_m, count, only_drivable);
+    std::vector<std::size_t> still_open;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const auto found = matches.of(k);
+      nearest[open[k]].assign(found.begin(), found.end());
+      if (found.empty()) still_open.push_back(open[k]);
+    }
+    open = std::move(still_open);
   }
-  return {};
+  return nearest;
 }
 
 Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
@@ -52,12 +63,11 @@ Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
   return json;
 }
 
-Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source, std::size_t count,
-             bool only_drivable) {
-  const Eigen::Vector2d in_map = road_map.to_map(in_source);
+Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source,
+             const std::vector<map::LaneMatch>& nearest) {
   Json lanes = Json::array();
-  for (const auto& match : nearest_lanes(road_map, in_map, count, only_drivable)) {
-    lanes.push_back(match_json(road_map, match, in_map));
+  for (const auto& match : nearest) {
+    lanes.push_back(match_json(road_map, match, road_map.to_map(in_source)));
   }
   return {{"x_m", in_source.x()}, {"y_m", in_source.y()}, {"lanes", std::move(lanes)}};
 }
@@ -103,8 +113,12 @@ class LocateCommand : public Command {
     const map::RoadMap road_map = map::load_map(map_file_);
     Json answers = Json::array();
     bool all_found = true;
-    for (const Eigen::Vector2d& point : points()) {
-      answers.push_back(located(road_map, point, count_, only_drivable_));
+    const std::vector<Eigen::Vector2d> in_source = points();
+    std::vector<Eigen::Vector2d> in_map;
+    for (const Eigen::Vector2d& point : in_source) in_map.push_back(road_map.to_map(point));
+    const auto nearest = nearest_lanes(road_map, in_map, count_, only_drivable_);
+    for (std::size_t i = 0; i < in_source.size(); ++i) {
+      answers.push_back(located(road_map, in_source[i], nearest[i]));
       all_found = all_found && !answers.back()["lanes"].empty();
     }
     if (json_) {

@@ -23,13 +23,20 @@ struct Entry {
 // In the order in which --help lists them.
 // clang-format off: one a line, so that two new ones do not meet in a merge
 constexpr Entry kCommands[] = {
-    {"import", make_import_command},       {"info", make_info_command},
-    {"validate", make_validate_command},   {"export", make_export_command},
-    {"locate", make_locate_command},       {"route", make_route_command},
+    {"import", make_import_command},
+    {"info", make_info_command},
+    {"validate", make_validate_command},
+    {"export", make_export_command},
+    {"map", make_map_command},
+    {"locate", make_locate_command},
+    {"route", make_route_command},
     {"reach", make_reach_command},
-    {"reference", make_reference_command}, {"plan", make_plan_command},
-    {"control", make_control_command},     {"simulate", make_simulate_command},
-    {"occupancy", make_occupancy_command}, {"audit", make_audit_command},
+    {"reference", make_reference_command},
+    {"plan", make_plan_command},
+    {"control", make_control_command},
+    {"simulate", make_simulate_command},
+    {"occupancy", make_occupancy_command},
+    {"audit", make_audit_command},
 };
 // clang-format on
 

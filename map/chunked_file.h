@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadbed::map {
+
+/// Named sections of bytes in one file, which are fetched and checked in chunks of 64 KiB when
+/// something in them is first asked for. The picture is in map/README.md.
+///
+/// Bytes are read into memory of our own, never mapped: a file that shrinks or changes while it is
+/// open gives an InputError, not a signal. Safe to read from several threads.
+class ChunkedFile {
+ public:
+  static constexpr std::size_t kChunkSize = 64 * 1024;
+  static constexpr std::string_view kMagic = "roadbed map v003";
+
+  /// A section's place in the file's body.
+  struct Section {
+    std::array<char, 16> name{};
+    std::uint64_t offset = 0, size = 0;
+  };
+
+  /// Reads and checks the header and the section table, and nothing else. O(size / 8192).
+  /// @throws InputError if it cannot be read, or its header is damaged or of another version.
+  static std::shared_ptr<const ChunkedFile> open(const std::filesystem::path& file);
+
+  /// The same of bytes in memory; `name` stands for the file in messages.
+  static std::shared_ptr<const ChunkedFile> from_bytes(std::string bytes, std::string name);
+
+  ~ChunkedFile();
+  ChunkedFile(const ChunkedFile&) = delete;
+  ChunkedFile& operator=(const ChunkedFile&) = delete;
+
+  /// @throws InputError if there is no such section.
+  const Section& section(std::string_view name) const;
+
+  /// Where a section's bytes will be once need() has been called for them; aligned to 64 bytes.
+  const std::byte* data(const Section& section) const { return body_ + section.offset; }
+
+  /// Fetches and checks the chunks that hold some bytes of a section.
+  /// @throws InputError if the bytes are not in the section, or cannot be read, or are damaged.
+  void need(const Section& section, std::uint64_t from, std::uint64_t size) const {
+    if (size > section.size || from > section.size - size) refuse_range(section);
+    if (size == 0) return;
+    const std::uint64_t first = (section.offset + from) / kChunkSize;
+    const std::uint64_t last = (section.offset + from + size - 1) / kChunkSize;
+    for (std::uint64_t chunk = first; chunk <= last; ++chunk) {
+      if (!checked_[chunk].load(std::memory_order_acquire)) fetch(chunk);
+    }
+  }
+
+  /// Fetches and checks every chunk.
+  void need_all() const;
+
+  std::size_t chunks() const { return hashes_.size(); }
+  const std::string& name() const { return name_; }
+
+  /// Throws InputError that asks for the file to be compiled again.
+  [[noreturn]] void refuse(const std::string& element, const std::string& found) const;
+
+ private:
+  class Source;
+  ChunkedFile(std::unique_ptr<const Source> source, std::string name);
+
+  void read_header();
+  void fetch(std::uint64_t chunk) const;
+  [[noreturn]] void refuse_range(const Section& section) const;
+
+  std::unique_ptr<const Source> source_;
+  std::string name_;
+  std::uint64_t body_offset_ = 0, body_size_ = 0;
+  std::vector<Section> sections_;
+  std::vector<std::uint64_t> hashes_;
+  std::byte* body_ = nullptr;  // address space for the body; pages appear as chunks are fetched
+  mutable std::mutex mutex_;
+  std::unique_ptr<std::atomic<bool>[]> checked_;
+};
+
+/// Puts together the bytes of such a file.
+class ChunkedFileWriter {
+ public:
+  /// @param name  at most 16 letters, unlike all others.
+  void add(std::string_view name, std::string_view bytes);
+
+  /// The same with bytes that `append` puts behind those that are there: `append(bytes)`.
+  template <typename Append>
+  void add(std::string_view name, const Append& append) {
+    begin(name);
+    append(body_);
+    sections_.back().size = body_.size() - sections_.back().offset;
+  }
+
+  /// Leaves the writer empty.
+  std::string finish() &&;
+
+ private:
+  void begin(std::string_view name);
+
+  std::vector<ChunkedFile::Section> sections_;
+  std::string body_;
+};
+
+}  // namespace roadbed::map

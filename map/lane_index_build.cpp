@@ -1,0 +1,227 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "roadbed/map/lane_index_data.h"
+
+namespace roadbed::map::lane_index {
+namespace {
+
+constexpr std::size_t kPointsPerCell = 16;  // of ring and centreline together: 8, 8, 8
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Box kNothing{kInfinity, kInfinity, -kInfinity, -kInfinity};
+
+float below(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded > value ? std::nextafter(rounded, -kInfinity) : rounded;
+}
+
+float above(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded < value ? std::nextafter(rounded, kInfinity) : rounded;
+}
+
+void extend(Box& box, const Eigen::Vector2d& point) {
+  box.low_x = std::min(box.low_x, below(point.x()));
+  box.low_y = std::min(box.low_y, below(point.y()));
+  box.high_x = std::max(box.high_x, above(point.x()));
+  box.high_y = std::max(box.high_y, above(point.y()));
+}
+
+void extend(Box& box, const Box& other) {
+  box.low_x = std::min(box.low_x, other.low_x);
+  box.low_y = std::min(box.low_y, other.low_y);
+  box.high_x = std::max(box.high_x, other.high_x);
+  box.high_y = std::max(box.high_y, other.high_y);
+}
+
+std::size_t nearest_vertex(const geometry::Ring& ring, const Eigen::Vector2d& point) {
+  const auto nearest =
+      std::min_element(ring.begin(), ring.end(), [&](const auto& a, const auto& b) {
+        return (a - point).squaredNorm() < (b - point).squaredNorm();
+      });
+  return static_cast<std::size_t>(nearest - ring.begin());
+}
+
+// Indices that cut points [first, last] (or backwards) into `pieces` runs of equal length.
+template <typename PointAt>
+std::vector<std::uint32_t> cuts(std::size_t count, std::size_t pieces, const PointAt& at) {
+  std::vector<double> along_m(count, 0.0);
+  for (std::size_t i = 1; i < count; ++i) along_m[i] = along_m[i - 1] + (at(i) - at(i - 1)).norm();
+  std::vector<std::uint32_t> made;
+  for (std::size_t piece = 0; piece <= pieces; ++piece) {
+    const double share = static_cast<double>(piece) / static_cast<double>(pieces);
+    const auto cut = std::lower_bound(along_m.begin(), along_m.end(), share * along_m.back());
+    made.push_back(static_cast<std::uint32_t>(
+        piece == pieces ? count - 1 : std::min<std::size_t>(cut - along_m.begin(), count - 1)));
+  }
+  return made;
+}
+
+class Builder {
+ public:
+  void add(const Lane& lane) {
+    LaneRecord record{};
+    record.first_ring_point = ring_points_.size();
+    record.first_centre_point = centre_points_.size();
+    record.first_cell = static_cast<std::uint32_t>(cells_.size());
+    if (lane.polygon.size() >= 3) {
+      add_points(lane);
+      add_cells(lane);
+    }
+    record.ring_points = static_cast<std::uint32_t>(ring_points_.size() - record.first_ring_point);
+    record.centre_points =
+        static_cast<std::uint32_t>(centre_points_.size() - record.first_centre_point);
+    record.cells = static_cast<std::uint32_t>(cells_.size() - record.first_cell);
+    lanes_.push_back(record);
+  }
+
+  Data take() {
+    Data data;
+    std::vector<std::uint32_t> order = hilbert_order();
+    data.nodes = FlatArray<Node>(build_nodes(order));
+    data.order = FlatArray<std::uint32_t>(std::move(order));
+    data.lanes = FlatArray<LaneRecord>(std::move(lanes_));
+    data.cells = FlatArray<Cell>(std::move(cells_));
+    data.ring_points = FlatArray<Point>(std::move(ring_points_));
+    data.centre_points = FlatArray<Point>(std::move(centre_points_));
+    data.centre_stations_m = FlatArray<double>(std::move(centre_stations_m_));
+    return data;
+  }
+
+ private:
+  void add_points(const Lane& lane) {
+    ring_ = lane.polygon;
+    const std::size_t start = nearest_vertex(ring_, lane.right.in_map.points().front());
+    std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(start), ring_.end());
+    for (const Eigen::Vector2d& p : ring_) ring_points_.push_back({p.x(), p.y()});
+    for (const Eigen::Vector2d& p : lane.centre.in_map.points()) {
+      centre_points_.push_back({p.x(), p.y()});
+    }
+    const auto& stations = lane.centre.in_map.stations_m();
+    centre_stations_m_.insert(centre_stations_m_.end(), stations.begin(), stations.end());
+  }
+
+  void add_cells(const Lane& lane) {
+    const auto& centre = lane.centre.in_map.points();
+    const std::size_t n = ring_.size();
+    // The last vertex of the right border; at least one vertex stays for the left one.
+    const std::size_t turn =
+        std::min(nearest_vertex(ring_, lane.right.in_map.points().back()), n - 2);
+    const std::size_t pieces = 1 + std::max(n, 2 * centre.size()) / kPointsPerCell;
+    const auto right = cuts(turn + 1, pieces, [&](std::size_t i) { return ring_[i]; });
+    const auto left = cuts(n - 1 - turn, pieces, [&](std::size_t i) { return ring_[n - 1 - i]; });
+    const auto along = cuts(centre.size(), pieces, [&](std::size_t i) { return centre[i]; });
+    const auto last = static_cast<std::uint32_t>(n - 1);
+    for (std::size_t i = 0; i < pieces; ++i) {
+      const auto ends = static_cast<std::uint16_t>((i == 0 ? 1 : 0) + (i + 1 == pieces ? 2 : 0));
+      Cell cell{.ring = kNothing,
+                .centre = kNothing,
+                .lane = lane.id.index,
+                .right_from = right[i],
+                .right_to = right[i + 1],
+                .left_to = last - left[i + 1],
+                .left_from = last - left[i],
+                .centre_from = along[i],
+                .centre_to = along[i + 1],
+                .lane_type = static_cast<std::uint16_t>(lane.type),
+                .ends = ends};
+      for (std::uint32_t k = cell.right_from; k <= cell.right_to; ++k) extend(cell.ring, ring_[k]);
+      for (std::uint32_t k = cell.left_to; k <= cell.left_from; ++k) extend(cell.ring, ring_[k]);
+      for (std::uint32_t k = cell.centre_from; k <= cell.centre_to; ++k) {
+        extend(cell.centre, centre[k]);
+      }
+      cells_.push_back(cell);
+    }
+  }
+
+  std::vector<std::uint32_t> hilbert_order() const {
+    Box whole = kNothing;
+    for (const Cell& cell : cells_) extend(whole, cell.ring);
+    const auto scaled = [](float low, float high, float from, float to) {
+      const float share = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
+      return static_cast<std::uint32_t>(std::min(std::max(0.0F, share), 1.0F) * 65535.0F);
+    };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // place along the curve, cell
+    places.reserve(cells_.size());
+    for (const Cell& cell : cells_) {
+      const Box& box = cell.ring;
+      places.emplace_back(hilbert_place(scaled(box.low_x, box.high_x, whole.low_x, whole.high_x),
+                                        scaled(box.low_y, box.high_y, whole.low_y, whole.high_y)),
+                          static_cast<std::uint32_t>(places.size()));
+    }
+    std::sort(places.begin(), places.end());
+    std::vector<std::uint32_t> order;
+    for (const auto& [place, cell] : places) order.push_back(cell);
+    return order;
+  }
+
+  std::vector<Node> build_nodes(const std::vector<std::uint32_t>& order) const {
+    std::vector<Box> boxes;
+    for (const std::uint32_t cell : order) boxes.push_back(cells_[cell].ring);
+    std::vector<Node> nodes;
+    while (!boxes.empty()) {
+      std::vector<Box> upper;
+      for (std::size_t first = 0; first < boxes.size(); first += Node::kWidth) {
+        Node& node = nodes.emplace_back();
+        Box& around = upper.emplace_back(kNothing);
+        for (std::size_t i = 0; i < Node::kWidth; ++i) {
+          const Box box = first + i < boxes.size() ? boxes[first + i] : kNothing;
+          node.low_x[i] = box.low_x;
+          node.low_y[i] = box.low_y;
+          node.high_x[i] = box.high_x;
+          node.high_y[i] = box.high_y;
+          extend(around, box);
+        }
+      }
+      if (upper.size() == 1) break;
+      boxes = std::move(upper);
+    }
+    return nodes;
+  }
+
+  geometry::Ring ring_;  // of the lane that is being added
+  std::vector<LaneRecord> lanes_;
+  std::vector<Cell> cells_;
+  std::vector<Point> ring_points_, centre_points_;
+  std::vector<double> centre_stations_m_;
+};
+
+}  // namespace
+
+std::vector<std::uint64_t> level_starts(std::uint64_t cells) {
+  std::vector<std::uint64_t> starts{0};
+  for (std::uint64_t width = cells; width > 0;) {
+    width = (width + Node::kWidth - 1) / Node::kWidth;
+    starts.push_back(starts.back() + width);
+    if (width == 1) break;
+  }
+  return starts;
+}
+
+std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t place = 0;
+  for (std::uint32_t side = 1U << 15; side > 0; side >>= 1) {
+    const std::uint32_t right = (x & side) != 0 ? 1 : 0, upper = (y & side) != 0 ? 1 : 0;
+    place = place << 2 | ((3 * right) ^ upper);
+    if (upper == 0) {  // turn the quadrant so that the curve goes on from its end
+      if (right == 1) {
+        x = ~x;
+        y = ~y;
+      }
+      std::swap(x, y);
+    }
+  }
+  return place;
+}
+
+Data build(const LazyList<Lane>& lanes) {
+  Builder builder;
+  for (const Lane& lane : lanes) builder.add(lane);
+  return builder.take();
+}
+
+}  // namespace roadbed::map::lane_index

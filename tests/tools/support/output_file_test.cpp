@@ -1,0 +1,40 @@
+#include "roadbed/tools/support/output_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <string>
+
+#include "roadbed/tests/support/program_run.h"
+
+namespace roadbed::tools {
+namespace {
+
+TEST(OutputFile, IsTheOldOneOrTheNewOneWheneverTheWriterIsKilled) {
+  const tests::TemporaryFolder folder;
+  const std::string old_bytes(2'000'000, 'o'), new_bytes(3'000'000, 'n');
+  const std::filesystem::path file = folder.write("map.rbm", old_bytes);
+  for (int round = 0; round < 40; ++round) {
+    const pid_t writer = ::fork();
+    ASSERT_GE(writer, 0);
+    if (writer == 0) {
+      for (;;) {  // until it is killed
+        write_output(file, new_bytes);
+        write_output(file, old_bytes);
+      }
+    }
+    ::usleep(static_cast<useconds_t>(500 + 377 * round));
+    ::kill(writer, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    const std::string bytes = tests::bytes_of(file);
+    ASSERT_TRUE(bytes == old_bytes || bytes == new_bytes) << "round " << round;
+  }
+}
+
+}  // namespace
+}  // namespace roadbed::tools
