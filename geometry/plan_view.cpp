@@ -103,18 +103,21 @@ PlanPoint evaluate(const ParamPoly3Curve& curve, double ds, double length_m) {
   return {{u.value, v.value, std::atan2(v.d1, u.d1)}, curvature};
 }
 
-PlanBounds bounds_of(const LineCurve&, double, double, double) { return {}; }
+PlanBounds bounds_of(const LineCurve&, double, double, double) {
+  return {0.0, 0.0, 0.0, PlanBounds::Range{}};
+}
 
 PlanBounds bounds_of(const ArcCurve& arc, double, double, double) {
   const double k = std::abs(arc.curvature_per_m);
-  return {k, k, 0.0};
+  return {k, k, 0.0, PlanBounds::Range{arc.curvature_per_m, arc.curvature_per_m}};
 }
 
 PlanBounds bounds_of(const SpiralCurve& spiral, double from, double to, double length_m) {
   const double k0 = spiral.start_curvature_per_m;
   const double rate = (spiral.end_curvature_per_m - k0) / length_m;
-  const double k = std::max(std::abs(k0 + rate * from), std::abs(k0 + rate * to));
-  return {k, k, std::abs(rate)};
+  const auto [low, high] = std::minmax({k0 + rate * from, k0 + rate * to});
+  const double k = std::max(std::abs(low), std::abs(high));
+  return {k, k, std::abs(rate), PlanBounds::Range{low, high}};
 }
 
 // A planar curve given by u and v with Taylor coefficients about the middle of a stretch.
@@ -126,7 +129,7 @@ PlanBounds parametric_bounds(const PolynomialValue& u, const PolynomialValue& v,
   const double slowest = std::max(1e-9, hypot(u.d1, v.d1) - half * second);
   const double heading_d1 = second / slowest;
   const double heading_d2 = third / slowest + 2.0 * second * second / (slowest * slowest);
-  return {second, heading_d1, heading_d2};
+  return {second, heading_d1, heading_d2, std::nullopt};
 }
 
 PlanBounds bounds_of(const Poly3Curve& curve, double from, double to, double length_m) {
@@ -136,7 +139,7 @@ PlanBounds bounds_of(const Poly3Curve& curve, double from, double to, double len
   const double middle = 0.5 * (u0 + u1), half = 0.5 * std::abs(u1 - u0);
   const double second =
       std::abs(2.0 * curve.c + 6.0 * curve.d * middle) + half * 6.0 * std::abs(curve.d);
-  return {second, second, 6.0 * std::abs(curve.d) + 3.0 * second * second};
+  return {second, second, 6.0 * std::abs(curve.d) + 3.0 * second * second, std::nullopt};
 }
 
 PlanBounds bounds_of(const ParamPoly3Curve& curve, double from, double to, double length_m) {

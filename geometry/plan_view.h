@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -57,6 +58,12 @@ struct PlanBounds {
   double second_derivative_per_m = 0.0;
   double heading_d1_per_m = 0.0;
   double heading_d2_per_m2 = 0.0;
+
+  /// Where s is the arc length: the signed curvature's range.
+  struct Range {
+    double low_per_m = 0.0, high_per_m = 0.0;
+  };
+  std::optional<Range> curvature;
 };
 
 /// A road's reference line in plan view: pieces one after another.

@@ -27,6 +27,8 @@ struct BorderMark {
   MarkType type = MarkType::none;
   std::string color;     ///< the source's word, empty if it has none: "white", "yellow"
   double width_m = 0.0;  ///< 0 if unknown
+
+  bool operator==(const BorderMark&) const = default;
 };
 
 }  // namespace roadbed::map

@@ -29,7 +29,7 @@ RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadO
                       .needed = "an OpenDRIVE file or a compiled map",
                       .remedy = "check whether it is the right file"});
   }
-  const XmlDocument xml(bytes, name);
+  XmlDocument xml(bytes, name);
   if (!open_drive::is_open_drive(xml.root().name())) {
     throw InputError({.file = name,
                       .place = std::to_string(xml.line_of(xml.root())),
@@ -38,7 +38,7 @@ RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadO
                       .needed = "<OpenDRIVE>",
                       .remedy = "give an OpenDRIVE file or a compiled map"});
   }
-  return RoadMap(open_drive::read(xml, options));
+  return RoadMap(open_drive::read(std::move(xml), options));
 }
 
 RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) {

@@ -89,6 +89,12 @@ Json bounds_json(const map::RoadMap& road_map) {
           {"max_y_m", bounds->high.y()}};
 }
 
+Json unused_counts(const map::RoadMap& road_map) {
+  Json json = Json::object();
+  for (const map::UnusedContent& unused : road_map.unused()) json[unused.name] = unused.count;
+  return json;
+}
+
 Json component_sizes(const map::RoadMap& road_map) {
   Json sizes = Json::array();
   for (const auto& component : map::drivable_components(road_map)) {
@@ -104,6 +110,11 @@ Json info_json(const map::RoadMap& road_map) {
   info["roads"] = road_map.roads().size();
   info["junctions"] = road_map.junctions().size();
   info["signals"] = road_map.signals().size();
+  info["controllers"] = road_map.controllers().size();
+  info["stop_lines"] = road_map.stop_lines().size();
+  info["regulations"] = road_map.regulations().size();
+  info["objects"] = road_map.objects().size();
+  info["areas_without_lanes"] = road_map.areas().size();
   info["lanes"] = road_map.lanes().size();
   info["lanes_by_type"] = lane_counts(road_map);
   info["lengths"] = lengths_m(road_map);
@@ -111,6 +122,7 @@ Json info_json(const map::RoadMap& road_map) {
   info["bounds"] = bounds_json(road_map);
   info["drivable_component_lanes"] = component_sizes(road_map);
   info["remarks"] = remark_counts(road_map);
+  info["unused"] = unused_counts(road_map);
   return info;
 }
 
@@ -151,7 +163,11 @@ void print_info(std::ostream& out, const Json& info) {
                             number(info.at("lengths").at("roads_m"))));
   line("junctions", fmt::format("{}, {:.1f} m²", info.at("junctions").get<int>(),
                                 number(info.at("areas").at("junctions_m2"))));
-  line("signals", fmt::format("{}", info.at("signals").get<int>()));
+  const auto count = [&](const char* key) { return info.at(key).get<int>(); };
+  line("signals", fmt::format("{}, {} controllers, {} stop lines, {} regulations", count("signals"),
+                              count("controllers"), count("stop_lines"), count("regulations")));
+  line("objects",
+       fmt::format("{}, {} areas without lanes", count("objects"), count("areas_without_lanes")));
   line("lanes",
        fmt::format("{}: {}", info.at("lanes").get<int>(), listed(info.at("lanes_by_type"))));
   line("drivable lanes",
@@ -163,6 +179,7 @@ void print_info(std::ostream& out, const Json& info) {
     line("verified", fmt::format("{} chunks, {} records", info["verified"]["chunks"].get<int>(),
                                  info["verified"]["records"].get<int>()));
   }
+  line("not used", listed(info.at("unused")));
 }
 
 class InfoCommand : public Command {

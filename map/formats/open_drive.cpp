@@ -8,6 +8,9 @@
 #include "roadbed/map/formats/open_drive_document.h"
 #include "roadbed/map/formats/open_drive_lanes.h"
 #include "roadbed/map/formats/open_drive_links.h"
+#include "roadbed/map/formats/open_drive_place_objects.h"
+#include "roadbed/map/formats/open_drive_place_signals.h"
+#include "roadbed/map/formats/open_drive_stop_lines.h"
 #include "roadbed/map/input_error.h"
 
 namespace roadbed::map::open_drive {
@@ -41,7 +44,7 @@ std::vector<Junction> build_junctions(const Document& document,
   for (const JunctionRecord& record : document.junctions) {
     const JunctionId id{static_cast<std::uint32_t>(junctions.size())};
     if (!ids.emplace(record.id, id).second) continue;
-    junctions.push_back({id, record.id, record.name, JunctionKind::common, {}});
+    junctions.push_back({id, record.id, record.name, record.kind, {}});
   }
   return junctions;
 }
@@ -91,71 +94,86 @@ std::vector<Road> build_roads(const Document& document,
   return roads;
 }
 
-// Lanes of the road at s that a signal speaks to.
-std::vector<LaneId> signal_lanes(const SignalRecord& signal, const Road& road,
-                                 const BuiltLanes& built) {
-  std::vector<LaneId> lanes;
-  for (const LaneId id : road.lanes) {
-    const Lane& lane = built.lanes[id.index];
-    const auto [from, to] = std::minmax(lane.origin.road_from_s_m, lane.origin.road_to_s_m);
-    const bool forward = built.forward[id.index];
-    const bool facing = signal.orientation == "+"   ? forward
-                        : signal.orientation == "-" ? !forward
-                                                    : true;
-    const int lane_id = std::stoi(lane.origin.source_id);
-    const bool named =
-        signal.lane_ranges.empty() ||
-        std::any_of(signal.lane_ranges.begin(), signal.lane_ranges.end(), [&](const auto& range) {
-          return lane_id >= std::min(range.first, range.second) &&
-                 lane_id <= std::max(range.first, range.second);
-        });
-    if (facing && named && is_drivable(lane.type) && signal.s_m >= from && signal.s_m <= to) {
-      lanes.push_back(id);
+// Controllers, each with the junctions that say they are theirs.
+std::vector<Controller> build_controllers(Document& document) {
+  std::multimap<std::string_view, std::pair<const JunctionRecord*, const JunctionController*>> uses;
+  for (const JunctionRecord& junction : document.junctions) {
+    for (const JunctionController& use : junction.controllers) {
+      uses.emplace(use.controller_id, std::pair{&junction, &use});
     }
+  }
+  std::vector<Controller> controllers = std::move(document.controllers);
+  for (Controller& controller : controllers) {
+    const auto [from, to] = uses.equal_range(controller.source_id);
+    for (auto use = from; use != to; ++use) {
+      const auto& [junction, here] = use->second;
+      controller.attributes.emplace_back(
+          "junction", here->sequence.empty()
+                          ? junction->id
+                          : fmt::format("{}, sequence {}", junction->id, here->sequence));
+    }
+  }
+  return controllers;
+}
+
+std::vector<LaneId> drivable_lanes(const RoadMapParts& parts, std::size_t road) {
+  std::vector<LaneId> lanes;
+  for (const LaneId id : parts.roads[road].lanes) {
+    if (is_drivable(parts.lanes[id.index].type)) lanes.push_back(id);
   }
   return lanes;
 }
 
-std::vector<Signal> build_signals(const Document& document,
-                                  const std::vector<geometry::PlanView>& views,
-                                  const std::vector<Road>& roads, const BuiltLanes& built) {
-  std::map<std::string, std::size_t> index;
-  for (std::size_t i = 0; i < roads.size(); ++i) index[roads[i].source_id] = i;
-  std::vector<Signal> signals;
-  for (const SignalRecord& record : document.signals) {
-    const auto found = index.find(record.road_id);
-    if (found == index.end()) continue;
-    const Road& road = roads[found->second];
-    const geometry::Pose2 pose = views[found->second].at(record.s_m).pose;
-    Signal signal;
-    signal.source_id = record.id;
-    signal.name = record.name;
-    signal.road = road.id;
-    signal.road_s_m = record.s_m;
-    signal.road_t_m = record.t_m;
-    signal.in_map = pose * Eigen::Vector2d(0.0, record.t_m);
-    signal.country = record.country;
-    signal.type = record.type;
-    signal.subtype = record.subtype;
-    signal.value = record.value;
-    signal.unit = record.unit;
-    signal.dynamic = record.dynamic;
-    signal.lanes = signal_lanes(record, road, built);
-    signals.push_back(std::move(signal));
+// <priority> of a junction: the lanes of one road give way to those of another.
+std::vector<Regulation> build_priorities(const Document& document, const RoadMapParts& parts,
+                                         PointBudget& budget, std::vector<ImportRemark>& remarks) {
+  std::map<std::string_view, std::size_t> index;
+  for (std::size_t i = 0; i < document.roads.size(); ++i) index.emplace(document.roads[i].id, i);
+  std::vector<Regulation> regulations;
+  for (const JunctionRecord& junction : document.junctions) {
+    for (const JunctionPriority& priority : junction.priorities) {
+      const auto high = index.find(priority.high_road), low = index.find(priority.low_road);
+      if (high == index.end() || low == index.end()) {
+        remarks.push_back({"import.junction", true, "junction " + junction.id, 0,
+                           fmt::format("gives road {} priority over road {}, one of which is not "
+                                       "there",
+                                       priority.high_road, priority.low_road)});
+        continue;
+      }
+      const std::size_t lanes =
+          parts.roads[high->second].lanes.size() + parts.roads[low->second].lanes.size();
+      if (!budget.try_to_spend(PointBudget::kPerThing + 2 * lanes)) break;
+      Regulation regulation;
+      regulation.source_id = junction.id;
+      regulation.type = "right_of_way";
+      for (const auto& [role, road] :
+           {std::pair{"right_of_way", high->second}, std::pair{"yield", low->second}}) {
+        for (const LaneId lane : drivable_lanes(parts, road)) {
+          regulation.members.push_back({role, parts.lanes[lane.index].name, lane, {}, {}});
+        }
+      }
+      regulation.lanes = drivable_lanes(parts, low->second);
+      regulations.push_back(std::move(regulation));
+    }
   }
-  return signals;
+  return regulations;
 }
 
 }  // namespace
 
-RoadMapParts read(const XmlDocument& xml, const LoadOptions& options) {
+RoadMapParts read(XmlDocument xml, const LoadOptions& options) {
   Document document = read_document(xml);
+  xml.release();
   const std::vector<geometry::PlanView> views = plan_views(xml, document);
+  std::vector<RoadFrame> frames;
+  for (std::size_t i = 0; i < views.size(); ++i) frames.emplace_back(document.roads[i], views[i]);
   RoadMapParts parts;
   parts.format = "OpenDRIVE " + document.version;
   parts.crs = document.crs;
+  parts.offset_in_crs = document.offset_in_crs;
   parts.origin_in_source = document.origin_in_source;
   parts.remarks = std::move(document.remarks);
+  parts.unused = std::move(document.unused);
 
   std::map<std::string, JunctionId> junction_ids;
   parts.junctions = build_junctions(document, junction_ids);
@@ -172,8 +190,12 @@ RoadMapParts read(const XmlDocument& xml, const LoadOptions& options) {
   for (const Road& road : parts.roads) {
     if (road.junction) parts.junctions[road.junction->index].connecting_roads.push_back(road.id);
   }
-  parts.signals = build_signals(document, views, parts.roads, built);
+  parts.signals = place_signals(document, frames, built, budget, parts.remarks);
+  parts.objects = place_objects(document, frames, budget, parts.remarks);
+  parts.stop_lines = find_stop_lines(document, frames, built, parts.signals, budget);
+  parts.controllers = build_controllers(document);
   parts.lanes = std::move(built.lanes);
+  parts.regulations = build_priorities(document, parts, budget, parts.remarks);
   return parts;
 }
 

@@ -24,19 +24,22 @@ SectionSide section_side(const RoadRecord& road, std::size_t section, int sign);
 std::size_t next_section(const RoadRecord& road, std::size_t section, int sign);
 
 /// All borders of a side at one station: border 0 is the lane offset, border i the outer one of
-/// lane i.
+/// lane i. Of a lane with <height> records its own borders stand higher than the road's.
 struct CrossSection {
   double s_m = 0.0;
   std::vector<Eigen::Vector2d> border_in_map;
   std::vector<double> z_m;
+  std::vector<LaneHeight> raised;  ///< one per lane, or empty where no lane is raised
 };
 
 /// Borders along a whole side, at stations dense enough that a straight line between neighbouring
 /// points is nowhere more than `max_error_m` from the border (proven in plan view from bounds of
 /// its second derivative). Where records do not meet, a station occurs twice.
 ///
-/// A border at offset t lies at reference(s) + t·cos(superelevation)·normal(s); its height is
-/// elevation + t·sin(superelevation) − |t|·tan(crossfall).
+/// A border at offset t, with the lateral shape's height h(s, t) there, lies at
+/// reference(s) + (t·cos(superelevation) − h·sin(superelevation))·normal(s); its height is
+/// elevation + t·sin(superelevation) + h·cos(superelevation) − |t|·tan(crossfall). A lane with
+/// level="true" goes on flat from its inner border.
 /// @param road_index  of the road, for faults.
 /// @throws RoadFault if a border goes where no road can be, or the budget is spent.
 std::vector<CrossSection> sample_side(const RoadRecord& road, std::size_t road_index,

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "roadbed/map/formats/lane_ring.h"
 #include "roadbed/map/formats/open_drive_cross_section.h"
-#include "roadbed/map/formats/open_drive_values.h"
+#include "roadbed/map/formats/open_drive_marks.h"
+#include "roadbed/map/formats/open_drive_rules.h"
 
 namespace roadbed::map::open_drive {
 namespace {
@@ -20,6 +22,8 @@ struct BorderLine {
 
 BorderLine border_line(const std::vector<CrossSection>& rows, std::size_t border) {
   BorderLine line;
+  line.points.reserve(rows.size());
+  line.z_m.reserve(rows.size());
   for (const CrossSection& row : rows) {
     line.points.push_back(row.border_in_map[border]);
     line.z_m.push_back(row.z_m[border]);
@@ -27,21 +31,13 @@ BorderLine border_line(const std::vector<CrossSection>& rows, std::size_t border
   return line;
 }
 
-LaneHeight height_at(const std::vector<LaneHeight>& heights, double offset_m) {
-  LaneHeight found;
-  for (const LaneHeight& height : heights) {
-    if (height.s_offset_m <= offset_m) found = height;
-  }
-  return found;
-}
-
+// A lane's own borders where <height> records raise it above the road.
 void raise(BorderLine& inner, BorderLine& outer, const std::vector<CrossSection>& rows,
-           const LaneRecord& lane, double section_s_m) {
-  if (lane.heights.empty()) return;
+           std::size_t lane) {
+  if (rows.front().raised.empty()) return;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const LaneHeight height = height_at(lane.heights, rows[i].s_m - section_s_m);
-    inner.z_m[i] += height.inner_m;
-    outer.z_m[i] += height.outer_m;
+    inner.z_m[i] += rows[i].raised[lane].inner_m;
+    outer.z_m[i] += rows[i].raised[lane].outer_m;
   }
 }
 
@@ -68,38 +64,6 @@ bool drives_forward(const RoadRecord& road, const LaneRecord& lane) {
   return (right != road.left_hand_traffic) != (lane.direction == "reversed");
 }
 
-// A lane's own limit if it has one in the middle of the stretch, else that of the road.
-std::optional<double> speed_limit(const RoadRecord& road, const LaneRecord& lane,
-                                  const SectionSide& side) {
-  const double middle_s_m = 0.5 * (side.from_s_m + side.to_s_m);
-  std::optional<double> limit_mps;
-  for (const RoadSpeed& speed : road.speeds) {
-    if (speed.s_m <= middle_s_m) limit_mps = speed.limit_mps;
-  }
-  for (const LaneSpeed& speed : lane.speeds) {
-    if (side.from_s_m + speed.s_offset_m <= middle_s_m) limit_mps = speed.limit_mps;
-  }
-  return limit_mps;
-}
-
-// The borders as one ring, counter-clockwise; of a ring that folds over itself the largest part.
-geometry::Ring lane_ring(const LaneLine& left, const LaneLine& right) {
-  geometry::Ring ring = right.in_map.points();
-  ring.insert(ring.end(), left.in_map.points().rbegin(), left.in_map.points().rend());
-  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  if (ring.size() < 3) return {};
-  if (geometry::signed_area_m2(ring) > 0.0 && geometry::is_simple(ring)) return ring;
-  geometry::Ring largest;
-  for (geometry::Polygon& part : geometry::make_simple(ring)) {
-    if (largest.empty() ||
-        geometry::signed_area_m2(part.outer) > geometry::signed_area_m2(largest)) {
-      largest = std::move(part.outer);
-    }
-  }
-  return largest;
-}
-
 class LaneBuilder {
  public:
   LaneBuilder(const Document& document, const std::map<std::string, JunctionId>& junctions,
@@ -116,6 +80,7 @@ class LaneBuilder {
       const RoadRecord& road = document_.roads[road_index];
       const SectionSide side = section_side(road, section_index, sign);
       const auto rows = sample_side(road, road_index, plan_view, side, max_error_m_, budget_);
+      keep_stations(rows);
       for (std::size_t i = 0; i < side.lanes.size(); ++i) {
         if (rows.size() < 2) {
           remark_empty(road, *side.lanes[i]);
@@ -129,6 +94,13 @@ class LaneBuilder {
   BuiltLanes take() { return std::move(built_); }
 
  private:
+  void keep_stations(const std::vector<CrossSection>& rows) {
+    if (rows.size() < 2) return;
+    std::vector<double>& stations_m = built_.side_stations_m.emplace_back();
+    stations_m.reserve(rows.size());
+    for (const CrossSection& row : rows) stations_m.push_back(row.s_m);
+  }
+
   void remark_empty(const RoadRecord& road, const LaneRecord& lane) {
     remarks_.push_back({"import.empty-section", true,
                         fmt::format("road {}, lane {}", road.id, lane.id), lane.line,
@@ -140,17 +112,7 @@ class LaneBuilder {
     const RoadRecord& road = document_.roads[road_index];
     const LaneRecord& record = *side.lanes[index];
     const bool forward = drives_forward(road, record);
-    BorderLine inner = border_line(rows, index), outer = border_line(rows, index + 1);
-    raise(inner, outer, rows, record, side.from_s_m);
-    BorderLine centre = middle_of(inner, outer);
-    // Inner and outer by increasing s become left and right by driving direction.
-    BorderLine& left = (side.sign > 0) == forward ? outer : inner;
-    BorderLine& right = &left == &outer ? inner : outer;
-    if (!forward) {
-      reverse(left);
-      reverse(right);
-      reverse(centre);
-    }
+    budget_.spend(PointBudget::kPerThing, road_index);
     Lane lane;
     lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
     lane.road = RoadId{static_cast<std::uint32_t>(road_index)};
@@ -162,16 +124,66 @@ class LaneBuilder {
     lane.name = fmt::format("{}/{}/{}", road.id, section_index, record.id);
     lane.type = record.type;
     lane.one_way = record.direction != "both" && record.type != LaneType::bidirectional;
-    lane.participants = participants_of(record.type);
-    lane.speed_limits = {{0.0, speed_limit(road, record, side)}};
-    const std::vector<double> station_m = geometry::Polyline(centre.points).stations_m();
-    lane.centre = lane_line(std::move(centre), station_m);
-    lane.left = lane_line(std::move(left), station_m);
-    lane.right = lane_line(std::move(right), station_m);
-    lane.polygon = lane_ring(lane.left, lane.right);
+    lane.participants = participants_along(record);
+    lane.attributes = record.attributes;
+    if (!record.accesses.empty()) lane.attributes.emplace_back("access", access_in_words(record));
+    set_lines(side, rows, index, forward, lane);
     built_.ids[{road_index, section_index, record.id}] = lane.id;
     built_.forward.push_back(forward);
+    built_.side_of_lane.push_back(static_cast<std::uint32_t>(built_.side_stations_m.size() - 1));
     built_.lanes.push_back(std::move(lane));
+    set_rules(road, document_.roads[road_index].sections[section_index], side, index);
+  }
+
+  static void set_lines(const SectionSide& side, const std::vector<CrossSection>& rows,
+                        std::size_t index, bool forward, Lane& lane) {
+    BorderLine inner = border_line(rows, index), outer = border_line(rows, index + 1);
+    raise(inner, outer, rows, index);
+    BorderLine centre = middle_of(inner, outer);
+    // Inner and outer by increasing s become left and right by driving direction.
+    BorderLine& left = (side.sign > 0) == forward ? outer : inner;
+    BorderLine& right = &left == &outer ? inner : outer;
+    if (!forward) {
+      reverse(left);
+      reverse(right);
+      reverse(centre);
+    }
+    geometry::Polyline centre_in_map(std::move(centre.points));
+    const std::vector<double> station_m = centre_in_map.stations_m();
+    lane.centre = {std::move(centre_in_map), std::move(centre.z_m), station_m};
+    lane.left = lane_line(std::move(left), station_m);
+    lane.right = lane_line(std::move(right), station_m);
+    lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
+  }
+
+  // What holds along the lane that was added last: speed limits, and the markings of its borders.
+  void set_rules(const RoadRecord& road, const LaneSection& section, const SectionSide& side,
+                 std::size_t index) {
+    Lane& lane = built_.lanes.back();
+    const LaneRecord& record = *side.lanes[index];
+    const auto speeds = speed_stretches(road, record, side.from_s_m, side.to_s_m);
+    if (speeds.size() > 1 || speeds.front().value) {
+      for (const auto& stretch : in_driving_order(built_, lane.id, speeds)) {
+        lane.speed_limits.push_back({stretch.from_s_m, stretch.value});
+      }
+    }
+    const auto inner = section.lanes.find(record.id - side.sign);
+    const bool outer_is_left = (side.sign > 0) == built_.forward.back();
+    set_marks(record, side, outer_is_left ? lane.left_marks : lane.right_marks);
+    if (inner != section.lanes.end()) {
+      set_marks(inner->second, side, outer_is_left ? lane.right_marks : lane.left_marks);
+    }
+  }
+
+  void set_marks(const LaneRecord& owner, const SectionSide& side, std::vector<BorderMark>& marks) {
+    const Lane& lane = built_.lanes.back();
+    const bool forward = built_.forward.back();
+    for (auto& stretch :
+         in_driving_order(built_, lane.id, border_marks(owner, side.from_s_m, side.to_s_m))) {
+      BorderMark& mark = marks.emplace_back(std::move(stretch.value));
+      mark.from_s_m = stretch.from_s_m;
+      if (!forward) mark.type = mirrored(mark.type);
+    }
   }
 
   const Document& document_;
@@ -182,42 +194,20 @@ class LaneBuilder {
   BuiltLanes built_;
 };
 
-// What one marking allows: crossing it away from the road's middle, and back.
-struct MarkRule {
-  bool outwards = true, inwards = true;
-};
-
-MarkRule rule_of(const RoadMark& mark, int lane_id) {
-  const bool left_side = lane_id > 0;
-  if (!mark.lane_change.empty()) {
-    const bool increase = mark.lane_change == "both" || mark.lane_change == "increase";
-    const bool decrease = mark.lane_change == "both" || mark.lane_change == "decrease";
-    return left_side ? MarkRule{increase, decrease} : MarkRule{decrease, increase};
-  }
-  // Without the attribute the line's type decides: the line nearer to the driver must be broken.
-  if (mark.type == "solid broken") return {false, true};
-  if (mark.type == "broken solid") return {true, false};
-  const bool may = mark.type.empty() || mark.type == "none" || mark.type == "broken" ||
-                   mark.type == "broken broken" || mark.type == "botts dots";
-  return {may, may};
-}
-
 }  // namespace
 
-Crossing crossing(const std::vector<RoadMark>& marks, int lane_id, double section_length_m) {
-  // The rule that holds along the greater part of the section.
-  double outwards_m = 0.0, inwards_m = 0.0;
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    const double to_m = i + 1 < marks.size() ? marks[i + 1].s_offset_m : section_length_m;
-    const MarkRule rule = rule_of(marks[i], lane_id);
-    const double length_m = std::max(0.0, to_m - marks[i].s_offset_m);
-    if (rule.outwards) outwards_m += length_m;
-    if (rule.inwards) inwards_m += length_m;
-  }
-  const double half_m = 0.5 * section_length_m;
-  const bool outwards = marks.empty() || outwards_m >= half_m;
-  const bool inwards = marks.empty() || inwards_m >= half_m;
-  return lane_id > 0 ? Crossing{outwards, inwards} : Crossing{inwards, outwards};
+double BuiltLanes::station_m(LaneId lane, double road_s_m) const {
+  const std::vector<double>& rows = side_stations_m[side_of_lane[lane.index]];
+  const std::vector<double>& stations = lanes[lane.index].centre.station_m;
+  const auto at = [&](std::size_t row) {
+    return stations[forward[lane.index] ? row : rows.size() - 1 - row];
+  };
+  const auto after = std::upper_bound(rows.begin(), rows.end(), road_s_m);
+  if (after == rows.begin()) return at(0);
+  if (after == rows.end()) return at(rows.size() - 1);
+  const auto i = static_cast<std::size_t>(after - rows.begin());
+  const double share = (road_s_m - rows[i - 1]) / (rows[i] - rows[i - 1]);
+  return at(i - 1) + share * (at(i) - at(i - 1));
 }
 
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -7,6 +9,7 @@
 
 #include "roadbed/map/formats/open_drive_budget.h"
 #include "roadbed/map/formats/open_drive_document.h"
+#include "roadbed/map/formats/open_drive_stretch.h"
 #include "roadbed/map/road_map.h"
 
 namespace roadbed::map::open_drive {
@@ -18,19 +21,36 @@ struct BuiltLanes {
   std::vector<Lane> lanes;
   std::map<LaneKey, LaneId> ids;
   std::vector<bool> forward;  ///< per lane: it drives towards growing s
+
+  /// Road stations of the vertices of all lanes on one side of a section, and per lane which side
+  /// that is.
+  std::vector<std::vector<double>> side_stations_m;
+  std::vector<std::uint32_t> side_of_lane;
+
+  /// Station on the lane, in driving direction, where the road has that station; clamped to the
+  /// lane. O(log vertices).
+  double station_m(LaneId lane, double road_s_m) const;
 };
+
+/// Stretches along the road as the lane's driver meets them: in that order, by lane station.
+template <typename Value>
+std::vector<Stretch<Value>> in_driving_order(const BuiltLanes& built, LaneId lane,
+                                             std::vector<Stretch<Value>> along_road) {
+  const bool forward = built.forward[lane.index];
+  if (!forward) std::reverse(along_road.begin(), along_road.end());
+  for (Stretch<Value>& stretch : along_road) {
+    const double low_m = built.station_m(lane, stretch.from_s_m);
+    const double high_m = built.station_m(lane, stretch.to_s_m);
+    stretch.from_s_m = forward ? low_m : high_m;
+    stretch.to_s_m = forward ? high_m : low_m;
+  }
+  return along_road;
+}
 
 /// All lanes of all roads, sampled; lanes of no length are left out and remarked.
 /// @throws RoadFault as sample_side does.
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
                        PointBudget& budget, std::vector<ImportRemark>& remarks);
-
-/// Whether the marking between a lane and the next one outwards (or, for lane 0, the marking in
-/// the middle) may be crossed, by travel towards growing or falling lane ids.
-struct Crossing {
-  bool to_larger_id = false, to_smaller_id = false;
-};
-Crossing crossing(const std::vector<RoadMark>& marks, int lane_id, double section_length_m);
 
 }  // namespace roadbed::map::open_drive

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "roadbed/map/formats/open_drive_cross_section.h"
+#include "roadbed/map/formats/open_drive_marks.h"
+#include "roadbed/map/formats/open_drive_virtual.h"
 
 namespace roadbed::map::open_drive {
 namespace {
@@ -56,15 +58,10 @@ class Linker {
     return found->second;
   }
 
-  // The lane at an end of a road. Single-sided sections: the last one that says something of it.
+  // The lane at an end of a road.
   std::optional<LaneId> lane_at(std::size_t road, ContactPoint end, int lane) const {
-    const std::size_t sections = road_at(road).sections.size();
-    for (std::size_t i = 0; i < sections; ++i) {
-      const std::size_t section = end == ContactPoint::start ? i : sections - 1 - i;
-      if (const auto found = find(road, section, lane)) return found;
-      if (!road_at(road).sections[section].single_side) return {};
-    }
-    return {};
+    if (road_at(road).sections.empty()) return {};
+    return find(road, end_section(road_at(road), end, lane), lane);
   }
 
   bool leaves_at(const LaneEnd& end) const {
@@ -78,7 +75,14 @@ class Linker {
   // Two lane ends touch: whichever lane drives out of its end leads to the one that drives in.
   void join(const LaneEnd& a, const LaneEnd& b, long line) {
     if (leaves_at(a) == leaves_at(b)) {
-      if (!is_drivable(built_.lanes[a.lane.index].type)) return;
+      const Lane& lane = built_.lanes[a.lane.index];
+      if (!is_drivable(lane.type)) {
+        remarks_.push_back({"import.link-against-direction", false, "lane " + lane.name, line,
+                            fmt::format("and lane {} both drive the same way at the place where "
+                                        "they are linked; the link is left out",
+                                        built_.lanes[b.lane.index].name)});
+        return;
+      }
       fault("lane " + built_.lanes[a.lane.index].name, line,
             fmt::format("is linked to lane {} end to end against its direction; the link is left "
                         "out, correct the contact points or lane ids",
@@ -145,10 +149,10 @@ class Linker {
 
   std::optional<std::size_t> previous_section(std::size_t road, std::size_t section,
                                               int sign) const {
-    for (std::size_t i = section; i-- > 0;) {
-      if (next_section(road_at(road), i, sign) == section) return i;
-    }
-    return {};
+    const LaneSection& record = road_at(road).sections[section];
+    const std::size_t before = sign > 0 ? record.before_left : record.before_right;
+    if (before >= road_at(road).sections.size()) return {};
+    return before;
   }
 
   std::string lane_name(std::size_t road, std::size_t section, int id) const {
@@ -175,27 +179,78 @@ class Linker {
             fmt::format("is linked to road {}, which is not there", link->element_id));
       return;
     }
-    const std::size_t section = end == ContactPoint::start ? 0 : record.sections.size() - 1;
     if (record.sections.empty()) return;
-    const ContactPoint contact =
-        link->contact.value_or(end == ContactPoint::end ? ContactPoint::start : ContactPoint::end);
-    for (const auto& [id, lane] : record.sections[section].lanes) {
+    for (const int sign : {1, -1}) {
+      link_side_end(road, end_section(record, end, sign), sign, *link, other->second, end);
+    }
+  }
+
+  // The section nearest an end that says something of a side.
+  static std::size_t end_section(const RoadRecord& road, ContactPoint end, int sign) {
+    const std::size_t at_end = end == ContactPoint::start ? 0 : road.sections.size() - 1;
+    const LaneSection& section = road.sections[at_end];
+    const auto& lanes = section.lanes;
+    const bool has_side =
+        !lanes.empty() && (sign > 0 ? lanes.rbegin()->first > 0 : lanes.begin()->first < 0);
+    if (!section.single_side || has_side) return at_end;
+    const std::size_t next = sign > 0 ? section.next_left : section.next_right;
+    const std::size_t before = sign > 0 ? section.before_left : section.before_right;
+    const std::size_t inner = end == ContactPoint::start ? next : before;
+    return inner < road.sections.size() ? inner : at_end;
+  }
+
+  void link_side_end(std::size_t road, std::size_t section, int sign, const RoadLink& link,
+                     std::size_t other, ContactPoint end) {
+    for (const auto& [id, lane] : road_at(road).sections[section].lanes) {
+      if (id * sign <= 0) continue;
       const auto& targets = end == ContactPoint::start ? lane.predecessors : lane.successors;
       for (const int target : targets) {
         const auto a = find(road, section, id);
-        const auto b = lane_at(other->second, contact, target);
+        const auto b = touched_end(link, other, target, end);
         if (a && b) {
-          join({*a, end}, {*b, contact}, lane.line);
+          join({*a, end}, *b, lane.line);
         } else if (a) {
           fault("lane " + built_.lanes[a->index].name, lane.line,
                 fmt::format("is linked to lane {} of road {}, which is not there", target,
-                            link->element_id));
+                            link.element_id));
         }
       }
     }
   }
 
+  // The lane end of another road that a road's own end touches: at one of that road's ends, or in
+  // between where a virtual junction joins it. elementDir is the direction of travel from a
+  // predecessor onto the road, and from the road onto a successor.
+  std::optional<LaneEnd> touched_end(const RoadLink& link, std::size_t other, int lane,
+                                     ContactPoint end) const {
+    if (link.element_s_m) {
+      const auto meeting = sections_meeting_at(road_at(other), *link.element_s_m);
+      if (meeting) {
+        const bool ends_there = (end == ContactPoint::start) == link.element_forward;
+        const auto found = find(other, ends_there ? meeting->first : meeting->second, lane);
+        if (!found) return {};
+        return LaneEnd{*found, ends_there ? ContactPoint::end : ContactPoint::start};
+      }
+    }
+    const ContactPoint usual = end == ContactPoint::end ? ContactPoint::start : ContactPoint::end;
+    const ContactPoint contact = link.contact.value_or(nearest_end(link, other).value_or(usual));
+    const auto found = lane_at(other, contact, lane);
+    if (!found) return {};
+    return LaneEnd{*found, contact};
+  }
+
+  // elementS at one of the road's ends.
+  std::optional<ContactPoint> nearest_end(const RoadLink& link, std::size_t other) const {
+    if (!link.element_s_m) return {};
+    return *link.element_s_m > 0.5 * road_at(other).length_m ? ContactPoint::end
+                                                             : ContactPoint::start;
+  }
+
   void link_connection(const JunctionRecord& junction, const JunctionConnection& connection) {
+    if (connection.predecessor && connection.successor) {
+      link_virtual_connection(junction, connection);
+      return;
+    }
     const auto incoming = road_index_.find(connection.incoming_road);
     const auto connecting = road_index_.find(connection.connecting_road);
     if (incoming == road_index_.end() || connecting == road_index_.end()) {
@@ -204,6 +259,7 @@ class Linker {
                         connection.incoming_road, connection.connecting_road));
       return;
     }
+    if (joins_in_between(connection, connecting->second)) return;  // said by the road's own link
     const auto end = incoming_end(junction, connection, incoming->second, connecting->second);
     if (!end) {
       fault("junction " + junction.id, connection.line,
@@ -222,6 +278,39 @@ class Linker {
                         from, connection.incoming_road, to, connection.connecting_road));
       }
     }
+  }
+
+  // A connection of a virtual junction that has no road: lanes lead from one road's inside straight
+  // to another's.
+  void link_virtual_connection(const JunctionRecord& junction,
+                               const JunctionConnection& connection) {
+    const auto from = road_index_.find(connection.predecessor->element_id);
+    const auto to = road_index_.find(connection.successor->element_id);
+    if (from == road_index_.end() || to == road_index_.end()) {
+      fault("junction " + junction.id, connection.line,
+            fmt::format("connects road {} to road {}, one of which is not there",
+                        connection.predecessor->element_id, connection.successor->element_id));
+      return;
+    }
+    for (const auto& [from_lane, to_lane] : connection.lane_links) {
+      const auto a =
+          touched_end(*connection.predecessor, from->second, from_lane, ContactPoint::start);
+      const auto b = touched_end(*connection.successor, to->second, to_lane, ContactPoint::end);
+      if (a && b) {
+        join(*a, *b, connection.line);
+      } else {
+        fault(
+            "junction " + junction.id, connection.line,
+            fmt::format("links lane {} to lane {}, one of which is not there", from_lane, to_lane));
+      }
+    }
+  }
+
+  // The connecting road of a virtual junction meets its incoming road between that road's ends.
+  bool joins_in_between(const JunctionConnection& connection, std::size_t connecting) const {
+    const RoadRecord& via = road_at(connecting);
+    const auto& link = connection.contact == ContactPoint::start ? via.predecessor : via.successor;
+    return link && link->element_s_m && link->element_id == connection.incoming_road;
   }
 
   // The end of the incoming road that touches the connecting one: as the connecting road says,
@@ -258,28 +347,29 @@ class Linker {
   void set_beside(std::size_t road, std::size_t section, int right, int left) {
     const auto a = find(road, section, right), b = find(road, section, left);
     if (!a || !b) return;
-    const Crossing crossing = crossing_between(road, section, right, left);
     const bool same = built_.forward[a->index] == built_.forward[b->index];
-    (built_.forward[a->index] ? links_[a->index].left : links_[a->index].right) =
-        Neighbour{*b, same, windows(*a, crossing.to_larger_id)};
-    (built_.forward[b->index] ? links_[b->index].right : links_[b->index].left) =
-        Neighbour{*a, same, windows(*b, crossing.to_smaller_id)};
-  }
-
-  std::vector<StationRange> windows(LaneId lane, bool allowed) const {
-    if (!allowed) return {};
-    return {{0.0, built_.lanes[lane.index].length_m()}};
-  }
-
-  Crossing crossing_between(std::size_t road, std::size_t section, int right, int left) const {
-    const RoadRecord& record = road_at(road);
-    const LaneSection& lanes = record.sections[section];
     // The marking belongs to the lane whose outer border it is, the middle one to lane 0.
-    const int owner = right > 0 ? right : (left < 0 ? left : 0);
-    const auto found = lanes.lanes.find(owner);
-    if (found == lanes.lanes.end()) return {};
-    const SectionSide side = section_side(record, section, left > 0 ? 1 : -1);
-    return crossing(found->second.marks, owner, side.to_s_m - side.from_s_m);
+    const auto& lanes = road_at(road).sections[section].lanes;
+    const auto owner = lanes.find(right > 0 ? right : (left < 0 ? left : 0));
+    const LaneRecord* mark = owner == lanes.end() ? nullptr : &owner->second;
+    (built_.forward[a->index] ? links_[a->index].left : links_[a->index].right) =
+        Neighbour{*b, same, windows(*a, mark, true)};
+    (built_.forward[b->index] ? links_[b->index].right : links_[b->index].left) =
+        Neighbour{*a, same, windows(*b, mark, false)};
+  }
+
+  // Where a lane may be left across a marking, by its stations. Nothing is known of a marking that
+  // is not there: it may not be crossed.
+  std::vector<StationRange> windows(LaneId lane, const LaneRecord* mark, bool to_larger_id) const {
+    if (mark == nullptr) return {};
+    const LaneOrigin& origin = built_.lanes[lane.index].origin;
+    const auto [low_m, high_m] = std::minmax(origin.road_from_s_m, origin.road_to_s_m);
+    std::vector<StationRange> windows;
+    for (const auto& stretch :
+         in_driving_order(built_, lane, crossings(*mark, to_larger_id, low_m, high_m))) {
+      if (stretch.value) windows.push_back({stretch.from_s_m, stretch.to_s_m});
+    }
+    return windows;
   }
 
   const Document& document_;

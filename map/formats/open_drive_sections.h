@@ -6,8 +6,13 @@
 
 namespace roadbed::map::open_drive {
 
-/// All lane sections of a road, in order of s; what is mended is added to the remarks.
+/// All lane sections of a road, in order of s; what is mended is added to the document's remarks.
+/// @throws InputError if an id occurs twice, a number is none, or there are more lanes than memory
+///         is granted for.
 std::vector<LaneSection> read_sections(const XmlDocument& xml, pugi::xml_node lanes,
-                                       const RoadRecord& road, std::vector<ImportRemark>& remarks);
+                                       const RoadRecord& road, Document& document);
+
+/// Fills in which section follows which on each side. O(number of sections).
+void connect_sections(std::vector<LaneSection>& sections);
 
 }  // namespace roadbed::map::open_drive

@@ -4,14 +4,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace roadbed::map::open_drive {
 
 geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
                                  const char* s_attribute, double s_add_m) {
-  return {s_add_m + xml.number(node, s_attribute), xml.number(node, "a"), xml.number(node, "b"),
-          xml.number(node, "c"), xml.number(node, "d")};
+  const geometry::CubicRecord record{s_add_m + xml.number(node, s_attribute), xml.number(node, "a"),
+                                     xml.number(node, "b"), xml.number(node, "c"),
+                                     xml.number(node, "d")};
+  constexpr double largest = 1e200;  // so that sums of them stay finite
+  for (const double value : {record.s_m, record.a, record.b, record.c, record.d}) {
+    if (std::abs(value) > largest) {
+      xml.refuse(node, fmt::format("a coefficient of {:.3g}", value), "a value of a road",
+                 "correct the value");
+    }
+  }
+  return record;
 }
 
 std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
@@ -29,21 +40,64 @@ geometry::PiecewiseCubic read_cubics(const XmlDocument& xml, pugi::xml_node pare
   return geometry::PiecewiseCubic(sorted(std::move(records)));
 }
 
-std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed) {
+std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
+                                 std::vector<ImportRemark>& remarks) {
   const std::string_view written = speed.attribute("max").value();
   if (written.empty() || written == "no limit" || written == "undefined") return {};
   const std::string_view unit = speed.attribute("unit").value();
-  const double max = xml.number(speed, "max");
-  double to_mps = 1.0;
-  if (unit == "km/h") {
-    to_mps = 1.0 / 3.6;
-  } else if (unit == "mph") {
-    to_mps = 0.44704;
-  } else if (!unit.empty() && unit != "m/s") {
-    xml.refuse(speed, fmt::format("unit=\"{}\"", unit), "m/s, km/h or mph", "correct the unit");
+  const double to_mps = unit.empty() || unit == "m/s" ? 1.0
+                        : unit == "km/h"              ? 1.0 / 3.6
+                        : unit == "mph"               ? 0.44704
+                                                      : 0.0;
+  const std::optional<double> max = xml.optional_number(speed, "max");
+  if (!max || *max < 0.0 || *max > 1e4 || to_mps == 0.0) {
+    remarks.push_back(
+        {"import.speed", true, xml.place_of(speed), xml.line_of(speed),
+         fmt::format("max=\"{}\" unit=\"{}\" is no speed in m/s, km/h or mph; the limit "
+                     "counts as unknown, correct it",
+                     written, unit)});
+    return {};
   }
-  if (max < 0.0) return {};
-  return max * to_mps;
+  return *max * to_mps;
+}
+
+bool is_true(std::string_view word) { return word == "true" || word == "1"; }
+
+char orientation_of(std::string_view word) {
+  return word == "+" || word == "-" ? word.front() : '\0';
+}
+
+std::vector<std::pair<int, int>> read_lane_ranges(const XmlDocument& xml, pugi::xml_node node) {
+  std::vector<std::pair<int, int>> ranges;
+  for (const auto validity : node.children("validity")) {
+    ranges.emplace_back(
+        std::minmax({xml.integer(validity, "fromLane"), xml.integer(validity, "toLane")}));
+  }
+  return ranges;
+}
+
+void keep_attributes(pugi::xml_node node, std::initializer_list<const char*> names,
+                     Attributes& attributes) {
+  for (const char* name : names) {
+    if (const auto found = node.attribute(name)) attributes.emplace_back(name, found.value());
+  }
+}
+
+ImportRemark left_out(const char* rule, const InputError& error) {
+  const InputError::Parts& parts = error.parts();
+  return {rule, true, parts.element, std::strtol(parts.place.c_str(), nullptr, 10),
+          fmt::format("{}, needs {}; it is left out, {}", parts.found, parts.needed, parts.remedy)};
+}
+
+std::string described(pugi::xml_node node) {
+  std::string text;
+  for (const auto attribute : node.attributes()) {
+    if (!text.empty()) text += ", ";
+    text += attribute.name();
+    text += ' ';
+    text += attribute.value();
+  }
+  return text;
 }
 
 Participants participants_of(LaneType type) {
@@ -66,7 +120,7 @@ Participants participants_of(LaneType type) {
 }
 
 LaneType lane_type(std::string_view word) {
-  static constexpr std::array<std::pair<std::string_view, LaneType>, 30> words = {{
+  static constexpr std::array<std::pair<std::string_view, LaneType>, 31> words = {{
       {"none", LaneType::none},
       {"driving", LaneType::driving},
       {"bidirectional", LaneType::bidirectional},
@@ -85,6 +139,7 @@ LaneType lane_type(std::string_view word) {
       {"biking", LaneType::biking},
       {"sidewalk", LaneType::sidewalk},
       {"walking", LaneType::sidewalk},
+      {"shared", LaneType::other},
       {"curb", LaneType::curb},
       {"median", LaneType::median},
       {"restricted", LaneType::restricted},

@@ -11,18 +11,44 @@
 namespace roadbed::map {
 namespace {
 
-std::vector<std::size_t> find_line_starts(const std::string& bytes) {
-  std::vector<std::size_t> starts{0};
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    if (bytes[i] == '\n') starts.push_back(i + 1);
+std::vector<std::uint32_t> find_line_starts(const std::string& bytes) {
+  std::vector<std::uint32_t> starts{0};
+  for (auto end = bytes.find('\n'); end != std::string::npos; end = bytes.find('\n', end + 1)) {
+    starts.push_back(static_cast<std::uint32_t>(end + 1));
   }
   return starts;
 }
 
-long line_at(const std::vector<std::size_t>& starts, std::ptrdiff_t offset) {
+// What pugixml will allocate for elements, texts and attributes [bytes]: 64 for a node, 40 for an
+// attribute.
+std::size_t tree_bytes(const std::string& bytes) {
+  std::size_t nodes = 0, attributes = 0;
+  for (std::size_t i = 0; i + 1 < bytes.size(); ++i) {
+    const char next = bytes[i + 1];
+    nodes += bytes[i] == '<' && next != '/' ? 1 : 0;
+    nodes += bytes[i] == '>' && next != '<' && next > ' ' ? 1 : 0;
+    attributes += bytes[i] == '=' && (next == '"' || next == '\'') ? 1 : 0;
+  }
+  return 64 * nodes + 40 * attributes;
+}
+
+void check_size(const std::string& bytes, const std::string& name) {
+  constexpr std::size_t small = 8'000'000, longest = 0xffff'ffff;
+  if (bytes.size() <= small) return;
+  const bool too_long = bytes.size() > longest;
+  if (!too_long && tree_bytes(bytes) <= 128'000'000 + 5 * bytes.size()) return;
+  throw InputError({.file = name,
+                    .place = {},
+                    .element = {},
+                    .found = too_long ? "more than 4 GB" : "next to nothing but empty elements",
+                    .needed = "a map with content of its size",
+                    .remedy = "check whether it is the right file"});
+}
+
+long line_at(const std::vector<std::uint32_t>& starts, std::ptrdiff_t offset) {
   if (offset < 0) return 0;
   const auto after =
-      std::upper_bound(starts.begin(), starts.end(), static_cast<std::size_t>(offset));
+      std::upper_bound(starts.begin(), starts.end(), static_cast<std::uint64_t>(offset));
   return static_cast<long>(after - starts.begin());
 }
 
@@ -44,7 +70,9 @@ std::optional<double> parse_finite(std::string_view text) {
 }  // namespace
 
 XmlDocument::XmlDocument(const std::string& bytes, std::string name)
-    : name_(std::move(name)), size_bytes_(bytes.size()), line_starts_(find_line_starts(bytes)) {
+    : name_(std::move(name)), size_bytes_(bytes.size()) {
+  check_size(bytes, name_);
+  line_starts_ = find_line_starts(bytes);
   const pugi::xml_parse_result result =
       document_.load_buffer(bytes.data(), bytes.size(), pugi::parse_default);
   if (!result) {
@@ -61,8 +89,7 @@ long XmlDocument::line_of(pugi::xml_node node) const {
   return line_at(line_starts_, node.offset_debug());
 }
 
-void XmlDocument::refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
-                         const std::string& remedy) const {
+std::string XmlDocument::place_of(pugi::xml_node node) {
   std::string element = fmt::format("<{}>", node.name());
   for (pugi::xml_node up = node; up; up = up.parent()) {
     const std::string_view kind = up.name();
@@ -70,9 +97,14 @@ void XmlDocument::refuse(pugi::xml_node node, const std::string& found, const st
       element += fmt::format(" of {} {}", kind, up.attribute("id").value());
     }
   }
+  return element;
+}
+
+void XmlDocument::refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
+                         const std::string& remedy) const {
   throw InputError({.file = name_,
                     .place = std::to_string(line_of(node)),
-                    .element = element,
+                    .element = place_of(node),
                     .found = found,
                     .needed = needed,
                     .remedy = remedy});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -13,8 +14,12 @@ namespace roadbed::map {
 class XmlDocument {
  public:
   /// @param name  stands for the file in messages.
-  /// @throws InputError if the bytes are not well-formed XML.
+  /// @throws InputError if the bytes are not well-formed XML, or hold more elements than a map of
+  ///         their size does: memory stays bounded by the file's size.
   XmlDocument(const std::string& bytes, std::string name);
+
+  /// Lets the elements go, when all is read.
+  void release() { document_.reset(); }
 
   pugi::xml_node root() const { return document_.document_element(); }
   const std::string& name() const { return name_; }
@@ -37,6 +42,9 @@ class XmlDocument {
   /// @throws InputError if the attribute is missing or empty.
   std::string text(pugi::xml_node node, const char* attribute) const;
 
+  /// What messages call an element: "<speed> of lane -1 of road 5".
+  static std::string place_of(pugi::xml_node node);
+
   /// Throws InputError placed at the element.
   [[noreturn]] void refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
                            const std::string& remedy) const;
@@ -44,7 +52,7 @@ class XmlDocument {
  private:
   std::string name_;
   std::size_t size_bytes_;
-  std::vector<std::size_t> line_starts_;
+  std::vector<std::uint32_t> line_starts_;
   pugi::xml_document document_;
 };
 

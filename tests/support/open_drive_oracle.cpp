@@ -61,6 +61,24 @@ Frame param_poly(pugi::xml_node node, Real p) {
           std::atan2(slope("bV", "cV", "dV"), slope("bU", "cU", "dU"))};
 }
 
+// v(u) a cubic, s its arc length: u is found by Newton's method on the length up to it, which
+// Simpson's rule sums.
+Frame poly3(pugi::xml_node node, Real ds) {
+  const Real b = number(node, "b"), c = number(node, "c"), d = number(node, "d");
+  const auto slope = [&](Real u) { return b + 2 * c * u + 3 * d * u * u; };
+  const auto speed = [&](Real u) { return std::sqrt(1 + slope(u) * slope(u)); };
+  const auto length = [&](Real u) {
+    const int n = 2000;
+    Real sum = 0;
+    for (int i = 0; i <= n; ++i)
+      sum += ((i == 0 || i == n) ? 1 : (i % 2 == 1 ? 4 : 2)) * speed(u * i / n);
+    return sum * u / (3 * n);
+  };
+  Real u = ds;
+  for (int i = 0; i < 20; ++i) u -= (length(u) - ds) / speed(u);
+  return {{u, number(node, "a") + u * (b + u * (c + u * d))}, std::atan(slope(u))};
+}
+
 Frame local_frame(pugi::xml_node geometry, Real ds) {
   const Real length = number(geometry, "length");
   if (const auto arc = geometry.child("arc")) return by_heading(number(arc, "curvature"), 0, ds);
@@ -72,8 +90,46 @@ Frame local_frame(pugi::xml_node geometry, Real ds) {
     const bool by_length = std::string(poly.attribute("pRange").value()) == "arcLength";
     return param_poly(poly, by_length ? ds : ds / length);
   }
+  if (const auto poly = geometry.child("poly3")) return poly3(poly, ds);
   if (!geometry.child("line")) throw std::runtime_error("the oracle does not know this geometry");
   return {{ds, 0}, 0};
+}
+
+// Of the <shape> records at station s: the one that holds at t, else the first of them.
+Real shape_at(pugi::xml_node lateral, Real s, Real t) {
+  pugi::xml_node found;
+  for (const auto node : lateral.children("shape")) {
+    if (number(node, "s") != s) continue;
+    if (!found || number(node, "t") <= t) found = node;
+  }
+  return cubic(found, t - number(found, "t"));
+}
+
+// Linear between the nearest stations of <shape> before and after s.
+Real shape_height(pugi::xml_node lateral, Real s, Real t) {
+  if (!lateral.child("shape")) return 0;
+  const Real far = 1e30L;
+  Real before = -far, after = far;
+  for (const auto node : lateral.children("shape")) {
+    const Real at = number(node, "s");
+    if (at <= s) before = std::max(before, at);
+    if (at > s) after = std::min(after, at);
+  }
+  if (before == -far) return shape_at(lateral, after, t);
+  if (after == far) return shape_at(lateral, before, t);
+  const Real share = (s - before) / (after - before);
+  return (1 - share) * shape_at(lateral, before, t) + share * shape_at(lateral, after, t);
+}
+
+// The crossfall in force on a side.
+Real crossfall_at(pugi::xml_node lateral, const std::string& side, Real s, Real inside) {
+  pugi::xml_node found;
+  for (const auto node : lateral.children("crossfall")) {
+    const std::string names = node.attribute("side").value();
+    if (names != side && names != "both") continue;
+    if (!found || number(node, "s") <= inside) found = node;
+  }
+  return found ? cubic(found, s - number(found, "s")) : 0;
 }
 
 }  // namespace
@@ -81,20 +137,42 @@ Frame local_frame(pugi::xml_node geometry, Real ds) {
 struct OpenDriveOracle::Impl {
   pugi::xml_document document;
   std::map<std::string, pugi::xml_node> roads;
+
+  void list_roads() {
+    for (const auto road : document.child("OpenDRIVE").children("road")) {
+      roads[road.attribute("id").value()] = road;
+    }
+  }
 };
 
-OpenDriveOracle::OpenDriveOracle(const std::string& file) : impl_(std::make_unique<Impl>()) {
+OpenDriveOracle::OpenDriveOracle() : impl_(std::make_unique<Impl>()) {}
+
+OpenDriveOracle::OpenDriveOracle(const std::string& file) : OpenDriveOracle() {
   if (!impl_->document.load_file(file.c_str())) throw std::runtime_error("cannot parse " + file);
-  for (const auto road : impl_->document.child("OpenDRIVE").children("road")) {
-    impl_->roads[road.attribute("id").value()] = road;
-  }
+  impl_->list_roads();
+}
+
+OpenDriveOracle OpenDriveOracle::of_text(const std::string& text) {
+  OpenDriveOracle oracle;
+  if (!oracle.impl_->document.load_string(text.c_str())) throw std::runtime_error("cannot parse");
+  oracle.impl_->list_roads();
+  return oracle;
 }
 
 OpenDriveOracle::~OpenDriveOracle() = default;
+OpenDriveOracle::OpenDriveOracle(OpenDriveOracle&&) noexcept = default;
 
 std::pair<Vector2l, Vector2l> OpenDriveOracle::borders(const std::string& road, int section,
                                                        int lane, long double s_m,
                                                        long double inside_s_m) const {
+  const auto [inner, outer] = borders_with_height(road, section, lane, s_m, inside_s_m);
+  return {inner.head<2>(), outer.head<2>()};
+}
+
+std::pair<Vector3l, Vector3l> OpenDriveOracle::borders_with_height(const std::string& road,
+                                                                   int section, int lane,
+                                                                   long double s_m,
+                                                                   long double inside_s_m) const {
   const pugi::xml_node node = impl_->roads.at(road);
   const auto geometry = in_force(node.child("planView"), "geometry", "s", inside_s_m);
   const Frame local = local_frame(geometry, s_m - number(geometry, "s"));
@@ -112,24 +190,40 @@ std::pair<Vector2l, Vector2l> OpenDriveOracle::borders(const std::string& road, 
   for (int i = 0; i < section; ++i) section_node = section_node.next_sibling("laneSection");
   const Real section_s = number(section_node, "s");
   const auto side = section_node.child(lane > 0 ? "left" : "right");
-  Real inner = 0, outer = offset_m;
+  const auto lateral = node.child("lateralProfile");
+  const auto roll_record = in_force(lateral, "superelevation", "s", inside_s_m);
+  const Real roll = roll_record ? cubic(roll_record, s_m - number(roll_record, "s")) : 0;
+  const Real fall = crossfall_at(lateral, lane > 0 ? "left" : "right", s_m, inside_s_m);
+  // Sideways and up, of a place at t on the surface.
+  const auto surface = [&](Real t) {
+    const Real h = shape_height(lateral, s_m, t);
+    return Vector2l(t * std::cos(roll) - h * std::sin(roll),
+                    t * std::sin(roll) + h * std::cos(roll) - std::abs(t) * std::tan(fall));
+  };
+  Real t = offset_m;
+  Vector2l outer = surface(t), inner = outer;
   for (int id = 1; id <= std::abs(lane); ++id) {
     const auto record =
         side.find_child_by_attribute("lane", "id", std::to_string(lane > 0 ? id : -id).c_str());
-    inner = outer;
+    const Real before = t;
     if (record.child("width")) {
       const auto width = in_force(record, "width", "sOffset", inside_s_m - section_s);
-      outer += (lane > 0 ? 1 : -1) * cubic(width, s_m - section_s - number(width, "sOffset"));
+      t += (lane > 0 ? 1 : -1) * cubic(width, s_m - section_s - number(width, "sOffset"));
     } else {
       const auto border = in_force(record, "border", "sOffset", inside_s_m - section_s);
-      outer = offset_m + cubic(border, s_m - section_s - number(border, "sOffset"));
+      t = offset_m + cubic(border, s_m - section_s - number(border, "sOffset"));
     }
+    inner = outer;
+    const bool level = std::string(record.attribute("level").value()) == "true";
+    outer += level ? Vector2l(t - before, 0) : Vector2l(surface(t) - surface(before));
   }
-  const auto roll_record =
-      in_force(node.child("lateralProfile"), "superelevation", "s", inside_s_m);
-  const Real roll = roll_record ? cubic(roll_record, s_m - number(roll_record, "s")) : 0;
-  const Vector2l normal(-std::sin(heading), std::cos(heading));
-  return {point + inner * std::cos(roll) * normal, point + outer * std::cos(roll) * normal};
+  const auto rise = in_force(node.child("elevationProfile"), "elevation", "s", inside_s_m);
+  const Real elevation = rise ? cubic(rise, s_m - number(rise, "s")) : 0;
+  const auto place = [&](const Vector2l& at) {
+    return Vector3l(point.x() - at.x() * std::sin(heading), point.y() + at.x() * std::cos(heading),
+                    elevation + at.y());
+  };
+  return {place(inner), place(outer)};
 }
 
 }  // namespace roadbed::tests
