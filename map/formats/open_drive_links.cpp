@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "roadbed/map/formats/open_drive_cross_section.h"
 #include "roadbed/map/formats/open_drive_marks.h"
@@ -40,6 +41,7 @@ class Linker {
         link_connection(junction, connection);
       }
     }
+    remark_links_against_direction();
     for (LaneLinks& links : links_) {
       for (std::vector<LaneId>* list : {&links.successors, &links.predecessors}) {
         std::sort(list->begin(), list->end());
@@ -77,10 +79,7 @@ class Linker {
     if (leaves_at(a) == leaves_at(b)) {
       const Lane& lane = built_.lanes[a.lane.index];
       if (!is_drivable(lane.type)) {
-        remarks_.push_back({"import.link-against-direction", false, "lane " + lane.name, line,
-                            fmt::format("and lane {} both drive the same way at the place where "
-                                        "they are linked; the link is left out",
-                                        built_.lanes[b.lane.index].name)});
+        against_.emplace(std::min(a.lane, b.lane), std::max(a.lane, b.lane));
         return;
       }
       fault("lane " + built_.lanes[a.lane.index].name, line,
@@ -93,6 +92,17 @@ class Linker {
     const LaneEnd& to = leaves_at(a) ? b : a;
     links_[from.lane.index].successors.push_back(to.lane);
     links_[to.lane.index].predecessors.push_back(from.lane);
+  }
+
+  // Shoulders, sidewalks and the like are often linked across the road's middle.
+  void remark_links_against_direction() {
+    if (against_.empty()) return;
+    remarks_.push_back(
+        {"import.link-against-direction", false,
+         "lane " + built_.lanes[against_.begin()->first.index].name, 0,
+         fmt::format("{} links of this and other lanes that are not for driving join ends that "
+                     "both drive in or both out; they are left out",
+                     against_.size())});
   }
 
   void link_sections(std::size_t road) {
@@ -377,6 +387,7 @@ class Linker {
   std::vector<ImportRemark>& remarks_;
   std::vector<LaneLinks> links_;
   std::map<std::string, std::size_t> road_index_;
+  std::set<std::pair<LaneId, LaneId>> against_;  // lanes whose link is left out
 };
 
 }  // namespace
