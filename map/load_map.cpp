@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/compiled_map.h"
+#include "roadbed/map/formats/lanelet2.h"
 #include "roadbed/map/formats/open_drive.h"
 #include "roadbed/map/formats/open_drive_document.h"
 #include "roadbed/map/formats/xml.h"
@@ -26,17 +27,18 @@ RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadO
                       .place = {},
                       .element = {},
                       .found = "neither XML nor a compiled map",
-                      .needed = "an OpenDRIVE file or a compiled map",
+                      .needed = "an OpenDRIVE or Lanelet2 file or a compiled map",
                       .remedy = "check whether it is the right file"});
   }
   XmlDocument xml(bytes, name);
+  if (lanelet2::is_lanelet2(xml.root().name())) return RoadMap(lanelet2::read(xml));
   if (!open_drive::is_open_drive(xml.root().name())) {
     throw InputError({.file = name,
                       .place = std::to_string(xml.line_of(xml.root())),
                       .element = {},
                       .found = fmt::format("root element <{}>", xml.root().name()),
-                      .needed = "<OpenDRIVE>",
-                      .remedy = "give an OpenDRIVE file or a compiled map"});
+                      .needed = "<OpenDRIVE> or <osm>",
+                      .remedy = "give an OpenDRIVE or Lanelet2 file or a compiled map"});
   }
   return RoadMap(open_drive::read(std::move(xml), options));
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/formats/layer_frame.h"
@@ -16,6 +17,7 @@
 #include "roadbed/map/formats/write_flatgeobuf.h"
 #include "roadbed/map/formats/write_geojson.h"
 #include "roadbed/map/formats/write_geopackage.h"
+#include "roadbed/map/formats/write_lanelet2.h"
 #include "roadbed/map/formats/write_svg.h"
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
@@ -28,9 +30,10 @@ namespace {
 
 /// What a writer may ask for besides the map.
 struct ExportOptions {
-  std::vector<std::string> layers;  ///< none: what suits the format
-  std::string crs;                  ///< of the output's coordinates, empty if unknown
-  bool is_own_crs = false;          ///< the map's: its offset counts
+  std::vector<std::string> layers;            ///< none: what suits the format
+  std::string crs;                            ///< of the output's coordinates, empty if unknown
+  bool is_own_crs = false;                    ///< the map's: its offset counts
+  std::vector<std::string>* notes = nullptr;  ///< takes what the user should know, a line each
 };
 
 /// Coordinates of the CRS where it is known, else the source's raw ones.
@@ -58,6 +61,13 @@ std::string flatgeobuf(const map::RoadMap& road_map, const ExportOptions& option
   return map::write_flatgeobuf(placed_layers(road_map, one).front(), options.crs);
 }
 
+std::string lanelet2(const map::RoadMap& road_map, const ExportOptions& options) {
+  const auto offset = options.is_own_crs ? road_map.offset_in_crs() : map::CrsOffset{};
+  map::Lanelet2File file = map::write_lanelet2(road_map, {options.crs, offset});
+  if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  return std::move(file.bytes);
+}
+
 struct Format {
   std::string_view suffix;
   std::string (*write)(const map::RoadMap&, const ExportOptions&);
@@ -65,7 +75,7 @@ struct Format {
   std::string_view what;    ///< for the help
 };
 
-constexpr std::array<Format, 5> kFormats = {{
+constexpr std::array<Format, 6> kFormats = {{
     {".geojson", geojson, 100, "layers, in longitude and latitude where the system is known"},
     {".gpkg", geopackage, 100, "layers with colours for QGIS (GeoPackage)"},
     {".fgb", flatgeobuf, 1, "one layer (FlatGeobuf)"},
@@ -75,6 +85,7 @@ constexpr std::array<Format, 5> kFormats = {{
     {".csv",
      [](const map::RoadMap& road_map, const ExportOptions&) { return map::write_csv(road_map); }, 0,
      "all lane lines, a row per vertex"},
+    {".osm", lanelet2, 0, "lanelets that other programs route on (Lanelet2)"},
 }};
 
 template <typename Items, typename Text>
@@ -151,12 +162,14 @@ class ExportCommand : public Command {
     check_layers(format, layers_);
     check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
+    std::vector<std::string> notes;
     const std::string bytes =
-        format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map)});
+        format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
     write_output(output_, bytes);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_.string(), road_map.lanes().size(),
                  bytes.size());
+      for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
     }
     return Exit::ok;
   }

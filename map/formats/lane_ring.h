@@ -5,7 +5,7 @@
 namespace roadbed::map {
 
 /// The polygon between a lane's borders, counter-clockwise and simple: of a ring that folds over
-/// itself the largest part is kept. Empty if nothing of it has an area.
+/// itself the largest part is kept. Empty if nothing of it has an area, or it folds without end.
 geometry::Ring lane_ring(const geometry::Polyline& left_in_map,
                          const geometry::Polyline& right_in_map);
 

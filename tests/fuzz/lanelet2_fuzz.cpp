@@ -1,0 +1,22 @@
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/formats/write_lanelet2.h"
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+
+// What can be read can be written, too, and read again.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace roadbed::map;
+  try {
+    const RoadMap road_map =
+        parse_map(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+    if (road_map.format() == "Lanelet2") {
+      parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632"}).bytes, "written");
+    }
+  } catch (const InputError&) {
+    return 0;  // refused, as it should be
+  }
+  return 0;
+}
