@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include "roadbed/map/area_centreline.h"
+
 namespace roadbed::map {
 namespace {
 
@@ -34,6 +36,30 @@ void add_line(const RoadMap& road_map, const std::string& columns, std::string_v
   }
 }
 
+/// Points beside a line, `share` of the width to its left.
+geometry::Polyline beside(const geometry::MedialBranch& branch, double share) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < branch.width_m.size(); ++i) {
+    const double s_m = branch.line.stations_m()[i];
+    const Eigen::Vector2d along = branch.line.at(s_m + 0.05) - branch.line.at(s_m - 0.05);
+    const Eigen::Vector2d left = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    points.emplace_back(branch.line.points()[i] + share * branch.width_m[i] * left);
+  }
+  return geometry::Polyline(std::move(points));
+}
+
+/// A stretch of road area in the columns of a lane: its borders are half the width from its
+/// middle.
+void add_branch(const RoadMap& road_map, const geometry::MedialBranch& branch, std::size_t number,
+                std::string& text) {
+  const std::string columns = fmt::format(",0,area {},other", number);
+  const std::vector<double> z_m(branch.width_m.size(), 0.0);
+  const std::vector<double>& stations_m = branch.line.stations_m();
+  add_line(road_map, columns, "left", {beside(branch, 0.5), z_m, stations_m}, text);
+  add_line(road_map, columns, "right", {beside(branch, -0.5), z_m, stations_m}, text);
+  add_line(road_map, columns, "centre", {branch.line, z_m, stations_m}, text);
+}
+
 }  // namespace
 
 std::string write_csv(const RoadMap& road_map) {
@@ -43,6 +69,10 @@ std::string write_csv(const RoadMap& road_map) {
     add_line(road_map, columns, "left", lane.left, text);
     add_line(road_map, columns, "right", lane.right, text);
     add_line(road_map, columns, "centre", lane.centre, text);
+  }
+  std::size_t number = 0;
+  for (const geometry::MedialBranch& branch : road_centrelines(road_map)) {
+    add_branch(road_map, branch, ++number, text);
   }
   return text;
 }
