@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/compiled_map.h"
+#include "roadbed/map/formats/common_road.h"
+#include "roadbed/map/formats/geojson_surface.h"
 #include "roadbed/map/formats/lanelet2.h"
 #include "roadbed/map/formats/open_drive.h"
 #include "roadbed/map/formats/open_drive_document.h"
@@ -22,23 +24,27 @@ bool looks_like_xml(const std::string& bytes) {
 
 RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadOptions& options) {
   if (is_compiled_map(bytes)) return read_compiled_map(bytes, name);
+  if (geojson::is_geojson(bytes)) return RoadMap(geojson::read(bytes, name));
   if (!looks_like_xml(bytes)) {
-    throw InputError({.file = name,
-                      .place = {},
-                      .element = {},
-                      .found = "neither XML nor a compiled map",
-                      .needed = "an OpenDRIVE or Lanelet2 file or a compiled map",
-                      .remedy = "check whether it is the right file"});
+    throw InputError(
+        {.file = name,
+         .place = {},
+         .element = {},
+         .found = "neither XML nor a compiled map nor JSON",
+         .needed = "an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map",
+         .remedy = "check whether it is the right file"});
   }
   XmlDocument xml(bytes, name);
   if (lanelet2::is_lanelet2(xml.root().name())) return RoadMap(lanelet2::read(xml));
+  if (common_road::is_common_road(xml.root().name())) return RoadMap(common_road::read(xml));
   if (!open_drive::is_open_drive(xml.root().name())) {
-    throw InputError({.file = name,
-                      .place = std::to_string(xml.line_of(xml.root())),
-                      .element = {},
-                      .found = fmt::format("root element <{}>", xml.root().name()),
-                      .needed = "<OpenDRIVE> or <osm>",
-                      .remedy = "give an OpenDRIVE or Lanelet2 file or a compiled map"});
+    throw InputError(
+        {.file = name,
+         .place = std::to_string(xml.line_of(xml.root())),
+         .element = {},
+         .found = fmt::format("root element <{}>", xml.root().name()),
+         .needed = "<OpenDRIVE>, <osm> or <commonRoad>",
+         .remedy = "give an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map"});
   }
   return RoadMap(open_drive::read(std::move(xml), options));
 }

@@ -204,6 +204,7 @@ inline constexpr auto head = [](auto& io, auto& content) {
   io(content.offset_in_crs.heading_rad);
   io(content.origin_in_source.x());
   io(content.origin_in_source.y());
+  io.list(content.attributes, attribute);
 };
 
 /// Every list of a map, with its name and the fields of its elements: `io(name, fields, list...)`,

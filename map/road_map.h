@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "roadbed/geometry/polyline.h"
+#include "roadbed/map/attributes.h"
 #include "roadbed/map/id.h"
 #include "roadbed/map/lane.h"
 #include "roadbed/map/lane_graph.h"
@@ -71,6 +72,7 @@ struct MapHead {
   std::string crs;     ///< as the file says, may be empty
   CrsOffset offset_in_crs;
   Eigen::Vector2d origin_in_source{0, 0};
+  Attributes attributes;  ///< of the file as a whole: where the map is, who made it
 };
 
 /// Everything a map is made of, in lists of one kind. A new list is named in map_fields.h as well.
@@ -120,6 +122,7 @@ class RoadMap {
   const std::string& crs() const { return content_.crs; }
   const CrsOffset& offset_in_crs() const { return content_.offset_in_crs; }
   const Eigen::Vector2d& origin_in_source() const { return content_.origin_in_source; }
+  const Attributes& attributes() const { return content_.attributes; }
   Eigen::Vector2d to_map(const Eigen::Vector2d& in_source) const;
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const;
 

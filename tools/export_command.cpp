@@ -13,6 +13,7 @@
 
 #include "roadbed/map/formats/layer_frame.h"
 #include "roadbed/map/formats/layers.h"
+#include "roadbed/map/formats/write_common_road.h"
 #include "roadbed/map/formats/write_csv.h"
 #include "roadbed/map/formats/write_flatgeobuf.h"
 #include "roadbed/map/formats/write_geojson.h"
@@ -75,7 +76,7 @@ struct Format {
   std::string_view what;    ///< for the help
 };
 
-constexpr std::array<Format, 6> kFormats = {{
+constexpr std::array<Format, 7> kFormats = {{
     {".geojson", geojson, 100, "layers, in longitude and latitude where the system is known"},
     {".gpkg", geopackage, 100, "layers with colours for QGIS (GeoPackage)"},
     {".fgb", flatgeobuf, 1, "one layer (FlatGeobuf)"},
@@ -86,6 +87,11 @@ constexpr std::array<Format, 6> kFormats = {{
      [](const map::RoadMap& road_map, const ExportOptions&) { return map::write_csv(road_map); }, 0,
      "all lane lines, a row per vertex"},
     {".osm", lanelet2, 0, "lanelets that other programs route on (Lanelet2)"},
+    {".xml",
+     [](const map::RoadMap& road_map, const ExportOptions&) {
+       return map::write_common_road(road_map);
+     },
+     0, "lanes, links and rules (CommonRoad 2020a)"},
 }};
 
 template <typename Items, typename Text>

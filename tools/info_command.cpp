@@ -9,11 +9,14 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/map/area_centreline.h"
 #include "roadbed/map/compiled_map.h"
 #include "roadbed/map/components.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/read_file.h"
 #include "roadbed/map/surface.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/scenario_counts.h"
 
 namespace roadbed::tools {
 namespace {
@@ -24,18 +27,23 @@ struct Bounds {
   Eigen::Vector2d low, high;
 };
 
-/// Of all lane borders, in source coordinates; none for a map without lanes.
+/// Of all lane borders and areas, in source coordinates; none for a map without any.
 std::optional<Bounds> bounds_of(const map::RoadMap& road_map) {
   std::optional<Bounds> bounds;
-  for (const map::Lane& lane : road_map.lanes()) {
-    for (const map::LaneLine* line : {&lane.left, &lane.right}) {
-      for (const Eigen::Vector2d& point : line->in_map.points()) {
-        const Eigen::Vector2d in_source = road_map.to_source(point);
-        if (!bounds) bounds = Bounds{in_source, in_source};
-        bounds->low = bounds->low.cwiseMin(in_source);
-        bounds->high = bounds->high.cwiseMax(in_source);
-      }
+  const auto add = [&](const std::vector<Eigen::Vector2d>& points_in_map) {
+    for (const Eigen::Vector2d& point : points_in_map) {
+      const Eigen::Vector2d in_source = road_map.to_source(point);
+      if (!bounds) bounds = Bounds{in_source, in_source};
+      bounds->low = bounds->low.cwiseMin(in_source);
+      bounds->high = bounds->high.cwiseMax(in_source);
     }
+  };
+  for (const map::Lane& lane : road_map.lanes()) {
+    add(lane.left.in_map.points());
+    add(lane.right.in_map.points());
+  }
+  for (const map::Area& area : road_map.areas()) {
+    for (const geometry::Polygon& polygon : area.in_map) add(polygon.outer);
   }
   return bounds;
 }
@@ -80,6 +88,22 @@ Json areas_m2(const map::RoadMap& road_map) {
           {"junctions_m2", junctions_m2}};
 }
 
+/// Road areas without lanes: their joint area, and the lines in the middle of them.
+Json road_areas_json(const map::RoadMap& road_map) {
+  double length_m = 0.0, width_m2 = 0.0;
+  for (const geometry::MedialBranch& branch : map::road_centrelines(road_map)) {
+    const std::vector<double>& s_m = branch.line.stations_m();
+    length_m += branch.line.length_m();
+    for (std::size_t i = 0; i + 1 < s_m.size(); ++i) {
+      width_m2 += 0.5 * (branch.width_m[i] + branch.width_m[i + 1]) * (s_m[i + 1] - s_m[i]);
+    }
+  }
+  return {{"areas", road_map.areas().size()},
+          {"area_m2", area_m2(map::road_area_surface(road_map))},
+          {"centrelines_m", length_m},
+          {"mean_width_m", length_m > 0.0 ? Json(width_m2 / length_m) : Json()}};
+}
+
 Json bounds_json(const map::RoadMap& road_map) {
   const std::optional<Bounds> bounds = bounds_of(road_map);
   if (!bounds) return nullptr;
@@ -120,6 +144,9 @@ Json info_json(const map::RoadMap& road_map) {
   info["lengths"] = lengths_m(road_map);
   info["areas"] = areas_m2(road_map);
   info["bounds"] = bounds_json(road_map);
+  const bool has_road_areas = std::any_of(road_map.areas().begin(), road_map.areas().end(),
+                                          [](const map::Area& area) { return area.is_road; });
+  if (has_road_areas) info["road_areas"] = road_areas_json(road_map);
   info["drivable_component_lanes"] = component_sizes(road_map);
   info["remarks"] = remark_counts(road_map);
   info["unused"] = unused_counts(road_map);
@@ -151,6 +178,15 @@ std::string components_text(const Json& sizes) {
   return fmt::format("{}, the largest with {} lanes", sizes.size(), sizes.at(0).get<int>());
 }
 
+std::string scenario_text(const Json& scenario) {
+  const auto count = [&](const char* key) { return scenario.at(key).get<int>(); };
+  return fmt::format(
+      "{}: {} static, {} dynamic, {} other obstacles, {:.1f} s recorded, {} planning problems",
+      scenario.at("benchmark_id").get<std::string>(), count("static_obstacles"),
+      count("dynamic_obstacles"), count("other_obstacles"), scenario.at("recorded_s").get<double>(),
+      count("planning_problems"));
+}
+
 void print_info(std::ostream& out, const Json& info) {
   const auto line = [&](const char* what, const std::string& value) {
     fmt::print(out, "{:<22}{}\n", what, value);
@@ -173,6 +209,12 @@ void print_info(std::ostream& out, const Json& info) {
   line("drivable lanes",
        fmt::format("{:.1f} m, {:.1f} m²", number(info.at("lengths").at("drivable_lanes_m")),
                    number(info.at("areas").at("drivable_m2"))));
+  if (info.contains("road_areas")) {
+    const Json& areas = info.at("road_areas");
+    line("road areas",
+         fmt::format("{}, {:.1f} m², {:.1f} m of centrelines", areas.at("areas").get<int>(),
+                     number(areas.at("area_m2")), number(areas.at("centrelines_m"))));
+  }
   line("connected components", components_text(info.at("drivable_component_lanes")));
   line("remarks", listed(info.at("remarks")));
   if (info.contains("verified")) {
@@ -180,6 +222,9 @@ void print_info(std::ostream& out, const Json& info) {
                                  info["verified"]["records"].get<int>()));
   }
   line("not used", listed(info.at("unused")));
+  if (info.contains("scenario") && info.at("scenario").is_object()) {
+    line("scenario", scenario_text(info.at("scenario")));
+  }
 }
 
 class InfoCommand : public Command {
@@ -193,7 +238,11 @@ class InfoCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    Json info = info_json(map::load_map(input_));
+    const map::RoadMap road_map = map::load_map(input_);
+    Json info = info_json(road_map);
+    if (road_map.format().starts_with("CommonRoad")) {
+      info["scenario"] = scenario_counts(map::read_file(input_), input_.string());
+    }
     if (verify_) info["verified"] = verified_json(map::verify_compiled_map(input_));
     if (json_) {
       streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

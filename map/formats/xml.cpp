@@ -93,7 +93,8 @@ std::string XmlDocument::place_of(pugi::xml_node node) {
   std::string element = fmt::format("<{}>", node.name());
   for (pugi::xml_node up = node; up; up = up.parent()) {
     const std::string_view kind = up.name();
-    if (kind == "road" || kind == "junction" || kind == "lane") {
+    if (kind == "road" || kind == "junction" || kind == "lane" || kind == "lanelet" ||
+        kind == "planningProblem" || kind.ends_with("bstacle")) {
       element += fmt::format(" of {} {}", kind, up.attribute("id").value());
     }
   }
@@ -150,6 +151,16 @@ std::string XmlDocument::text(pugi::xml_node node, const char* attribute) const 
     refuse(node, fmt::format("attribute {} is missing or empty", attribute), "a text", "add it");
   }
   return value;
+}
+
+double XmlDocument::text_number(pugi::xml_node parent, const char* child) const {
+  const pugi::xml_node node = parent.child(child);
+  if (!node) refuse(parent, fmt::format("element <{}> is missing", child), "a number", "add it");
+  const std::optional<double> value = parse_finite(node.child_value());
+  if (!value) {
+    refuse(node, fmt::format("\"{}\"", node.child_value()), "a finite number", "correct the value");
+  }
+  return *value;
 }
 
 }  // namespace roadbed::map

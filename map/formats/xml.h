@@ -45,6 +45,10 @@ class XmlDocument {
   /// What messages call an element: "<speed> of lane -1 of road 5".
   static std::string place_of(pugi::xml_node node);
 
+  /// The finite number that is the element's text.
+  /// @throws InputError if there is no element or its text is something else.
+  double text_number(pugi::xml_node parent, const char* child) const;
+
   /// Throws InputError placed at the element.
   [[noreturn]] void refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
                            const std::string& remedy) const;

@@ -1,0 +1,23 @@
+// CommonRoad in: map, scenario and the map written again, or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/formats/common_road_scenario_reader.h"
+#include "roadbed/map/formats/write_common_road.h"
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  if (!roadbed::map::common_road::holds_scenario(bytes)) return -1;  // not worth keeping
+  try {
+    roadbed::map::common_road::parse_scenario(bytes, "fuzz.xml");
+  } catch (const roadbed::map::InputError&) {
+  }
+  try {
+    roadbed::map::write_common_road(roadbed::map::parse_map(bytes, "fuzz.xml"));
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}
