@@ -83,15 +83,15 @@ class Elimination {
 };
 
 // Counting sort of pairs (group, item) into rows; `visit` names all of them, items ascending.
-template <typename Visit>
-Grouped<std::uint32_t> grouped_by(std::size_t groups, const Visit& visit) {
-  Grouped<std::uint32_t> rows;
+template <typename Item, typename Visit>
+Grouped<Item> grouped_by(std::size_t groups, const Visit& visit) {
+  Grouped<Item> rows;
   rows.first.assign(groups + 1, 0);
-  visit([&](std::uint32_t group, std::uint32_t) { ++rows.first[group + 1]; });
+  visit([&](std::uint32_t group, const Item&) { ++rows.first[group + 1]; });
   for (std::size_t i = 0; i < groups; ++i) rows.first[i + 1] += rows.first[i];
   rows.items.resize(rows.first.back());
   std::vector<std::uint32_t> next(rows.first.begin(), rows.first.end() - 1);
-  visit([&](std::uint32_t group, std::uint32_t item) { rows.items[next[group]++] = item; });
+  visit([&](std::uint32_t group, const Item& item) { rows.items[next[group]++] = item; });
   return rows;
 }
 
@@ -113,10 +113,11 @@ Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_
   made.rank_of_node.resize(graph.nodes());
   for (Rank rank = 0; rank < order.size(); ++rank) made.rank_of_node[order[rank]] = rank;
   Elimination(graph, made).run();
-  made.below = grouped_by(graph.nodes(), [&](const auto& take) {
+  made.below = grouped_by<RankBelow>(graph.nodes(), [&](const auto& take) {
     for (Rank rank = 0; rank < graph.nodes(); ++rank) {
       for (const RankRun& run : made.above.of(rank)) {
-        for (Rank i = 0; i < run.count; ++i) take(run.first + i, rank);
+        for (Rank i = 0; i < run.count; ++i)
+          take(run.first + i, RankBelow{rank, run.first_arc + i});
       }
     }
   });
@@ -126,7 +127,7 @@ Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_
         std::minmax(made.rank_of_node[graph.tail[arc]], made.rank_of_node[graph.head[arc]]);
     if (low != high) made.arc_of[arc] = made.arc_between(low, high);
   }
-  made.arcs_at = grouped_by(made.arcs, [&](const auto& take) {
+  made.arcs_at = grouped_by<std::uint32_t>(made.arcs, [&](const auto& take) {
     for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
       if (made.arc_of[arc] != kNoNode) take(made.arc_of[arc], arc);
     }

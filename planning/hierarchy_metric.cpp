@@ -11,6 +11,22 @@ namespace {
 
 constexpr auto kFar = static_cast<std::int32_t>(kNever);
 
+// Visits the ranks that lead up to both: the arcs to the first and to the second. Stops at true.
+// The shorter list is walked, and the other's arcs are looked up.
+template <typename Visit>
+void for_each_below(const Hierarchy& hierarchy, std::uint32_t one, std::uint32_t other,
+                    const Visit& visit) {
+  const bool one_is_shorter = hierarchy.below.of(one).size() <= hierarchy.below.of(other).size();
+  const std::uint32_t looked_up = one_is_shorter ? other : one;
+  for (const RankBelow& below : hierarchy.below.of(one_is_shorter ? one : other)) {
+    const std::uint32_t arc = hierarchy.arc_between(below.rank, looked_up);
+    if (arc == kNoNode) continue;
+    if (visit(below.rank, one_is_shorter ? below.arc : arc, one_is_shorter ? arc : below.arc)) {
+      return;
+    }
+  }
+}
+
 // An arc of the hierarchy that has to be computed again; lower ones first.
 struct Touched {
   std::uint32_t low, high, arc;
@@ -74,17 +90,12 @@ HierarchyMetric::Both HierarchyMetric::own_weight(std::uint32_t arc, std::uint32
 HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t arc, std::uint32_t low,
                                                std::uint32_t high) const {
   Both both = own_weight(arc, low);
-  const auto of_high = hierarchy_.below.of(high);
-  auto candidate = of_high.begin();
-  for (const std::uint32_t rank : hierarchy_.below.of(low)) {
-    candidate = std::lower_bound(candidate, of_high.end(), rank);
-    if (candidate == of_high.end()) break;
-    if (*candidate != rank) continue;
-    const std::uint32_t to_low = hierarchy_.arc_between(rank, low);
-    const std::uint32_t to_high = hierarchy_.arc_between(rank, high);
-    both.up = std::min(both.up, down_[to_low] + up_[to_high]);
-    both.down = std::min(both.down, down_[to_high] + up_[to_low]);
-  }
+  for_each_below(hierarchy_, low, high,
+                 [&](std::uint32_t, std::uint32_t to_low, std::uint32_t to_high) {
+                   both.up = std::min(both.up, down_[to_low] + up_[to_high]);
+                   both.down = std::min(both.down, down_[to_high] + up_[to_low]);
+                   return false;
+                 });
   return {std::min(both.up, kFar), std::min(both.down, kFar)};
 }
 
@@ -112,19 +123,24 @@ std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
     const Both now = compute(next.arc, next.low, next.high);
     if (now == old) continue;
     // Arcs above are affected where they rested on the old weight, or the new one is less.
+    const bool down_changed = old.down != now.down, up_changed = old.up != now.up;
     for (const RankRun& run : hierarchy_.above.of(next.low)) {
       for (std::uint32_t i = 0; i < run.count; ++i) {
         const std::uint32_t other = run.first + i, beside = run.first_arc + i;
-        if (other == next.high) continue;
+        const bool out = down_changed && up_[beside] < kFar;
+        const bool in = up_changed && down_[beside] < kFar;
+        if (other == next.high || (!out && !in)) continue;
         const std::uint32_t low = std::min(other, next.high), high = std::max(other, next.high);
         const std::uint32_t arc = hierarchy_.arc_between(low, high);
         // next → other and other → next, over their common low rank.
         const bool next_is_low = next.high < other;
         const std::int32_t from_next = next_is_low ? up_[arc] : down_[arc];
         const std::int32_t to_next = next_is_low ? down_[arc] : up_[arc];
-        const bool out = old.down + up_[beside] <= from_next || now.down + up_[beside] < from_next;
-        const bool in = old.up + down_[beside] <= to_next || now.up + down_[beside] < to_next;
-        if (out || in) touched.push({low, high, arc});
+        const bool touches_out =
+            out && (old.down + up_[beside] <= from_next || now.down + up_[beside] < from_next);
+        const bool touches_in =
+            in && (old.up + down_[beside] <= to_next || now.up + down_[beside] < to_next);
+        if (touches_out || touches_in) touched.push({low, high, arc});
       }
     }
     up_[next.arc] = now.up;
@@ -144,20 +160,15 @@ void HierarchyMetric::unpack(std::uint32_t low, std::uint32_t high, bool upwards
       return;
     }
   }
-  const auto of_high = hierarchy_.below.of(high);
-  auto candidate = of_high.begin();
-  for (const std::uint32_t rank : hierarchy_.below.of(low)) {
-    candidate = std::lower_bound(candidate, of_high.end(), rank);
-    if (candidate == of_high.end()) return;
-    if (*candidate != rank) continue;
-    const std::uint32_t to_low = hierarchy_.arc_between(rank, low);
-    const std::uint32_t to_high = hierarchy_.arc_between(rank, high);
-    const std::int32_t way = upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];
-    if (way != weight) continue;
-    unpack(rank, upwards ? low : high, false, arcs);
-    unpack(rank, upwards ? high : low, true, arcs);
-    return;
-  }
+  for_each_below(hierarchy_, low, high,
+                 [&](std::uint32_t rank, std::uint32_t to_low, std::uint32_t to_high) {
+                   const std::int32_t way =
+                       upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];
+                   if (way != weight) return false;
+                   unpack(rank, upwards ? low : high, false, arcs);
+                   unpack(rank, upwards ? high : low, true, arcs);
+                   return true;
+                 });
 }
 
 }  // namespace roadbed::planning

@@ -49,15 +49,21 @@ void HierarchySearch::step(Side& side, std::uint32_t rank) const {
   side.open.insert(at, parent);
 }
 
+template <bool kTraced>
 void HierarchySearch::relax(Side& side, const std::vector<std::int32_t>& weights,
                             std::uint32_t rank) const {
   const std::int32_t cost = side.cost[rank];
   for (const RankRun& run : metric_.hierarchy().above.of(rank)) {
-    relax_run(run.count, cost, &weights[run.first_arc], &side.cost[run.first],
-              &side.parent[run.first], rank);
+    if constexpr (kTraced) {
+      relax_run(run.count, cost, &weights[run.first_arc], &side.cost[run.first],
+                &side.parent[run.first], rank);
+    } else {
+      lower_run(run.count, cost, &weights[run.first_arc], &side.cost[run.first]);
+    }
   }
 }
 
+template <bool kTraced>
 HierarchySearch::Meeting HierarchySearch::meet(std::span<const Seed> from,
                                                std::span<const Seed> to) {
   start(forward_, from);
@@ -69,11 +75,11 @@ HierarchySearch::Meeting HierarchySearch::meet(std::span<const Seed> from,
     const std::int32_t there = forward_.cost[rank], back = backward_.cost[rank];
     if (there < kFar && back < kFar && there + back < best.cost) best = {there + back, rank};
     if (lowest(forward_.open) == rank) {
-      if (there < best.cost) relax(forward_, metric_.up(), rank);
+      if (there < best.cost) relax<kTraced>(forward_, metric_.up(), rank);
       step(forward_, rank);
     }
     if (lowest(backward_.open) == rank) {
-      if (back < best.cost) relax(backward_, metric_.down(), rank);
+      if (back < best.cost) relax<kTraced>(backward_, metric_.down(), rank);
       step(backward_, rank);
     }
   }
@@ -88,7 +94,7 @@ void HierarchySearch::clear() {
 }
 
 Ticks HierarchySearch::cost(std::span<const Seed> from, std::span<const Seed> to) {
-  const Meeting meeting = meet(from, to);
+  const Meeting meeting = meet<false>(from, to);
   clear();
   return static_cast<Ticks>(meeting.cost);
 }
@@ -103,7 +109,7 @@ std::uint32_t HierarchySearch::seed_of(const Side& side, std::uint32_t rank,
 }
 
 GraphPath HierarchySearch::find(std::span<const Seed> from, std::span<const Seed> to) {
-  const Meeting meeting = meet(from, to);
+  const Meeting meeting = meet<true>(from, to);
   GraphPath path;
   if (meeting.cost < kFar) {
     std::vector<std::uint32_t> chain;
@@ -131,7 +137,7 @@ ClimbedSpace HierarchySearch::climb(std::span<const Seed> seeds, bool backward) 
     if (side.cost[rank] < kFar) {
       space.ranks.push_back(rank);
       space.costs.push_back(side.cost[rank]);
-      relax(side, backward ? metric_.down() : metric_.up(), rank);
+      relax<false>(side, backward ? metric_.down() : metric_.up(), rank);
     }
     step(side, rank);
   }

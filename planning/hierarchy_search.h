@@ -44,7 +44,9 @@ class HierarchySearch {
 
   void start(Side& side, std::span<const Seed> seeds) const;
   void step(Side& side, std::uint32_t rank) const;
+  template <bool kTraced>
   void relax(Side& side, const std::vector<std::int32_t>& weights, std::uint32_t rank) const;
+  template <bool kTraced>
   Meeting meet(std::span<const Seed> from, std::span<const Seed> to);
   void clear();
   std::uint32_t seed_of(const Side& side, std::uint32_t rank,

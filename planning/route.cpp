@@ -35,15 +35,8 @@ bool knows_limit(const RouteNetwork& network, std::uint32_t lane) {
 /// Lays passages behind one another as legs, priced by both measures.
 class Assembly {
  public:
-  Assembly(const RouteNetwork& network, const RouteOptions& options)
-      : network_(network),
-        by_time_(options),
-        by_distance_(options),
-        time_(network, by_time_),
-        distance_(network, by_distance_) {
-    by_time_.cost = RouteCost::time;
-    by_distance_.cost = RouteCost::distance;
-  }
+  Assembly(const TravelRules& time, const TravelRules& distance)
+      : network_(time.network()), time_(time), distance_(distance) {}
 
   void add(const Passage& passage, bool is_first) {
     double from = passage.range.from;
@@ -101,8 +94,7 @@ class Assembly {
   }
 
   const RouteNetwork& network_;
-  RouteOptions by_time_, by_distance_;
-  TravelRules time_, distance_;
+  const TravelRules &time_, &distance_;
   Route route_;
 };
 
@@ -132,6 +124,23 @@ std::string place_name(std::size_t index, std::size_t count) {
 
 }  // namespace
 
+/// The same rules by both measures, whichever of them is the cost.
+struct Router::Measures {
+  RouteOptions by_time, by_distance;
+  TravelRules time, distance;
+
+  Measures(const RouteNetwork& network, const RouteOptions& options)
+      : by_time(with(options, RouteCost::time)),
+        by_distance(with(options, RouteCost::distance)),
+        time(network, by_time),
+        distance(network, by_distance) {}
+
+  static RouteOptions with(RouteOptions options, RouteCost cost) {
+    options.cost = cost;
+    return options;
+  }
+};
+
 Router::Router(const map::RoadMap& road_map, RouteOptions options)
     : road_map_(&road_map), options_(std::move(options)) {
   for (const map::LaneId lane : options_.avoid) {
@@ -141,6 +150,7 @@ Router::Router(const map::RoadMap& road_map, RouteOptions options)
   }
   solver_ = std::make_unique<RouteSolver>(
       std::make_shared<const RouteNetwork>(make_route_network(road_map)), options_);
+  measures_ = std::make_unique<const Measures>(solver_->network(), options_);
 }
 
 Router::~Router() = default;
@@ -161,7 +171,7 @@ std::string Router::unfit(const map::LanePlace& place, const std::string& what) 
 }
 
 Route Router::route_along(const Way& way) const {
-  Assembly assembly(solver_->network(), options_);
+  Assembly assembly(measures_->time, measures_->distance);
   for (std::size_t i = 0; i < way.passages.size(); ++i) assembly.add(way.passages[i], i == 0);
   return std::move(assembly).take();
 }

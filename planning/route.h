@@ -114,9 +114,12 @@ class Router {
   RouteSolver& solver() { return *solver_; }
 
  private:
+  struct Measures;
+
   const map::RoadMap* road_map_;
   RouteOptions options_;
   std::unique_ptr<RouteSolver> solver_;
+  std::unique_ptr<const Measures> measures_;
 };
 
 /// One question to a router that nobody needs again.

@@ -31,13 +31,6 @@ double curvature_at(const geometry::Polyline& line, double s_m) {
   return sides > 0.0 ? 2.0 * std::abs(a.x() * c.y() - a.y() * c.x()) / sides : 0.0;
 }
 
-double curvature_within(const geometry::Polyline& line, double from_m, double to_m) {
-  const double curvature =
-      std::max({curvature_at(line, from_m), curvature_at(line, 0.5 * (from_m + to_m)),
-                curvature_at(line, to_m)});
-  return curvature < kStraight_per_m ? 0.0 : curvature;
-}
-
 std::vector<double> piece_ends(const Lane& lane) {
   const double length_m = lane.length_m();
   std::vector<double> ends{length_m};
@@ -52,13 +45,18 @@ std::vector<double> piece_ends(const Lane& lane) {
   return ends;
 }
 
-void add_speeds(const Lane& lane, Grouped<SpeedPiece>& speeds) {
+void add_speeds(const Lane& lane, bool is_used, Grouped<SpeedPiece>& speeds) {
   const std::size_t first = speeds.items.size();
-  double from_m = 0.0;
+  const auto& line = lane.centre.in_map;
+  double from_m = 0.0, bend_before = 0.0;
   for (const double to_m : piece_ends(lane)) {
+    // A chord reaches almost from one end of a piece to the other: the ends will do.
+    const double bend = is_used ? curvature_at(line, to_m) : 0.0;
+    const double worst = std::max(from_m > 0.0 ? bend_before : bend, bend);
     const SpeedPiece piece{to_m, lane.speed_limit_at_mps(from_m).value_or(0.0),
-                           curvature_within(lane.centre.in_map, from_m, to_m)};
+                           worst < kStraight_per_m ? 0.0 : worst};
     from_m = to_m;
+    bend_before = bend;
     const bool joins = speeds.items.size() > first &&
                        speeds.items.back().limit_mps == piece.limit_mps &&
                        speeds.items.back().curvature_per_m == piece.curvature_per_m;
@@ -171,7 +169,7 @@ RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptio
     add_neighbour(lane, links.left, options, made.left, network.left_windows);
     add_neighbour(lane, links.right, options, made.right, network.right_windows);
     add_links(links, options, network.successors);
-    add_speeds(lane, network.speeds);
+    add_speeds(lane, !made.users.empty(), network.speeds);
     network.lanes.push_back(made);
   }
   add_signals(road_map, network.lanes);
