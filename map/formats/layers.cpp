@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "roadbed/map/area_centreline.h"
 #include "roadbed/map/lane_relations.h"
 #include "roadbed/map/surface.h"
 #include "roadbed/map/validation/validate.h"
@@ -287,6 +288,19 @@ Layer areas_layer(const RoadMap& road_map) {
   return layer;
 }
 
+Layer area_centrelines_layer(const RoadMap& road_map) {
+  Layer layer{"area_centrelines", "area_centreline", ShapeKind::line, false, {}, {}};
+  layer.columns = {{"length_m", ColumnKind::number},
+                   {"least_width_m", ColumnKind::number},
+                   {"most_width_m", ColumnKind::number}};
+  for (const geometry::MedialBranch& branch : road_centrelines(road_map)) {
+    const auto [least, most] = std::minmax_element(branch.width_m.begin(), branch.width_m.end());
+    layer.features.push_back(
+        {{{flat(branch.line.points())}}, {branch.line.length_m(), *least, *most}});
+  }
+  return layer;
+}
+
 Layer findings_layer(const RoadMap& road_map) {
   Layer layer{"findings", "finding", ShapeKind::point, false, {}, {}};
   layer.columns = {{"rule", ColumnKind::text},     {"asam_rule", ColumnKind::text},
@@ -307,8 +321,9 @@ struct Maker {
   Layer (*make)(const RoadMap&);
 };
 
-constexpr std::array<Maker, 12> kMakers = {{
+constexpr std::array<Maker, 13> kMakers = {{
     {"areas", areas_layer},
+    {"area_centrelines", area_centrelines_layer},
     {"roads", roads_layer},
     {"junctions", junctions_layer},
     {"drivable_surface", drivable_layer},

@@ -10,9 +10,9 @@
 
 namespace roadbed::map {
 
-/// Names of all layers, in the order in which they are drawn, the ground first: `areas`, `roads`,
-/// `junctions`, `drivable_surface`, `lanes`, `borders`, `centrelines`, `objects`, `object_points`,
-/// `stop_lines`, `signals`, `findings`.
+/// Names of all layers, in the order in which they are drawn, the ground first: `areas`,
+/// `area_centrelines`, `roads`, `junctions`, `drivable_surface`, `lanes`, `borders`, `centrelines`,
+/// `objects`, `object_points`, `stop_lines`, `signals`, `findings`.
 std::vector<std::string> layer_names();
 
 /// One layer of a map, `in_map` coordinates.

@@ -59,6 +59,7 @@ std::string stroke(std::string_view colour, double width_m, std::string_view mor
 
 // Each draws one part; `lanes` are those of one storey, in order of id.
 void draw_grid(Drawing& drawing);
+void draw_areas(Drawing& drawing);
 void draw_surfaces(Drawing& drawing, const std::vector<LaneId>& lanes, bool is_bridge);
 void draw_markings(Drawing& drawing, const std::vector<LaneId>& lanes);
 void draw_directions(Drawing& drawing, const std::vector<LaneId>& lanes);

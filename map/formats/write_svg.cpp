@@ -15,14 +15,19 @@ using Eigen::Vector2d;
 
 Sheet::Sheet(const RoadMap& road_map, double longer_side_px) {
   bool is_first = true;
-  for (const Lane& lane : road_map.lanes()) {
-    for (const LaneLine* line : {&lane.left, &lane.right}) {
-      for (const Vector2d& point : line->in_map.points()) {
-        low_in_map = is_first ? point : low_in_map.cwiseMin(point).eval();
-        high_in_map = is_first ? point : high_in_map.cwiseMax(point).eval();
-        is_first = false;
-      }
+  const auto add = [&](const std::vector<Vector2d>& points) {
+    for (const Vector2d& point : points) {
+      low_in_map = is_first ? point : low_in_map.cwiseMin(point).eval();
+      high_in_map = is_first ? point : high_in_map.cwiseMax(point).eval();
+      is_first = false;
     }
+  };
+  for (const Lane& lane : road_map.lanes()) {
+    add(lane.left.in_map.points());
+    add(lane.right.in_map.points());
+  }
+  for (const Area& area : road_map.areas()) {
+    for (const geometry::Polygon& polygon : area.in_map) add(polygon.outer);
   }
   const Vector2d extent = high_in_map - low_in_map;
   longer_m = std::max(extent.maxCoeff(), 1.0) * 1.06;
@@ -76,6 +81,7 @@ std::string write_svg(const RoadMap& road_map, const SvgOptions& options) {
   const svg::Sheet sheet(road_map, options.longer_side_px);
   svg::Drawing drawing{road_map, sheet, SvgCanvas(sheet.upper_left_in_map, 0.05 * sheet.px_m), {}};
   draw_grid(drawing);
+  draw_areas(drawing);
   bool is_bridge = false;
   for (const std::vector<LaneId>& lanes : svg::lanes_of_storeys(road_map)) {
     draw_surfaces(drawing, lanes, is_bridge);
