@@ -4,102 +4,118 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "roadbed/map/load_map.h"
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/finding_reports.h"
+#include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Findings = std::vector<map::Finding>;
-
-Json finding_json(const map::RoadMap& road_map, const map::Finding& finding) {
-  Json json = {{"rule", finding.rule}};
-  json["asam_rule"] = finding.asam_rule.empty() ? Json() : Json(finding.asam_rule);
-  json["severity"] = name(finding.severity);
-  json["element"] = finding.element;
-  json["line"] = finding.line > 0 ? Json(finding.line) : Json();
-  const Eigen::Vector2d in_source =
-      finding.in_map ? road_map.to_source(*finding.in_map) : Eigen::Vector2d(0, 0);
-  json["x_m"] = finding.in_map ? Json(in_source.x()) : Json();
-  json["y_m"] = finding.in_map ? Json(in_source.y()) : Json();
-  json["message"] = finding.message;
-  return json;
-}
-
-std::string findings_json(const map::RoadMap& road_map, const Findings& findings) {
-  Json list = Json::array();
-  for (const map::Finding& finding : findings) list.push_back(finding_json(road_map, finding));
-  return Json{{"findings", std::move(list)}}.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string place_text(const map::RoadMap& road_map, const map::Finding& finding) {
-  std::string text = finding.line > 0 ? fmt::format(":{}", finding.line) : "";
-  if (finding.in_map) {
-    const Eigen::Vector2d in_source = road_map.to_source(*finding.in_map);
-    text += fmt::format(" ({:.2f}, {:.2f})", in_source.x(), in_source.y());
-  }
-  return text;
-}
-
-long count(const Findings& findings, map::Severity severity) {
-  return std::count_if(findings.begin(), findings.end(),
-                       [&](const map::Finding& f) { return f.severity == severity; });
-}
+using map::Severity;
+using map::Validation;
 
 class ValidateCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Report what makes a map unfit for planning");
-    arguments.add("MAP", input_, "Any readable map").required();
+    arguments.add("MAP", input_, "Any readable map");
+    arguments.flag("--rules", list_rules_,
+                   "List all rules with their meaning, and do nothing else");
     arguments.flag("--json", json_, "Print one JSON document");
+    declare_outputs(arguments);
     arguments.add("--fail-on", fail_on_, "Least severity that makes the exit status 1")
-        .one_of({"error", "warning"})
+        .one_of({"error", "warning", "info"})
         .with_default();
-    arguments
-        .add("--max-gap", options_.max_gap_m, "Largest gap between the ends of linked lanes [m]")
-        .not_negative()
-        .with_default();
-    arguments
-        .add("--max-kink", options_.max_kink_rad,
-             "Largest change of heading between linked lanes [rad]")
-        .not_negative()
-        .with_default();
-    arguments.example("  roadbed validate town.xodr --fail-on warning");
+    declare_limits(arguments);
+    arguments.require([this] {
+      return input_.empty() && !list_rules_ ? std::string("MAP is required") : std::string();
+    });
+    arguments.example(
+        "  roadbed validate town.xodr --fail-on warning\n"
+        "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    const map::RoadMap road_map = map::load_map(input_);
-    const Findings findings = map::validate(road_map, options_);
-    if (json_) {
-      streams.out << findings_json(road_map, findings) << '\n';
-    } else {
-      print(streams.out, road_map, findings);
+    if (list_rules_) {
+      streams.out << rules_table();
+      return Exit::ok;
     }
-    const bool fails = count(findings, map::Severity::error) > 0 ||
-                       (fail_on_ == "warning" && count(findings, map::Severity::warning) > 0);
-    return fails ? Exit::failed : Exit::ok;
+    for (const std::filesystem::path* file : {&junit_, &sarif_, &geojson_, &svg_}) {
+      if (!file->empty()) check_writable(*file, force_);
+    }
+    const Validation validation = map::validate_file(input_, options_);
+    if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
+    const std::string name = input_.filename().string();
+    streams.out << (json_ ? findings_json(validation) : findings_text(validation, name));
+    write_files(streams, validation);
+    return fails(validation) ? Exit::failed : Exit::ok;
   }
 
  private:
-  void print(std::ostream& out, const map::RoadMap& road_map, const Findings& findings) const {
-    for (const map::Finding& finding : findings) {
-      fmt::print(out, "{}{}: {}: {}: {} [{}]\n", input_.filename().string(),
-                 place_text(road_map, finding), name(finding.severity), finding.element,
-                 finding.message, finding.rule);
-    }
-    fmt::print(out, "{} errors, {} warnings, {} notes\n", count(findings, map::Severity::error),
-               count(findings, map::Severity::warning), count(findings, map::Severity::info));
+  void declare_outputs(Arguments& arguments) {
+    arguments.add("--junit", junit_, "Write the findings as JUnit test cases, one per rule");
+    arguments.add("--sarif", sarif_, "Write the findings as SARIF 2.1.0");
+    arguments.add("--geojson", geojson_, "Write the findings as a layer of points");
+    arguments.add("--svg", svg_, "Draw the map with its findings");
+    arguments.flag("--force", force_, "Replace outputs that exist");
   }
 
-  std::filesystem::path input_;
+  void declare_limits(Arguments& arguments) {
+    const auto limit = [&](const char* option, double& value, const char* help) {
+      arguments.add(option, value, help).not_negative().with_default();
+    };
+    limit("--max-gap", options_.max_gap_m, "Largest gap between what should meet [m]");
+    limit("--max-kink", options_.max_kink_rad, "Largest change of heading where curves meet [rad]");
+    limit("--max-step", options_.max_step_m, "Largest step of elevation, width, lane offset [m]");
+    limit("--max-slope-jump", options_.max_slope_jump, "Largest change of slope at a point [m/m]");
+    limit("--max-slope", options_.max_slope, "Steepest slope of a road [m/m]");
+    limit("--max-curvature", options_.max_curvature_per_m, "Greatest curvature of a lane [1/m]");
+    limit("--max-curvature-jump", options_.max_curvature_jump_per_m,
+          "Largest change of curvature where curves meet [1/m]");
+    limit("--max-speed", options_.max_speed_mps, "Greatest speed limit [m/s]");
+    limit("--max-lateral-acceleration", options_.max_lateral_acceleration_mps2,
+          "Greatest acceleration in a bend at the speed limit [m/s²]");
+    limit("--max-signal-distance", options_.max_signal_distance_m,
+          "Greatest distance of a signal from the next lane [m]");
+    limit("--max-object-distance", options_.max_object_distance_m,
+          "Greatest distance of an object from the next lane [m]");
+    limit("--min-overlap", options_.min_overlap_m,
+          "Length over which lanes of two roads may lie on top of each other [m]");
+  }
+
+  void write_files(const Streams& streams, const Validation& validation) const {
+    const std::string name = input_.filename().string();
+    const std::string source = input_.generic_string();
+    if (!junit_.empty()) write_output(junit_, findings_junit(validation, name));
+    if (!sarif_.empty()) write_output(sarif_, findings_sarif(validation, source));
+    if (!geojson_.empty()) write_output(geojson_, findings_geojson(validation));
+    if (svg_.empty()) return;
+    if (validation.road_map) {
+      write_output(svg_, findings_svg(validation));
+    } else {
+      fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
+                 svg_.string());
+    }
+  }
+
+  bool fails(const Validation& validation) const {
+    const Severity least = fail_on_ == "error"     ? Severity::error
+                           : fail_on_ == "warning" ? Severity::warning
+                                                   : Severity::info;
+    return std::any_of(validation.findings.begin(), validation.findings.end(),
+                       [&](const map::Finding& finding) { return finding.severity >= least; });
+  }
+
+  std::filesystem::path input_, junit_, sarif_, geojson_, svg_;
   map::ValidateOptions options_;
   std::string fail_on_ = "error";
-  bool json_ = false;
+  bool json_ = false, list_rules_ = false, force_ = false;
 };
 
 }  // namespace

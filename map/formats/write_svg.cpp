@@ -59,6 +59,15 @@ std::vector<std::vector<LaneId>> lanes_of_storeys(const RoadMap& road_map) {
   return lanes;
 }
 
+void draw_mark(Drawing& drawing, const SvgMark& mark) {
+  const Vector2d place = drawing.canvas.to_picture(mark.in_map);
+  const double px = drawing.sheet.px_m;
+  drawing.canvas.add(fmt::format(
+      R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" fill="{}" fill-opacity="0.35" stroke="{}" )"
+      R"(stroke-width="{:.3f}"><title>{}</title></circle>)",
+      place.x(), place.y(), 6.0 * px, mark.colour, mark.colour, 1.5 * px, xml_text(mark.title)));
+}
+
 std::string document(const Drawing& drawing) {
   const Sheet& sheet = drawing.sheet;
   const Vector2d size_m(sheet.size_m.x(), sheet.size_m.y() + sheet.caption_m);
@@ -94,6 +103,7 @@ std::string write_svg(const RoadMap& road_map, const SvgOptions& options) {
   draw_names(drawing);
   draw_signals(drawing);
   draw_caption(drawing);
+  for (const SvgMark& mark : options.marks) svg::draw_mark(drawing, mark);
   return svg::document(drawing);
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "roadbed/geometry/polygon.h"
@@ -82,10 +83,7 @@ bool winds_over_itself(const Lane& lane) {
   return visible > 1;
 }
 
-}  // namespace
-
-Findings negative_widths(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void negative_widths(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     double least_m = -kTolerance, at_m = -1.0;
     for (const double s_m : border_stations_m(lane)) {
@@ -93,68 +91,177 @@ Findings negative_widths(const RoadMap& road_map, const ValidateOptions&) {
       if (width_m < least_m) least_m = width_m, at_m = s_m;
     }
     if (at_m < 0.0) continue;
-    findings.push_back(
-        {.rule = "geometry.negative-width",
-         .asam_rule = "asam.net:xodr:1.4.0:road.lane.width.lane_width_validity",
-         .severity = by_use(lane, Severity::error),
-         .element = "lane " + lane.name,
-         .in_map = lane.pose_at(at_m).position(),
-         .message = fmt::format("its borders are swapped at station {:.2f} m, width {:.3f} m; "
-                                "correct the width records",
-                                at_m, least_m)});
+    report
+        .add("lane " + lane.name, lane.pose_at(at_m).position(),
+             fmt::format("its borders are swapped at station {:.2f} m, width {:.3f} m; correct the "
+                         "width records",
+                         at_m, least_m))
+        .severity = by_use(lane, Severity::error);
   }
-  return findings;
 }
 
-Findings zero_widths(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+double greatest_width_m(const Lane& lane) {
+  double greatest_m = 0.0;
+  for (const double s_m : border_stations_m(lane)) {
+    greatest_m = std::max(greatest_m, lane.width_m(s_m));
+  }
+  return greatest_m;
+}
+
+void zero_widths(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
-    const auto stations_m = border_stations_m(lane);
-    const bool has_width = std::any_of(stations_m.begin(), stations_m.end(),
-                                       [&](double s_m) { return lane.width_m(s_m) > kTolerance; });
-    if (has_width || !is_drivable(lane.type)) continue;
-    findings.push_back({.rule = "geometry.zero-width",
-                        .asam_rule = {},
-                        .severity = Severity::warning,
-                        .element = "lane " + lane.name,
-                        .in_map = lane.pose_at(0.0).position(),
-                        .message = "has no width anywhere; give it one, or remove it"});
+    if (!is_drivable(lane.type) || greatest_width_m(lane) > kTolerance) continue;
+    report.add("lane " + lane.name, lane.pose_at(0.0).position(),
+               "has no width anywhere; give it one, or remove it");
   }
-  return findings;
 }
 
-Findings folds(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void absurd_widths(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  constexpr double kWidest = 30.0;  // [m]
+  for (const Lane& lane : road_map.lanes()) {
+    if (!is_drivable(lane.type)) continue;
+    const double width_m = greatest_width_m(lane);
+    if (width_m <= kWidest) continue;
+    report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
+               fmt::format("is {:.1f} m wide; check the unit of its width, or whether its borders "
+                           "belong together",
+                           width_m));
+  }
+}
+
+void folds(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     const Fold fold = longer_fold(lane);
     if (fold.length_m <= kFold) continue;
-    findings.push_back({.rule = "geometry.fold",
-                        .asam_rule = {},
-                        .severity = by_use(lane, Severity::warning),
-                        .element = "lane " + lane.name,
-                        .in_map = fold.in_map,
-                        .message = fmt::format(
-                            "a border runs backwards over {:.3f} m: the bend is too tight for its "
-                            "distance from the reference line, or geometry records step back; "
-                            "widen the bend or mend the records",
-                            fold.length_m)});
+    report
+        .add("lane " + lane.name, fold.in_map,
+             fmt::format("a border runs backwards over {:.3f} m: the bend is too tight for its "
+                         "distance from the reference line, or geometry records step back; widen "
+                         "the bend or mend the records",
+                         fold.length_m))
+        .severity = by_use(lane, Severity::warning);
   }
-  return findings;
 }
 
-Findings self_intersections(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void self_intersections(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     if (geometry::is_simple(outline(lane)) || longer_fold(lane).length_m > kFold) continue;
     if (!winds_over_itself(lane)) continue;
-    findings.push_back({.rule = "geometry.self-intersection",
-                        .asam_rule = {},
-                        .severity = by_use(lane, Severity::warning),
-                        .element = "lane " + lane.name,
-                        .in_map = lane.pose_at(0.5 * lane.length_m()).position(),
-                        .message = "crosses itself; split its road where it does"});
+    report
+        .add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
+             "crosses itself; split its road where it does")
+        .severity = by_use(lane, Severity::warning);
   }
-  return findings;
 }
+
+void short_lanes(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  constexpr double kShortest = 0.05;  // [m]
+  for (const Lane& lane : road_map.lanes()) {
+    if (!is_drivable(lane.type) || lane.length_m() >= kShortest) continue;
+    report.add("lane " + lane.name, lane.pose_at(0.0).position(),
+               fmt::format("is {:.4f} m long; join it with the next one", lane.length_m()));
+  }
+}
+
+/// Curvature of the centreline about a station, from the turn between two chords of that length.
+double curvature_per_m(const Lane& lane, double s_m, double chord_m) {
+  const auto& line = lane.centre.in_map;
+  const Vector2d before = line.at(s_m) - line.at(s_m - chord_m);
+  const Vector2d after = line.at(s_m + chord_m) - line.at(s_m);
+  const double cross = before.x() * after.y() - before.y() * after.x();
+  return std::atan2(cross, before.dot(after)) / chord_m;
+}
+
+struct Bend {
+  double s_m = 0.0, curvature_per_m = 0.0;
+};
+
+/// The tightest bend at a vertex, beyond which the line is straight.
+Bend tightest_bend(const Lane& lane, double chord_m) {
+  Bend tightest;
+  for (const double s_m : lane.centre.in_map.stations_m()) {
+    if (s_m < chord_m || s_m > lane.length_m() - chord_m) continue;
+    const double curvature = std::abs(curvature_per_m(lane, s_m, chord_m));
+    if (curvature > tightest.curvature_per_m) tightest = {s_m, curvature};
+  }
+  return tightest;
+}
+
+void tight_bends(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for (const Lane& lane : road_map.lanes()) {
+    if (!is_drivable(lane.type)) continue;
+    const Bend bend = tightest_bend(lane, 1.0);
+    if (bend.curvature_per_m <= options.max_curvature_per_m) continue;
+    report.add("lane " + lane.name, lane.pose_at(bend.s_m).position(),
+               fmt::format("bends with a radius of {:.2f} m at station {:.2f} m, tighter than a "
+                           "car can; widen the bend",
+                           1.0 / bend.curvature_per_m, bend.s_m));
+  }
+}
+
+void fast_bends(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for (const Lane& lane : road_map.lanes()) {
+    const auto limit_mps = lane.least_speed_limit_mps();
+    if (!is_drivable(lane.type) || lane.junction || !limit_mps) continue;
+    const Bend bend = tightest_bend(lane, 5.0);
+    const double acceleration = *limit_mps * *limit_mps * bend.curvature_per_m;
+    if (acceleration <= options.max_lateral_acceleration_mps2) continue;
+    report.add("lane " + lane.name, lane.pose_at(bend.s_m).position(),
+               fmt::format("allows {:.0f} km/h in a bend of {:.1f} m radius, {:.1f} m/s² sideways; "
+                           "lower the limit or widen the bend",
+                           3.6 * *limit_mps, 1.0 / bend.curvature_per_m, acceleration));
+  }
+}
+
+void elevation_spikes(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  constexpr double kSpike = 1.0;  // [m]
+  for (const Lane& lane : road_map.lanes()) {
+    const auto& z_m = lane.centre.z_m;
+    const auto& s_m = lane.centre.station_m;
+    for (std::size_t i = 1; i < z_m.size(); ++i) {
+      const double rise_m = z_m[i] - z_m[i - 1];
+      if (std::abs(rise_m) <= kSpike || std::abs(rise_m) <= s_m[i] - s_m[i - 1]) continue;
+      report.add("lane " + lane.name, lane.centre.in_map.points()[i],
+                 fmt::format("climbs {:.2f} m over {:.2f} m; correct the elevation", rise_m,
+                             s_m[i] - s_m[i - 1]));
+      break;
+    }
+  }
+}
+
+constexpr std::array<MapRule, 9> kRules = {{
+    {{"geometry.negative-width", "asam.net:xodr:1.4.0:road.lane.width.lane_width_validity",
+      Severity::error, "a lane's borders are swapped by more than 2 mm, twice the sampling"},
+     negative_widths},
+    {{"geometry.zero-width", {}, Severity::warning, "a drivable lane has no width anywhere"},
+     zero_widths},
+    {{"geometry.absurd-width", {}, Severity::warning, "a drivable lane is wider than 30 m"},
+     absurd_widths},
+    {{"geometry.fold", {}, Severity::warning, "a border runs backwards by more than 1 cm"}, folds},
+    {{"geometry.self-intersection", "asam.net:xodr:1.4.0:road.no_overlap_self", Severity::warning,
+      "a lane without folds crosses itself"},
+     self_intersections},
+    {{"geometry.short-lane", {}, Severity::info, "a drivable lane is shorter than 5 cm"},
+     short_lanes},
+    {{"geometry.tight-bend",
+      {},
+      Severity::warning,
+      "a drivable lane's centreline is more curved than --max-curvature"},
+     tight_bends},
+    {{"speed.bend",
+      {},
+      Severity::info,
+      "at its speed limit a bend needs more than --max-lateral-acceleration"},
+     fast_bends},
+    {{"geometry.elevation-spike",
+      {},
+      Severity::warning,
+      "a lane climbs by more than 1 m at more than 100 %"},
+     elevation_spikes},
+}};
+
+}  // namespace
+
+std::span<const MapRule> border_rules() { return kRules; }
 
 }  // namespace roadbed::map::rules

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -17,6 +18,7 @@ using Points = std::vector<Vector2d>;
 // A step that no smoothing hides: more than this is an error, less a warning.
 constexpr double kBrokenGap = 0.5;   // [m]
 constexpr double kBrokenKink = 0.5;  // [rad]
+constexpr double kReversed = 2.6;    // [rad], 150°
 
 double heading_rad(const Vector2d& from, const Vector2d& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
@@ -82,57 +84,173 @@ Seam seam_between(const LaneGraph& graph, const Lane& from, const Lane& to) {
   return seam;
 }
 
-/// Calls `check(from, to)` for every link between drivable lanes.
+bool both_drivable(const Lane& from, const Lane& to) {
+  return is_drivable(from.type) && is_drivable(to.type);
+}
+
+Severity by_use(const Lane& from, const Lane& to) {
+  return both_drivable(from, to) ? Severity::error : Severity::warning;
+}
+
+Severity gap_severity(const Lane& from, const Lane& to, double gap_m) {
+  if (!both_drivable(from, to)) return gap_m > kBrokenGap ? Severity::warning : Severity::info;
+  return gap_m > kBrokenGap ? Severity::error : Severity::warning;
+}
+
+/// Calls `check(from, to)` for every link between lanes.
 template <typename Check>
-void for_each_drivable_link(const RoadMap& road_map, const Check& check) {
+void for_each_link(const RoadMap& road_map, const Check& check) {
   for (const Lane& from : road_map.lanes()) {
-    for (const LaneId to : road_map.graph().of(from.id).successors) {
-      if (is_drivable(from.type) && is_drivable(road_map.lane(to).type)) {
-        check(from, road_map.lane(to));
-      }
-    }
+    for (const LaneId to : road_map.graph().of(from.id).successors) check(from, road_map.lane(to));
   }
 }
 
-}  // namespace
+/// The same for those between drivable lanes.
+template <typename Check>
+void for_each_drivable_link(const RoadMap& road_map, const Check& check) {
+  for_each_link(road_map, [&](const Lane& from, const Lane& to) {
+    if (both_drivable(from, to)) check(from, to);
+  });
+}
 
-Findings gaps(const RoadMap& road_map, const ValidateOptions& options) {
-  Findings findings;
-  for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
+/// Change of heading from one lane to the next, 0 where one has no direction.
+double kink_between(const Lane& from, const Lane& to) {
+  const auto end_rad = final_heading_rad(from), start_rad = first_heading_rad(to);
+  return end_rad && start_rad ? geometry::wrap_angle(*start_rad - *end_rad) : 0.0;
+}
+
+void gaps(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for_each_link(road_map, [&](const Lane& from, const Lane& to) {
     const auto [left_m, right_m] = seam_between(road_map.graph(), from, to);
     const double gap_m = std::max(left_m, right_m);
     if (gap_m <= options.max_gap_m) return;
-    findings.push_back(
-        {.rule = "geometry.gap",
-         .asam_rule = "asam.net:xodr:1.7.0:lane_smoothness.contact_point_no_horizontal_gaps",
-         .severity = gap_m > kBrokenGap ? Severity::error : Severity::warning,
-         .element = "lane " + from.name,
-         .in_map = from.centre.in_map.points().back(),
-         .message = fmt::format("its end is off the start of lane {}, left border by {:.3f} m, "
-                                "right border by {:.3f} m; move one of them, or correct a width",
-                                to.name, left_m, right_m)});
+    report
+        .add("lane " + from.name, from.centre.in_map.points().back(),
+             fmt::format("its end is off the start of lane {}, left border by {:.3f} m, right "
+                         "border by {:.3f} m; move one of them, or correct a width",
+                         to.name, left_m, right_m))
+        .severity = gap_severity(from, to, gap_m);
   });
-  return findings;
 }
 
-Findings kinks(const RoadMap& road_map, const ValidateOptions& options) {
-  Findings findings;
+void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
   for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
-    const auto end_rad = final_heading_rad(from), start_rad = first_heading_rad(to);
-    if (!end_rad || !start_rad) return;
-    const double kink_rad = geometry::wrap_angle(*start_rad - *end_rad);
-    if (std::abs(kink_rad) <= options.max_kink_rad) return;
-    findings.push_back(
-        {.rule = "geometry.kink",
-         .asam_rule = {},
-         .severity = std::abs(kink_rad) > kBrokenKink ? Severity::error : Severity::warning,
-         .element = "lane " + from.name,
-         .in_map = from.centre.in_map.points().back(),
-         .message = fmt::format("lane {} goes on turned by {:.3f} rad; correct the heading of one "
-                                "of them, or a width's slope",
-                                to.name, kink_rad)});
+    const double kink_rad = kink_between(from, to);
+    if (std::abs(kink_rad) <= options.max_kink_rad || std::abs(kink_rad) > kReversed) return;
+    Finding& finding = report.add(
+        "lane " + from.name, from.centre.in_map.points().back(),
+        fmt::format("lane {} goes on turned by {:.3f} rad; correct the heading of one of them, or "
+                    "a width's slope",
+                    to.name, kink_rad));
+    if (std::abs(kink_rad) > kBrokenKink) finding.severity = Severity::error;
   });
-  return findings;
 }
+
+void reversals(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for_each_link(road_map, [&](const Lane& from, const Lane& to) {
+    if (std::abs(kink_between(from, to)) <= kReversed) return;
+    report
+        .add("lane " + from.name, from.centre.in_map.points().back(),
+             fmt::format("lane {} goes on in the opposite direction; correct the link, or the "
+                         "direction of one of them",
+                         to.name))
+        .severity = by_use(from, to);
+  });
+}
+
+/// Distances between the four pairs of ends of two lanes' centrelines.
+struct EndDistances {
+  double as_linked_m = 0.0, otherwise_m = 0.0;
+};
+
+EndDistances end_distances(const Lane& from, const Lane& to) {
+  const Points &a = from.centre.in_map.points(), &b = to.centre.in_map.points();
+  return {(a.back() - b.front()).norm(),
+          std::min({(a.back() - b.back()).norm(), (a.front() - b.front()).norm(),
+                    (a.front() - b.back()).norm()})};
+}
+
+void wrong_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for_each_link(road_map, [&](const Lane& from, const Lane& to) {
+    const auto [as_linked_m, otherwise_m] = end_distances(from, to);
+    if (as_linked_m <= kBrokenGap || otherwise_m > 0.2 * as_linked_m) return;
+    report
+        .add("lane " + from.name, from.centre.in_map.points().back(),
+             fmt::format("is linked to the start of lane {}, {:.2f} m off, but other ends of the "
+                         "two meet within {:.2f} m; correct the link's ends",
+                         to.name, as_linked_m, otherwise_m))
+        .severity = by_use(from, to);
+  });
+}
+
+void elevation_steps(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
+    const double step_m = to.centre.z_m.front() - from.centre.z_m.back();
+    if (!(std::abs(step_m) > options.max_step_m)) return;
+    Finding& finding =
+        report.add("lane " + from.name, from.centre.in_map.points().back(),
+                   fmt::format("lane {} goes on {:.3f} m higher; make their elevations meet",
+                               to.name, step_m));
+    if (std::abs(step_m) > kBrokenGap) finding.severity = Severity::error;
+  });
+}
+
+/// Rise over run at an end of a centreline, over a metre; none where the lane is shorter.
+std::optional<double> end_slope(const Lane& lane, bool at_end) {
+  constexpr double kReach = 1.0;  // [m]
+  const auto& z_m = lane.centre.z_m;
+  const auto& s_m = lane.centre.station_m;
+  if (lane.length_m() < kReach) return {};
+  const std::size_t n = z_m.size();
+  std::size_t other = at_end ? n - 1 : 0;
+  while (std::abs(s_m[other] - s_m[at_end ? n - 1 : 0]) < kReach) at_end ? --other : ++other;
+  const std::size_t end = at_end ? n - 1 : 0;
+  return (z_m[end] - z_m[other]) / (s_m[end] - s_m[other]);
+}
+
+void slope_jumps(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
+    const auto before = end_slope(from, true), after = end_slope(to, false);
+    if (!before || !after || !(std::abs(*after - *before) > options.max_slope_jump)) return;
+    report.add("lane " + from.name, from.centre.in_map.points().back(),
+               fmt::format("lane {} goes on with a slope of {:.1f} % after {:.1f} %; round the "
+                           "elevation off",
+                           to.name, 100.0 * *after, 100.0 * *before));
+  });
+}
+
+constexpr std::array<MapRule, 6> kRules = {{
+    {{"geometry.gap", "asam.net:xodr:1.7.0:lane_smoothness.contact_point_no_horizontal_gaps",
+      Severity::warning,
+      "borders of linked lanes do not meet within --max-gap; where a lane splits or lanes merge, "
+      "the outer borders"},
+     gaps},
+    {{"geometry.kink",
+      {},
+      Severity::warning,
+      "centrelines of linked drivable lanes meet at more than --max-kink"},
+     kinks},
+    {{"geometry.elevation-step",
+      {},
+      Severity::warning,
+      "linked drivable lanes meet at elevations more than --max-step apart"},
+     elevation_steps},
+    {{"geometry.slope-jump",
+      {},
+      Severity::warning,
+      "linked drivable lanes meet with slopes more than --max-slope-jump apart"},
+     slope_jumps},
+    {{"link.reversed", {}, Severity::error, "a lane leads to one that runs the other way"},
+     reversals},
+    {{"link.wrong-end",
+      {},
+      Severity::error,
+      "linked lanes do not meet where they are linked, but at other ends"},
+     wrong_ends},
+}};
+
+}  // namespace
+
+std::span<const MapRule> continuity_rules() { return kRules; }
 
 }  // namespace roadbed::map::rules

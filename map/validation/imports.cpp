@@ -1,9 +1,23 @@
+#include <array>
+
 #include "roadbed/map/validation/rules.h"
 
 namespace roadbed::map::rules {
+namespace {
 
-Findings import_remarks(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+constexpr std::array<RuleInfo, 2> kRules = {{
+    {"import.refused", {}, Severity::error, "the file cannot be read as a map"},
+    {"import.…",
+     {},
+     Severity::warning,
+     "what a reader mended, left out or does not use, each under a name of its own; a note where "
+     "the file is not at fault"},
+}};
+
+}  // namespace
+
+std::vector<Finding> import_remarks(const RoadMap& road_map) {
+  std::vector<Finding> findings;
   for (const ImportRemark& remark : road_map.remarks()) {
     findings.push_back({.rule = remark.rule,
                         .asam_rule = {},
@@ -15,5 +29,7 @@ Findings import_remarks(const RoadMap& road_map, const ValidateOptions&) {
   }
   return findings;
 }
+
+std::span<const RuleInfo> import_rules() { return kRules; }
 
 }  // namespace roadbed::map::rules

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "roadbed/map/components.h"
 #include "roadbed/map/validation/rules.h"
@@ -8,109 +9,166 @@
 namespace roadbed::map::rules {
 namespace {
 
-constexpr const char* kAcrossSections =
-    "asam.net:xodr:1.4.0:road.lane.link.lanes_across_lane_sections";
-
 bool holds(const std::vector<LaneId>& lanes, LaneId lane) {
   return std::find(lanes.begin(), lanes.end(), lane) != lanes.end();
 }
 
-Finding one_sided(const RoadMap& road_map, const Lane& lane, LaneId other, const char* relation,
-                  const char* back) {
-  return {.rule = "link.one-sided",
-          .asam_rule = kAcrossSections,
-          .severity = is_drivable(lane.type) ? Severity::error : Severity::warning,
-          .element = "lane " + lane.name,
-          .in_map = lane.pose_at(0.5 * lane.length_m()).position(),
-          .message = fmt::format("has lane {} as {}, which does not have it as {}; add the missing "
-                                 "link or remove this one",
-                                 road_map.lane(other).name, relation, back)};
+void add_one_sided(const RoadMap& road_map, const Lane& lane, LaneId other, const char* relation,
+                   const char* back, Report& report) {
+  Finding& finding = report.add(
+      "lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
+      fmt::format("has lane {} as {}, which does not have it as {}; add the missing link or remove "
+                  "this one",
+                  road_map.lane(other).name, relation, back));
+  if (!is_drivable(lane.type)) finding.severity = Severity::warning;
 }
 
-double start_width_m(const Lane& lane) { return lane.width_m(0.0); }
-double end_width_m(const Lane& lane) { return lane.width_m(lane.length_m()); }
-
-Finding zero_width_link(const Lane& lane, const char* end, const char* relation,
-                        const Eigen::Vector2d& in_map) {
-  return {.rule = "link.zero-width",
-          .asam_rule = fmt::format("asam.net:xodr:1.7.0:road.lane.link.zero_width_at_{}", end),
-          .severity = Severity::warning,
-          .element = "lane " + lane.name,
-          .in_map = in_map,
-          .message =
-              fmt::format("has no width at its {} but a {} there; remove the link", end, relation)};
-}
-
-}  // namespace
-
-Findings one_sided_links(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void one_sided_links(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   const LaneGraph& graph = road_map.graph();
   for (const Lane& lane : road_map.lanes()) {
     for (const LaneId to : graph.of(lane.id).successors) {
       if (holds(graph.of(to).predecessors, lane.id)) continue;
-      findings.push_back(one_sided(road_map, lane, to, "successor", "predecessor"));
+      add_one_sided(road_map, lane, to, "successor", "predecessor", report);
     }
     for (const LaneId from : graph.of(lane.id).predecessors) {
       if (holds(graph.of(from).successors, lane.id)) continue;
-      findings.push_back(one_sided(road_map, lane, from, "predecessor", "successor"));
+      add_one_sided(road_map, lane, from, "predecessor", "successor", report);
     }
   }
-  return findings;
 }
 
-Findings zero_width_links(const RoadMap& road_map, const ValidateOptions&) {
+void add_zero_width(const Lane& lane, const char* end, const char* relation,
+                    const Eigen::Vector2d& in_map, Report& report) {
+  report
+      .add("lane " + lane.name, in_map,
+           fmt::format("has no width at its {} but a {} there; remove the link", end, relation))
+      .asam_rule = fmt::format("asam.net:xodr:1.7.0:road.lane.link.zero_width_at_{}", end);
+}
+
+void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   constexpr double kNone = 1e-3;  // [m]
-  Findings findings;
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type)) continue;
     const LaneLinks& links = road_map.graph().of(lane.id);
     const auto& centre = lane.centre.in_map.points();
-    if (!links.predecessors.empty() && start_width_m(lane) < kNone) {
-      findings.push_back(zero_width_link(lane, "start", "predecessor", centre.front()));
+    if (!links.predecessors.empty() && lane.width_m(0.0) < kNone) {
+      add_zero_width(lane, "start", "predecessor", centre.front(), report);
     }
-    if (!links.successors.empty() && end_width_m(lane) < kNone) {
-      findings.push_back(zero_width_link(lane, "end", "successor", centre.back()));
+    if (!links.successors.empty() && lane.width_m(lane.length_m()) < kNone) {
+      add_zero_width(lane, "end", "successor", centre.back(), report);
     }
   }
-  return findings;
 }
 
-Findings dead_ends(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void dead_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type) || !road_map.graph().of(lane.id).successors.empty()) continue;
-    const bool in_junction = lane.junction.has_value();
-    findings.push_back(
-        {.rule = "link.dead-end",
-         .asam_rule = {},
-         .severity = in_junction ? Severity::warning : Severity::info,
-         .element = "lane " + lane.name,
-         .in_map = lane.centre.in_map.points().back(),
-         .message = in_junction ? "leads into its junction but not out; link its end to a lane"
-                                : "leads nowhere; link its end if the road goes on"});
+    Finding& finding =
+        report.add("lane " + lane.name, lane.centre.in_map.points().back(),
+                   lane.junction ? "leads into its junction but not out; link its end to a lane"
+                                 : "leads nowhere; link its end if the road goes on");
+    if (lane.junction) finding.severity = Severity::warning;
   }
-  return findings;
 }
 
-Findings separate_parts(const RoadMap& road_map, const ValidateOptions&) {
-  Findings findings;
+void unreachable_lanes(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const Lane& lane : road_map.lanes()) {
+    const LaneLinks& links = road_map.graph().of(lane.id);
+    if (!is_drivable(lane.type) || !links.predecessors.empty()) continue;
+    const auto joins = [](const std::optional<Neighbour>& neighbour) {
+      return neighbour && neighbour->same_direction;
+    };
+    if (!lane.junction && (joins(links.left) || joins(links.right))) continue;
+    Finding& finding =
+        report.add("lane " + lane.name, lane.centre.in_map.points().front(),
+                   lane.junction ? "leads out of its junction, but nothing leads to it; link its "
+                                   "start to a lane"
+                                 : "nothing leads to it; link its start if the road comes from "
+                                   "further on");
+    if (lane.junction) finding.severity = Severity::warning;
+  }
+}
+
+void lanes_off_the_road(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const Lane& lane : road_map.lanes()) {
+    const auto& successors = road_map.graph().of(lane.id).successors;
+    const auto drivable = [&](LaneId to) { return is_drivable(road_map.lane(to).type); };
+    if (!is_drivable(lane.type) || successors.empty() ||
+        std::any_of(successors.begin(), successors.end(), drivable)) {
+      continue;
+    }
+    const Lane& next = road_map.lane(successors.front());
+    report.add("lane " + lane.name, lane.centre.in_map.points().back(),
+               fmt::format("leads to lane {} of type {} only; check the types and the link",
+                           next.name, name(next.type)));
+  }
+}
+
+void self_links(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const Lane& lane : road_map.lanes()) {
+    if (!holds(road_map.graph().of(lane.id).successors, lane.id)) continue;
+    const auto& points = lane.centre.in_map.points();
+    if ((points.front() - points.back()).norm() < 0.5) continue;  // a ring, as a roundabout
+    report.add("lane " + lane.name, points.back(),
+               "is its own successor although its ends do not meet; remove the link");
+  }
+}
+
+void separate_parts(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   const auto components = drivable_components(road_map);
   for (std::size_t i = 1; i < components.size(); ++i) {
     const Lane& first = road_map.lane(components[i].front());
-    findings.push_back({.rule = "link.separate-part",
-                        .asam_rule = {},
-                        .severity = Severity::info,
-                        .element = "lane " + first.name,
-                        .in_map = first.pose_at(0.5 * first.length_m()).position(),
-                        .message = fmt::format(
-                            "{} with no link or lane change to the largest connected part; add "
-                            "links if it should be reached",
-                            components[i].size() == 1
-                                ? std::string("is one lane")
-                                : fmt::format("begins a part of {} lanes", components[i].size()))});
+    report.add(
+        "lane " + first.name, first.pose_at(0.5 * first.length_m()).position(),
+        fmt::format("{} with no link or lane change to the largest connected part; add links if it "
+                    "should be reached",
+                    components[i].size() == 1
+                        ? std::string("is one lane")
+                        : fmt::format("begins a part of {} lanes", components[i].size())));
   }
-  return findings;
+}
+
+constexpr std::array<MapRule, 7> kRules = {{
+    {{"link.one-sided", "asam.net:xodr:1.4.0:road.lane.link.lanes_across_lane_sections",
+      Severity::error, "a lane's successor or predecessor does not know of it"},
+     one_sided_links},
+    {{"link.zero-width", "asam.net:xodr:1.7.0:road.lane.link.zero_width_at_start",
+      Severity::warning, "a drivable lane is linked at an end where it has no width"},
+     zero_width_links},
+    {{"link.dead-end",
+      {},
+      Severity::info,
+      "a drivable lane leads nowhere (a warning in a junction)"},
+     dead_ends},
+    {{"link.unreachable",
+      {},
+      Severity::info,
+      "nothing leads to a drivable lane (a warning in a junction)"},
+     unreachable_lanes},
+    {{"link.leads-off-road",
+      {},
+      Severity::info,
+      "a drivable lane leads to lanes only that no car drives on"},
+     lanes_off_the_road},
+    {{"link.self", {}, Severity::warning, "a lane is its own successor"}, self_links},
+    {{"link.separate-part",
+      {},
+      Severity::info,
+      "no link or lane change joins drivable lanes to the largest part"},
+     separate_parts},
+}};
+
+}  // namespace
+
+std::span<const MapRule> link_rules() { return kRules; }
+
+std::vector<MapRule> map_rules() {
+  std::vector<MapRule> all;
+  for (const auto rules : {continuity_rules(), border_rules(), link_rules(), neighbour_rules(),
+                           surface_rules(), attribute_rules(), furniture_rules()}) {
+    all.insert(all.end(), rules.begin(), rules.end());
+  }
+  return all;
 }
 
 }  // namespace roadbed::map::rules

@@ -1,35 +1,35 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "roadbed/map/validation/rule.h"
 #include "roadbed/map/validation/validate.h"
 
-// One function per rule, one source file per theme. Each returns its findings in order of lanes.
+// Rules about a map, whatever its format: one function each, one source file per theme. Each adds
+// its findings in order of lanes.
 
 namespace roadbed::map::rules {
 
-using Findings = std::vector<Finding>;
+struct MapRule {
+  RuleInfo info;
+  void (*check)(const RoadMap& road_map, const ValidateOptions& options, Report& report);
+};
 
-// continuity.cpp: where one lane leads to the next
-Findings gaps(const RoadMap& road_map, const ValidateOptions& options);
-Findings kinks(const RoadMap& road_map, const ValidateOptions& options);
+std::span<const MapRule> continuity_rules();  ///< where one lane leads to the next
+std::span<const MapRule> border_rules();      ///< the shape of one lane
+std::span<const MapRule> link_rules();        ///< how lanes are linked
+std::span<const MapRule> neighbour_rules();   ///< lanes side by side
+std::span<const MapRule> surface_rules();     ///< lanes on top of each other, or far away
+std::span<const MapRule> attribute_rules();   ///< what lanes and the map say of themselves
+std::span<const MapRule> furniture_rules();   ///< signals, stop lines, objects
 
-// borders.cpp: the shape of one lane
-Findings negative_widths(const RoadMap& road_map, const ValidateOptions& options);
-Findings zero_widths(const RoadMap& road_map, const ValidateOptions& options);
-Findings folds(const RoadMap& road_map, const ValidateOptions& options);
-Findings self_intersections(const RoadMap& road_map, const ValidateOptions& options);
+/// All of the above.
+std::vector<MapRule> map_rules();
 
-// links.cpp: how lanes are linked
-Findings one_sided_links(const RoadMap& road_map, const ValidateOptions& options);
-Findings zero_width_links(const RoadMap& road_map, const ValidateOptions& options);
-Findings dead_ends(const RoadMap& road_map, const ValidateOptions& options);
-Findings separate_parts(const RoadMap& road_map, const ValidateOptions& options);
-
-// attributes.cpp: what lanes and roads say of themselves
-Findings missing_speeds(const RoadMap& road_map, const ValidateOptions& options);
-
-// imports.cpp: what the reader of the file has seen
-Findings import_remarks(const RoadMap& road_map, const ValidateOptions& options);
+/// What the reader of the file has seen, under the reader's own rule names.
+std::vector<Finding> import_remarks(const RoadMap& road_map);
+/// What readers remark.
+std::span<const RuleInfo> import_rules();
 
 }  // namespace roadbed::map::rules

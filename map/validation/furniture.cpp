@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "roadbed/map/validation/rules.h"
+
+namespace roadbed::map::rules {
+namespace {
+
+/// Whether a lane is within a distance; near ones are looked for first, as most things have one.
+bool near_a_lane(const RoadMap& road_map, const Eigen::Vector2d& in_map, double distance_m) {
+  for (const double share : {0.1, 0.3, 1.0}) {
+    if (!road_map.locate(in_map, share * distance_m, false).empty()) return true;
+  }
+  return false;
+}
+
+void signals_off_road(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for (const Signal& signal : road_map.signals()) {
+    if (near_a_lane(road_map, signal.in_map, options.max_signal_distance_m)) continue;
+    report.add("signal " + signal.source_id, signal.in_map,
+               fmt::format("is more than {:.0f} m from any lane; correct its place",
+                           options.max_signal_distance_m));
+  }
+}
+
+void lights_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const Signal& signal : road_map.signals()) {
+    if (!signal.dynamic || !signal.lanes.empty()) continue;
+    report.add("signal " + signal.source_id, signal.in_map,
+               "changes, but speaks to no lane; say for which lanes it holds");
+  }
+}
+
+Eigen::Vector2d middle(const StopLine& line) {
+  return 0.5 * (line.in_map.front() + line.in_map.back()).head<2>();
+}
+
+double distance_m(const RoadMap& road_map, const StopLine& line) {
+  double least_m = 1e300;
+  for (const LaneId lane : line.lanes) {
+    const auto place = road_map.lane(lane).centre.in_map.project(middle(line));
+    least_m = std::min(least_m, std::abs(place.d_m));
+  }
+  return least_m;
+}
+
+void stop_lines_beside(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  constexpr double kBeside = 10.0;  // [m]; one line may stop several lanes
+  for (const StopLine& line : road_map.stop_lines()) {
+    if (line.lanes.empty() || line.in_map.size() < 2) continue;
+    const double off_m = distance_m(road_map, line);
+    if (off_m <= kBeside) continue;
+    report.add(
+        "stop line " + line.source_id, middle(line),
+        fmt::format("is {:.1f} m from the lanes that it stops; correct its place or lanes", off_m));
+  }
+}
+
+void stop_lines_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const StopLine& line : road_map.stop_lines()) {
+    if (!line.lanes.empty() || line.in_map.empty()) continue;
+    report.add("stop line " + line.source_id, middle(line),
+               "stops no lane; say which, or remove it");
+  }
+}
+
+void objects_off_road(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  for (const MapObject& object : road_map.objects()) {
+    if (near_a_lane(road_map, object.in_map, options.max_object_distance_m)) continue;
+    report.add("object " + object.source_id, object.in_map,
+               fmt::format("is more than {:.0f} m from any lane; correct its place",
+                           options.max_object_distance_m));
+  }
+}
+
+void regulations_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  for (const Regulation& regulation : road_map.regulations()) {
+    const auto names_lane = [](const RegulationMember& member) { return member.lane.has_value(); };
+    if (!regulation.lanes.empty() ||
+        std::any_of(regulation.members.begin(), regulation.members.end(), names_lane)) {
+      continue;
+    }
+    report.add(
+        "regulation " + regulation.source_id, std::nullopt,
+        fmt::format("of type {} holds on no lane; name it in one, or remove it", regulation.type));
+  }
+}
+
+constexpr std::array<MapRule, 6> kRules = {{
+    {{"signal.off-road",
+      {},
+      Severity::warning,
+      "a signal is farther than --max-signal-distance from any lane"},
+     signals_off_road},
+    {{"signal.no-lane", {}, Severity::info, "a light speaks to no lane"}, lights_without_lane},
+    {{"stop-line.beside",
+      {},
+      Severity::warning,
+      "a stop line is more than 10 m from the lanes that it stops"},
+     stop_lines_beside},
+    {{"stop-line.no-lane", {}, Severity::info, "a stop line stops no lane"},
+     stop_lines_without_lane},
+    {{"object.off-road",
+      {},
+      Severity::info,
+      "an object is farther than --max-object-distance from any lane"},
+     objects_off_road},
+    {{"regulation.no-lane", {}, Severity::info, "a regulation holds on no lane"},
+     regulations_without_lane},
+}};
+
+}  // namespace
+
+std::span<const MapRule> furniture_rules() { return kRules; }
+
+}  // namespace roadbed::map::rules

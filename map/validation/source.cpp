@@ -1,0 +1,102 @@
+#include "roadbed/map/validation/source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "roadbed/map/formats/open_drive_document.h"
+#include "roadbed/map/validation/common_road_source.h"
+#include "roadbed/map/validation/lanelet2_source.h"
+#include "roadbed/map/validation/open_drive_source.h"
+
+namespace roadbed::map::rules {
+namespace {
+
+constexpr RuleInfo kNotWellFormed = {"source.not-well-formed",
+                                     "asam.net:xodr:1.0.0:xml.valid_xml_document", Severity::error,
+                                     "the file is no well-formed XML"};
+
+enum class Format { unknown, open_drive, lanelet2, common_road };
+
+Format format_of(const XmlDocument& xml) {
+  const std::string_view root = xml.root().name();
+  if (map::open_drive::is_open_drive(xml.root().name())) return Format::open_drive;
+  if (root == "osm") return Format::lanelet2;
+  return root == "commonRoad" ? Format::common_road : Format::unknown;
+}
+
+/// Runs the rules of one format over a document.
+template <typename Source, typename Rules>
+std::vector<Finding> check(const XmlDocument& xml, const Rules& rules,
+                           const ValidateOptions& options) {
+  std::vector<Finding> findings;
+  const Source source(xml);
+  for (const auto& rule : rules) {
+    Report report(rule.info, findings);
+    rule.check(source, options, report);
+    report.finish();
+  }
+  return findings;
+}
+
+/// Line in a message of the form "FILE:LINE: …", 0 if there is none.
+long line_in(const std::string& message, const std::string& name) {
+  if (!message.starts_with(name + ":")) return 0;
+  long line = 0;
+  std::from_chars(message.data() + name.size() + 1, message.data() + message.size(), line);
+  return line;
+}
+
+}  // namespace
+
+std::vector<Finding> check_source(const XmlDocument& xml, const ValidateOptions& options) {
+  switch (format_of(xml)) {
+    case Format::open_drive:
+      return check<open_drive::Source>(xml, open_drive::source_rules(), options);
+    case Format::lanelet2:
+      return check<lanelet2::Source>(xml, lanelet2::source_rules(), options);
+    case Format::common_road:
+      return check<common_road::Source>(xml, common_road::source_rules(), options);
+    case Format::unknown:
+      return {};
+  }
+  return {};
+}
+
+ElementLines element_lines(const XmlDocument& xml) {
+  switch (format_of(xml)) {
+    case Format::open_drive:
+      return open_drive::element_lines(xml);
+    case Format::lanelet2:
+      return lanelet2::element_lines(xml);
+    case Format::common_road:
+      return common_road::element_lines(xml);
+    case Format::unknown:
+      return {};
+  }
+  return {};
+}
+
+bool names_known_format(const std::string& bytes) {
+  const std::string_view start = std::string_view(bytes).substr(0, 100'000);
+  return start.find("<OpenDRIVE") != std::string_view::npos ||
+         start.find("<commonRoad") != std::string_view::npos ||
+         start.find("<osm") != std::string_view::npos;
+}
+
+Finding not_well_formed(const std::string& name, const std::string& message) {
+  std::vector<Finding> findings;
+  Report report(kNotWellFormed, findings);
+  report.add("file", std::nullopt, message).line = line_in(message, name);
+  return findings.front();
+}
+
+std::vector<RuleInfo> source_rule_infos() {
+  std::vector<RuleInfo> infos{kNotWellFormed};
+  for (const auto& rule : open_drive::source_rules()) infos.push_back(rule.info);
+  for (const auto& rule : lanelet2::source_rules()) infos.push_back(rule.info);
+  for (const auto& rule : common_road::source_rules()) infos.push_back(rule.info);
+  return infos;
+}
+
+}  // namespace roadbed::map::rules

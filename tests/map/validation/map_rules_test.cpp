@@ -1,0 +1,250 @@
+// Rules about a map whatever its format: each silent on a faultless map, and speaking up where one
+// thing in it is changed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
+#include "roadbed/tests/support/made_maps.h"
+
+namespace roadbed::map {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+using tests::MadeMap;
+
+std::vector<Finding> of_rule(const MadeMap& made, const std::string& rule) {
+  auto findings = validate(made.build());
+  std::erase_if(findings, [&](const Finding& finding) { return finding.rule != rule; });
+  return findings;
+}
+
+/// Lanes 1/0/-1 and 2/0/-1 eastwards, one behind the other, with 1/0/-2 to the right of the first,
+/// a light, a stop line, a regulation, a CRS and limits: nothing to complain of but loose ends.
+MadeMap faultless() {
+  MadeMap made;
+  made.parts.format = "made";
+  made.parts.crs = "EPSG:25832";
+  const RoadId first = made.add_road("1"), second = made.add_road("2");
+  const LaneId a = made.add_lane(first, "-1", {{0, 3}, {50, 3}}, {{0, 0}, {50, 0}});
+  const LaneId b = made.add_lane(first, "-2", {{0, 0}, {50, 0}}, {{0, -3}, {50, -3}});
+  const LaneId c = made.add_lane(second, "-1", {{50, 3}, {90, 3}}, {{50, 0}, {90, 0}});
+  made.put_beside(a, b);
+  made.link(a, c);
+  Signal light;
+  light.source_id = "5";
+  light.in_map = {50, -4};
+  light.dynamic = true;
+  light.lanes = {a};
+  made.parts.signals.push_back(light);
+  made.parts.stop_lines.push_back({"6", {{49, 3, 0}, {49, 0, 0}}, {a}, {"5"}});
+  Regulation rule;
+  rule.source_id = "7";
+  rule.type = "right_of_way";
+  rule.lanes = {a};
+  made.parts.regulations.push_back(rule);
+  MapObject pole;
+  pole.source_id = "8";
+  pole.in_map = {20, 6};
+  made.parts.objects.push_back(pole);
+  return made;
+}
+
+constexpr LaneId kA{0}, kB{1}, kC{2};
+
+void move(Lane& lane, const Eigen::Vector2d& by) {
+  for (LaneLine* line : {&lane.left, &lane.centre, &lane.right}) {
+    Points points = line->in_map.points();
+    for (Eigen::Vector2d& point : points) point += by;
+    line->in_map = geometry::Polyline(points);
+  }
+}
+
+/// The same lane in the opposite direction.
+void turn_round(Lane& lane) {
+  for (LaneLine* line : {&lane.left, &lane.centre, &lane.right}) {
+    Points points = line->in_map.points();
+    std::reverse(points.begin(), points.end());
+    line->in_map = geometry::Polyline(points);
+  }
+  std::swap(lane.left, lane.right);
+}
+
+/// A lane of its own road along a quarter circle of that radius, far from the others.
+LaneId add_bend(MadeMap& made, double radius_m) {
+  Points left, right;
+  for (int i = 0; i <= 60; ++i) {
+    const Eigen::Vector2d outwards(std::cos(0.025 * i), std::sin(0.025 * i));
+    left.push_back(Eigen::Vector2d(0, 500) + (radius_m - 1.0) * outwards);
+    right.push_back(Eigen::Vector2d(0, 500) + (radius_m + 1.0) * outwards);
+  }
+  return made.add_lane(made.add_road("9"), "-1", left, right);
+}
+
+struct Slip {
+  std::string rule;
+  std::function<void(MadeMap&)> make;
+};
+
+std::vector<Slip> slips() {
+  return {
+      {"geometry.gap",
+       [](MadeMap& made) {
+         move(made.lane(kC), {0, 0.1});
+       }},
+      {"geometry.kink",
+       [](MadeMap& made) {
+         made.lane(kC).centre.in_map = geometry::Polyline({{50, 1.5}, {90, 6}});
+       }},
+      {"geometry.elevation-step",
+       [](MadeMap& made) {
+         made.lane(kC).centre.z_m = {1, 1};
+       }},
+      {"geometry.slope-jump",
+       [](MadeMap& made) {
+         made.lane(kC).centre.z_m = {0, 8};
+       }},
+      {"link.reversed", [](MadeMap& made) { turn_round(made.lane(kC)); }},
+      {"link.wrong-end", [](MadeMap& made) { turn_round(made.lane(kC)); }},
+      {"geometry.negative-width",
+       [](MadeMap& made) { std::swap(made.lane(kA).left, made.lane(kA).right); }},
+      {"geometry.zero-width", [](MadeMap& made) { made.lane(kA).left = made.lane(kA).right; }},
+      {"geometry.absurd-width",
+       [](MadeMap& made) {
+         made.lane(kA).left.in_map = geometry::Polyline({{0, 53}, {50, 53}});
+       }},
+      {"geometry.fold",
+       [](MadeMap& made) {
+         Lane& lane = made.lane(kA);
+         lane.left = {geometry::Polyline({{0, 3}, {30, 3}, {29, 3}, {50, 3}}),
+                      {0, 0, 0, 0},
+                      {0, 29.5, 29.6, 50}};
+       }},
+      {"geometry.self-intersection",
+       [](MadeMap& made) {
+         made.add_lane(made.add_road("9"), "-1",
+                       {{0, 501}, {41, 501}, {41, 531}, {19, 531}, {19, 470}},
+                       {{0, 499}, {43, 499}, {43, 533}, {17, 533}, {17, 470}});
+       }},
+      {"geometry.short-lane",
+       [](MadeMap& made) {
+         made.add_lane(made.add_road("9"), "-1", {{0, 503}, {0.01, 503}}, {{0, 500}, {0.01, 500}});
+       }},
+      {"geometry.tight-bend", [](MadeMap& made) { add_bend(made, 2.0); }},
+      {"speed.bend",
+       [](MadeMap& made) {
+         made.lane(add_bend(made, 20.0)).speed_limits = {{0.0, 25.0}};
+       }},
+      {"geometry.elevation-spike",
+       [](MadeMap& made) {
+         made.lane(kB).centre.z_m = {0, 60};
+       }},
+      {"link.one-sided", [](MadeMap& made) { made.parts.links[2].predecessors.clear(); }},
+      {"link.zero-width",
+       [](MadeMap& made) {
+         made.lane(kA).left.in_map = geometry::Polyline({{0, 3}, {50, 0}});
+       }},
+      {"link.dead-end",
+       [](MadeMap& made) { made.lane(add_bend(made, 30.0)).junction = made.add_junction("4"); }},
+      {"link.unreachable",
+       [](MadeMap& made) { made.lane(add_bend(made, 30.0)).junction = made.add_junction("4"); }},
+      {"link.leads-off-road", [](MadeMap& made) { made.lane(kC).type = LaneType::sidewalk; }},
+      {"link.self", [](MadeMap& made) { made.link(kC, kC); }},
+      {"link.separate-part", [](MadeMap& made) { add_bend(made, 30.0); }},
+      {"neighbour.one-sided", [](MadeMap& made) { made.parts.links[1].left.reset(); }},
+      {"neighbour.apart",
+       [](MadeMap& made) {
+         move(made.lane(kB), {0, -2});
+       }},
+      {"neighbour.direction", [](MadeMap& made) { turn_round(made.lane(kB)); }},
+      {"geometry.overlap",
+       [](MadeMap& made) {
+         made.add_lane(made.add_road("9"), "-1", {{10, 3.2}, {40, 3.2}}, {{10, 0.2}, {40, 0.2}});
+       }},
+      {"geometry.far-away",
+       [](MadeMap& made) {
+         move(made.lane(kB), {5e6, 0});
+       }},
+      {"speed.missing", [](MadeMap& made) { made.lane(kA).speed_limits.clear(); }},
+      {"speed.absurd",
+       [](MadeMap& made) {
+         made.lane(kA).road.reset();
+         made.lane(kA).speed_limits = {{0.0, 500.0}};
+       }},
+      {"lane.no-participants", [](MadeMap& made) { made.lane(kA).participants = {}; }},
+      {"crs.missing", [](MadeMap& made) { made.parts.crs.clear(); }},
+      {"crs.broken", [](MadeMap& made) { made.parts.crs = "somewhere in Bavaria"; }},
+      {"signal.off-road",
+       [](MadeMap& made) {
+         made.parts.signals[0].in_map = {50, -90};
+       }},
+      {"signal.no-lane", [](MadeMap& made) { made.parts.signals[0].lanes.clear(); }},
+      {"stop-line.beside",
+       [](MadeMap& made) {
+         made.parts.stop_lines[0].in_map = {{49, 30, 0}, {49, 27, 0}};
+       }},
+      {"stop-line.no-lane", [](MadeMap& made) { made.parts.stop_lines[0].lanes.clear(); }},
+      {"object.off-road",
+       [](MadeMap& made) {
+         made.parts.objects[0].in_map = {20, 150};
+       }},
+      {"regulation.no-lane", [](MadeMap& made) { made.parts.regulations[0].lanes.clear(); }},
+  };
+}
+
+/// What a map with loose ends is told in any case.
+bool is_about_loose_ends(const std::string& rule) {
+  return rule == "link.dead-end" || rule == "link.unreachable";
+}
+
+TEST(MapRules, FindNothingButLooseEndsInAFaultlessMap) {
+  for (const Finding& finding : validate(faultless().build())) {
+    EXPECT_TRUE(is_about_loose_ends(finding.rule)) << finding.rule << ": " << finding.message;
+    EXPECT_EQ(finding.severity, Severity::info) << finding.rule;
+  }
+}
+
+TEST(MapRules, FindEverySlip) {
+  for (const Slip& slip : slips()) {
+    SCOPED_TRACE(slip.rule);
+    MadeMap made = faultless();
+    const std::size_t before = of_rule(made, slip.rule).size();
+    slip.make(made);
+    EXPECT_GT(of_rule(made, slip.rule).size(), before);
+  }
+}
+
+TEST(MapRules, AreAllTried) {
+  std::set<std::string> tried;
+  for (const Slip& slip : slips()) tried.insert(slip.rule);
+  for (const auto& rule : rules::map_rules()) {
+    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
+  }
+}
+
+TEST(MapRules, CheckLinksOfLanesThatNoCarDrivesOnToo) {
+  MadeMap made = faultless();
+  made.lane(kA).type = made.lane(kC).type = LaneType::sidewalk;
+  turn_round(made.lane(kC));
+  const auto findings = of_rule(made, "link.wrong-end");
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].severity, Severity::warning);
+  EXPECT_THAT(findings[0].message, ::testing::HasSubstr("other ends of the two meet"));
+}
+
+TEST(MapRules, TakeNoBridgeForAnOverlap) {
+  MadeMap made = faultless();
+  const LaneId bridge =
+      made.add_lane(made.add_road("9"), "-1", {{10, 3.2}, {40, 3.2}}, {{10, 0.2}, {40, 0.2}});
+  EXPECT_EQ(of_rule(made, "geometry.overlap").size(), 2u);
+  made.lane(bridge).centre.z_m = {6, 6};
+  EXPECT_TRUE(of_rule(made, "geometry.overlap").empty());
+}
+
+}  // namespace
+}  // namespace roadbed::map

@@ -1,0 +1,263 @@
+// Every rule about OpenDRIVE's text: silent on a faultless file, and speaking up where one thing in
+// it is broken.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "roadbed/map/validation/open_drive_source.h"
+#include "roadbed/map/validation/validate.h"
+#include "roadbed/tests/support/program_run.h"
+
+namespace roadbed::map {
+namespace {
+
+std::string clean_file() {
+  return tests::bytes_of(std::filesystem::path(ROADBED_TESTS) / "map/validation/clean.xodr");
+}
+
+std::vector<Finding> of_rule(const std::string& bytes, const std::string& rule) {
+  std::vector<Finding> findings = validate_bytes(bytes, "file.xodr").findings;
+  std::erase_if(findings, [&](const Finding& finding) { return finding.rule != rule; });
+  return findings;
+}
+
+/// One slip: `from` in the faultless file becomes `to`, and the rule finds it.
+struct Slip {
+  std::string rule, from, to;
+};
+
+std::vector<Slip> slips() {
+  const std::string road_2 = "<road name=\"curved\" length=\"110\" id=\"2\"";
+  const std::string arc = R"(<arc curvature="0.02"/>)";
+  return {
+      {"schema.missing-element", R"(<center><lane id="0" type="none" level="false"/></center>), ""},
+      {"schema.missing-attribute", R"(hdg="0" length="40")",
+       R"(length="40")"},
+      {"schema.not-a-number", arc, R"(<arc curvature="1e999"/>)"},
+      {"schema.unknown-value", R"(type="shoulder")", R"(type="hard shoulder")"},
+      {"header.missing", R"(<header revMajor="1" revMinor="7" name="rules" version="1.00">
+  <geoReference>+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m</geoReference>
+  <offset x="0" y="0" z="0" hdg="0"/>
+ </header>)",
+       ""},
+      {"header.version", R"(revMinor="7")", R"(revMinor="seven")"},
+      {"header.unknown-version", R"(revMinor="7")", R"(revMinor="77")"},
+      {"crs.several", "<offset ", "<geoReference>EPSG:25832</geoReference><offset "},
+      {"crs.offset", R"(<offset x="0")", R"(<offset x="east")"},
+      {"crs.far-from-origin", R"(x="0" y="0" hdg="0" length="40")",
+       R"(x="500000" y="0" hdg="0" length="40")"},
+      {"id.duplicate", R"(id="9" name="sign")", R"(id="8" name="sign")"},
+      {"id.duplicate-lane", R"(<lane id="-2" type="shoulder" level="true">)",
+       R"(<lane id="-1" type="shoulder" level="true">)"},
+      {"id.dangling-road-link", R"(elementId="2" contactPoint="start")",
+       R"(elementId="22" contactPoint="start")"},
+      {"id.dangling-junction", R"(junction="10")", R"(junction="11")"},
+      {"id.dangling-connection", R"(incomingRoad="2")", R"(incomingRoad="22")"},
+      {"id.dangling-signal", R"(signalId="8")", R"(signalId="88")"},
+      {"curve.missing", "<controller ",
+       R"(<road id="5" length="9" junction="-1"><lanes/></road><controller )"},
+      {"curve.order", R"(<geometry s="70")", R"(<geometry s="10")"},
+      {"curve.station", R"(<geometry s="70")", R"(<geometry s="71")"},
+      {"curve.gap", R"(<geometry s="40" x="40")", R"(<geometry s="40" x="40.2")"},
+      {"curve.kink", R"(x="150" y="0" hdg="0")", R"(x="150" y="0" hdg="0.1")"},
+      {"curve.curvature-jump", arc, R"(<arc curvature="0.3"/>)"},
+      {"curve.zero-length", R"(hdg="0" length="40")", R"(hdg="0" length="0")"},
+      {"curve.road-length", R"(length="110")", R"(length="111")"},
+      {"curve.absurd-length", R"(length="110")", R"(length="250000")"},
+      {"curve.param-poly3-length", R"(bU="10")", R"(bU="11")"},
+      {"curve.param-poly3-arc-length", R"(bU="1" )", R"(bU="10" )"},
+      {"curve.param-poly3-normalized", R"(bU="10")", R"(bU="1")"},
+      {"curve.param-poly3-start", R"(aU="0" bU="10" cU="0" dU="0" aV="0")",
+       R"(aU="0" bU="10" cU="0" dU="0" aV="0.1")"},
+      {"curve.several-shapes", arc, arc + "<line/>"},
+      {"curve.straight-arc", arc, R"(<arc curvature="0"/>)"},
+      {"curve.constant-spiral", R"(curvEnd="0")", R"(curvEnd="0.02")"},
+      {"profile.order", R"(<elevation s="50")", R"(<elevation s="-50")"},
+      {"elevation.step", R"(s="50" a="10.5")", R"(s="50" a="10.6")"},
+      {"elevation.slope-jump", R"(b="0.02" c="0" d="0"/>)", R"(b="0.1" c="0" d="0"/>)"},
+      {"elevation.steep", R"(b="0.02" c="0" d="0"/>)", R"(b="0.02" c="0.01" d="0"/>)"},
+      {"elevation.outlier", R"(a="11.5")", R"(a="-1000")"},
+      {"superelevation.step", R"(s="20" a="0.02")", R"(s="20" a="0.04")"},
+      {"superelevation.steep", R"(s="20" a="0.02")", R"(s="20" a="2")"},
+      {"lane-offset.step", R"(s="90" a="0")", R"(s="90" a="0.1")"},
+      {"width.step", R"(sOffset="20" a="3.5")", R"(sOffset="20" a="3.6")"},
+      {"width.negative", R"(sOffset="20" a="3.5" b="0")", R"(sOffset="20" a="3.5" b="-0.2")"},
+      {"width.missing", R"(<width sOffset="0" a="1.50")", R"(<width sOffset="1" a="1.50")"},
+      {"width.beyond-section", R"(<width sOffset="20")", R"(<width sOffset="61")"},
+      {"width.with-border", R"(<border sOffset="0" a="-5")",
+       R"(<width sOffset="0" a="1" b="0" c="0" d="0"/><border sOffset="0" a="-5")"},
+      {"width.border-with-offset",
+       R"(<laneSection s="0">
+    <center><lane id="0" type="none" level="false"/></center>
+    <right>
+     <lane id="-1" type="driving" level="false">
+      <border)",
+       R"(<laneOffset s="0" a="1" b="0" c="0" d="0"/><laneSection s="0">
+    <center><lane id="0" type="none" level="false"/></center>
+    <right>
+     <lane id="-1" type="driving" level="false">
+      <border)"},
+      {"section.missing", "<controller ",
+       R"(<road id="5" length="9" junction="-1"><lanes/></road><controller )"},
+      {"section.first", "<laneSection s=\"0\">\n    <center>",
+       "<laneSection s=\"1\">\n    <center>"},
+      {"section.order", R"(<laneSection s="60">)", R"(<laneSection s="-60">)"},
+      {"section.zero-length", R"(<laneSection s="60">)", R"(<laneSection s="0">)"},
+      {"lane.numbering", R"(<lane id="-2" type="shoulder" level="true">)",
+       R"(<lane id="-3" type="shoulder" level="true">)"},
+      {"lane.side", R"(<lane id="-2" type="shoulder" level="true">)",
+       R"(<lane id="2" type="shoulder" level="true">)"},
+      {"lane.centre", R"(<center><lane id="0")", R"(<center><lane id="5")"},
+      {"lane.centre-width", R"(<lane id="0" type="none" level="false"/>)",
+       R"(<lane id="0" type="none"><width sOffset="0" a="1" b="0" c="0" d="0"/></lane>)"},
+      {"lane.level", "<lane id=\"-1\" type=\"driving\" level=\"false\">\n      <border",
+       "<lane id=\"-1\" type=\"driving\" level=\"true\">\n      <border"},
+      {"lane.access-mixed", "<access ", "<access sOffset=\"0\" rule=\"deny\"/><access "},
+      {"lane.border-crossing", R"(<border sOffset="0" a="-5" b="0")",
+       R"(<border sOffset="0" a="-5" b="0.05")"},
+      {"link.road-one-sided",
+       R"(<predecessor elementType="road" elementId="1" contactPoint="end"/>)", ""},
+      {"link.contact-point-missing", R"(elementId="2" contactPoint="start")", R"(elementId="2")"},
+      {"link.contact-point-off", R"(elementId="2" contactPoint="start")",
+       R"(elementId="2" contactPoint="end")"},
+      {"link.ambiguous", R"(<link><predecessor elementType="junction" elementId="10"/></link>)",
+       R"(<link><predecessor elementType="road" elementId="2" contactPoint="start"/></link>)"},
+      {"link.lane-one-sided", R"(<predecessor id="-2"/><successor id="-2"/>)",
+       R"(<successor id="-2"/>)"},
+      {"link.lane-without-road",
+       R"(<link><successor elementType="road" elementId="2" contactPoint="start"/></link>)", ""},
+      {"link.appearing-lane",
+       R"(<predecessor id="-2"/><successor id="-2"/></link>
+      <width sOffset="0" a="1.50")",
+       R"(<predecessor id="-1"/><successor id="-2"/></link>
+      <width sOffset="0" a="0")"},
+      {"link.roads-without-lanes",
+       R"(<link><predecessor id="-1"/><successor id="-1"/></link>
+      <width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+     </lane>
+    </right>)",
+       R"(<width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+     </lane>
+    </right>)"},
+      {"junction.no-lane-links", R"(<laneLink from="-1" to="-1"/>)", ""},
+      {"junction.incoming-elsewhere", R"(incomingRoad="2")", R"(incomingRoad="1")"},
+      {"junction.connecting-comes-in", R"(incomingRoad="2")", R"(incomingRoad="3")"},
+      {"junction.double-connection", "</connection>",
+       R"(</connection><connection id="1" incomingRoad="2" connectingRoad="3" )"
+       R"(contactPoint="start"><laneLink from="-1" to="-1"/></connection>)"},
+      {"junction.contact-start", R"(incomingRoad="2")", R"(incomingRoad="4")"},
+      {"junction.contact-end", R"(connectingRoad="3" contactPoint="start")",
+       R"(connectingRoad="3" contactPoint="end")"},
+      {"junction.foreign-road", R"(connectingRoad="3")", R"(connectingRoad="4")"},
+      {"junction.linked-road", R"(connectingRoad="3")", R"(linkedRoad="3")"},
+      {"junction.connecting-road", R"(type="default")", R"(type="direct")"},
+      {"junction.empty", "<controller ", R"(<junction id="11"/><controller )"},
+      {"junction.unused-road", R"(connectingRoad="3")", R"(connectingRoad="4")"},
+      {"junction.unknown-lane", R"(to="-1")", R"(to="-7")"},
+      {"signal.station", R"(s="95")", R"(s="195")"},
+      {"object.station", R"(s="30" t="12")", R"(s="130" t="12")"},
+      {"signal.validity-unknown", R"(fromLane="-2" toLane="-1")", R"(fromLane="-9" toLane="-8")"},
+      {"signal.validity-order", R"(fromLane="-2" toLane="-1")", R"(fromLane="-1" toLane="-2")"},
+      {"signal.validity-orientation", R"(fromLane="-2" toLane="-1")",
+       R"(fromLane="-2" toLane="1")"},
+      {"signal.country", R"(country="DE")", R"(country="Atlantis")"},
+      {"signal.no-type", R"( type="274")", ""},
+      {"controller.empty", R"(<control signalId="8"/>)", ""},
+      {"speed.no-unit", R"(max="50" unit="km/h")", R"(max="50")"},
+      {"speed.unknown-unit", R"(unit="km/h")", R"(unit="kmh")"},
+      {"speed.absurd-limit", R"(max="14")", R"(max="140")"},
+  };
+}
+
+std::string with(const Slip& slip) {
+  std::string text = clean_file();
+  const std::size_t at = text.find(slip.from);
+  EXPECT_NE(at, std::string::npos) << slip.rule << ": not in the file: " << slip.from;
+  return at == std::string::npos ? text : text.replace(at, slip.from.size(), slip.to);
+}
+
+TEST(OpenDriveRules, FindNothingButNotesInAFaultlessFile) {
+  for (const Finding& finding : validate_bytes(clean_file(), "file.xodr").findings) {
+    EXPECT_EQ(finding.severity, Severity::info) << finding.rule << ": " << finding.message;
+    const bool expected = finding.rule.starts_with("link.") || finding.rule.starts_with("speed.") ||
+                          finding.rule.starts_with("import.");
+    EXPECT_TRUE(expected) << finding.rule << ": " << finding.message;
+  }
+}
+
+TEST(OpenDriveRules, FindEverySlipAndSayWhereItIs) {
+  for (const Slip& slip : slips()) {
+    SCOPED_TRACE(slip.rule);
+    EXPECT_TRUE(of_rule(clean_file(), slip.rule).empty());
+    const auto findings = of_rule(with(slip), slip.rule);
+    ASSERT_FALSE(findings.empty());
+    EXPECT_FALSE(findings[0].element.empty());
+    EXPECT_GT(findings[0].message.size(), 20u);
+    EXPECT_TRUE(findings[0].line > 0 || slip.rule == "crs.far-from-origin");
+  }
+}
+
+TEST(OpenDriveRules, AreAllTried) {
+  std::set<std::string> tried;
+  for (const Slip& slip : slips()) tried.insert(slip.rule);
+  for (const auto& rule : rules::open_drive::source_rules()) {
+    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
+  }
+}
+
+TEST(OpenDriveRules, GiveTheLineOfTheElement) {
+  const Slip slip{"", R"(fromLane="-2" toLane="-1")", R"(fromLane="-9" toLane="-8")"};
+  const std::string text = with(slip);
+  const auto line =
+      1 + std::count(text.begin(),
+                     text.begin() + static_cast<std::ptrdiff_t>(text.find("<signal ")), '\n');
+  EXPECT_EQ(of_rule(text, "signal.validity-unknown").at(0).line, line);
+}
+
+TEST(OpenDriveRules, DescribeAFileThatIsNoXml) {
+  const std::string half = clean_file().substr(0, 3000);
+  const Validation validation = validate_bytes(half, "half.xodr");
+  EXPECT_FALSE(validation.road_map);
+  EXPECT_THAT(validation.refusal, ::testing::HasSubstr("half.xodr"));
+  ASSERT_EQ(validation.findings.size(), 1u);
+  EXPECT_EQ(validation.findings[0].rule, "source.not-well-formed");
+  EXPECT_EQ(validation.findings[0].asam_rule, "asam.net:xodr:1.0.0:xml.valid_xml_document");
+  EXPECT_GT(validation.findings[0].line, 0);
+}
+
+TEST(OpenDriveRules, GoOnWhereTheReaderRefusesTheFile) {
+  const Validation validation =
+      validate_bytes(with({"", R"(<arc curvature="0.02"/>)", R"(<arc curvature="x"/>)"}), "f.xodr");
+  EXPECT_FALSE(validation.road_map);
+  const auto has = [&](const char* rule) {
+    return std::any_of(validation.findings.begin(), validation.findings.end(),
+                       [&](const Finding& finding) { return finding.rule == rule; });
+  };
+  EXPECT_TRUE(has("schema.not-a-number"));
+  EXPECT_TRUE(has("import.refused"));
+}
+
+TEST(OpenDriveRules, CountWhatIsTooMuchToList) {
+  std::string roads;
+  for (int i = 0; i < 1200; ++i) roads += "<road id=\"r" + std::to_string(i) + "\"/>\n";
+  std::string text = clean_file();
+  text.insert(text.find("<controller "), roads);
+  const auto findings = of_rule(text, "section.missing");
+  ASSERT_EQ(findings.size(), 1001u);
+  EXPECT_EQ(findings.back().message, "and 200 more of this kind");
+}
+
+TEST(OpenDriveRules, GiveTheSidesOfTrafficTheirAsamRule) {
+  const auto findings =
+      of_rule(with({"", R"(fromLane="-2" toLane="-1")", R"(fromLane="-2" toLane="1")"}),
+              "signal.validity-orientation");
+  EXPECT_EQ(findings.at(0).asam_rule,
+            "asam.net:xodr:1.7.0:road.signal.validity.right_hand_traffic_lane_ids");
+}
+
+}  // namespace
+}  // namespace roadbed::map
