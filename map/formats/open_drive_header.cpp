@@ -26,7 +26,7 @@ void read_revision(const XmlDocument& xml, pugi::xml_node header, Document& docu
 
 // All text and CDATA of an element, without the space around it.
 std::string text_of(pugi::xml_node node) {
-  std::string text;
+  std::string text = node.value();  // what stands first is kept in the element itself
   for (const auto child : node.children()) {
     if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) {
       text += child.value();

@@ -144,8 +144,8 @@ TEST(GeoJsonSurface, UnusableFilesAreRefusedWithTheirPlace) {
               HasSubstr("beyond any road"));
   EXPECT_THAT(message_of(in_metres(polygon("[[[0,0],[1e999,0],[1,1],[0,0]]]"))),
               HasSubstr("number"));
-  EXPECT_THAT(message_of(R"({"type":"Polygon","coordinates":)" + kRoad + "}").substr(0, 12),
-              "no error");
+  EXPECT_EQ(message_of(R"({"type":"Polygon","coordinates":[[[9,48],[9.1,48],[9,48.1],[9,48]]]})"),
+            "no error");
   EXPECT_THAT(message_of(R"({"type":"Polygon","coordinates":[[[500000,5400000],[1,1],[2,1]]]})"),
               HasSubstr("no longitude and latitude"));
   EXPECT_THAT(message_of(in_metres(polygon("[[[0,0],[50,50],[50,0],[0,50],[0,0]]]"))),
