@@ -205,6 +205,7 @@ class Comparison {
     if (before_.format() != after_.format()) changed.emplace_back("format");
     if (before_.crs() != after_.crs()) changed.emplace_back("crs");
     if (a != b) changed.emplace_back("offset");
+    if (before_.attributes() != after_.attributes()) changed.emplace_back("attributes");
     if (!changed.empty()) add(Kind::changed, "map", "map", std::move(changed));
   }
 
