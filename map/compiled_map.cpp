@@ -148,10 +148,19 @@ VerifiedMap verify(const File& file) {
   return verified;
 }
 
+// More than the bytes of any map seen so far, of which the index is a third or more.
+std::size_t likely_size(const lane_index::Data& index) {
+  std::size_t size = 0;
+  const auto add = [&size](const char*, const auto& array) { size += array.bytes().size(); };
+  lane_index::visit(add, index);
+  return 5 * size + ChunkedFile::kChunkSize;
+}
+
 }  // namespace
 
 std::string write_compiled_map(const RoadMap& road_map) {
   ChunkedFileWriter file;
+  file.reserve(likely_size(road_map.index().lanes.data()));
   file.add("head", [&](std::string& bytes) {
     ByteWriter head(bytes);
     fields::head(head, road_map.content());

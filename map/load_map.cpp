@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "roadbed/map/compiled_map.h"
 #include "roadbed/map/formats/common_road.h"
 #include "roadbed/map/formats/geojson_surface.h"
@@ -22,8 +24,8 @@ bool looks_like_xml(const std::string& bytes) {
 
 }  // namespace
 
-RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadOptions& options) {
-  if (is_compiled_map(bytes)) return read_compiled_map(bytes, name);
+RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions& options) {
+  if (is_compiled_map(bytes)) return read_compiled_map(std::move(bytes), name);
   if (geojson::is_geojson(bytes)) return RoadMap(geojson::read(bytes, name));
   if (!looks_like_xml(bytes)) {
     throw InputError(
@@ -35,6 +37,7 @@ RoadMap parse_map(const std::string& bytes, const std::string& name, const LoadO
          .remedy = "check whether it is the right file"});
   }
   XmlDocument xml(bytes, name);
+  std::string().swap(bytes);  // the document has a copy; a city's file is hundreds of megabytes
   if (lanelet2::is_lanelet2(xml.root().name())) return RoadMap(lanelet2::read(xml));
   if (common_road::is_common_road(xml.root().name())) return RoadMap(common_road::read(xml));
   if (!open_drive::is_open_drive(xml.root().name())) {

@@ -16,7 +16,6 @@ struct LoadOptions {
 RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// The same from bytes; `name` stands for the file in messages.
-RoadMap parse_map(const std::string& bytes, const std::string& name,
-                  const LoadOptions& options = {});
+RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions& options = {});
 
 }  // namespace roadbed::map
