@@ -148,7 +148,7 @@ VerifiedMap verify(const File& file) {
   return verified;
 }
 
-// More than the bytes of any map seen so far, of which the index is a third or more.
+// More than the bytes of maps seen so far, of which the index is about a third.
 std::size_t likely_size(const lane_index::Data& index) {
   std::size_t size = 0;
   const auto add = [&size](const char*, const auto& array) { size += array.bytes().size(); };
