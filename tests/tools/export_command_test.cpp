@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "roadbed/tests/support/program_run.h"
 
@@ -50,6 +51,58 @@ TEST(ExportCommand, LeavesNothingBehindWhenItCannotDoIt) {
   EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 1);
   EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 1);
   EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"bad.xodr"});
+}
+
+TEST(ExportCommand, WritesTheSameGeoPackageAndFlatGeobufEveryTime) {
+  const TemporaryFolder folder;
+  for (const std::string suffix : {".gpkg", ".fgb"}) {
+    for (const std::string name : {"a", "b"}) {
+      const ProgramRun run =
+          run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / (name + suffix)});
+      EXPECT_EQ(run.status, 0) << run.err;
+    }
+    EXPECT_EQ(bytes_of(folder / ("a" + suffix)), bytes_of(folder / ("b" + suffix)));
+  }
+  EXPECT_EQ(bytes_of(folder / "a.gpkg").substr(0, 15), "SQLite format 3");
+  EXPECT_EQ(bytes_of(folder / "a.fgb").substr(0, 3), "fgb");
+}
+
+TEST(ExportCommand, PutsAMapOfUnknownSystemAtItsAnchor) {
+  const TemporaryFolder folder;
+  const ProgramRun run =
+      run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--layer",
+                   "centrelines", "--anchor", "48.0,9.0"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json document = nlohmann::json::parse(bytes_of(folder / "a.geojson"));
+  EXPECT_FALSE(document.contains("crs"));
+  const auto& first = document.at("features").at(0).at("geometry").at("coordinates").at(0);
+  // The lane begins 1050 m east and 2001.75 m north: 111,194 m to a degree of latitude here, the
+  // mean of 48° and its surroundings on WGS 84; 74,632 m to one of longitude.
+  EXPECT_NEAR(first.at(0).get<double>(), 9.0 + 1050.0 / 74632.0, 2e-5);
+  EXPECT_NEAR(first.at(1).get<double>(), 48.0 + 2001.75 / 111194.0, 2e-5);
+}
+
+TEST(ExportCommand, RefusesAnAnchorWhereTheSystemIsKnown) {
+  const TemporaryFolder folder;
+  const ProgramRun run =
+      run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--crs",
+                   "EPSG:32632", "--anchor", "48.0,9.0"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("is known"), std::string::npos) << run.err;
+  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--anchor",
+                         "148.0,9.0"})
+                .status,
+            2);
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(ExportCommand, RefusesMoreLayersThanTheFormatHolds) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.fgb",
+                                      "--layer", "lanes", "--layer", "roads"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("at most 1"), std::string::npos) << run.err;
+  EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
 }  // namespace
