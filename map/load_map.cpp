@@ -36,8 +36,7 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
          .needed = "an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map",
          .remedy = "check whether it is the right file"});
   }
-  XmlDocument xml(bytes, name);
-  std::string().swap(bytes);  // the document has a copy; a city's file is hundreds of megabytes
+  XmlDocument xml(std::move(bytes), name);
   if (lanelet2::is_lanelet2(xml.root().name())) return RoadMap(lanelet2::read(xml));
   if (common_road::is_common_road(xml.root().name())) return RoadMap(common_road::read(xml));
   if (!open_drive::is_open_drive(xml.root().name())) {

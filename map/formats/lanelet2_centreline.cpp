@@ -1,5 +1,6 @@
 #include "roadbed/map/formats/lanelet2_centreline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,17 +58,22 @@ std::vector<double> arc_lengths(const Line3& line) {
   return s_m;
 }
 
-// One border while it is climbed.
-struct Rail {
-  const Line3& line;
-  std::vector<Eigen::Vector2d> plan;
-  std::size_t at = 0;
-  std::vector<double> station_m;  // NaN where no rung stands
+Eigen::AlignedBox2d box_of(const Segment& segment) {
+  return {segment.from.cwiseMin(segment.to), segment.from.cwiseMax(segment.to)};
+}
 
+// One border while it is climbed. Its segments are searched in runs, each with its box.
+class Rail {
+ public:
   explicit Rail(const Line3& border)
       : line(border),
         plan(in_plan(border)),
-        station_m(border.size(), std::numeric_limits<double>::quiet_NaN()) {}
+        station_m(border.size(), std::numeric_limits<double>::quiet_NaN()),
+        boxes_((border.size() + kRun - 1) / kRun) {
+    for (std::size_t i = 0; i + 1 < plan.size(); ++i) {
+      boxes_[i / kRun].extend(plan[i]).extend(plan[i + 1]);
+    }
+  }
 
   const Eigen::Vector2d& here() const { return plan[at]; }
   bool at_end() const { return at + 1 == plan.size(); }
@@ -75,14 +81,29 @@ struct Rail {
   // Whether a segment of the border, but for those that `spared` accepts, meets the given one.
   template <typename Spared>
   bool is_met(const Segment& by, const Spared& spared) const {
+    const Eigen::AlignedBox2d box = box_of(by);
     const std::size_t first = at > kReach ? at - kReach : 0;
     const std::size_t last = std::min(plan.size() - 1, at + kReach);
-    for (std::size_t i = first; i < last; ++i) {
-      const Segment segment{plan[i], plan[i + 1]};
-      if (meet(segment, by) && !spared(segment)) return true;
+    for (std::size_t run = first / kRun; run * kRun < last; ++run) {
+      if (!boxes_[run].intersects(box)) continue;
+      const std::size_t end = std::min(last, (run + 1) * kRun);
+      for (std::size_t i = std::max(first, run * kRun); i < end; ++i) {
+        const Segment segment{plan[i], plan[i + 1]};
+        if (meet(segment, by) && !spared(segment)) return true;
+      }
     }
     return false;
   }
+
+  const Line3& line;
+  std::vector<Eigen::Vector2d> plan;
+  std::size_t at = 0;
+  std::vector<double> station_m;  // NaN where no rung stands
+
+ private:
+  static constexpr std::size_t kRun = 8;
+
+  std::vector<Eigen::AlignedBox2d> boxes_;
 };
 
 class Ladder {
@@ -137,10 +158,22 @@ class Ladder {
   // The nearest vertex ahead on `rail` to which a rung from the other one may be laid.
   std::optional<Step> best_step(const Rail& rail, const Rail& opposite) const {
     const std::size_t end = std::min(rail.plan.size(), rail.at + 1 + kReach);
+    Step nearest{std::numeric_limits<double>::infinity(), end};
+    for (std::size_t i = rail.at + 1; i < end; ++i) {
+      nearest = std::min(nearest, {(rail.plan[i] - opposite.here()).norm(), i});
+    }
+    if (nearest.to == end) return {};
+    if (is_free(rail, opposite, nearest.to)) return nearest;
+    return next_best_step(rail, opposite, nearest.to, end);
+  }
+
+  // The same without the nearest one, which is not free: by distance, until one is.
+  std::optional<Step> next_best_step(const Rail& rail, const Rail& opposite, std::size_t nearest,
+                                     std::size_t end) const {
     std::vector<Step> steps;
     steps.reserve(end - rail.at);
     for (std::size_t i = rail.at + 1; i < end; ++i) {
-      steps.push_back({(rail.plan[i] - opposite.here()).norm(), i});
+      if (i != nearest) steps.push_back({(rail.plan[i] - opposite.here()).norm(), i});
     }
     const auto later = [](const Step& a, const Step& b) { return b < a; };
     std::make_heap(steps.begin(), steps.end(), later);
@@ -152,6 +185,11 @@ class Ladder {
     return {};
   }
 
+  // Whether a step of the centreline leaves the lane through its entry or exit.
+  static bool crosses(const Segment& ahead, const Segment& gate) {
+    return meet(ahead, gate) && side(gate.from, gate.to, ahead.to) > 0.0;
+  }
+
   bool is_free(const Rail& rail, const Rail& opposite, std::size_t to) const {
     const Eigen::Vector2d& candidate = rail.plan[to];
     const Eigen::Vector2d& foot = opposite.here();
@@ -159,9 +197,9 @@ class Ladder {
     const Segment ahead{centre_.back().head<2>(), middle};
     const auto starts_here = [&](const Segment& s) { return s.from == ahead.from; };
     if (left_.is_met(ahead, starts_here) || right_.is_met(ahead, starts_here)) return false;
-    for (const Segment& gate : {entry_, exit_}) {
-      if (meet(ahead, gate) && side(gate.from, gate.to, middle) > 0.0) return false;
-    }
+    // The first step begins on the entry itself and cannot cross it.
+    if (centre_.size() > 1 && crosses(ahead, entry_)) return false;
+    if (crosses(ahead, exit_)) return false;
     const Segment rung{foot, candidate};
     const auto at_candidate = [&](const Segment& s) {
       return s.from == candidate || s.to == candidate;

@@ -31,9 +31,12 @@ std::string_view subtype_of(LaneType type) {
   }
 }
 
-// participant tags, where the subtype does not already say the same.
+// participant tags, where the subtype does not already say the same. A shoulder or parking lane
+// open to vehicles would become a lane to drive on.
 void add_participants(const Lane& lane, Attributes& tags) {
-  if (participants(tags) == lane.participants) return;
+  const bool beside_traffic = lane.type == LaneType::shoulder || lane.type == LaneType::stop ||
+                              lane.type == LaneType::parking;
+  if (beside_traffic || participants(tags) == lane.participants) return;
   using enum Participant;
   const Participants vehicles = Participants::vehicles();
   const bool all_vehicles = (lane.participants.bits() & vehicles.bits()) == vehicles.bits();

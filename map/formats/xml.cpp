@@ -69,13 +69,15 @@ std::optional<double> parse_finite(std::string_view text) {
 
 }  // namespace
 
-XmlDocument::XmlDocument(const std::string& bytes, std::string name)
-    : name_(std::move(name)), size_bytes_(bytes.size()) {
-  check_size(bytes, name_);
-  line_starts_ = find_line_starts(bytes);
+XmlDocument::XmlDocument(std::string bytes, std::string name)
+    : name_(std::move(name)),
+      size_bytes_(bytes.size()),
+      text_(std::make_unique<std::string>(std::move(bytes))) {
+  check_size(*text_, name_);
+  line_starts_ = find_line_starts(*text_);
   // Text is kept in its element: a node less for each.
-  const pugi::xml_parse_result result = document_.load_buffer(
-      bytes.data(), bytes.size(), pugi::parse_default | pugi::parse_embed_pcdata);
+  const pugi::xml_parse_result result = document_.load_buffer_inplace(
+      text_->data(), text_->size(), pugi::parse_default | pugi::parse_embed_pcdata);
   if (!result) {
     throw InputError({.file = name_,
                       .place = std::to_string(line_at(line_starts_, result.offset)),

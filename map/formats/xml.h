@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -16,10 +17,14 @@ class XmlDocument {
   /// @param name  stands for the file in messages.
   /// @throws InputError if the bytes are not well-formed XML, or hold more elements than a map of
   ///         their size does: memory stays bounded by the file's size.
-  XmlDocument(const std::string& bytes, std::string name);
+  /// The elements stay where the bytes are: hand these over, and memory holds them once.
+  XmlDocument(std::string bytes, std::string name);
 
   /// Lets the elements go, when all is read.
-  void release() { document_.reset(); }
+  void release() {
+    document_.reset();
+    text_.reset();
+  }
 
   pugi::xml_node root() const { return document_.document_element(); }
   const std::string& name() const { return name_; }
@@ -57,6 +62,7 @@ class XmlDocument {
   std::string name_;
   std::size_t size_bytes_;
   std::vector<std::uint32_t> line_starts_;
+  std::unique_ptr<std::string> text_;  // the elements' names and values lie in it
   pugi::xml_document document_;
 };
 
