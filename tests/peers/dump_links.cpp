@@ -34,7 +34,7 @@ void print(const RoadMap& road_map, const Lane& lane) {
       << fmt::format(
              R"({{"lane":"{}","car":{},"foot":{},"one_way":{},"length_m":{},"limit_mps":{},"successors":{},)"
              R"("left":{},"right":{}}})",
-             lane.name, lane.participants.has(Participant::car),
+             lane.name, is_drivable(lane.type) && lane.participants.has(Participant::car),
              lane.participants.has(Participant::pedestrian), lane.one_way, lane.length_m(),
              limit_mps ? fmt::format("{}", *limit_mps) : "null", names(road_map, links.successors),
              side(road_map, links.left), side(road_map, links.right))
