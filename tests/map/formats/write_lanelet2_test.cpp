@@ -18,7 +18,8 @@ namespace {
 using testing::HasSubstr;
 
 RoadMap written(const RoadMap& road_map) {
-  return parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632"}).bytes, "written.osm");
+  return parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
+                   "written.osm");
 }
 
 double apart_m(const RoadMap& a, const LaneLine& one, const RoadMap& b, const LaneLine& other) {
