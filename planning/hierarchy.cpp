@@ -82,17 +82,23 @@ class Elimination {
   std::vector<Rank> first_child_, next_child_, row_, other_, merged_;
 };
 
-// Counting sort of pairs (group, item) into rows; `visit` names all of them, items ascending.
-template <typename Item, typename Visit>
-Grouped<Item> grouped_by(std::size_t groups, const Visit& visit) {
-  Grouped<Item> rows;
-  rows.first.assign(groups + 1, 0);
-  visit([&](std::uint32_t group, const Item&) { ++rows.first[group + 1]; });
-  for (std::size_t i = 0; i < groups; ++i) rows.first[i + 1] += rows.first[i];
-  rows.items.resize(rows.first.back());
-  std::vector<std::uint32_t> next(rows.first.begin(), rows.first.end() - 1);
-  visit([&](std::uint32_t group, const Item& item) { rows.items[next[group]++] = item; });
-  return rows;
+// Counted first, then filled: both passes see the ranks below in ascending order.
+Grouped<Rank> ranks_below(const Hierarchy& hierarchy, std::size_t ranks) {
+  const auto visit = [&](const auto& take) {
+    for (Rank rank = 0; rank < ranks; ++rank) {
+      for (const RankRun& run : hierarchy.above.of(rank)) {
+        for (Rank i = 0; i < run.count; ++i) take(run.first + i, rank);
+      }
+    }
+  };
+  Grouped<Rank> below;
+  below.first.assign(ranks + 1, 0);
+  visit([&](Rank high, Rank) { ++below.first[high + 1]; });
+  for (std::size_t i = 0; i < ranks; ++i) below.first[i + 1] += below.first[i];
+  below.items.resize(below.first.back());
+  std::vector<Rank> next(below.first.begin(), below.first.end() - 1);
+  visit([&](Rank high, Rank low) { below.items[next[high]++] = low; });
+  return below;
 }
 
 }  // namespace
@@ -113,25 +119,14 @@ Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_
   made.rank_of_node.resize(graph.nodes());
   for (Rank rank = 0; rank < order.size(); ++rank) made.rank_of_node[order[rank]] = rank;
   Elimination(graph, made).run();
-  made.below = grouped_by<RankBelow>(graph.nodes(), [&](const auto& take) {
-    for (Rank rank = 0; rank < graph.nodes(); ++rank) {
-      for (const RankRun& run : made.above.of(rank)) {
-        for (Rank i = 0; i < run.count; ++i)
-          take(run.first + i, RankBelow{rank, run.first_arc + i});
-      }
-    }
-  });
+  made.above.items.shrink_to_fit();
+  made.below = ranks_below(made, graph.nodes());
   made.arc_of.assign(graph.arcs(), kNoNode);
   for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
     const auto [low, high] =
         std::minmax(made.rank_of_node[graph.tail[arc]], made.rank_of_node[graph.head[arc]]);
     if (low != high) made.arc_of[arc] = made.arc_between(low, high);
   }
-  made.arcs_at = grouped_by<std::uint32_t>(made.arcs, [&](const auto& take) {
-    for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
-      if (made.arc_of[arc] != kNoNode) take(made.arc_of[arc], arc);
-    }
-  });
   return made;
 }
 

@@ -14,11 +14,6 @@ struct RankRun {
   std::uint32_t first_arc = 0;  ///< of the hierarchy; the others follow
 };
 
-/// A rank that leads up to another one, and by which arc.
-struct RankBelow {
-  std::uint32_t rank = 0, arc = 0;
-};
-
 /// A contraction hierarchy that depends on the shape of a graph only, not on its weights:
 /// customisable contraction hierarchies [Dibbelt, Strasser, Wagner 2014, arXiv:1402.0402].
 ///
@@ -30,10 +25,9 @@ struct Hierarchy {
   std::vector<std::uint32_t> node_of_rank, rank_of_node;
   std::vector<std::uint32_t> parent;  ///< lowest rank above, its own for a root
   Grouped<RankRun> above;             ///< of each rank, ascending
-  Grouped<RankBelow> below;           ///< what leads up to a rank, ascending
+  Grouped<std::uint32_t> below;       ///< ranks that lead up to a rank, ascending
   std::uint32_t arcs = 0;
   std::vector<std::uint32_t> arc_of;  ///< hierarchy's arc of each of the graph
-  Grouped<std::uint32_t> arcs_at;     ///< graph's arcs of each of the hierarchy
 
   /// The arc from a rank up to a higher one; kNoNode if there is none. O(log runs).
   std::uint32_t arc_between(std::uint32_t low, std::uint32_t high) const;

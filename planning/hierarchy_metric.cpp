@@ -12,18 +12,27 @@ namespace {
 constexpr auto kFar = static_cast<std::int32_t>(kNever);
 
 // Visits the ranks that lead up to both: the arcs to the first and to the second. Stops at true.
-// The shorter list is walked, and the other's arcs are looked up.
+// The shorter list is walked and looked up in the other one.
 template <typename Visit>
 void for_each_below(const Hierarchy& hierarchy, std::uint32_t one, std::uint32_t other,
                     const Visit& visit) {
   const bool one_is_shorter = hierarchy.below.of(one).size() <= hierarchy.below.of(other).size();
-  const std::uint32_t looked_up = one_is_shorter ? other : one;
-  for (const RankBelow& below : hierarchy.below.of(one_is_shorter ? one : other)) {
-    const std::uint32_t arc = hierarchy.arc_between(below.rank, looked_up);
-    if (arc == kNoNode) continue;
-    if (visit(below.rank, one_is_shorter ? below.arc : arc, one_is_shorter ? arc : below.arc)) {
-      return;
-    }
+  const std::uint32_t walked = one_is_shorter ? one : other,
+                      looked_up = one_is_shorter ? other : one;
+  for (const std::uint32_t rank : hierarchy.below.of(walked)) {
+    const std::uint32_t far = hierarchy.arc_between(rank, looked_up);
+    if (far == kNoNode) continue;
+    const std::uint32_t near = hierarchy.arc_between(rank, walked);
+    if (visit(rank, one_is_shorter ? near : far, one_is_shorter ? far : near)) return;
+  }
+}
+
+// Visits the arcs of the graph between two nodes. Stops at true.
+template <typename Visit>
+void for_each_arc(const RouteGraph& graph, std::uint32_t from, std::uint32_t to,
+                  const Visit& visit) {
+  for (std::uint32_t arc = graph.first_out[from]; arc < graph.first_out[from + 1]; ++arc) {
+    if (graph.head[arc] == to && visit(arc)) return;
   }
 }
 
@@ -77,19 +86,18 @@ void HierarchyMetric::customise(std::uint32_t rank) {
   }
 }
 
-HierarchyMetric::Both HierarchyMetric::own_weight(std::uint32_t arc, std::uint32_t low) const {
-  Both both{kFar, kFar};
-  for (const std::uint32_t of_graph : hierarchy_.arcs_at.of(arc)) {
-    const bool upwards = hierarchy_.rank_of_node[graph_.tail[of_graph]] == low;
-    std::int32_t& weight = upwards ? both.up : both.down;
-    weight = std::min(weight, static_cast<std::int32_t>(weights_[of_graph]));
-  }
-  return both;
+std::int32_t HierarchyMetric::own_weight(std::uint32_t from, std::uint32_t to) const {
+  std::int32_t least = kFar;
+  for_each_arc(graph_, hierarchy_.node_of_rank[from], hierarchy_.node_of_rank[to],
+               [&](std::uint32_t arc) {
+                 least = std::min(least, static_cast<std::int32_t>(weights_[arc]));
+                 return false;
+               });
+  return least;
 }
 
-HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t arc, std::uint32_t low,
-                                               std::uint32_t high) const {
-  Both both = own_weight(arc, low);
+HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t low, std::uint32_t high) const {
+  Both both{own_weight(low, high), own_weight(high, low)};
   for_each_below(hierarchy_, low, high,
                  [&](std::uint32_t, std::uint32_t to_low, std::uint32_t to_high) {
                    both.up = std::min(both.up, down_[to_low] + up_[to_high]);
@@ -120,7 +128,7 @@ std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
     done = next.arc;
     ++computed;
     const Both old{up_[next.arc], down_[next.arc]};
-    const Both now = compute(next.arc, next.low, next.high);
+    const Both now = compute(next.low, next.high);
     if (now == old) continue;
     // Arcs above are affected where they rested on the old weight, or the new one is less.
     const bool down_changed = old.down != now.down, up_changed = old.up != now.up;
@@ -153,13 +161,14 @@ void HierarchyMetric::unpack(std::uint32_t low, std::uint32_t high, bool upwards
                              std::vector<std::uint32_t>& arcs) const {
   const std::uint32_t arc = hierarchy_.arc_between(low, high);
   const std::int32_t weight = upwards ? up_[arc] : down_[arc];
-  for (const std::uint32_t of_graph : hierarchy_.arcs_at.of(arc)) {
-    const bool is_up = hierarchy_.rank_of_node[graph_.tail[of_graph]] == low;
-    if (is_up == upwards && static_cast<std::int32_t>(weights_[of_graph]) == weight) {
-      arcs.push_back(of_graph);
-      return;
-    }
-  }
+  bool found = false;
+  for_each_arc(graph_, hierarchy_.node_of_rank[upwards ? low : high],
+               hierarchy_.node_of_rank[upwards ? high : low], [&](std::uint32_t of_graph) {
+                 found = static_cast<std::int32_t>(weights_[of_graph]) == weight;
+                 if (found) arcs.push_back(of_graph);
+                 return found;
+               });
+  if (found) return;
   for_each_below(hierarchy_, low, high,
                  [&](std::uint32_t rank, std::uint32_t to_low, std::uint32_t to_high) {
                    const std::int32_t way =

@@ -36,8 +36,8 @@ class HierarchyMetric {
     bool operator==(const Both&) const = default;
   };
   void customise(std::uint32_t rank);
-  Both own_weight(std::uint32_t arc, std::uint32_t low) const;
-  Both compute(std::uint32_t arc, std::uint32_t low, std::uint32_t high) const;
+  std::int32_t own_weight(std::uint32_t from, std::uint32_t to) const;
+  Both compute(std::uint32_t low, std::uint32_t high) const;
 
   const RouteGraph& graph_;
   const Hierarchy& hierarchy_;

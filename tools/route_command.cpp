@@ -100,8 +100,9 @@ class RouteCommand : public Command {
 
   Exit run_batch(const Streams& streams, const CommonOptions& common) const {
     const map::RoadMap road_map = map::load_map(map_file_);
-    const BatchAnswer answer = route_batch(road_map, batch_, question_.rules().on(road_map),
-                                           {.matrix = matrix_, .threads = common.threads});
+    const BatchAnswer answer =
+        route_batch(road_map, batch_, question_.rules().on(road_map),
+                    {.matrix = matrix_, .json = json_, .threads = common.threads});
     if (output_.empty()) {
       fmt::print(streams.out, "{}", json_ ? answer.json : answer.csv);
     } else {

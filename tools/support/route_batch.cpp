@@ -107,8 +107,10 @@ void in_threads(std::size_t count, int threads, const Make& make, const Work& wo
 
 class Batch {
  public:
-  Batch(const map::RoadMap& road_map, const planning::RouteOptions& rules)
+  Batch(const map::RoadMap& road_map, const planning::RouteOptions& rules,
+        const BatchOptions& options)
       : road_map_(road_map),
+        options_(options),
         router_(road_map, rules),
         solver_(router_.solver()),
         hierarchy_(planning::make_hierarchy(
@@ -117,41 +119,45 @@ class Batch {
         metric_(solver_.graph(), hierarchy_, solver_.weights()) {}
 
   void place(std::vector<Row>& rows) const {
-    for (Row& row : rows) {
-      if (row.fault.empty()) {
-        place_row(road_map_, router_, router_.options().participant, row);
-      }
-    }
+    in_threads(
+        rows.size(), options_.threads, [] { return 0; },
+        [&](int, std::size_t i) {
+          if (rows[i].fault.empty()) {
+            place_row(road_map_, router_, router_.options().participant, rows[i]);
+          }
+        });
   }
 
-  std::vector<Cell> answer_rows(const std::vector<Row>& rows, int threads) const {
+  std::vector<Cell> answer_rows(const std::vector<Row>& rows) const {
     std::vector<Cell> cells(rows.size());
     in_threads(
-        rows.size(), threads, [&] { return planning::HierarchySearch(metric_); },
+        rows.size(), options_.threads, [&] { return planning::HierarchySearch(metric_); },
         [&](planning::HierarchySearch& search, std::size_t i) {
           cells[i] = answer(search, rows[i]);
         });
     return cells;
   }
 
-  std::vector<Cell> answer_matrix(const std::vector<Row>& rows, int threads) const {
+  std::vector<Cell> answer_matrix(const std::vector<Row>& rows) const {
     std::vector<planning::ClimbedSpace> goals(rows.size());
     const auto make = [&] { return planning::HierarchySearch(metric_); };
-    in_threads(rows.size(), threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
-      if (!rows[i].fault.empty()) return;
-      const auto end = arrive_at(solver_.graph(), solver_.rules(), *rows[i].to);
-      goals[i] = search.climb(end.seeds, true);
-    });
+    in_threads(rows.size(), options_.threads, make,
+               [&](planning::HierarchySearch& search, std::size_t i) {
+                 if (!rows[i].fault.empty()) return;
+                 const auto end = arrive_at(solver_.graph(), solver_.rules(), *rows[i].to);
+                 goals[i] = search.climb(end.seeds, true);
+               });
     std::vector<Cell> cells(rows.size() * rows.size());
-    in_threads(rows.size(), threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
-      if (!rows[i].fault.empty()) return;
-      const auto end = leave_from(solver_.graph(), solver_.rules(), *rows[i].from);
-      const planning::ClimbedSpace start = search.climb(end.seeds, false);
-      for (std::size_t j = 0; j < rows.size(); ++j) {
-        if (!rows[j].fault.empty()) continue;
-        cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
-      }
-    });
+    in_threads(rows.size(), options_.threads, make,
+               [&](planning::HierarchySearch& search, std::size_t i) {
+                 if (!rows[i].fault.empty()) return;
+                 const auto end = leave_from(solver_.graph(), solver_.rules(), *rows[i].from);
+                 const planning::ClimbedSpace start = search.climb(end.seeds, false);
+                 for (std::size_t j = 0; j < rows.size(); ++j) {
+                   if (!rows[j].fault.empty()) continue;
+                   cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
+                 }
+               });
     std::erase_if(cells, [](const Cell& cell) { return cell.csv.empty(); });
     return cells;
   }
@@ -177,16 +183,18 @@ class Batch {
     cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
                            csv_text(row.from_text), csv_text(row.to_text), route.cost_s,
                            route.cost_m, route.length_m, route.lane_changes, csv_text(lanes));
-    cell.json = route_json(road_map_, route);
-    cell.json["row"] = row.line;
+    if (options_.json) {
+      cell.json = route_json(road_map_, route);
+      cell.json["row"] = row.line;
+    }
     return cell;
   }
 
-  static Cell none(const Row& row, const std::string& reason) {
+  Cell none(const Row& row, const std::string& reason) const {
     Cell cell;
     cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, csv_text(row.from_text),
                            csv_text(row.to_text), csv_text(reason));
-    cell.json = {{"found", false}, {"reason", reason}, {"row", row.line}};
+    if (options_.json) cell.json = {{"found", false}, {"reason", reason}, {"row", row.line}};
     return cell;
   }
 
@@ -202,6 +210,7 @@ class Batch {
     cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, csv_text(from.from_text),
                            csv_text(to.to_text), cell.found ? 1 : 0,
                            cell.found ? fmt::format("{:.4f}", cost) : "");
+    if (!options_.json) return cell;
     cell.json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};
     const char* key = measure == planning::RouteCost::time ? "cost_s" : "cost_m";
     if (cell.found) cell.json[key] = cost;
@@ -209,6 +218,7 @@ class Batch {
   }
 
   const map::RoadMap& road_map_;
+  const BatchOptions& options_;
   planning::Router router_;
   const planning::RouteSolver& solver_;
   planning::Hierarchy hierarchy_;
@@ -245,16 +255,16 @@ std::vector<std::string> csv_fields(const std::string& line) {
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const BatchOptions& options) {
   std::vector<Row> rows = read_rows(file);
-  const Batch batch(road_map, rules);
+  const Batch batch(road_map, rules, options);
   batch.place(rows);
-  const std::vector<Cell> cells = options.matrix ? batch.answer_matrix(rows, options.threads)
-                                                 : batch.answer_rows(rows, options.threads);
+  const std::vector<Cell> cells =
+      options.matrix ? batch.answer_matrix(rows) : batch.answer_rows(rows);
   BatchAnswer answer;
   answer.csv = header(rules, options.matrix);
   Json list = Json::array();
   for (const Cell& cell : cells) {
     answer.csv += cell.csv;
-    list.push_back(cell.json);
+    if (options.json) list.push_back(cell.json);
     ++(cell.found ? answer.found : answer.none);
   }
   for (const Row& row : rows) {
@@ -262,7 +272,7 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
     answer.faults.push_back(fmt::format("{}:{}: {}", file.string(), row.line, row.fault));
   }
   if (!options.matrix) answer.none -= answer.faults.size();
-  answer.json = text_of(Json{{"answers", std::move(list)}}, 1) + "\n";
+  if (options.json) answer.json = text_of(Json{{"answers", std::move(list)}}, 1) + "\n";
   return answer;
 }
 

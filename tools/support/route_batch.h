@@ -10,12 +10,13 @@ namespace roadbed::tools {
 
 struct BatchOptions {
   bool matrix = false;  ///< from every `from` to every `to` instead of row by row
+  bool json = false;    ///< make the JSON text, too
   int threads = 1;
 };
 
 /// Answers of many pairs. The texts are the same for any number of threads.
 struct BatchAnswer {
-  std::string csv, json;
+  std::string csv, json;            ///< the latter empty if not asked for
   std::vector<std::string> faults;  ///< of rows that could not be used: "pairs.csv:3: …"
   std::size_t found = 0, none = 0;
 };
