@@ -37,7 +37,7 @@ std::string escaped(std::string_view text) {
 }
 
 std::optional<std::int64_t> id_in(const std::string& text) {
-  constexpr std::int64_t largest = 9'000'000'000'000'000'000;  // and 2·10¹⁷ fresh ones beyond
+  constexpr std::int64_t largest = 9'200'000'000'000'000'000;  // and 2·10¹⁶ fresh ones beyond
   std::int64_t id = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, id);

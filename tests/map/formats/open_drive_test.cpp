@@ -196,7 +196,7 @@ TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
                                "a=\"3.5\" b=\"0\" c=\"0\" d=\"1e200\"")),
               HasSubstr("made.xodr:2: road A: "));
   EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("not well-formed XML"));
-  EXPECT_THAT(refusal("<osm/>"), HasSubstr("root element <osm>"));
+  EXPECT_THAT(refusal("<kml/>"), HasSubstr("root element <kml>"));
   EXPECT_THAT(refusal("what?"), HasSubstr("neither XML nor a compiled map"));
   EXPECT_THAT(refusal("<OpenDRIVE/>"), HasSubstr("no road with a geometry"));
 }

@@ -34,7 +34,7 @@ std::vector<Slip> slips() {
   const std::string road_2 = "<road name=\"curved\" length=\"110\" id=\"2\"";
   const std::string arc = R"(<arc curvature="0.02"/>)";
   return {
-      {"schema.missing-element", R"(<center><lane id="0" type="none" level="false"/></center>), ""},
+      {"schema.missing-element", R"(<center><lane id="0" type="none" level="false"/></center>)", ""},
       {"schema.missing-attribute", R"(hdg="0" length="40")",
        R"(length="40")"},
       {"schema.not-a-number", arc, R"(<arc curvature="1e999"/>)"},
