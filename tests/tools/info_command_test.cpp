@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tests {
 namespace {
@@ -28,6 +29,20 @@ TEST(InfoCommand, SaysTheSameOfACompiledMap) {
   const std::string compiled = folder / "two_roads.rbm";
   ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
   EXPECT_EQ(run_roadbed({"info", compiled}).out, bytes_of(golden("two_roads.txt")));
+}
+
+TEST(InfoCommand, CountsWhatAScenarioHoldsBesidesItsMap) {
+  const ProgramRun run = run_roadbed({"info", data_folder() / "junction.xml"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("1 static, 2 dynamic, 0 other obstacles, 3.0 s recorded, 1 planning"),
+            std::string::npos)
+      << run.out;
+}
+
+TEST(InfoCommand, MeasuresRoadAreasWithoutLanes) {
+  const ProgramRun run = run_roadbed({"info", data_folder() / "surface.geojson"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("road areas            2, 2168.5 m"), std::string::npos) << run.out;
 }
 
 TEST(InfoCommand, SaysWhichMapIsMissing) {
