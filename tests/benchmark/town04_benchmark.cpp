@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/geometries/segment.hpp>
 #include <boost/geometry/index/rtree.hpp>
@@ -24,7 +25,7 @@ using Point = bg::model::point<double, 2, bg::cs::cartesian>;
 using Segment = bg::model::segment<Point>;
 using BoostTree = bg::index::rtree<std::pair<Segment, LaneId>, bg::index::quadratic<8>>;
 
-constexpr LaneQuery kNearest{.radius_m = 1000.0, .count = 1};
+const LaneQuery kNearest{.radius_m = 1000.0, .count = 1};
 
 std::filesystem::path town04() {
   const auto real = tests::real_data_folder();
