@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -117,17 +118,24 @@ class ByteReader {
     (*this)(there);
     if (there) each(*this, value.emplace());
   }
-  void point(Eigen::Vector2d& value) { raw(value.data(), 2 * sizeof(double)); }
-  void numbers(std::vector<double>& values) { block(values); }
+  void point(Eigen::Vector2d& value) {
+    raw(value.data(), 2 * sizeof(double));
+    check_place(value);
+  }
+  void numbers(std::vector<double>& values) {
+    block(values);
+    check(std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
+  }
   template <typename Point>
   void points(std::vector<Point>& values) {
     block(values);
+    for (const Point& value : values) check_place(value);
   }
   /// A line of no points is one that the map does not have.
   void line(geometry::Polyline& polyline) {
-    std::vector<Eigen::Vector2d> points;
-    block(points);
-    if (!points.empty()) polyline = geometry::Polyline(std::move(points));
+    std::vector<Eigen::Vector2d> made;
+    points(made);
+    if (!made.empty()) polyline = geometry::Polyline(std::move(made));
   }
   void check(bool holds) const {
     if (!holds) throw Damaged{};
@@ -139,6 +147,12 @@ class ByteReader {
   static constexpr MarkType last(MarkType) { return MarkType::other; }
   static constexpr JunctionKind last(JunctionKind) { return JunctionKind::crossing; }
 
+  // No reader makes places farther off, and exact arithmetic cannot take just any number.
+  template <typename Point>
+  void check_place(const Point& place) const {
+    constexpr double farthest_m = 1e8;
+    check((place.array().abs() < farthest_m).all());  // false for what is no number
+  }
   void raw(void* into, std::size_t size) {
     check(bytes_.size() >= size);
     if (size > 0) std::memcpy(into, bytes_.data(), size);

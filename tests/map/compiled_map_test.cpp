@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <random>
 
@@ -136,6 +137,17 @@ TEST(CompiledMap, WithALinkToNoLaneIsNotVerified) {
   linked[at + 8] = 2;
   tests::reseal(linked);
   EXPECT_THROW(verify_compiled_map(linked, "dangling.rbm"), InputError);
+}
+
+TEST(CompiledMap, WithAPlaceBeyondTheEarthIsNotVerified) {
+  std::string bytes = write_compiled_map(tests::straight_two_lane_road(123.0).build());
+  const double end_m = 123.0, far_m = 1e300;
+  const std::string end(reinterpret_cast<const char*>(&end_m), sizeof end_m);
+  const std::size_t at = bytes.rfind(end);  // x of a point of the last lane's polygon or line
+  ASSERT_NE(at, std::string::npos);
+  std::memcpy(bytes.data() + at, &far_m, sizeof far_m);
+  tests::reseal(bytes);
+  EXPECT_THROW(verify_compiled_map(bytes, "far.rbm"), InputError);
 }
 
 TEST(CompiledMap, AnswersAsTheMapThatItWasMadeOf) {
