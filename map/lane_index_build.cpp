@@ -24,11 +24,18 @@ float above(double value) {
   return rounded < value ? std::nextafter(rounded, kInfinity) : rounded;
 }
 
-void extend(Box& box, const Eigen::Vector2d& point) {
-  box.low_x = std::min(box.low_x, below(point.x()));
-  box.low_y = std::min(box.low_y, below(point.y()));
-  box.high_x = std::max(box.high_x, above(point.x()));
-  box.high_y = std::max(box.high_y, above(point.y()));
+// Box around points [first, last].
+template <typename Points>
+void extend(Box& box, const Points& points, std::uint32_t first, std::uint32_t last) {
+  Eigen::Vector2d low = points[first], high = low;
+  for (std::uint32_t i = first + 1; i <= last; ++i) {
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
+  }
+  box.low_x = std::min(box.low_x, below(low.x()));
+  box.low_y = std::min(box.low_y, below(low.y()));
+  box.high_x = std::max(box.high_x, above(high.x()));
+  box.high_y = std::max(box.high_y, above(high.y()));
 }
 
 void extend(Box& box, const Box& other) {
@@ -38,12 +45,20 @@ void extend(Box& box, const Box& other) {
   box.high_y = std::max(box.high_y, other.high_y);
 }
 
-std::size_t nearest_vertex(const geometry::Ring& ring, const Eigen::Vector2d& point) {
-  const auto nearest =
-      std::min_element(ring.begin(), ring.end(), [&](const auto& a, const auto& b) {
-        return (a - point).squaredNorm() < (b - point).squaredNorm();
-      });
-  return static_cast<std::size_t>(nearest - ring.begin());
+// @param likely  looked at first: most rings are the two borders, one after the other.
+std::size_t nearest_vertex(const geometry::Ring& ring, const Eigen::Vector2d& point,
+                           std::size_t likely) {
+  if (likely < ring.size() && ring[likely] == point) return likely;
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double squared = (ring[i] - point).squaredNorm();
+    if (squared < least) {
+      least = squared;
+      nearest = i;
+    }
+  }
+  return nearest;
 }
 
 // Indices that cut points [first, last] (or backwards) into `pieces` runs of equal length.
@@ -95,7 +110,7 @@ class Builder {
  private:
   void add_points(const Lane& lane) {
     ring_ = lane.polygon;
-    const std::size_t start = nearest_vertex(ring_, lane.right.in_map.points().front());
+    const std::size_t start = nearest_vertex(ring_, lane.right.in_map.points().front(), 0);
     std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(start), ring_.end());
     for (const Eigen::Vector2d& p : ring_) ring_points_.push_back({p.x(), p.y()});
     for (const Eigen::Vector2d& p : lane.centre.in_map.points()) {
@@ -107,10 +122,11 @@ class Builder {
 
   void add_cells(const Lane& lane) {
     const auto& centre = lane.centre.in_map.points();
+    const auto& right_border = lane.right.in_map.points();
     const std::size_t n = ring_.size();
     // The last vertex of the right border; at least one vertex stays for the left one.
     const std::size_t turn =
-        std::min(nearest_vertex(ring_, lane.right.in_map.points().back()), n - 2);
+        std::min(nearest_vertex(ring_, right_border.back(), right_border.size() - 1), n - 2);
     const std::size_t pieces = 1 + std::max(n, 2 * centre.size()) / kPointsPerCell;
     const auto right = cuts(turn + 1, pieces, [&](std::size_t i) { return ring_[i]; });
     const auto left = cuts(n - 1 - turn, pieces, [&](std::size_t i) { return ring_[n - 1 - i]; });
@@ -129,11 +145,9 @@ class Builder {
                 .centre_to = along[i + 1],
                 .lane_type = static_cast<std::uint16_t>(lane.type),
                 .ends = ends};
-      for (std::uint32_t k = cell.right_from; k <= cell.right_to; ++k) extend(cell.ring, ring_[k]);
-      for (std::uint32_t k = cell.left_to; k <= cell.left_from; ++k) extend(cell.ring, ring_[k]);
-      for (std::uint32_t k = cell.centre_from; k <= cell.centre_to; ++k) {
-        extend(cell.centre, centre[k]);
-      }
+      extend(cell.ring, ring_, cell.right_from, cell.right_to);
+      extend(cell.ring, ring_, cell.left_to, cell.left_from);
+      extend(cell.centre, centre, cell.centre_from, cell.centre_to);
       cells_.push_back(cell);
     }
   }
