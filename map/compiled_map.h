@@ -18,7 +18,7 @@ bool is_compiled_map(std::string_view bytes);
 
 /// Opens a compiled map without reading it: header and section table are checked now, chunks of
 /// 64 KiB with what is in them when they are first touched. From then on every function of the
-/// map that touches a damaged place throws InputError. Under 1 ms.
+/// map that touches a damaged place throws InputError.
 /// @throws InputError if the header is cut, changed or of another version.
 RoadMap open_compiled_map(const std::filesystem::path& file);
 
