@@ -45,6 +45,20 @@ TEST(InfoCommand, MeasuresRoadAreasWithoutLanes) {
   EXPECT_NE(run.out.find("road areas            2, 2168.5 m"), std::string::npos) << run.out;
 }
 
+TEST(InfoCommand, VerifiesACompiledMapAndRefusesADamagedOne) {
+  const TemporaryFolder folder;
+  const std::string compiled = folder / "two_roads.rbm";
+  ASSERT_EQ(run_roadbed({"import", golden("two_roads.xodr"), "-o", compiled}).status, 0);
+  const ProgramRun whole = run_roadbed({"info", compiled, "--verify"});
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_NE(whole.out.find("verified"), std::string::npos);
+  std::string bytes = bytes_of(compiled);
+  bytes.back() = static_cast<char>(~bytes.back());
+  const ProgramRun damaged = run_roadbed({"info", folder.write("damaged.rbm", bytes), "--verify"});
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_NE(damaged.err.find("checksum"), std::string::npos) << damaged.err;
+}
+
 TEST(InfoCommand, SaysWhichMapIsMissing) {
   const ProgramRun run = run_roadbed({"info", "no_such.xodr"});
   EXPECT_EQ(run.status, 1);
