@@ -197,9 +197,7 @@ class Ladder {
     const Segment ahead{centre_.back().head<2>(), middle};
     const auto starts_here = [&](const Segment& s) { return s.from == ahead.from; };
     if (left_.is_met(ahead, starts_here) || right_.is_met(ahead, starts_here)) return false;
-    // The first step begins on the entry itself and cannot cross it.
-    if (centre_.size() > 1 && crosses(ahead, entry_)) return false;
-    if (crosses(ahead, exit_)) return false;
+    if (crosses(ahead, entry_) || crosses(ahead, exit_)) return false;
     const Segment rung{foot, candidate};
     const auto at_candidate = [&](const Segment& s) {
       return s.from == candidate || s.to == candidate;
