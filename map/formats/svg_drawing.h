@@ -63,7 +63,8 @@ void draw_areas(Drawing& drawing);
 void draw_surfaces(Drawing& drawing, const std::vector<LaneId>& lanes, bool is_bridge);
 void draw_markings(Drawing& drawing, const std::vector<LaneId>& lanes);
 void draw_directions(Drawing& drawing, const std::vector<LaneId>& lanes);
-void draw_objects(Drawing& drawing);
+void draw_objects(Drawing& drawing);  // that stand on the ground: below all roads
+void draw_painted_objects(Drawing& drawing);
 void draw_stop_lines(Drawing& drawing);
 void draw_signals(Drawing& drawing);
 void draw_names(Drawing& drawing);

@@ -46,6 +46,18 @@ std::string_view object_colour(const std::string& type) {
   return "#c9b79a";
 }
 
+/// Whether the object is on the road's surface; others may hide it, as a bridge does.
+bool is_painted(const MapObject& object) {
+  return object.type == "crosswalk" || object.type == "parkingSpace";
+}
+
+void draw_outline(Drawing& drawing, const MapObject& object) {
+  drawing.canvas.add_path(
+      drawing.canvas.ring(object.outline_in_map),
+      fmt::format(R"(fill="{}" fill-opacity="0.8" stroke="{}" stroke-width="{:.3f}")",
+                  object_colour(object.type), kFaint, drawing.sheet.stroke_m(0.05, 0.25)));
+}
+
 /// A light as a dark box with three lamps, a sign as a disc.
 std::string signal_symbol(const Drawing& drawing, const Signal& signal) {
   const Vector2d at = drawing.canvas.to_picture(signal.in_map);
@@ -73,16 +85,20 @@ std::string signal_symbol(const Drawing& drawing, const Signal& signal) {
 
 void draw_objects(Drawing& drawing) {
   for (const MapObject& object : drawing.road_map.objects()) {
-    if (object.outline_in_map.size() < 3) continue;
-    if (object.type == "crosswalk") {
-      draw_crosswalk(drawing, object.outline_in_map);
-      drawing.shown.crosswalks = true;
+    if (object.outline_in_map.size() < 3 || is_painted(object)) continue;
+    draw_outline(drawing, object);
+  }
+}
+
+void draw_painted_objects(Drawing& drawing) {
+  for (const MapObject& object : drawing.road_map.objects()) {
+    if (object.outline_in_map.size() < 3 || !is_painted(object)) continue;
+    if (object.type != "crosswalk") {
+      draw_outline(drawing, object);
       continue;
     }
-    drawing.canvas.add_path(
-        drawing.canvas.ring(object.outline_in_map),
-        fmt::format(R"(fill="{}" fill-opacity="0.8" stroke="{}" stroke-width="{:.3f}")",
-                    object_colour(object.type), kFaint, drawing.sheet.stroke_m(0.05, 0.25)));
+    draw_crosswalk(drawing, object.outline_in_map);
+    drawing.shown.crosswalks = true;
   }
 }
 

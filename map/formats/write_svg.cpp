@@ -91,6 +91,7 @@ std::string write_svg(const RoadMap& road_map, const SvgOptions& options) {
   svg::Drawing drawing{road_map, sheet, SvgCanvas(sheet.upper_left_in_map, 0.05 * sheet.px_m), {}};
   draw_grid(drawing);
   draw_areas(drawing);
+  draw_objects(drawing);
   bool is_bridge = false;
   for (const std::vector<LaneId>& lanes : svg::lanes_of_storeys(road_map)) {
     draw_surfaces(drawing, lanes, is_bridge);
@@ -98,7 +99,7 @@ std::string write_svg(const RoadMap& road_map, const SvgOptions& options) {
     draw_markings(drawing, lanes);
     is_bridge = true;
   }
-  draw_objects(drawing);
+  draw_painted_objects(drawing);
   draw_stop_lines(drawing);
   draw_names(drawing);
   draw_signals(drawing);

@@ -13,9 +13,16 @@ std::filesystem::path golden(const std::string& name) {
 }
 
 TEST(ExportCommand, WritesTheFormatThatTheSuffixNames) {
-  for (const std::string name : {"two_roads.csv", "two_roads.geojson"}) {
+  const std::vector<std::vector<std::string>> runs = {
+      {"two_roads.csv"},
+      {"two_roads.geojson", "--layer", "drivable_surface", "--layer", "lanes", "--layer",
+       "centrelines"}};
+  for (const std::vector<std::string>& options : runs) {
     const TemporaryFolder folder;
-    const ProgramRun run = run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / name});
+    const std::string& name = options.front();
+    std::vector<std::string> arguments = {"export", golden("two_roads.xodr"), "-o", folder / name};
+    arguments.insert(arguments.end(), options.begin() + 1, options.end());
+    const ProgramRun run = run_roadbed(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(bytes_of(folder / name), bytes_of(golden(name)));

@@ -119,6 +119,23 @@ TEST(WriteSvg, DrawsABridgeAfterWhatItCrosses) {
   EXPECT_NEAR(widths[1], 80.0, 0.02);
 }
 
+TEST(WriteSvg, DrawsBuildingsBelowRoadsAndCrosswalksOnThem) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  MapObject building, crosswalk;
+  building.type = "building";
+  building.outline_in_map = {{0, -9}, {20, -9}, {20, 9}, {0, 9}};
+  crosswalk.type = "crosswalk";
+  crosswalk.outline_in_map = {{50, -3.5}, {54, -3.5}, {54, 3.5}, {50, 3.5}};
+  made.parts.objects = {crosswalk, building};
+  const std::string svg = write_svg(made.build());
+  const std::size_t below = svg.find("#cfc6b8"), road = svg.find(R"(fill="#4a515b")");
+  const std::size_t zebra = svg.find(R"(stroke-width="4.000")");  // as wide as it is walked on
+  ASSERT_NE(below, std::string::npos);
+  ASSERT_NE(zebra, std::string::npos);
+  EXPECT_LT(below, road);
+  EXPECT_LT(road, zebra);
+}
+
 TEST(WriteSvg, EscapesNames) {
   tests::MadeMap made = tests::straight_two_lane_road();
   made.parts.crs = "<&\">";
