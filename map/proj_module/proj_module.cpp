@@ -1,7 +1,9 @@
 #include "roadbed/map/proj_module/proj_module.h"
 
 #include <proj.h>
+#include <proj_experimental.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -45,8 +47,8 @@ Object horizontal(const Context& context, const char* crs) {
   if (object && proj_get_type(object.get()) == PJ_TYPE_COMPOUND_CRS) {
     object.reset(proj_crs_get_sub_crs(context.get(), object.get(), 0));
   }
-  if (object && proj_is_crs(object.get()) == 0) object.reset();
-  return object;
+  if (!object || proj_is_crs(object.get()) == 0) return nullptr;
+  return Object(proj_crs_demote_to_2D(context.get(), nullptr, object.get()));
 }
 
 }  // namespace

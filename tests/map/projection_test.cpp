@@ -63,6 +63,13 @@ TEST(WellKnownText, NamesTheProjection) {
             std::string::npos);
 }
 
+TEST(WellKnownText, LeavesHeightsOut) {
+  const std::string flat = "+proj=tmerc +lat_0=37.4 +lon_0=-122.1 +datum=WGS84 +units=m";
+  for (const std::string heights : {" +vunits=m", " +geoidgrids=egm96_15.gtx +vunits=m"}) {
+    EXPECT_EQ(well_known_text(flat + heights + " +no_defs"), well_known_text(flat + " +no_defs"));
+  }
+}
+
 TEST(EpsgCode, IsReadFromItsName) {
   EXPECT_EQ(epsg_code("EPSG:25832"), 25832);
   EXPECT_FALSE(epsg_code("EPSG:").has_value());
