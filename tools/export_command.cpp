@@ -49,7 +49,7 @@ std::string geojson(const map::RoadMap& road_map, const ExportOptions& options) 
   std::vector<map::Layer> layers = placed_layers(road_map, options);
   const bool lon_lat = !options.crs.empty();
   if (lon_lat) map::to_lon_lat(options.crs, layers);
-  return map::write_geojson(layers, {lon_lat, road_map.format(), options.crs});
+  return map::write_geojson(layers, {lon_lat, road_map.format(), road_map.crs()});
 }
 
 std::string geopackage(const map::RoadMap& road_map, const ExportOptions& options) {
