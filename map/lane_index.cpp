@@ -156,7 +156,9 @@ class Search {
 
   void limit(double squared_m2) {
     bound_m2_ = squared_m2;
-    bound_ = static_cast<float>(squared_m2) * FloatPoint::kSlack;
+    // Never infinite: boxes of nothing are infinitely far.
+    bound_ = std::min(static_cast<float>(squared_m2) * FloatPoint::kSlack,
+                      std::numeric_limits<float>::max());
   }
 
   // Cells with boxes not farther than the bound, nearer ones mostly first; the bound may shrink.
