@@ -49,6 +49,12 @@ class FlatArray {
 
   const T& operator[](std::uint64_t index) const { return *span(index, 1); }
 
+  /// Says that what a record holds cannot be.
+  [[noreturn]] void refuse(const std::string& found) const {
+    if (file_) file_->refuse(section_.name.data(), found);
+    throw std::logic_error("FlatArray: " + found);
+  }
+
   /// All bytes, for writing.
   std::string_view bytes() const {
     return {reinterpret_cast<const char*>(span(0, size_)), size_ * sizeof(T)};

@@ -19,16 +19,21 @@ RoadMapIndex RoadMapIndex::of(const LazyList<Lane>& lanes) {
 }
 
 std::optional<LaneId> RoadMapIndex::find(const LazyList<Lane>& in, std::string_view name) const {
+  const auto lane_at = [&](std::uint64_t place) -> const Lane& {
+    const std::uint32_t id = by_name[place];
+    if (id >= in.size()) by_name.refuse("a lane that is not there");
+    return in[id];
+  };
   std::uint64_t first = 0, end = by_name.size();
   while (first < end) {
     const std::uint64_t middle = first + (end - first) / 2;
-    if (in.at(by_name[middle]).name < name) {
+    if (lane_at(middle).name < name) {
       first = middle + 1;
     } else {
       end = middle;
     }
   }
-  if (first == by_name.size() || in.at(by_name[first]).name != name) return {};
+  if (first == by_name.size() || lane_at(first).name != name) return {};
   return LaneId{by_name[first]};
 }
 
