@@ -34,9 +34,9 @@ std::vector<Slip> slips() {
   const std::string road_2 = "<road name=\"curved\" length=\"110\" id=\"2\"";
   const std::string arc = R"(<arc curvature="0.02"/>)";
   return {
-      {"schema.missing-element", R"(<center><lane id="0" type="none" level="false"/></center>)", ""},
-      {"schema.missing-attribute", R"(hdg="0" length="40")",
-       R"(length="40")"},
+      {"schema.missing-element", R"(<center><lane id="0" type="none" level="false"/></center>)",
+       ""},
+      {"schema.missing-attribute", R"(hdg="0" length="40")", R"(length="40")"},
       {"schema.not-a-number", arc, R"(<arc curvature="1e999"/>)"},
       {"schema.unknown-value", R"(type="shoulder")", R"(type="hard shoulder")"},
       {"header.missing", R"(<header revMajor="1" revMinor="7" name="rules" version="1.00">
