@@ -57,10 +57,12 @@ std::string TemporaryFolder::write(std::string_view name, std::string_view bytes
   return file.string();
 }
 
+std::filesystem::path program_file() { return ROADBED_PROGRAM; }
+
 ProgramRun run_roadbed(const std::vector<std::string>& arguments) {
   const TemporaryFolder streams;
   const std::string out = streams / "out", err = streams / "err";
-  std::vector<std::string> words{ROADBED_PROGRAM};
+  std::vector<std::string> words{program_file().string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   std::transform(words.begin(), words.end(), std::back_inserter(argv),
@@ -69,9 +71,8 @@ ProgramRun run_roadbed(const std::vector<std::string>& arguments) {
 
   pid_t child = 0;
   const Redirections redirections(out, err);
-  if (::posix_spawn(&child, ROADBED_PROGRAM, redirections.get(), nullptr, argv.data(), environ) !=
-      0) {
-    throw std::runtime_error("cannot start " ROADBED_PROGRAM);
+  if (::posix_spawn(&child, argv.front(), redirections.get(), nullptr, argv.data(), environ) != 0) {
+    throw std::runtime_error("cannot start " + words.front());
   }
   const int status = wait_for(child);
   return {.status = status, .out = bytes_of(out), .err = bytes_of(err)};

@@ -32,7 +32,10 @@ struct ProgramRun {
   std::string out, err;
 };
 
-/// Runs the `roadbed` program that was built beside the tests.
+/// The `roadbed` program that was built beside the tests.
+std::filesystem::path program_file();
+
+/// Runs it.
 ProgramRun run_roadbed(const std::vector<std::string>& arguments);
 
 /// The bytes of a file, as a test wants them.

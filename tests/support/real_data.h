@@ -13,6 +13,9 @@ std::filesystem::path real_data_folder();
 /// Maps, scenarios and clouds of this project.
 std::filesystem::path data_folder();
 
+/// The sources of the tests, with the files that some of them keep beside themselves.
+std::filesystem::path tests_folder();
+
 }  // namespace roadbed::tests
 
 /// Skips the test with its reason where the real data is not there; else defines `folder`.

@@ -4,12 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tests {
 namespace {
 
 std::filesystem::path golden(const std::string& name) {
-  return std::filesystem::path(ROADBED_TESTS) / "tools/export" / name;
+  return tests_folder() / "tools/export" / name;
 }
 
 TEST(ExportCommand, WritesTheFormatThatTheSuffixNames) {

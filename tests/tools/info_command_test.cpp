@@ -9,7 +9,7 @@ namespace roadbed::tests {
 namespace {
 
 std::filesystem::path golden(const std::string& name) {
-  return std::filesystem::path(ROADBED_TESTS) / "tools/info" / name;
+  return tests_folder() / "tools/info" / name;
 }
 
 TEST(InfoCommand, PrintsCountsLengthsAreasAndBounds) {

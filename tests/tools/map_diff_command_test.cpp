@@ -3,12 +3,13 @@
 #include <filesystem>
 
 #include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tests {
 namespace {
 
 std::string map_of(const std::string& name) {
-  return (std::filesystem::path(ROADBED_TESTS) / "tools/info" / name).string();
+  return (tests_folder() / "tools/info" / name).string();
 }
 
 TEST(MapDiffCommand, FindsNoChangeBetweenAMapAndItsCompiledForm) {

@@ -13,7 +13,7 @@ namespace roadbed::tests {
 namespace {
 
 std::filesystem::path golden(const std::string& name) {
-  return std::filesystem::path(ROADBED_TESTS) / "tools/validate" / name;
+  return tests_folder() / "tools/validate" / name;
 }
 
 TEST(ValidateCommand, PrintsOneLinePerFindingAndASummary) {
@@ -85,8 +85,7 @@ TEST(ValidateCommand, DescribesAMapThatCannotBeRead) {
 TEST(ValidateCommand, ReadmeHoldsTheTableOfRulesThatItPrints) {
   const ProgramRun run = run_roadbed({"validate", "--rules"});
   EXPECT_EQ(run.status, 0) << run.err;
-  const std::string readme =
-      bytes_of(std::filesystem::path(ROADBED_TESTS).parent_path() / "map/validation/README.md");
+  const std::string readme = bytes_of(tests_folder().parent_path() / "map/validation/README.md");
   EXPECT_NE(readme.find(run.out), std::string::npos)
       << "put the output of `roadbed validate --rules` into map/validation/README.md";
 }

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json golden_table() {
-  std::ifstream file(std::string(ROADBED_TESTS) + "/map/formats/golden_open_drive.json");
+  std::ifstream file(tests::tests_folder() / "map/formats/golden_open_drive.json");
   return Json::parse(file);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "roadbed/tests/support/program_run.h"
+
 namespace roadbed::map {
 namespace {
 
@@ -28,8 +30,8 @@ bool holds_the_bird(const PointCloud& cloud) {
 class CloudFilterTest : public testing::Test {
  protected:
   void SetUp() override {
-    const std::filesystem::path program = ROADBED_PROGRAM;
-    if (!std::filesystem::exists(program.parent_path() / "../lib/libroadbed_pcl.so")) {
+    if (!std::filesystem::exists(tests::program_file().parent_path() /
+                                 "../lib/libroadbed_pcl.so")) {
       GTEST_SKIP() << "built without PCL";
     }
   }

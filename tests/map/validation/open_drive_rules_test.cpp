@@ -11,12 +11,13 @@
 #include "roadbed/map/validation/open_drive_source.h"
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
 namespace {
 
 std::string clean_file() {
-  return tests::bytes_of(std::filesystem::path(ROADBED_TESTS) / "map/validation/clean.xodr");
+  return tests::bytes_of(tests::tests_folder() / "map/validation/clean.xodr");
 }
 
 std::vector<Finding> of_rule(const std::string& bytes, const std::string& rule) {

@@ -8,6 +8,7 @@
 
 #include "roadbed/map/read_file.h"
 #include "roadbed/tests/support/browser.h"
+#include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"
 #include "roadbed/tools/report/page_parts.h"
 #include "roadbed/tools/report/report.h"
@@ -32,7 +33,7 @@ std::string page_that_counts_requests(const ReportInput& input) {
 }
 
 std::string script_tests_page() {
-  const auto file = std::filesystem::path(ROADBED_TESTS) / "tools/report/page_test.js";
+  const auto file = tests_folder() / "tools/report/page_test.js";
   return "<!DOCTYPE html><meta charset=\"utf-8\"><body><script>" + std::string(kPageJs) +
          map::read_file(file) + "</script></body>";
 }
