@@ -1,11 +1,6 @@
 #include "roadbed/planning/hierarchy_kernel.h"
 
-// One compiled copy per instruction set, chosen when the program starts, as in row_kernel.cpp.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define ROADBED_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define ROADBED_CLONES
-#endif
+#include "roadbed/planning/instruction_sets.h"
 
 namespace roadbed::planning {
 
