@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "roadbed/geometry/rectangle.h"
 #include "roadbed/planning/static_obstacles.h"
@@ -54,22 +56,23 @@ struct Place {
 };
 
 struct Mover {
-  const Obstacle& obstacle;
-  double rate_mps;  // no point of its body moves faster before the horizon
+  std::function<geometry::Pose2(double)> centre_at;
+  double length_m, width_m;
+  double rate_mps;  // no point of its body moves faster until then
+  double until_s;   // of the scene; it is not looked at later
 };
 
-double fastest_mps(const Obstacle& obstacle, double from_s, double to_s) {
-  const double radius_m = 0.5 * std::hypot(obstacle.length_m, obstacle.width_m);
-  const auto& points = obstacle.motion.points();
-  double fastest = 0.0;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const TrajectoryPoint &a = points[i], &b = points[i + 1];
-    if (b.t_s < from_s || a.t_s > to_s) continue;
-    const double motion_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) +
-                            radius_m * std::abs(b.heading_rad - a.heading_rad);
-    fastest = std::max(fastest, motion_m / (b.t_s - a.t_s));
-  }
-  return fastest;
+// Of anything that has a greatest speed between two times. What never moves again is looked at for
+// ever, as standing obstacles are.
+template <typename Fastest>
+Mover mover(std::function<geometry::Pose2(double)> centre_at, double length_m, double width_m,
+            const Fastest& fastest_mps, double start_s, double horizon_end_s) {
+  const double radius_m = 0.5 * std::hypot(length_m, width_m);
+  const double for_ever = std::numeric_limits<double>::infinity();
+  const bool stands = fastest_mps(radius_m, start_s, for_ever) == 0.0;
+  return {std::move(centre_at), length_m, width_m,
+          stands ? 0.0 : fastest_mps(radius_m, start_s, horizon_end_s),
+          stands ? for_ever : horizon_end_s};
 }
 
 }  // namespace
@@ -84,7 +87,21 @@ struct CollisionChecker::Impl {
         standing(scene.obstacles) {
     for (const Obstacle& obstacle : scene.obstacles) {
       if (obstacle.is_static() || obstacle.motion.empty()) continue;
-      movers.push_back({obstacle, fastest_mps(obstacle, scene.start_t_s, horizon_end_s())});
+      const auto centre_at = [&obstacle](double t_s) { return obstacle.motion.at(t_s).pose(); };
+      const auto fastest = [&obstacle](double radius_m, double from_s, double to_s) {
+        return fastest_mps(obstacle.motion, radius_m, from_s, to_s);
+      };
+      movers.push_back(mover(centre_at, obstacle.length_m, obstacle.width_m, fastest,
+                             scene.start_t_s, horizon_end_s()));
+    }
+    for (const PredictedObstacle& obstacle : scene.predicted) {
+      const Prediction& prediction = obstacle.prediction;
+      const auto fastest = [&prediction](double radius_m, double from_s, double to_s) {
+        return prediction.fastest_mps(radius_m, from_s, to_s);
+      };
+      movers.push_back(mover([prediction](double t_s) { return prediction.at(t_s); },
+                             obstacle.length_m, obstacle.width_m, fastest, scene.start_t_s,
+                             horizon_end_s()));
     }
   }
 
@@ -99,7 +116,7 @@ struct CollisionChecker::Impl {
 
   double from_standing_m(const Moment& moment, double enough_m) const;
   double from_occupied_m(const Moment& moment, double enough_m) const;
-  double from_mover_m(const Moment& moment, const Obstacle& obstacle, double enough_m) const;
+  double from_mover_m(const Moment& moment, const Mover& mover, double enough_m) const;
 
   CollisionScene scene;
   geometry::VehicleShape vehicle;
@@ -184,9 +201,9 @@ double CollisionChecker::Impl::from_occupied_m(const Moment& moment, double enou
   return nearest ? nearest->distance_m : enough_m;
 }
 
-double CollisionChecker::Impl::from_mover_m(const Moment& moment, const Obstacle& obstacle,
+double CollisionChecker::Impl::from_mover_m(const Moment& moment, const Mover& mover,
                                             double enough_m) const {
-  const Rectangle other = body_of(obstacle, moment.t_s);
+  const Rectangle other = body_around(mover.centre_at(moment.t_s), mover.length_m, mover.width_m);
   double bound_m = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& centre : moment.circle_centres) {
     bound_m = std::min(bound_m, geometry::distance_m(other, centre) - circles.radius_m);
@@ -220,9 +237,9 @@ bool CollisionChecker::is_free(const std::vector<TrajectoryPoint>& drive) const 
     return false;
   }
   return std::ranges::all_of(impl.movers, [&](const Mover& mover) {
-    return impl.keeps_clear(drive, legs, mover.rate_mps, impl.horizon_end_s(),
+    return impl.keeps_clear(drive, legs, mover.rate_mps, mover.until_s,
                             [&](const Moment& moment, double enough_m) {
-                              return impl.from_mover_m(moment, mover.obstacle, enough_m);
+                              return impl.from_mover_m(moment, mover, enough_m);
                             });
   });
 }

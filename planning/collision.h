@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/obstacle.h"
+#include "roadbed/planning/prediction.h"
 
 namespace roadbed::planning {
 
@@ -29,6 +31,7 @@ struct CollisionScene {
   const map::ClearanceField* field = nullptr;  ///< none: no occupancy
   Eigen::Vector2d origin_in_source{0, 0};      ///< source = map + origin, for the field
   double start_t_s = 0.0;
+  std::span<const PredictedObstacle> predicted = {};  ///< besides `obstacles`
 };
 
 /// Distances of a driving vehicle to obstacles, at every moment of the drive.
@@ -42,7 +45,8 @@ class CollisionChecker {
 
   /// Whether the vehicle keeps the clearance all along a drive: from standing obstacles and
   /// occupied cells over its whole length, from moving ones up to the horizon, each at the time
-  /// at which the vehicle is there. Between the points position and heading are linear.
+  /// at which the vehicle is there; one that stands from the start on is a standing one. Between
+  /// the points position and heading are linear.
   ///
   /// Nothing is missed between points: from a pose with clearance c the drive is followed only as
   /// far as no point of the body can come nearer than the demanded clearance. A drive that is

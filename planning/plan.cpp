@@ -61,6 +61,11 @@ double start_excess_m(const PlanInput& input, const VehicleShape& vehicle, const
   return std::max({0.0, axle_m, body_m});
 }
 
+PlannedSpeed planned_speed(const PlanInput& input) {
+  return input.speed_profile.empty() ? PlannedSpeed(input.speed)
+                                     : PlannedSpeed(input.speed_profile);
+}
+
 // What all candidates of a cycle are judged against.
 struct Cycle {
   Cycle(const PlanInput& of_input, const VehicleShape& of_vehicle, const PlanOptions& options)
@@ -69,7 +74,11 @@ struct Cycle {
         grid(grid_of(options)),
         border(input.line, input.start.s_m - vehicle.length_m,
                input.start.s_m + grid.max_l_m() + vehicle.length_m, options.border_margin_m),
-        collision({input.obstacles, input.static_field, input.origin_in_source, input.start_t_s},
+        collision({.obstacles = input.obstacles,
+                   .field = input.static_field,
+                   .origin_in_source = input.origin_in_source,
+                   .start_t_s = input.start_t_s,
+                   .predicted = input.predicted},
                   vehicle,
                   {.circles = options.circles,
                    .clearance_m = options.clearance_m,
@@ -77,7 +86,7 @@ struct Cycle {
                    .horizon_s = options.horizon_s}),
         course{.line = input.line,
                .start = input.start,
-               .speed = PlannedSpeed(input.speed),
+               .speed = planned_speed(input),
                .previous_d_m = input.previous_d_m,
                .half_width_m = 0.5 * vehicle.width_m + options.border_margin_m,
                .recovery_m = options.recovery_m} {
@@ -88,8 +97,9 @@ struct Cycle {
   }
 
   CostFrame frame(double end_l_m) const {
-    return {
-        .end_l_m = end_l_m, .max_l_m = grid.max_l_m(), .start_speed_mps = input.speed.speed_mps};
+    return {.end_l_m = end_l_m,
+            .max_l_m = grid.max_l_m(),
+            .start_speed_mps = course.speed.at(0.0).speed_mps};
   }
   const std::vector<Station>& stations(std::size_t index) const {
     return rows[index / grid.lanes()];

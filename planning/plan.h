@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "roadbed/planning/line_view.h"
 #include "roadbed/planning/obstacle.h"
 #include "roadbed/planning/planned_speed.h"
+#include "roadbed/planning/prediction.h"
 
 namespace roadbed::planning {
 
@@ -44,6 +46,8 @@ struct PlanInput {
   const map::ClearanceField* static_field = nullptr;  ///< none: no occupancy
   Eigen::Vector2d origin_in_source{0, 0};             ///< source = map + origin, for the field
   std::function<double(double)> previous_d_m = {};    ///< d of the last plan by s; may be empty
+  std::span<const PredictedObstacle> predicted = {};  ///< besides `obstacles`
+  std::span<const SpeedSample> speed_profile = {};    ///< if any, it stands in for `speed`
 };
 
 /// How many candidates were rejected, by Rejection.

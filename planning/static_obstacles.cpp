@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "roadbed/planning/prediction.h"
+
 namespace roadbed::planning {
 namespace {
 
@@ -42,11 +44,7 @@ void spread_points(const Rectangle& body, double gap_m, std::vector<Eigen::Vecto
 }  // namespace
 
 Rectangle body_of(const Obstacle& obstacle, double t_s) {
-  const geometry::TrajectoryPoint centre = obstacle.motion.at(t_s);
-  return {.centre = {centre.x_m, centre.y_m},
-          .axis = {std::cos(centre.heading_rad), std::sin(centre.heading_rad)},
-          .half_length_m = 0.5 * obstacle.length_m,
-          .half_width_m = 0.5 * obstacle.width_m};
+  return body_around(obstacle.motion.at(t_s).pose(), obstacle.length_m, obstacle.width_m);
 }
 
 StaticObstacles::StaticObstacles(const std::vector<Obstacle>& obstacles) {

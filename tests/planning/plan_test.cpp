@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -75,6 +76,50 @@ TEST(PlanPath, SaysWhyNothingIsLeftBeforeABlockedRoad) {
   std::size_t rejected = 0;
   for (const std::size_t count : plan.rejected) rejected += count;
   EXPECT_EQ(rejected, 5396u);
+}
+
+// A car that comes across from the left and is in the way at x = 22 m from 1.4 s to 2.6 s.
+PredictedObstacle crossing_car() {
+  return {.id = "crossing",
+          .prediction = Prediction::constant_velocity(
+              {.t_s = 2.0, .pose = {22.0, 0.0, -0.5 * std::numbers::pi}, .speed_mps = 10.0})};
+}
+
+TEST(PlanPath, MeetsAPredictedCarOnlyIfItIsThereAtTheSameTime) {
+  const std::vector<PredictedObstacle> predicted = {crossing_car()};
+  const AnalyticLine line;
+  const auto planned = [&](double speed_mps, double acceleration_mps2, double target_mps) {
+    return plan_path({.line = line.view(),
+                      .start = {},
+                      .speed = {speed_mps, acceleration_mps2, target_mps},
+                      .obstacles = {},
+                      .predicted = predicted},
+                     VehicleShape{});
+  };
+  const auto keeps_straight = [](const Plan& plan) {
+    return plan.chosen && plan.chosen->end_d_m == 0.0;
+  };
+  EXPECT_FALSE(keeps_straight(planned(10.0, 0.0, 10.0)));  // there at 1.8 s to 2.4 s
+  EXPECT_TRUE(keeps_straight(planned(20.0, 0.0, 20.0)));   // gone by 1.3 s
+  EXPECT_TRUE(keeps_straight(planned(4.0, 0.0, 4.0)));     // comes at 4.3 s
+  EXPECT_TRUE(keeps_straight(planned(10.0, -4.0, 0.0)));   // stops after 12.5 m
+}
+
+TEST(PlanPath, DrivesAtTheSpeedsOfAProfileThatItIsGiven) {
+  const std::vector<PredictedObstacle> predicted = {crossing_car()};
+  const std::vector<SpeedSample> slow = {{0.0, 10.0, -3.0}, {12.0, 5.0, 0.0}, {40.0, 5.0, 0.0}};
+  const AnalyticLine line;
+  PlanInput input{.line = line.view(),
+                  .start = {},
+                  .speed = {10.0, 0.0, 10.0},
+                  .obstacles = {},
+                  .predicted = predicted,
+                  .speed_profile = slow};
+  const Plan plan = plan_path(input, VehicleShape{});  // there at 2.9 s to 4.3 s
+  ASSERT_TRUE(plan.chosen) << plan.reason;
+  EXPECT_EQ(plan.chosen->end_d_m, 0.0);
+  EXPECT_EQ(plan.trajectory.points().front().speed_mps, 10.0);
+  EXPECT_NEAR(plan.trajectory.points().back().speed_mps, 5.0, 1e-12);
 }
 
 TEST(PlanPath, LateralStateIsThatOfTheDrive) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -63,6 +64,55 @@ TEST(PlannedSpeed, RefusesWhatIsNoSpeed) {
   EXPECT_THROW(PlannedSpeed({-1.0, 0.0, 1.0}), std::invalid_argument);
   EXPECT_THROW(PlannedSpeed({1.0, 0.0, -1.0}), std::invalid_argument);
   EXPECT_THROW(PlannedSpeed({1.0, nan, 1.0}), std::invalid_argument);
+}
+
+// Samples of another plan, as a profile.
+std::vector<SpeedSample> sampled(const PlannedSpeed& plan, double to_m, double step_m) {
+  std::vector<SpeedSample> profile;
+  for (double l = 0.0; l <= to_m + 1e-9; l += step_m) {
+    const auto at = plan.at(l);
+    profile.push_back({l, at.speed_mps, at.acceleration_mps2});
+  }
+  return profile;
+}
+
+TEST(PlannedSpeed, OfAProfileFollowsThePlanThatItWasSampledFrom) {
+  for (const SpeedPlan& plan : kPlans) {
+    const PlannedSpeed original(plan), profile(sampled(original, 40.0, 0.25));
+    for (double l = 0.1; l < 40.0; l += 0.13) {
+      const auto expected = original.at(l), found = profile.at(l);
+      if (expected.speed_mps < 1.0) continue;  // between the last samples before it stands
+      EXPECT_NEAR(found.speed_mps, expected.speed_mps, 2e-3);
+      EXPECT_NEAR(found.acceleration_mps2, expected.acceleration_mps2, 0.05);
+    }
+  }
+}
+
+TEST(PlannedSpeed, OfAProfileHasDerivativesInTimeAndStandsWhereItStops) {
+  const std::vector<SpeedSample> rows = {{0.0, 8.0, -1.0}, {9.0, 6.5, -2.0}, {19.5, 0.0, 0.0}};
+  const PlannedSpeed profile(rows);
+  for (double l = 0.3; l < 19.0; l += 0.7) {
+    const auto at = profile.at(l);
+    const double h = 1e-5;
+    const auto before = profile.at(l - h), after = profile.at(l + h);
+    if (l - h < 9.0 && l + h > 9.0) continue;
+    EXPECT_NEAR(at.acceleration_mps2, at.speed_mps * (after.speed_mps - before.speed_mps) / (2 * h),
+                1e-6);
+    EXPECT_NEAR(at.jerk_mps3,
+                at.speed_mps * (after.acceleration_mps2 - before.acceleration_mps2) / (2 * h),
+                1e-5);
+  }
+  EXPECT_EQ(profile.at(25.0).speed_mps, 0.0);
+  EXPECT_EQ(profile.at(-1.0).speed_mps, 8.0);
+}
+
+TEST(PlannedSpeed, RefusesProfilesThatCannotBeUsed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Rows = std::vector<SpeedSample>;
+  for (const Rows& rows : {Rows{}, Rows{{0.0, -1.0, 0.0}}, Rows{{0.0, nan, 0.0}},
+                           Rows{{1.0, 5.0, 0.0}, {1.0, 5.0, 0.0}}}) {
+    EXPECT_THROW(PlannedSpeed{std::span<const SpeedSample>(rows)}, std::invalid_argument);
+  }
 }
 
 }  // namespace

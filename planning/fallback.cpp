@@ -1,0 +1,232 @@
+#include "roadbed/planning/fallback.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "roadbed/planning/collision.h"
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::Trajectory;
+using geometry::TrajectoryPoint;
+using geometry::VehicleShape;
+
+constexpr double kStopStep_s = 0.05;
+constexpr double kLeastStretch = 0.05;  // of a path that is all but folded
+
+bool all_positive(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double v) { return v > 0.0 && std::isfinite(v); });
+}
+
+void check(const FallbackOptions& options) {
+  const auto demand = [](bool kept, const char* rule) {
+    if (!kept) throw std::invalid_argument(fmt::format("plan: {}", rule));
+  };
+  demand(options.wider >= 1.0 && std::isfinite(options.wider), "wider must be at least 1");
+  demand(options.shorter > 0.0 && options.shorter <= 1.0, "shorter must be over 0 and at most 1");
+  demand(all_positive(options.beyond_the_edge_m), "beyond_the_edge_m must be positive");
+  demand(!options.decelerations_mps2.empty() && all_positive(options.decelerations_mps2) &&
+             std::ranges::is_sorted(options.decelerations_mps2),
+         "the decelerations of a stop must be positive and ascending, one at least");
+}
+
+PlanOptions widened(const PlanOptions& options, const FallbackOptions& fallback) {
+  PlanOptions wide = options;
+  wide.min_d_m *= fallback.wider;
+  wide.max_d_m *= fallback.wider;
+  wide.min_l_m *= fallback.shorter;
+  return wide;
+}
+
+// The vehicle on a path beside the line, and how far it drives per metre of station.
+struct PlaceOnPath {
+  TrajectoryPoint point;
+  double stretch;
+};
+
+PlaceOnPath place_on(const LineView& line, const LateralState& at, const VehicleShape& vehicle) {
+  const ReferencePoint on_line = line.at(at.s_m);
+  const double cos = std::cos(on_line.heading_rad), sin = std::sin(on_line.heading_rad);
+  const double along = 1.0 - on_line.curvature_per_m * at.d_m;
+  const auto curve = geometry::offset_curve(
+      curvatures(on_line), {at.d_m, at.d_slope, at.d_curvature_per_m, 0.0, 0.0, 0.0},
+      kLeastUnfolded);
+  const double curvature = curve ? curve->curvature_per_m : 0.0;
+  return {{.x_m = on_line.in_map.x() - at.d_m * sin,
+           .y_m = on_line.in_map.y() + at.d_m * cos,
+           .heading_rad = on_line.heading_rad + std::atan2(at.d_slope, along),
+           .steering_rad = std::atan(vehicle.wheelbase_m * curvature),
+           .curvature_per_m = curvature},
+          std::max(kLeastStretch, std::hypot(along, at.d_slope))};
+}
+
+struct StopQuestion {
+  const PlanInput& input;
+  LateralPath path;
+  const VehicleShape& vehicle;
+  double until_s;  // after the start; it stands from its stop until then
+};
+
+double speed_now_mps(const PlanInput& input) {
+  return input.speed_profile.empty() ? input.speed.speed_mps
+                                     : PlannedSpeed(input.speed_profile).at(0.0).speed_mps;
+}
+
+Trajectory stopping_drive(const StopQuestion& question, double deceleration_mps2) {
+  const double speed_mps = speed_now_mps(question.input);
+  const double stop_s = speed_mps / deceleration_mps2;
+  const auto driven_m = [&](double t_s) {
+    return t_s * (speed_mps - 0.5 * deceleration_mps2 * t_s);
+  };
+  const int steps = static_cast<int>(std::ceil(stop_s / kStopStep_s));
+  std::vector<TrajectoryPoint> points;
+  double s_m = question.input.start.s_m, last_t_s = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const double t_s = std::min(stop_s, kStopStep_s * i);
+    LateralState lateral = question.path(s_m);
+    lateral.s_m = s_m;
+    PlaceOnPath place = place_on(question.input.line, lateral, question.vehicle);
+    place.point.t_s = question.input.start_t_s + t_s;
+    place.point.speed_mps = std::max(0.0, speed_mps - deceleration_mps2 * t_s);
+    place.point.acceleration_mps2 = t_s < stop_s ? -deceleration_mps2 : 0.0;
+    points.push_back(place.point);
+    const double next_t_s = std::min(stop_s, kStopStep_s * (i + 1));
+    s_m += (driven_m(next_t_s) - driven_m(t_s)) / place.stretch;
+    last_t_s = t_s;
+  }
+  TrajectoryPoint standing = points.back();
+  standing.t_s = question.input.start_t_s + std::max(question.until_s, last_t_s + kStopStep_s);
+  points.push_back(standing);
+  return Trajectory(std::move(points));
+}
+
+ControlledStop choose_stop(const StopQuestion& question, const PlanOptions& options,
+                           const std::vector<double>& decelerations_mps2) {
+  const PlanInput& input = question.input;
+  for (const double clearance_m : {options.clearance_m, 0.0}) {
+    // Touching is a clearance below the checker's tolerance.
+    const CollisionChecker checker({.obstacles = input.obstacles,
+                                    .field = input.static_field,
+                                    .origin_in_source = input.origin_in_source,
+                                    .start_t_s = input.start_t_s,
+                                    .predicted = input.predicted},
+                                   question.vehicle,
+                                   {.circles = options.circles,
+                                    .clearance_m = clearance_m,
+                                    .recovery_m = options.recovery_m,
+                                    .horizon_s = options.horizon_s});
+    for (const double deceleration_mps2 : decelerations_mps2) {
+      Trajectory drive = stopping_drive(question, deceleration_mps2);
+      if (checker.is_free(drive.points())) {
+        return {deceleration_mps2, clearance_m, std::move(drive)};
+      }
+    }
+  }
+  const double hardest = decelerations_mps2.back();
+  return {hardest, std::nullopt, stopping_drive(question, hardest)};
+}
+
+LateralPath path_of(const PlanInput& input, const LateralPath& previous, double settle_m) {
+  if (previous) return previous;
+  const LateralState start = input.start;
+  const geometry::Quintic quintic = QuinticFamily(start, settle_m).member(start.d_m);
+  return [start, quintic](double s_m) {
+    const auto d = quintic.at(std::clamp(s_m - start.s_m, 0.0, quintic.length()));
+    return LateralState{.s_m = s_m, .d_m = d[0], .d_slope = d[1], .d_curvature_per_m = d[2]};
+  };
+}
+
+std::string words_for(const PlanOrStop& answer) {
+  switch (answer.resort) {
+    case Resort::none:
+      return {};
+    case Resort::wider_grid:
+      return "nothing can be driven on the grid as asked; a wider one holds a way";
+    case Resort::beyond_the_edge:
+      return fmt::format(
+          "nothing can be driven inside the road; {:.1f} m beyond its edge there is a way",
+          answer.beyond_the_edge_m);
+    case Resort::stop:
+      break;
+  }
+  const ControlledStop& stop = *answer.stop;
+  const std::string manner =
+      !stop.clearance_m ? "and touches something all the same"
+                        : fmt::format("at a clearance of {:.2f} m or more", *stop.clearance_m);
+  return fmt::format("{}; stopping at {:.1f} m/s² along the previous path, {}", answer.plan.reason,
+                     stop.deceleration_mps2, manner);
+}
+
+bool something_collides(const Plan& plan) {
+  return plan.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
+}
+
+// Looks at one grid after the other until something can be driven.
+class Attempts {
+ public:
+  Attempts(const PlanInput& input, const VehicleShape& vehicle)
+      : input_(input), vehicle_(vehicle) {}
+
+  bool look(Resort resort, const PlanOptions& options, double beyond_m) {
+    PlanOptions with_margin = options;
+    with_margin.border_margin_m -= beyond_m;
+    answer.plan = plan_path(input_, vehicle_, with_margin);
+    answer.attempts.push_back({resort, beyond_m, answer.plan.rejected});
+    answer.resort = resort;
+    answer.beyond_the_edge_m = beyond_m;
+    return answer.plan.chosen.has_value();
+  }
+
+  PlanOrStop answer;
+
+ private:
+  const PlanInput& input_;
+  const VehicleShape& vehicle_;
+};
+
+// Whether any of the grids holds a way.
+bool look_at_grids(Attempts& attempts, const PlanOptions& options,
+                   const FallbackOptions& fallback) {
+  if (attempts.look(Resort::none, options, 0.0)) return true;
+  const PlanOptions wide = widened(options, fallback);
+  if (attempts.look(Resort::wider_grid, wide, 0.0)) return true;
+  for (const double beyond_m : fallback.beyond_the_edge_m) {
+    if (something_collides(attempts.answer.plan)) return false;
+    if (attempts.look(Resort::beyond_the_edge, wide, beyond_m)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view name(Resort resort) {
+  constexpr std::array<std::string_view, 4> kNames = {"none", "wider_grid", "beyond_the_edge",
+                                                      "stop"};
+  return kNames.at(static_cast<std::size_t>(resort));
+}
+
+PlanOrStop plan_or_stop(const PlanInput& input, const LateralPath& previous,
+                        const VehicleShape& vehicle, const PlanOptions& options,
+                        const FallbackOptions& fallback) {
+  check(fallback);
+  Attempts attempts(input, vehicle);
+  PlanOrStop& answer = attempts.answer;
+  if (!look_at_grids(attempts, options, fallback)) {
+    answer.resort = Resort::stop;
+    answer.beyond_the_edge_m = 0.0;
+    answer.stop = choose_stop({.input = input,
+                               .path = path_of(input, previous, options.min_l_m),
+                               .vehicle = vehicle,
+                               .until_s = options.horizon_s},
+                              options, fallback.decelerations_mps2);
+  }
+  answer.reason = words_for(answer);
+  return std::move(attempts.answer);
+}
+
+}  // namespace roadbed::planning
