@@ -33,7 +33,7 @@ std::string page_that_counts_requests(const ReportInput& input) {
 }
 
 std::string script_tests_page() {
-  const auto file = tests_folder() / "tools/report/page_test.js";
+  const auto file = tests::tests_folder() / "tools/report/page_test.js";
   return "<!DOCTYPE html><meta charset=\"utf-8\"><body><script>" + std::string(kPageJs) +
          map::read_file(file) + "</script></body>";
 }
