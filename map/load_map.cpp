@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "roadbed/map/compiled_map.h"
@@ -11,6 +12,8 @@
 #include "roadbed/map/formats/open_drive.h"
 #include "roadbed/map/formats/open_drive_document.h"
 #include "roadbed/map/formats/xml.h"
+#include "roadbed/map/formats/xml_characters.h"
+#include "roadbed/map/formats/xml_scanner.h"
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
 
@@ -20,6 +23,14 @@ namespace {
 bool looks_like_xml(const std::string& bytes) {
   const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   return first != std::string::npos && bytes[first] == '<';
+}
+
+// A Lanelet2 map, read without a tree of its elements; none if the text is of another kind.
+std::optional<RoadMapParts> read_lanelet2(const std::string& bytes, const std::string& name) {
+  const std::string converted = is_other_encoding(bytes) ? to_utf8(bytes) : std::string();
+  const std::string& text = converted.empty() ? bytes : converted;
+  if (!lanelet2::is_lanelet2(root_element(text))) return {};
+  return lanelet2::read(text, name);
 }
 
 }  // namespace
@@ -36,8 +47,11 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
          .needed = "an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map",
          .remedy = "check whether it is the right file"});
   }
+  if (auto parts = read_lanelet2(bytes, name)) {
+    bytes = {};
+    return RoadMap(*std::move(parts));
+  }
   XmlDocument xml(std::move(bytes), name);
-  if (lanelet2::is_lanelet2(xml.root().name())) return RoadMap(lanelet2::read(xml));
   if (common_road::is_common_road(xml.root().name())) return RoadMap(common_road::read(xml));
   if (!open_drive::is_open_drive(xml.root().name())) {
     throw InputError(

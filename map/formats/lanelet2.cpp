@@ -41,8 +41,8 @@ void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportRem
 
 bool is_lanelet2(std::string_view root_element) { return root_element == "osm"; }
 
-RoadMapParts read(const XmlDocument& xml) {
-  Document document = read_document(xml);
+RoadMapParts read(const std::string& bytes, const std::string& file) {
+  Document document = read_document(bytes, file);
   BuiltLanes built = build_lanes(document);
   RoadMapParts parts;
   parts.format = "Lanelet2";

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "roadbed/map/formats/xml.h"
-#include "roadbed/map/load_map.h"
+#include <string>
+#include <string_view>
+
 #include "roadbed/map/road_map.h"
 
 namespace roadbed::map::lanelet2 {
@@ -11,7 +12,8 @@ bool is_lanelet2(std::string_view root_element);
 
 /// Everything of a Lanelet2 map that a RoadMap holds; its lines are kept as they are, whatever the
 /// chord error asked for.
+/// @param bytes  UTF-8.
 /// @throws InputError with the place in the file if it is unusable.
-RoadMapParts read(const XmlDocument& xml);
+RoadMapParts read(const std::string& bytes, const std::string& file);
 
 }  // namespace roadbed::map::lanelet2

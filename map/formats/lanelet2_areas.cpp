@@ -36,7 +36,7 @@ std::optional<std::vector<NodeList>> close_rings(std::vector<NodeList> ways) {
 class AreaBuilder {
  public:
   AreaBuilder(Document& document, RoadMapParts& parts)
-      : document_(document), parts_(parts), points_left_(1'500'000 + document.xml.size_bytes()) {}
+      : document_(document), parts_(parts), points_left_(1'500'000 + document.text.size()) {}
 
   void add(const Relation& relation) {
     const auto outer = rings_of(relation, "outer");
@@ -44,13 +44,13 @@ class AreaBuilder {
     if (!outer || !inner) return;
     Area area;
     area.source_id = std::to_string(relation.id);
-    area.attributes = tags_of(relation.xml);
+    area.attributes = document_.tags_of(relation.at);
     area.type = relation.subtype;
     area.participants = participants(area.attributes);
     area.is_road = area.participants.has(Participant::car);
     for (const geometry::Ring& ring : *outer) area.in_map.push_back({ring, {}});
     if (area.in_map.empty()) {
-      document_.fault(relation.xml, "import.area", "has no outer border and is left out");
+      document_.fault(relation.at, "import.area", "has no outer border and is left out");
       return;
     }
     for (geometry::Ring hole : *inner) {
@@ -107,7 +107,7 @@ class AreaBuilder {
   }
 
   std::nullopt_t open_ring(const Relation& relation, const std::string& reason) {
-    document_.fault(relation.xml, "import.area", reason + "; the area is left out");
+    document_.fault(relation.at, "import.area", reason + "; the area is left out");
     return std::nullopt;
   }
 
@@ -146,7 +146,7 @@ void add_objects(Document& document, RoadMapParts& parts) {
     object.z_m = sum.z();
     object.outline_in_map = simple_ring(std::move(ring));
     if (object.outline_in_map.empty()) {
-      document.fault(way.xml, "import.area", "encloses nothing; only its place is kept");
+      document.fault(way.at, "import.area", "encloses nothing; only its place is kept");
     }
     way.used = true;
     parts.objects.push_back(std::move(object));

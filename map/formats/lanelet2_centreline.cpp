@@ -62,6 +62,15 @@ Eigen::AlignedBox2d box_of(const Segment& segment) {
   return {segment.from.cwiseMin(segment.to), segment.from.cwiseMax(segment.to)};
 }
 
+// From a rung to the next: to a vertex of one rail.
+struct Step {
+  double distance_m;  // length of the next rung
+  std::size_t to;
+  bool operator<(const Step& other) const {
+    return std::pair(distance_m, to) < std::pair(other.distance_m, other.to);
+  }
+};
+
 // One border while it is climbed. Its segments are searched in runs, each with its box.
 class Rail {
  public:
@@ -70,8 +79,8 @@ class Rail {
         plan(in_plan(border)),
         station_m(border.size(), std::numeric_limits<double>::quiet_NaN()),
         boxes_((border.size() + kRun - 1) / kRun) {
-    for (std::size_t i = 0; i + 1 < plan.size(); ++i) {
-      boxes_[i / kRun].extend(plan[i]).extend(plan[i + 1]);
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+      boxes_[i / kRun].extend(plan[i]).extend(plan[std::min(i + 1, plan.size() - 1)]);
     }
   }
 
@@ -93,6 +102,21 @@ class Rail {
       }
     }
     return false;
+  }
+
+  // The nearest vertex ahead, within reach, of equally near ones the first; none at the end.
+  std::optional<Step> nearest_ahead(const Eigen::Vector2d& point) const {
+    const std::size_t end = std::min(plan.size(), at + 1 + kReach);
+    Step nearest{std::numeric_limits<double>::infinity(), end};
+    for (std::size_t i = at + 1; i < end;) {
+      const std::size_t run = i / kRun, run_end = std::min(end, (run + 1) * kRun);
+      const double distance_m = std::sqrt(boxes_[run].squaredExteriorDistance(point));
+      if (distance_m <= nearest.distance_m) {
+        for (; i < run_end; ++i) nearest = std::min(nearest, {(plan[i] - point).norm(), i});
+      }
+      i = run_end;
+    }
+    return nearest.to == end ? std::nullopt : std::optional(nearest);
   }
 
   const Line3& line;
@@ -117,17 +141,7 @@ class Ladder {
   Centreline climb() {
     add_rung();
     if (left_.here() == right_.here() && !left_.at_end()) ++left_.at;
-    for (;;) {
-      const std::optional<Step> left = best_step(left_, right_);
-      const std::optional<Step> right = best_step(right_, left_);
-      if (!left && !right) break;
-      if (left && (!right || left->distance_m <= right->distance_m)) {
-        left_.at = left->to;
-      } else {
-        right_.at = right->to;
-      }
-      add_rung();
-    }
+    while (take_step()) add_rung();
     if (!left_.at_end() || !right_.at_end()) {
       left_.at = left_.plan.size() - 1;
       right_.at = right_.plan.size() - 1;
@@ -137,14 +151,6 @@ class Ladder {
   }
 
  private:
-  struct Step {
-    double distance_m;
-    std::size_t to;
-    bool operator<(const Step& other) const {
-      return std::pair(distance_m, to) < std::pair(other.distance_m, other.to);
-    }
-  };
-
   void add_rung() {
     const Eigen::Vector3d middle = 0.5 * (left_.line[left_.at] + right_.line[right_.at]);
     if (!centre_.empty()) length_m_ += (middle - centre_.back()).head<2>().norm();
@@ -155,16 +161,37 @@ class Ladder {
     }
   }
 
-  // The nearest vertex ahead on `rail` to which a rung from the other one may be laid.
-  std::optional<Step> best_step(const Rail& rail, const Rail& opposite) const {
-    const std::size_t end = std::min(rail.plan.size(), rail.at + 1 + kReach);
-    Step nearest{std::numeric_limits<double>::infinity(), end};
-    for (std::size_t i = rail.at + 1; i < end; ++i) {
-      nearest = std::min(nearest, {(rail.plan[i] - opposite.here()).norm(), i});
+  // Goes on by the shorter of the rails' best steps, of equal ones the left; false if none is free.
+  bool take_step() {
+    const auto nearest_left = left_.nearest_ahead(right_.here());
+    const auto nearest_right = right_.nearest_ahead(left_.here());
+    // Where the nearer of these two is free, no step on the other rail is shorter.
+    if (is_first(nearest_left, nearest_right)) {
+      if (is_free(left_, right_, nearest_left->to)) return go_to(left_, *nearest_left);
+    } else if (nearest_right && is_free(right_, left_, nearest_right->to)) {
+      return go_to(right_, *nearest_right);
     }
-    if (nearest.to == end) return {};
-    if (is_free(rail, opposite, nearest.to)) return nearest;
-    return next_best_step(rail, opposite, nearest.to, end);
+    const auto left = best_step(left_, right_, nearest_left);
+    const auto right = best_step(right_, left_, nearest_right);
+    if (is_first(left, right)) return go_to(left_, *left);
+    return right && go_to(right_, *right);
+  }
+
+  static bool is_first(const std::optional<Step>& left, const std::optional<Step>& right) {
+    return left && (!right || left->distance_m <= right->distance_m);
+  }
+
+  static bool go_to(Rail& rail, const Step& step) {
+    rail.at = step.to;
+    return true;
+  }
+
+  // The nearest vertex ahead on `rail` to which a rung from the other one may be laid.
+  std::optional<Step> best_step(const Rail& rail, const Rail& opposite,
+                                const std::optional<Step>& nearest) const {
+    if (!nearest || is_free(rail, opposite, nearest->to)) return nearest;
+    const std::size_t end = std::min(rail.plan.size(), rail.at + 1 + kReach);
+    return next_best_step(rail, opposite, nearest->to, end);
   }
 
   // The same without the nearest one, which is not free: by distance, until one is.

@@ -7,22 +7,34 @@
 #include <limits>
 
 #include "roadbed/map/formats/lanelet2_frame.h"
+#include "roadbed/map/input_error.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
 
+constexpr std::int64_t kNoId = std::numeric_limits<std::int64_t>::min();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-// What editors mark as deleted (JOSM) counts as gone.
-bool is_deleted(pugi::xml_node element) {
-  return std::string_view(element.attribute("action").value()) == "delete";
-}
+// What memory is spent on, besides the text [bytes]: at worst, while a list grows.
+struct Cost {
+  static constexpr std::size_t node = 3 * sizeof(Node) + 3 * sizeof(NodePlace) + 16;
+  static constexpr std::size_t other = 3 * sizeof(Relation) + 16;
+  static constexpr std::size_t child = 100;
+  static constexpr std::size_t fault = 400;
+};
 
 std::optional<std::int64_t> id_in(std::string_view text) {
   std::int64_t id = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
   if (error != std::errc() || end != text.data() + text.size()) return {};
   return id;
+}
+
+std::optional<MemberKind> member_kind(std::string_view name) {
+  if (name == "node") return MemberKind::node;
+  if (name == "way") return MemberKind::way;
+  if (name == "relation") return MemberKind::relation;
+  return {};
 }
 
 // A node before its place in the map is known.
@@ -33,100 +45,171 @@ struct RawNode {
 
 class DocumentReader {
  public:
-  explicit DocumentReader(const XmlDocument& xml) : document_(xml) {}
+  DocumentReader(const std::string& bytes, const std::string& name)
+      : document_(bytes, name),
+        scanner_(document_.scanner),
+        budget_(128'000'000 + 6 * bytes.size()) {
+    if (bytes.size() > 0xffff'ffff) refuse("more than 4 GB");
+  }
 
   Document read() {
-    for (const pugi::xml_node child : document_.xml.root().children()) {
-      if (child.type() == pugi::node_element && !is_deleted(child)) add(child);
-    }
+    scanner_.next();
+    crs_ = scanner_.value("crs");
+    each_child([&] { add(); });
+    scanner_.expect_end();
     place_nodes();
     document_.node_index = index_of(document_.nodes, "node");
-    for (Way& way : document_.ways) add_way_nodes(way);
+    for (std::size_t i = 0; i < document_.ways.size(); ++i) add_way_nodes(i);
     document_.way_index = index_of(document_.ways, "way");
     document_.relation_index = index_of(document_.relations, "relation");
     return std::move(document_);
   }
 
  private:
-  void add(pugi::xml_node child) {
-    const std::string_view kind = child.name();
-    if (kind != "node" && kind != "way" && kind != "relation") {
-      if (kind != "bounds") ++document_.unused["osm/" + std::string(kind)];
-      return;
-    }
-    const std::optional<std::int64_t> id = id_in(child.attribute("id").value());
-    if (!id) {
-      document_.fault(child, "import.id", "its id is not a whole number and it is left out");
-    } else if (kind == "node") {
-      add_node(child, *id);
-    } else if (kind == "way") {
-      document_.ways.push_back(
-          {*id, {}, tag(child, "type"), tag(child, "subtype"), tags_of(child), child, false});
-    } else {
-      add_relation(child, *id);
+  [[noreturn]] void refuse(const char* found) const {
+    throw InputError({.file = document_.name,
+                      .place = {},
+                      .element = {},
+                      .found = found,
+                      .needed = "a map with content of its size",
+                      .remedy = "check whether it is the right file"});
+  }
+
+  // Calls `f` at the start of each child of the element that has just started, goes to its end.
+  template <typename F>
+  void each_child(const F& f) {
+    const std::size_t depth = scanner_.depth();
+    while (scanner_.next() == XmlScanner::Event::start) {
+      f();
+      if (scanner_.depth() > depth) scanner_.skip();
     }
   }
 
-  void add_node(pugi::xml_node xml, std::int64_t id) {
-    RawNode raw;
-    raw.place.latitude_deg = number_in(xml.attribute("lat").value());
-    raw.place.longitude_deg = number_in(xml.attribute("lon").value());
-    for (const pugi::xml_node child : xml.children()) {
-      const std::string_view key = child.attribute("k").value();
-      const char* const value = child.attribute("v").value();
-      if (key == "local_x") {
-        raw.place.local_x_m = number_in(value);
-      } else if (key == "local_y") {
-        raw.place.local_y_m = number_in(value);
-      } else if (key == "ele") {
-        raw.elevation_m = number_in(value);
-      } else if (key == "mgrs_code" && mgrs_code_.empty()) {
-        mgrs_code_ = value;
-      }
+  void spend(std::size_t bytes) {
+    if (bytes > budget_) refuse("next to nothing but empty elements");
+    budget_ -= bytes;
+  }
+
+  void fault(std::size_t at, const char* rule, std::string message) {
+    spend(Cost::fault);
+    document_.fault(at, rule, std::move(message));
+  }
+
+  void add() {
+    if (scanner_.value("action") == "delete") return;  // so editors (JOSM) mark what is gone
+    const std::string_view name = scanner_.name();
+    const std::optional<MemberKind> kind = member_kind(name);
+    if (!kind) {
+      if (name != "bounds") ++document_.unused["osm/" + std::string(name)];
+      return;
     }
+    const std::optional<std::int64_t> id = id_in(scanner_.value("id"));
+    spend(kind == MemberKind::node ? Cost::node : Cost::other);
+    if (!id) {
+      fault(scanner_.offset(), "import.id", "its id is not a whole number and it is left out");
+    } else if (kind == MemberKind::node) {
+      add_node(*id);
+    } else if (kind == MemberKind::way) {
+      add_way(*id);
+    } else {
+      add_relation(*id);
+    }
+  }
+
+  void add_node(std::int64_t id) {
+    const std::size_t at = scanner_.offset();
+    RawNode raw;
+    raw.place.latitude_deg = number_in(scanner_.value("lat"));
+    raw.place.longitude_deg = number_in(scanner_.value("lon"));
+    each_child([&] { read_node_tag(raw); });
     if (!(std::abs(raw.elevation_m) < 1e5)) {
-      if (bad_elevations_++ == 0) first_bad_elevation_ = xml;
+      if (bad_elevations_++ == 0) first_bad_elevation_ = at;
       raw.elevation_m = 0.0;
     }
-    document_.nodes.push_back({id, {0, 0, raw.elevation_m}, false, xml});
+    document_.nodes.push_back({id, {0, 0, raw.elevation_m}, false, at});
     places_.push_back(raw.place);
   }
 
-  void add_relation(pugi::xml_node xml, std::int64_t id) {
-    Relation relation{id, tag(xml, "type"), tag(xml, "subtype"), {}, xml};
-    for (const pugi::xml_node child : xml.children("member")) {
-      const std::string_view kind = child.attribute("type").value();
-      const std::optional<std::int64_t> ref = id_in(child.attribute("ref").value());
-      if (!ref || (kind != "node" && kind != "way" && kind != "relation")) {
-        document_.fault(child, "import.reference", "names no node, way or relation");
-        continue;
-      }
-      relation.members.push_back({kind == "node"  ? MemberKind::node
-                                  : kind == "way" ? MemberKind::way
-                                                  : MemberKind::relation,
-                                  *ref, child.attribute("role").value()});
+  void read_node_tag(RawNode& raw) {
+    const std::string_view key = scanner_.value("k"), value = scanner_.value("v");
+    if (key == "local_x") {
+      raw.place.local_x_m = number_in(value);
+    } else if (key == "local_y") {
+      raw.place.local_y_m = number_in(value);
+    } else if (key == "ele") {
+      raw.elevation_m = number_in(value);
+    } else if (key == "mgrs_code" && mgrs_code_.empty()) {
+      mgrs_code_ = value;
     }
+  }
+
+  void add_way(std::int64_t id) {
+    Way way;
+    way.id = id;
+    way.at = scanner_.offset();
+    refs_begin_.push_back(refs_.size());
+    each_child([&] {
+      if (scanner_.name() == "nd") {
+        refs_.push_back(id_in(scanner_.value("ref")).value_or(kNoId));
+      } else if (scanner_.name() == "tag") {
+        spend(Cost::child);
+        read_kind(way);
+        way.tags.emplace_back(scanner_.value("k"), scanner_.value("v"));
+      }
+    });
+    document_.ways.push_back(std::move(way));
+  }
+
+  // Keeps the first `type` and `subtype` among the tags.
+  template <typename Element>
+  void read_kind(Element& element) {
+    const std::string_view key = scanner_.value("k");
+    if (key == "type" && element.type.data() == nullptr) element.type = scanner_.value("v");
+    if (key == "subtype" && element.subtype.data() == nullptr) {
+      element.subtype = scanner_.value("v");
+    }
+  }
+
+  void add_relation(std::int64_t id) {
+    Relation relation{id, {}, {}, {}, scanner_.offset()};
+    each_child([&] {
+      if (scanner_.name() == "member") {
+        add_member(relation);
+      } else if (scanner_.name() == "tag") {
+        read_kind(relation);
+      }
+    });
     document_.relations.push_back(std::move(relation));
+  }
+
+  void add_member(Relation& relation) {
+    spend(Cost::child);
+    const std::optional<MemberKind> kind = member_kind(scanner_.value("type"));
+    const std::optional<std::int64_t> ref = id_in(scanner_.value("ref"));
+    if (!kind || !ref) {
+      fault(scanner_.offset(), "import.reference", "names no node, way or relation");
+      return;
+    }
+    relation.members.push_back({*kind, *ref, scanner_.value("role")});
   }
 
   // Positions relative to a local origin, a whole number of kilometres in the file's coordinates.
   void place_nodes() {
     const Frame frame(places_, mgrs_code_);
     // A file that roadbed wrote says in its root what the local coordinates are.
-    const std::string said = document_.xml.root().attribute("crs").value();
-    document_.crs = frame.is_local() && !said.empty() ? said : frame.crs();
+    document_.crs = frame.is_local() && !crs_.empty() ? crs_ : frame.crs();
     if (document_.crs.empty() && !frame.doubt().empty()) {
       document_.remarks.push_back(
           {"import.crs-unknown", false, "file", 0, frame.doubt() + "; its CRS is unknown"});
     }
     bool first = true;
     std::size_t lost = 0;
-    pugi::xml_node example;
+    std::size_t example = 0;
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const auto position = frame.place(places_[i]);
       Node& node = document_.nodes[i];
       if (!position) {
-        if (lost++ == 0) example = node.xml;
+        if (lost++ == 0) example = node.at;
         continue;
       }
       if (first) document_.origin_in_source = (*position / 1000.0).array().round() * 1000.0;
@@ -147,24 +230,36 @@ class DocumentReader {
     places_ = {};
   }
 
-  void add_way_nodes(Way& way) {
-    std::size_t missing = 0;
-    std::string first;
-    for (const pugi::xml_node child : way.xml.children("nd")) {
-      const char* const written = child.attribute("ref").value();
-      const std::optional<std::int64_t> id = id_in(written);
-      const auto place = id ? document_.node_index.find(*id) : std::nullopt;
-      if (place && document_.nodes[*place].placed) {
+  void add_way_nodes(std::size_t index) {
+    Way& way = document_.ways[index];
+    const std::size_t begin = refs_begin_[index];
+    const std::size_t end = index + 1 < refs_begin_.size() ? refs_begin_[index + 1] : refs_.size();
+    std::size_t first_missing = end;
+    way.nodes.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto place = document_.node_index.find(refs_[i]);
+      if (place && document_.nodes[*place].placed && refs_[i] != kNoId) {
         way.nodes.push_back(*place);
-      } else if (missing++ == 0) {
-        first = written;
+      } else if (first_missing == end) {
+        first_missing = i;
       }
     }
-    if (missing > 0) {
-      document_.fault(
-          way.xml, "import.reference",
-          fmt::format("{} of its nodes, first {}, are not there or have no place", missing, first));
+    if (first_missing == end) return;
+    fault(way.at, "import.reference",
+          fmt::format("{} of its nodes, first {}, are not there or have no place",
+                      end - begin - way.nodes.size(), written_ref(way, first_missing - begin)));
+  }
+
+  // How the text names a way's node.
+  std::string written_ref(const Way& way, std::size_t index) const {
+    XmlScanner scanner(document_.text, document_.name, way.at);
+    std::size_t behind = index + 1;
+    for (auto event = scanner.next(); event != XmlScanner::Event::done; event = scanner.next()) {
+      const bool is_node =
+          event == XmlScanner::Event::start && scanner.depth() == 2 && scanner.name() == "nd";
+      if (is_node && --behind == 0) return std::string(scanner.value("ref"));
     }
+    return {};
   }
 
   template <typename Element>
@@ -185,10 +280,14 @@ class DocumentReader {
   }
 
   Document document_;
+  XmlScanner& scanner_;  // the document's
+  std::size_t budget_;   // of memory [bytes]
   std::vector<NodePlace> places_;
-  std::string mgrs_code_;
+  std::vector<std::int64_t> refs_;       // to the nodes of all ways
+  std::vector<std::size_t> refs_begin_;  // those of each way
+  std::string mgrs_code_, crs_;
   std::size_t bad_elevations_ = 0;
-  pugi::xml_node first_bad_elevation_;
+  std::size_t first_bad_elevation_ = 0;
 };
 
 }  // namespace
@@ -200,27 +299,27 @@ std::vector<Eigen::Vector3d> Document::points(const Way& way) const {
   return found;
 }
 
-void Document::fault(pugi::xml_node element, const char* rule, std::string message) {
-  remarks.push_back({rule, true,
-                     fmt::format("{} {}", element.name(), element.attribute("id").value()),
-                     xml.line_of(element), std::move(message)});
-}
-
-Document read_document(const XmlDocument& xml) { return DocumentReader(xml).read(); }
-
-std::string_view tag(pugi::xml_node element, std::string_view key) {
-  for (const pugi::xml_node child : element.children("tag")) {
-    if (child.attribute("k").value() == key) return child.attribute("v").value();
-  }
-  return {};
-}
-
-Attributes tags_of(pugi::xml_node element) {
+Attributes Document::tags_of(std::size_t at) const {
+  XmlScanner element(text, name, at);
   Attributes tags;
-  for (const pugi::xml_node child : element.children("tag")) {
-    tags.emplace_back(child.attribute("k").value(), child.attribute("v").value());
+  for (auto event = element.next(); event != XmlScanner::Event::done; event = element.next()) {
+    if (event == XmlScanner::Event::start && element.depth() == 2 && element.name() == "tag") {
+      tags.emplace_back(element.value("k"), element.value("v"));
+    }
   }
   return tags;
+}
+
+void Document::fault(std::size_t at, const char* rule, std::string message) {
+  if (!line_starts_) line_starts_.emplace(text);
+  XmlScanner element(text, name, at);
+  element.next();
+  remarks.push_back({rule, true, fmt::format("{} {}", element.name(), element.value("id")),
+                     line_starts_->line_at(at), std::move(message)});
+}
+
+Document read_document(const std::string& bytes, const std::string& name) {
+  return DocumentReader(bytes, name).read();
 }
 
 double number_in(std::string_view text) {

@@ -6,10 +6,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/formats/lanelet2_ids.h"
-#include "roadbed/map/formats/xml.h"
+#include "roadbed/map/formats/line_starts.h"
+#include "roadbed/map/formats/xml_scanner.h"
 #include "roadbed/map/road_map.h"
 
 namespace roadbed::map::lanelet2 {
@@ -19,7 +21,7 @@ struct Node {
   std::int64_t id = 0;
   Eigen::Vector3d in_map{0, 0, 0};
   bool placed = false;  ///< it has usable coordinates
-  pugi::xml_node xml;
+  std::size_t at = 0;   ///< where its start tag is in the text
 };
 
 /// A line through nodes, those that are missing or have no place left out.
@@ -28,8 +30,8 @@ struct Way {
   std::vector<std::uint32_t> nodes;
   std::string_view type, subtype;
   Attributes tags;
-  pugi::xml_node xml;
-  bool used = false;  ///< the map holds what it says
+  std::size_t at = 0;  ///< where its start tag is in the text
+  bool used = false;   ///< the map holds what it says
 };
 
 enum class MemberKind { node, way, relation };
@@ -45,14 +47,17 @@ struct Relation {
   std::int64_t id = 0;
   std::string_view type, subtype;
   std::vector<Member> members;
-  pugi::xml_node xml;
+  std::size_t at = 0;  ///< where its start tag is in the text
 };
 
-/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the XML.
+/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the text.
 struct Document {
-  explicit Document(const XmlDocument& source) : xml(source) {}
+  Document(const std::string& bytes, std::string file)
+      : text(bytes), name(std::move(file)), scanner(text, name) {}
 
-  const XmlDocument& xml;
+  std::string_view text;
+  std::string name;
+  XmlScanner scanner;  ///< holds what it decoded
   std::vector<Node> nodes;
   std::vector<Way> ways;
   std::vector<Relation> relations;
@@ -65,18 +70,20 @@ struct Document {
   /// Points of a way.
   std::vector<Eigen::Vector3d> points(const Way& way) const;
 
-  /// Remarks a fault of the file at an element.
-  void fault(pugi::xml_node element, const char* rule, std::string message);
+  /// All tags of the element that begins at a place of the text.
+  Attributes tags_of(std::size_t at) const;
+
+  /// Remarks a fault of the file at the element that begins there.
+  void fault(std::size_t at, const char* rule, std::string message);
+
+ private:
+  std::optional<LineStarts> line_starts_;  // made for the first fault
 };
 
-/// @throws InputError if the file has no lanelet at all.
-Document read_document(const XmlDocument& xml);
-
-/// Value of an element's tag; empty if it has none.
-std::string_view tag(pugi::xml_node element, std::string_view key);
-
-/// All tags of an element.
-Attributes tags_of(pugi::xml_node element);
+/// @param bytes  UTF-8; must outlive the document.
+/// @throws InputError if they are not well-formed XML, or hold more elements than a map of their
+///         size does.
+Document read_document(const std::string& bytes, const std::string& name);
 
 /// A finite number that a text begins and ends with; NaN if it is none.
 double number_in(std::string_view text);

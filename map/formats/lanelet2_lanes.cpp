@@ -27,7 +27,7 @@ LaneLine lane_line(const Line3& points, std::vector<double> station_m) {
 class LaneBuilder {
  public:
   explicit LaneBuilder(Document& document)
-      : document_(document), points_left_(1'500'000 + document.xml.size_bytes()) {
+      : document_(document), points_left_(1'500'000 + document.text.size()) {
     built_.lane_of_relation.resize(document.relations.size());
   }
 
@@ -45,7 +45,7 @@ class LaneBuilder {
  private:
   [[noreturn]] void refuse() const {
     throw InputError(
-        {.file = document_.xml.name(),
+        {.file = document_.name,
          .place = {},
          .element = {},
          .found = lanelets_ == 0
@@ -68,7 +68,7 @@ class LaneBuilder {
     std::string reason = fmt::format("{} ways have the role {}, it needs one", count, role);
     if (count == 1 && !way) reason = fmt::format("its {} way is not in the file", role);
     if (count == 1 && way) reason = fmt::format("its {} way has fewer than 2 points", role);
-    document_.fault(relation.xml, "import.lanelet-border", reason + "; " + consequence(role));
+    document_.fault(relation.at, "import.lanelet-border", reason + "; " + consequence(role));
     return {};
   }
 
@@ -87,7 +87,7 @@ class LaneBuilder {
 
   void spend(std::size_t points) {
     if (points > points_left_) {
-      throw InputError({.file = document_.xml.name(),
+      throw InputError({.file = document_.name,
                         .place = {},
                         .element = {},
                         .found = "its lanelets repeat more points than a map of this size can hold",
@@ -109,7 +109,7 @@ class LaneBuilder {
     const Eigen::Vector3d start = 0.5 * (left.front() + right.front());
     if ((centre.back() - start).squaredNorm() < (centre.front() - start).squaredNorm()) {
       std::reverse(centre.begin(), centre.end());
-      document_.fault(relation.xml, "import.centreline-reversed",
+      document_.fault(relation.at, "import.centreline-reversed",
                       "its centreline runs against its borders and is taken the other way round");
     }
     return centreline_along(std::move(centre), left, right);
@@ -133,7 +133,7 @@ class LaneBuilder {
     Lane lane = described(relation);
     lane.centre = lane_line(centre->points, {});
     if (lane.length_m() <= 0.0) {
-      document_.fault(relation.xml, "import.lanelet-length", "has no length and is left out");
+      document_.fault(relation.at, "import.lanelet-length", "has no length and is left out");
       return;
     }
     lane.centre.station_m = lane.centre.in_map.stations_m();
@@ -155,7 +155,7 @@ class LaneBuilder {
     lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
     lane.origin.source_id = std::to_string(relation.id);
     lane.name = lane.origin.source_id;
-    lane.attributes = tags_of(relation.xml);
+    lane.attributes = document_.tags_of(relation.at);
     lane.participants = participants(lane.attributes);
     lane.type = lane_type(relation.subtype, lane.participants);
     lane.one_way = is_one_way(lane.attributes, lane.participants);

@@ -34,7 +34,7 @@ class RegulationBuilder {
       : document_(document),
         built_(built),
         parts_(parts),
-        budget_(1'500'000 + 2 * document.xml.size_bytes()),
+        budget_(1'500'000 + 2 * document.text.size()),
         signal_of_way_(document.ways.size()),
         stop_line_of_way_(document.ways.size()) {}
 
@@ -61,7 +61,7 @@ class RegulationBuilder {
   // Elements that name each other crosswise could mean far more than the file is long.
   void spend(std::size_t amount) {
     if (amount > budget_) {
-      throw InputError({.file = document_.xml.name(),
+      throw InputError({.file = document_.name,
                         .place = {},
                         .element = {},
                         .found = "its regulatory elements repeat more than a map of this size can "
@@ -86,7 +86,7 @@ class RegulationBuilder {
         if (member.role != "regulatory_element") continue;
         const auto found = document_.relation_index.find(member.id);
         if (!found || document_.relations[*found].type != "regulatory_element") {
-          document_.fault(relation.xml, "import.reference",
+          document_.fault(relation.at, "import.reference",
                           fmt::format("its regulatory element {} is not in the file", member.id));
           continue;
         }
@@ -102,9 +102,9 @@ class RegulationBuilder {
     regulation.source_id = std::to_string(relation.id);
     regulation.type = relation.subtype;
     regulation.lanes = lanes_of_relation_[index];
-    regulation.attributes = tags_of(relation.xml);
+    regulation.attributes = document_.tags_of(relation.at);
     if (relation.subtype.empty()) {
-      document_.fault(relation.xml, "import.regulation-type",
+      document_.fault(relation.at, "import.regulation-type",
                       "has no subtype; it is kept, but says nothing");
     }
     for (const Member& member : relation.members) {
@@ -132,7 +132,7 @@ class RegulationBuilder {
       const auto node = document_.node_index.find(member.id);
       if (node && document_.nodes[*node].placed) {
         there = true;
-        found.attributes = copied(tags_of(document_.nodes[*node].xml));
+        found.attributes = copied(document_.tags_of(document_.nodes[*node].at));
         found.in_map = {document_.nodes[*node].in_map};
       }
     } else if (const auto other = document_.relation_index.find(member.id)) {
@@ -140,7 +140,7 @@ class RegulationBuilder {
       found.lane = built_.lane_of_relation[*other];
     }
     if (!there) {
-      document_.fault(relation.xml, "import.reference",
+      document_.fault(relation.at, "import.reference",
                       fmt::format("its {} {} is not in the file", member.role, member.id));
     }
     return found;
@@ -257,7 +257,7 @@ class RegulationBuilder {
     if (code.empty()) code = value_of(regulation.attributes, "speed_limit");
     const std::optional<double> limit_mps = sign_speed_mps(code);
     if (!limit_mps) {
-      document_.fault(relation.xml, "import.speed-limit",
+      document_.fault(relation.at, "import.speed-limit",
                       fmt::format("\"{}\" is no speed that is known here; its lanes have no limit "
                                   "from it",
                                   code));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -10,14 +9,6 @@
 
 namespace roadbed::map {
 namespace {
-
-std::vector<std::uint32_t> find_line_starts(const std::string& bytes) {
-  std::vector<std::uint32_t> starts{0};
-  for (auto end = bytes.find('\n'); end != std::string::npos; end = bytes.find('\n', end + 1)) {
-    starts.push_back(static_cast<std::uint32_t>(end + 1));
-  }
-  return starts;
-}
 
 // What pugixml will allocate for elements, texts and attributes [bytes]: 64 for a node, 40 for an
 // attribute.
@@ -45,13 +36,6 @@ void check_size(const std::string& bytes, const std::string& name) {
                     .remedy = "check whether it is the right file"});
 }
 
-long line_at(const std::vector<std::uint32_t>& starts, std::ptrdiff_t offset) {
-  if (offset < 0) return 0;
-  const auto after =
-      std::upper_bound(starts.begin(), starts.end(), static_cast<std::uint64_t>(offset));
-  return static_cast<long>(after - starts.begin());
-}
-
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return {};
@@ -72,24 +56,26 @@ std::optional<double> parse_finite(std::string_view text) {
 XmlDocument::XmlDocument(std::string bytes, std::string name)
     : name_(std::move(name)),
       size_bytes_(bytes.size()),
-      text_(std::make_unique<std::string>(std::move(bytes))) {
+      text_(std::make_unique<std::string>(std::move(bytes))),
+      line_starts_(*text_) {
   check_size(*text_, name_);
-  line_starts_ = find_line_starts(*text_);
   // Text is kept in its element: a node less for each.
   const pugi::xml_parse_result result = document_.load_buffer_inplace(
       text_->data(), text_->size(), pugi::parse_default | pugi::parse_embed_pcdata);
   if (!result) {
-    throw InputError({.file = name_,
-                      .place = std::to_string(line_at(line_starts_, result.offset)),
-                      .element = {},
-                      .found = fmt::format("not well-formed XML ({})", result.description()),
-                      .needed = "a whole XML document",
-                      .remedy = "check whether the file was cut off or is of another kind"});
+    throw InputError(
+        {.file = name_,
+         .place = std::to_string(line_starts_.line_at(static_cast<std::size_t>(result.offset))),
+         .element = {},
+         .found = fmt::format("not well-formed XML ({})", result.description()),
+         .needed = "a whole XML document",
+         .remedy = "check whether the file was cut off or is of another kind"});
   }
 }
 
 long XmlDocument::line_of(pugi::xml_node node) const {
-  return line_at(line_starts_, node.offset_debug());
+  const std::ptrdiff_t offset = node.offset_debug();
+  return offset < 0 ? 0 : line_starts_.line_at(static_cast<std::size_t>(offset));
 }
 
 std::string XmlDocument::place_of(pugi::xml_node node) {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "roadbed/map/formats/line_starts.h"
 
 namespace roadbed::map {
 
@@ -61,8 +61,8 @@ class XmlDocument {
  private:
   std::string name_;
   std::size_t size_bytes_;
-  std::vector<std::uint32_t> line_starts_;
   std::unique_ptr<std::string> text_;  // the elements' names and values lie in it
+  LineStarts line_starts_;
   pugi::xml_document document_;
 };
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace roadbed::map {
+
+/// What the value of an attribute says: references to characters (`&lt;`, `&#228;`) replaced, those
+/// to anything else left as they are, and every break, "\r\n" being one, or tab a space.
+std::string decode_xml(std::string_view raw);
+
+/// Whether XML says, by its first bytes or its declaration, that it is not UTF-8.
+bool is_other_encoding(std::string_view bytes);
+
+/// The same document in UTF-8, its elements on the same lines; empty if it is not well-formed.
+std::string to_utf8(const std::string& bytes);
+
+}  // namespace roadbed::map

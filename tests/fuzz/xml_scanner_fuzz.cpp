@@ -1,0 +1,28 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "roadbed/map/formats/xml_scanner.h"
+#include "roadbed/map/input_error.h"
+
+// Every start has its end, and names lie in the text.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace roadbed::map;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    XmlScanner scanner(text, "fuzz");
+    std::size_t open = 0;
+    for (auto event = scanner.next(); event != XmlScanner::Event::done; event = scanner.next()) {
+      open += event == XmlScanner::Event::start ? 1 : static_cast<std::size_t>(-1);
+      const char* const name = scanner.name().data();
+      const bool inside = name >= text.data() && name < text.data() + text.size();
+      if (!inside || scanner.offset() >= size || scanner.depth() != open) std::abort();
+      if (scanner.value("k").size() > size) std::abort();
+    }
+    scanner.expect_end();
+  } catch (const InputError&) {
+    return 0;  // refused, as it should be
+  }
+  return 0;
+}
