@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -28,6 +28,9 @@ using Points = std::vector<Eigen::Vector3d>;
 /// first point not repeated; a line is one ring of one polygon, a point a line of one point. No
 /// polygon: there is no place.
 using Shape = std::vector<std::vector<Points>>;
+
+/// The least box around a shape in plan; empty around one of no place.
+Eigen::AlignedBox2d box_of(const Shape& shape);
 
 /// A thing with a place and values, one per column of its layer.
 struct Feature {

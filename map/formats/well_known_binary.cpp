@@ -1,6 +1,5 @@
 #include "roadbed/map/formats/well_known_binary.h"
 
-#include <Eigen/Geometry>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -76,16 +75,6 @@ class WkbWriter {
   bool has_z_;
 };
 
-Eigen::AlignedBox2d extent_of(const Shape& shape) {
-  Eigen::AlignedBox2d extent;
-  for (const auto& rings : shape) {
-    for (const Points& ring : rings) {
-      for (const Eigen::Vector3d& point : ring) extent.extend(Eigen::Vector2d(point.head<2>()));
-    }
-  }
-  return extent;
-}
-
 }  // namespace
 
 std::string geopackage_blob(const Shape& shape, ShapeKind kind, bool has_z, int srs_id) {
@@ -95,7 +84,7 @@ std::string geopackage_blob(const Shape& shape, ShapeKind kind, bool has_z, int 
   bytes.add(std::uint8_t{0});  // version 1
   bytes.add(std::uint8_t{3});  // little-endian, envelope of x and y
   bytes.add(static_cast<std::int32_t>(srs_id));
-  const Eigen::AlignedBox2d extent = extent_of(shape);
+  const Eigen::AlignedBox2d extent = box_of(shape);
   for (const double side : {extent.min().x(), extent.max().x(), extent.min().y(), extent.max().y()})
     bytes.add(side);
   WkbWriter(has_z).add(shape, kind, bytes);

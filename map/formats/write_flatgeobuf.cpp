@@ -179,14 +179,6 @@ std::string feature_bytes(const Layer& layer, const Feature& feature) {
   return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
 }
 
-Eigen::AlignedBox2d box_of(const Shape& shape) {
-  Eigen::AlignedBox2d box;
-  for (const auto& rings : shape) {
-    for (const Eigen::Vector3d& point : rings[0]) box.extend(Eigen::Vector2d(point.head<2>()));
-  }
-  return box;
-}
-
 struct Placed {
   const Feature* feature;
   Eigen::AlignedBox2d box;

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <string_view>
 
+#include "roadbed/map/formats/geopackage_index.h"
 #include "roadbed/map/formats/layer_style.h"
 #include "roadbed/map/formats/sqlite_file.h"
 #include "roadbed/map/formats/well_known_binary.h"
@@ -36,6 +37,9 @@ create table gpkg_geometry_columns (table_name text not null, column_name text n
   constraint uk_gc_table_name unique (table_name), constraint fk_gc_tn foreign key (table_name)
   references gpkg_contents(table_name), constraint fk_gc_srs foreign key (srs_id) references
   gpkg_spatial_ref_sys (srs_id));
+create table gpkg_extensions (table_name text, column_name text, extension_name text not null,
+  definition text not null, scope text not null, constraint ge_tce unique (table_name, column_name,
+  extension_name));
 create table layer_styles (id integer primary key autoincrement not null, f_table_catalog text,
   f_table_schema text, f_table_name text, f_geometry_column text, styleName text, styleQML text,
   styleSLD text, useAsDefault boolean, description text, owner text, ui text,
@@ -98,13 +102,7 @@ std::string_view sql_type(ShapeKind kind) {
 
 Eigen::AlignedBox2d extent_of(const Layer& layer) {
   Eigen::AlignedBox2d extent;
-  for (const Feature& feature : layer.features) {
-    for (const auto& rings : feature.shape) {
-      for (const Eigen::Vector3d& point : rings[0]) {
-        extent.extend(Eigen::Vector2d(point.head<2>()));
-      }
-    }
-  }
+  for (const Feature& feature : layer.features) extent.extend(box_of(feature.shape));
   return extent;
 }
 
@@ -168,6 +166,7 @@ std::string write_geopackage(std::span<const Layer> layers, const std::string& c
   for (const Layer& layer : layers) {
     register_layer(file, layer, srs_id);
     add_features(file, layer, srs_id);
+    add_spatial_index(file, layer);
   }
   add_styles(file, layers);
   file.run("commit");

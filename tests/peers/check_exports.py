@@ -4,10 +4,12 @@
 usage: check_exports.py ROADBED MAP...      needs the PyPI packages pyogrio and shapely
 
 Per map: each layer of the GeoPackage opens, has a style, and every shape is valid; FlatGeobuf and
-GeoPackage hold the same lanes; an independent union of the lanes has the area of the roads,
+GeoPackage hold the same lanes, which GDAL finds by their spatial indexes; an independent union of the lanes has the area of the roads,
 junctions and drivable surface; two exports have the same bytes. One line per map, exit status 1 if
 anything is wrong."""
 import json
+import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
@@ -67,6 +69,35 @@ def check_surfaces(package, faults):
                 compare_area(f"junction {junction}", shape, lanes[inside], faults)
 
 
+def check_index(file, layer, shapes, faults):
+    """GDAL sees the index, and finds by it what is in a box."""
+    suffix = Path(file).suffix
+    if pyogrio.read_info(file, layer=layer)["capabilities"]["fast_spatial_filter"] is not True:
+        faults.append(f"GDAL does not see the index of {suffix}")
+    box = tuple(shapes[0].bounds)
+    found = pyogrio.raw.read(file, layer=layer, bbox=box)[2]
+    expected = sum(s is not None and s.intersects(shapely.box(*box)) for s in shapes)
+    if len(found) != expected:
+        faults.append(f"a box of {suffix} holds {len(found)} lanes, {expected} expected")
+
+
+def check_changes(package, faults):
+    """The triggers keep the index right when features change; returns nothing, spoils the file."""
+    database = sqlite3.connect(package)
+    database.create_function("ST_IsEmpty", 1, lambda blob: 0)
+    for i, name in enumerate(("ST_MinX", "ST_MaxX", "ST_MinY", "ST_MaxY")):
+        side = 8 + 8 * i  # of the envelope behind the header
+        database.create_function(
+            name, 1, lambda blob, at=side: struct.unpack_from("<d", blob, at)[0])
+    database.execute("update lanes set fid = 1000000 where fid = 1")
+    database.execute("update lanes set geom = null where fid = 2")
+    database.execute("delete from lanes where fid = 3")
+    left = {row[0] for row in database.execute("select fid from lanes where geom notnull")}
+    if left != {row[0] for row in database.execute("select id from rtree_lanes_geom")}:
+        faults.append("the index of .gpkg is not kept when lanes change")
+    database.close()
+
+
 def check(roadbed, map_file, folder):
     faults = []
     outputs = {suffix: str(folder / f"map{suffix}") for suffix in (".gpkg", ".fgb", ".geojson")}
@@ -83,13 +114,9 @@ def check(roadbed, map_file, folder):
     for name, shape in zip(of_package[1]["lane"], of_package[0]):
         if shape is not None and not shapely.equals_exact(by_name.get(name), shape):
             faults.append(f"lane {name} differs between .gpkg and .fgb")
-    if pyogrio.read_info(outputs[".fgb"])["capabilities"]["fast_spatial_filter"] is not True:
-        faults.append("GDAL does not see the index of .fgb")
-    box = tuple(of_package[0][0].bounds)
-    found = pyogrio.raw.read(outputs[".fgb"], bbox=box)[2]
-    expected = sum(s is not None and s.intersects(shapely.box(*box)) for s in of_package[0])
-    if len(found) != expected:
-        faults.append(f"a box of .fgb holds {len(found)} lanes, {expected} expected")
+    check_index(outputs[".fgb"], None, of_package[0], faults)
+    check_index(outputs[".gpkg"], "lanes", of_package[0], faults)
+    check_changes(outputs[".gpkg"], faults)
     json.loads(Path(outputs[".geojson"]).read_text())
     return faults, len(of_package[0])
 

@@ -113,6 +113,20 @@ TEST(WriteGeopackage, HasAStyleForEachLayerThatIsWellFormed) {
   }
 }
 
+TEST(WriteGeopackage, IndexesTheBoxOfEveryShape) {
+  Layer layer{"places", "place", ShapeKind::line, false, {}, {}};
+  layer.features = {
+      {{{{{0, 5, 0}, {10, 7, 0}}}}, {}}, {{}, {}}, {{{{{20, 5, 0}, {30, 4, 0}}}}, {}}};
+  const Database database(write_geopackage(std::vector{layer}, ""));
+  EXPECT_EQ(database.rows("select id, minx, maxx, miny, maxy from rtree_places_geom order by id"),
+            (Rows{{"1", "0.0", "10.0", "5.0", "7.0"}, {"3", "20.0", "30.0", "4.0", "5.0"}}));
+  EXPECT_EQ(database.rows("select table_name, extension_name from gpkg_extensions"),
+            (Rows{{"places", "gpkg_rtree_index"}}));
+  EXPECT_EQ(database.rows("select rtreecheck('rtree_places_geom')"), Rows{{"ok"}});
+  EXPECT_EQ(database.rows("select count(*) from sqlite_master where type = 'trigger'"),
+            Rows{{"6"}});
+}
+
 TEST(WriteGeopackage, IsTheSameEveryTime) {
   const auto layers = make_layers(tests::three_roads_in_a_row().build());
   EXPECT_EQ(write_geopackage(layers, ""), write_geopackage(layers, ""));
