@@ -141,10 +141,20 @@ class LaneBuilder {
     add_lane(id, lanelet, left, right);
   }
 
-  BuiltLanes take() { return std::move(built_); }
+  BuiltLanes take() {
+    if (faults_ > kMostFaults) {
+      remarks_.back().element = "file";
+      remarks_.back().line = 0;
+      remarks_.back().message = fmt::format("and {} more faulty lanelets", faults_ - kMostFaults);
+    }
+    return std::move(built_);
+  }
 
  private:
+  static constexpr std::size_t kMostFaults = 10'000;  // that are told one by one
+
   void fault(const char* rule, pugi::xml_node lanelet, const std::string& message) {
+    if (++faults_ > kMostFaults + 1) return;
     remarks_.push_back({rule, true, fmt::format("lanelet {}", lanelet.attribute("id").value()),
                         xml_.line_of(lanelet), message});
   }
@@ -179,6 +189,7 @@ class LaneBuilder {
   const XmlDocument& xml_;
   Eigen::Vector2d origin_in_source_;
   std::vector<ImportRemark>& remarks_;
+  std::size_t faults_ = 0;
   BuiltLanes built_;
 };
 

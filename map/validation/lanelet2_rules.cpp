@@ -37,24 +37,46 @@ const ById* list_of(const Source& source, std::string_view type) {
   return type == "relation" ? &source.relations : nullptr;
 }
 
+/// References of one element that lead nowhere: a finding for all of them.
+class Dangling {
+ public:
+  template <typename Describe>
+  void add(const Describe& describe) {
+    if (count_++ == 0) first_ = describe();
+  }
+
+  void report(const Source& source, pugi::xml_node element, Report& report) const {
+    if (count_ == 0) return;
+    const std::string more = count_ > 1 ? fmt::format(", like {} more", count_ - 1) : std::string();
+    add_at(report, source, element,
+           fmt::format("its {} is not in the file{}; add or remove it", first_, more));
+  }
+
+ private:
+  std::string first_;
+  std::size_t count_ = 0;
+};
+
 void dangling_members(const Source& source, const ValidateOptions&, Report& report) {
   for (const auto relation : source.relation_list) {
+    Dangling dangling;
     for (const auto member : relation.children("member")) {
-      const ById* list = list_of(source, member.attribute("type").value());
-      const char* id = member.attribute("ref").value();
+      const char *type = member.attribute("type").value(), *id = member.attribute("ref").value();
+      const ById* list = list_of(source, type);
       if (list == nullptr || list->contains(id)) continue;
-      add_at(report, source, relation,
-             fmt::format("its member \"{}\" is {} {}, which is not in the file; add or remove it",
-                         member.attribute("role").value(), member.attribute("type").value(), id));
+      dangling.add([&] {
+        return fmt::format("member \"{}\", {} {},", member.attribute("role").value(), type, id);
+      });
     }
+    dangling.report(source, relation, report);
   }
   for (const auto way : source.way_list) {
+    Dangling dangling;
     for (const auto node : way.children("nd")) {
-      if (source.nodes.contains(node.attribute("ref").value())) continue;
-      add_at(report, source, way,
-             fmt::format("its node {} is not in the file; add or remove it",
-                         node.attribute("ref").value()));
+      const char* id = node.attribute("ref").value();
+      if (!source.nodes.contains(id)) dangling.add([&] { return fmt::format("node {}", id); });
     }
+    dangling.report(source, way, report);
   }
 }
 
@@ -126,15 +148,19 @@ void missing_participants(const Source& source, const ValidateOptions&, Report& 
 
 void missing_locations(const Source& source, const ValidateOptions&, Report& report) {
   long count = 0;
+  pugi::xml_node first;
   for (const Lanelet& lanelet : source.lanelets) {
     const std::string_view subtype = tag(lanelet.node, "subtype");
-    if (subtype == "road" && tag(lanelet.node, "location").empty()) ++count;
+    if (subtype != "road" || !tag(lanelet.node, "location").empty()) continue;
+    if (count++ == 0) first = lanelet.node;
   }
   if (count == 0) return;
-  report.add("map", std::nullopt,
-             fmt::format("{} lanelets of subtype road have no location, from which their speed "
-                         "limit follows; add location=urban or nonurban",
-                         count));
+  report
+      .add("map", std::nullopt,
+           fmt::format("{} lanelets of subtype road, this one first, have no location, from which "
+                       "their speed limit follows; add location=urban or nonurban",
+                       count))
+      .line = source.xml.line_of(first);
 }
 
 /// Two border ends of a lanelet: where it begins, or where it ends.

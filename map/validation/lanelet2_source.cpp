@@ -44,7 +44,8 @@ std::string Lanelet::element() const {
   return fmt::format("lane {}", node.attribute("id").value());
 }
 
-Source::Source(const XmlDocument& document) : xml(document) {
+Source::Source(const XmlDocument& document)
+    : xml(document), nodes_left_(1'500'000 + document.size_bytes() / 8) {
   for (const auto element : xml.root().children()) read(element);
   if (!node_list.empty()) {
     first_latitude_rad_ =
@@ -96,7 +97,7 @@ std::optional<Eigen::Vector2d> Source::place(std::string_view node) const {
 }
 
 /// The nodes of all ways of that role, one way after the other as they join.
-Nodes Source::border(pugi::xml_node relation, std::string_view role) const {
+Nodes Source::border(pugi::xml_node relation, std::string_view role) {
   Nodes border;
   for (const auto member : relation.children("member")) {
     if (role != member.attribute("role").value()) continue;
@@ -104,6 +105,8 @@ Nodes Source::border(pugi::xml_node relation, std::string_view role) const {
     if (way == ways.end()) return {};
     Nodes part;
     for (const auto reference : way->second.children("nd")) {
+      if (nodes_left_ == 0) return {};
+      --nodes_left_;
       part.emplace_back(reference.attribute("ref").value());
     }
     if (part.empty()) return {};
@@ -119,7 +122,7 @@ Nodes Source::border(pugi::xml_node relation, std::string_view role) const {
   return border;
 }
 
-Lanelet Source::lanelet(pugi::xml_node relation) const {
+Lanelet Source::lanelet(pugi::xml_node relation) {
   Lanelet made{relation, border(relation, "left"), border(relation, "right")};
   Places left, right;
   for (auto [ids, places] : {std::pair{&made.left, &left}, {&made.right, &right}}) {

@@ -48,10 +48,11 @@ struct Source {
 
  private:
   void read(pugi::xml_node element);
-  Nodes border(pugi::xml_node relation, std::string_view role) const;
-  Lanelet lanelet(pugi::xml_node relation) const;
+  Nodes border(pugi::xml_node relation, std::string_view role);
+  Lanelet lanelet(pugi::xml_node relation);
 
   double first_latitude_rad_ = 0.0;
+  std::size_t nodes_left_;  // that borders may repeat: many lanelets may name one long way
 };
 
 struct SourceRule {

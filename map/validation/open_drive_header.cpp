@@ -80,10 +80,12 @@ void far_coordinates(const Source& source, const ValidateOptions&, Report& repor
   for (const RoadSource& road : source.roads) {
     const auto place = road.place();
     if (!place || place->cwiseAbs().maxCoeff() <= kFarM) continue;
-    report.add("header", place,
-               fmt::format("coordinates are up to {:.0f} km from (0, 0), where programs that use "
-                           "32-bit floats lose centimetres; use <offset>",
-                           place->cwiseAbs().maxCoeff() / 1000.0));
+    report
+        .add("header", place,
+             fmt::format("coordinates are up to {:.0f} km from (0, 0), where programs that use "
+                         "32-bit floats lose centimetres; use <offset>",
+                         place->cwiseAbs().maxCoeff() / 1000.0))
+        .line = source.xml.line_of(road.node);
     return;
   }
 }

@@ -234,7 +234,7 @@ std::vector<SourceRule> source_rules() {
   std::vector<SourceRule> all;
   for (const auto rules :
        {schema_rules(), header_rules(), id_rules(), curve_rules(), profile_rules(), lane_rules(),
-        linkage_rules(), junction_rules(), signal_rules()}) {
+        linkage_rules(), junction_rules(), redundancy_rules(), signal_rules()}) {
     all.insert(all.end(), rules.begin(), rules.end());
   }
   return all;

@@ -95,15 +95,16 @@ struct SourceRule {
 /// What is missing, broken or unknown, by a table of the standard's elements.
 std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml);
 
-std::span<const SourceRule> schema_rules();    ///< elements, attributes, values
-std::span<const SourceRule> header_rules();    ///< revision, CRS
-std::span<const SourceRule> id_rules();        ///< unique ids, references
-std::span<const SourceRule> curve_rules();     ///< the reference line
-std::span<const SourceRule> profile_rules();   ///< elevation, superelevation, lane offset, width
-std::span<const SourceRule> lane_rules();      ///< sections and lanes
-std::span<const SourceRule> linkage_rules();   ///< links of roads and lanes
-std::span<const SourceRule> junction_rules();  ///< connections
-std::span<const SourceRule> signal_rules();    ///< signals, controllers, objects, speeds
+std::span<const SourceRule> schema_rules();      ///< elements, attributes, values
+std::span<const SourceRule> header_rules();      ///< revision, CRS
+std::span<const SourceRule> id_rules();          ///< unique ids, references
+std::span<const SourceRule> curve_rules();       ///< the reference line
+std::span<const SourceRule> profile_rules();     ///< elevation, superelevation, lane offset, width
+std::span<const SourceRule> lane_rules();        ///< sections and lanes
+std::span<const SourceRule> linkage_rules();     ///< links of roads and lanes
+std::span<const SourceRule> junction_rules();    ///< connections
+std::span<const SourceRule> redundancy_rules();  ///< what is said twice
+std::span<const SourceRule> signal_rules();      ///< signals, controllers, objects, speeds
 
 /// All of the above.
 std::vector<SourceRule> source_rules();

@@ -80,17 +80,23 @@ Finding refused(const std::string& message) {
           .message = message};
 }
 
-/// What the text of the file shows; `xml` stays empty if it is none of a known format.
-Findings check_text(const std::string& bytes, const std::string& name,
-                    const ValidateOptions& options, std::optional<XmlDocument>& xml) {
+/// What the text of the file shows, and the lines of its elements.
+struct TextFindings {
+  Findings findings;
+  rules::ElementLines lines;
+  bool is_well_formed = false;
+};
+
+TextFindings check_text(const std::string& bytes, const std::string& name,
+                        const ValidateOptions& options) {
   if (!looks_like_xml(bytes)) return {};
   try {
-    xml.emplace(bytes, name);
+    const XmlDocument xml(bytes, name);
+    return {rules::check_source(xml, options), rules::element_lines(xml), true};
   } catch (const InputError& error) {
     if (!rules::names_known_format(bytes)) throw;
-    return {rules::not_well_formed(name, error.what())};
+    return {{rules::not_well_formed(name, error.what())}, {}, false};
   }
-  return rules::check_source(*xml, options);
 }
 
 }  // namespace
@@ -119,17 +125,18 @@ std::vector<Finding> validate(const RoadMap& road_map, const ValidateOptions& op
   return findings;
 }
 
-Validation validate_bytes(const std::string& bytes, const std::string& name,
+Validation validate_bytes(std::string bytes, const std::string& name,
                           const ValidateOptions& options) {
-  std::optional<XmlDocument> xml;
+  TextFindings text = check_text(bytes, name, options);
+  const bool names_format = rules::names_known_format(bytes);
   Validation validation;
-  validation.findings = check_text(bytes, name, options, xml);
+  validation.findings = std::move(text.findings);
   try {
-    validation.road_map = parse_map(bytes, name);
+    validation.road_map = parse_map(std::move(bytes), name);
   } catch (const InputError& error) {
-    if (!rules::names_known_format(bytes)) throw;
+    if (!names_format) throw;
     validation.refusal = error.what();
-    if (xml) validation.findings.push_back(refused(error.what()));
+    if (text.is_well_formed) validation.findings.push_back(refused(error.what()));
   }
   if (validation.road_map) {
     for (Finding& finding : validation.findings) {
@@ -137,7 +144,7 @@ Validation validate_bytes(const std::string& bytes, const std::string& name,
     }
     Findings of_map = validate(*validation.road_map, options);
     drop_repeats(of_map, validation.findings);
-    if (xml && !of_map.empty()) add_lines(of_map, rules::element_lines(*xml));
+    add_lines(of_map, text.lines);
     append(validation.findings, std::move(of_map));
   }
   sort_by_rule(validation.findings);

@@ -46,7 +46,7 @@ struct Validation {
 Validation validate_file(const std::filesystem::path& file, const ValidateOptions& options = {});
 
 /// The same from bytes; `name` stands for the file in messages.
-Validation validate_bytes(const std::string& bytes, const std::string& name,
+Validation validate_bytes(std::string bytes, const std::string& name,
                           const ValidateOptions& options = {});
 
 }  // namespace roadbed::map

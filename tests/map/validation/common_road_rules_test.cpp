@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
 #include <vector>
 
 #include "roadbed/map/formats/xml.h"
 #include "roadbed/map/validation/common_road_source.h"
 #include "roadbed/map/validation/source.h"
+#include "roadbed/tests/support/slips.h"
 
 namespace roadbed::map {
 namespace {
@@ -39,11 +39,7 @@ std::string clean_file() {
          "<successorsStraight ref=\"2\"/></incoming></intersection>\n</commonRoad>\n";
 }
 
-struct Slip {
-  std::string rule, from, to;
-};
-
-std::vector<Slip> slips() {
+std::vector<tests::Slip> slips() {
   return {
       {"common-road.version", "2020a", "1999z"},
       {"common-road.duplicate-id", R"(<lanelet id="3">)", R"(<lanelet id="2">)"},
@@ -64,34 +60,18 @@ std::vector<Slip> slips() {
   };
 }
 
-std::vector<Finding> of_rule(const std::string& text, const std::string& rule) {
-  auto findings = rules::check_source(XmlDocument(text, "file.xml"), {});
-  std::erase_if(findings, [&](const Finding& finding) { return finding.rule != rule; });
-  return findings;
-}
-
 TEST(CommonRoadRules, FindNothingInAFaultlessFile) {
   for (const Finding& finding : rules::check_source(XmlDocument(clean_file(), "file.xml"), {})) {
     ADD_FAILURE() << finding.rule << ": " << finding.element << ": " << finding.message;
   }
 }
 
-TEST(CommonRoadRules, FindEverySlip) {
-  for (const Slip& slip : slips()) {
-    SCOPED_TRACE(slip.rule);
-    std::string text = clean_file();
-    const std::size_t at = text.find(slip.from);
-    ASSERT_NE(at, std::string::npos);
-    EXPECT_FALSE(of_rule(text.replace(at, slip.from.size(), slip.to), slip.rule).empty());
-  }
+TEST(CommonRoadRules, FindEverySlipAndSayWhereItIs) {
+  tests::expect_each_is_found(slips(), clean_file(), "file.xml");
 }
 
 TEST(CommonRoadRules, AreAllTried) {
-  std::set<std::string> tried;
-  for (const Slip& slip : slips()) tried.insert(slip.rule);
-  for (const auto& rule : rules::common_road::source_rules()) {
-    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
-  }
+  tests::expect_all_are_tried(slips(), rules::common_road::source_rules());
 }
 
 }  // namespace

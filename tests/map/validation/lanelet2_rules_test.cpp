@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
 #include <vector>
 
 #include "roadbed/map/formats/xml.h"
 #include "roadbed/map/validation/lanelet2_source.h"
 #include "roadbed/map/validation/source.h"
+#include "roadbed/tests/support/slips.h"
 
 namespace roadbed::map {
 namespace {
@@ -49,11 +49,7 @@ std::string clean_file() {
          "</relation>\n</osm>\n";
 }
 
-struct Slip {
-  std::string rule, from, to;
-};
-
-std::vector<Slip> slips() {
+std::vector<tests::Slip> slips() {
   const std::string middle_left = R"(<member type="way" ref="11" role="left"/>)";
   const std::string middle_right = R"(<member type="way" ref="21" role="right"/>)";
   return {
@@ -81,40 +77,24 @@ std::vector<Slip> slips() {
   };
 }
 
-std::vector<Finding> of_rule(const std::string& text, const std::string& rule) {
-  auto findings = rules::check_source(XmlDocument(text, "file.osm"), {});
-  std::erase_if(findings, [&](const Finding& finding) { return finding.rule != rule; });
-  return findings;
-}
-
 TEST(Lanelet2Rules, FindNothingInAFaultlessFile) {
   for (const Finding& finding : rules::check_source(XmlDocument(clean_file(), "file.osm"), {})) {
     ADD_FAILURE() << finding.rule << ": " << finding.element << ": " << finding.message;
   }
 }
 
-TEST(Lanelet2Rules, FindEverySlip) {
-  for (const Slip& slip : slips()) {
-    SCOPED_TRACE(slip.rule);
-    std::string text = clean_file();
-    const std::size_t at = text.find(slip.from);
-    ASSERT_NE(at, std::string::npos);
-    EXPECT_FALSE(of_rule(text.replace(at, slip.from.size(), slip.to), slip.rule).empty());
-  }
+TEST(Lanelet2Rules, FindEverySlipAndSayWhereItIs) {
+  tests::expect_each_is_found(slips(), clean_file(), "file.osm");
 }
 
 TEST(Lanelet2Rules, AreAllTried) {
-  std::set<std::string> tried;
-  for (const Slip& slip : slips()) tried.insert(slip.rule);
-  for (const auto& rule : rules::lanelet2::source_rules()) {
-    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
-  }
+  tests::expect_all_are_tried(slips(), rules::lanelet2::source_rules());
 }
 
 TEST(Lanelet2Rules, PassOverWhatAnEditorDeleted) {
   std::string text = clean_file();
   text.insert(text.find("<way"), R"(<way id="99" action="delete"></way>)");
-  EXPECT_TRUE(of_rule(text, "lanelet2.short-way").empty());
+  EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.short-way").empty());
 }
 
 TEST(Lanelet2Rules, TakeTwoWayLaneletsForWhatTheyAre) {
@@ -123,7 +103,7 @@ TEST(Lanelet2Rules, TakeTwoWayLaneletsForWhatTheyAre) {
   for (std::size_t at = text.find(road); at != std::string::npos; at = text.find(road, at + 60)) {
     text.insert(at, R"(<tag k="one_way" v="no"/>)");
   }
-  EXPECT_TRUE(of_rule(text, "lanelet2.swapped-borders").empty());
+  EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.swapped-borders").empty());
 }
 
 }  // namespace

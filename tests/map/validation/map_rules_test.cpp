@@ -6,11 +6,11 @@
 
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include "roadbed/map/validation/rules.h"
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/slips.h"
 
 namespace roadbed::map {
 namespace {
@@ -219,13 +219,7 @@ TEST(MapRules, FindEverySlip) {
   }
 }
 
-TEST(MapRules, AreAllTried) {
-  std::set<std::string> tried;
-  for (const Slip& slip : slips()) tried.insert(slip.rule);
-  for (const auto& rule : rules::map_rules()) {
-    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
-  }
-}
+TEST(MapRules, AreAllTried) { tests::expect_all_are_tried(slips(), rules::map_rules()); }
 
 TEST(MapRules, CheckLinksOfLanesThatNoCarDrivesOnToo) {
   MadeMap made = faultless();

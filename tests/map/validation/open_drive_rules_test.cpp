@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "roadbed/map/validation/open_drive_source.h"
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/slips.h"
 
 namespace roadbed::map {
 namespace {
@@ -20,18 +20,7 @@ std::string clean_file() {
   return tests::bytes_of(tests::tests_folder() / "map/validation/clean.xodr");
 }
 
-std::vector<Finding> of_rule(const std::string& bytes, const std::string& rule) {
-  std::vector<Finding> findings = validate_bytes(bytes, "file.xodr").findings;
-  std::erase_if(findings, [&](const Finding& finding) { return finding.rule != rule; });
-  return findings;
-}
-
-/// One slip: `from` in the faultless file becomes `to`, and the rule finds it.
-struct Slip {
-  std::string rule, from, to;
-};
-
-std::vector<Slip> slips() {
+std::vector<tests::Slip> slips() {
   const std::string road_2 = "<road name=\"curved\" length=\"110\" id=\"2\"";
   const std::string arc = R"(<arc curvature="0.02"/>)";
   return {
@@ -159,6 +148,12 @@ std::vector<Slip> slips() {
       {"junction.empty", "<controller ", R"(<junction id="11"/><controller )"},
       {"junction.unused-road", R"(connectingRoad="3")", R"(connectingRoad="4")"},
       {"junction.unknown-lane", R"(to="-1")", R"(to="-7")"},
+      {"profile.redundant", R"(<width sOffset="0" a="1.50")",
+       R"(<width sOffset="0" a="1.50" b="0" c="0" d="0"/><width sOffset="30" a="1.50")"},
+      {"curve.redundant", R"(<arc curvature="0.0000001"/>)", "<line/>"},
+      {"junction.repeated-road", "</connection>",
+       R"(</connection><connection id="1" incomingRoad="4" connectingRoad="3" )"
+       R"(contactPoint="end"/>)"},
       {"signal.station", R"(s="95")", R"(s="195")"},
       {"object.station", R"(s="30" t="12")", R"(s="130" t="12")"},
       {"signal.validity-unknown", R"(fromLane="-2" toLane="-1")", R"(fromLane="-9" toLane="-8")"},
@@ -174,11 +169,12 @@ std::vector<Slip> slips() {
   };
 }
 
-std::string with(const Slip& slip) {
-  std::string text = clean_file();
-  const std::size_t at = text.find(slip.from);
-  EXPECT_NE(at, std::string::npos) << slip.rule << ": not in the file: " << slip.from;
-  return at == std::string::npos ? text : text.replace(at, slip.from.size(), slip.to);
+std::string with(const std::string& from, const std::string& to) {
+  return tests::with_slip(clean_file(), {"", from, to});
+}
+
+std::vector<Finding> of_rule(const std::string& text, const std::string& rule) {
+  return tests::source_findings(text, "file.xodr", rule);
 }
 
 TEST(OpenDriveRules, FindNothingButNotesInAFaultlessFile) {
@@ -191,32 +187,39 @@ TEST(OpenDriveRules, FindNothingButNotesInAFaultlessFile) {
 }
 
 TEST(OpenDriveRules, FindEverySlipAndSayWhereItIs) {
-  for (const Slip& slip : slips()) {
-    SCOPED_TRACE(slip.rule);
-    EXPECT_TRUE(of_rule(clean_file(), slip.rule).empty());
-    const auto findings = of_rule(with(slip), slip.rule);
-    ASSERT_FALSE(findings.empty());
-    EXPECT_FALSE(findings[0].element.empty());
-    EXPECT_GT(findings[0].message.size(), 20u);
-    EXPECT_TRUE(findings[0].line > 0 || slip.rule == "crs.far-from-origin");
-  }
+  tests::expect_each_is_found(slips(), clean_file(), "file.xodr");
 }
 
 TEST(OpenDriveRules, AreAllTried) {
-  std::set<std::string> tried;
-  for (const Slip& slip : slips()) tried.insert(slip.rule);
-  for (const auto& rule : rules::open_drive::source_rules()) {
-    EXPECT_TRUE(tried.contains(std::string(rule.info.id))) << rule.info.id;
-  }
+  tests::expect_all_are_tried(slips(), rules::open_drive::source_rules());
 }
 
 TEST(OpenDriveRules, GiveTheLineOfTheElement) {
-  const Slip slip{"", R"(fromLane="-2" toLane="-1")", R"(fromLane="-9" toLane="-8")"};
-  const std::string text = with(slip);
+  const std::string text = with(R"(fromLane="-2" toLane="-1")", R"(fromLane="-9" toLane="-8")");
   const auto line =
       1 + std::count(text.begin(),
                      text.begin() + static_cast<std::ptrdiff_t>(text.find("<signal ")), '\n');
   EXPECT_EQ(of_rule(text, "signal.validity-unknown").at(0).line, line);
+}
+
+TEST(OpenDriveRules, FindRecordsThatOnlyGoOnWhateverTheirDegree) {
+  const std::string cubic = R"(<elevation s="50" a="10.5" b="0.02" c="0" d="0"/>)";
+  // 10 + 0.01 s + 1e-4 s² - 1e-6 s³ from s = 0, and the same seen from s = 50.
+  const std::string before = R"(b="0.01" c="0" d="0"/>)", bent = R"(b="0.01" c="1e-4" d="-1e-6"/>)";
+  const std::string same = R"(<elevation s="50" a="10.625" b="0.0125" c="-5e-5" d="-1e-6"/>)";
+  const std::string other = R"(<elevation s="50" a="10.625" b="0.0125" c="-5.1e-5" d="-1e-6"/>)";
+  const std::string text = tests::with_slip(clean_file(), {"", before, bent});
+  EXPECT_EQ(of_rule(tests::with_slip(text, {"", cubic, same}), "profile.redundant").size(), 1u);
+  EXPECT_TRUE(of_rule(tests::with_slip(text, {"", cubic, other}), "profile.redundant").empty());
+}
+
+TEST(OpenDriveRules, LetOtherRevisionsLeadOverOneRoadTwice) {
+  const std::string twice = tests::with_slip(
+      clean_file(), {"", "</connection>",
+                     R"(</connection><connection id="1" incomingRoad="4" connectingRoad="3"/>)"});
+  EXPECT_EQ(of_rule(twice, "junction.repeated-road").size(), 1u);
+  const std::string older = tests::with_slip(twice, {"", R"(revMinor="7")", R"(revMinor="6")"});
+  EXPECT_TRUE(of_rule(older, "junction.repeated-road").empty());
 }
 
 TEST(OpenDriveRules, DescribeAFileThatIsNoXml) {
@@ -232,7 +235,7 @@ TEST(OpenDriveRules, DescribeAFileThatIsNoXml) {
 
 TEST(OpenDriveRules, GoOnWhereTheReaderRefusesTheFile) {
   const Validation validation =
-      validate_bytes(with({"", R"(<arc curvature="0.02"/>)", R"(<arc curvature="x"/>)"}), "f.xodr");
+      validate_bytes(with(R"(<arc curvature="0.02"/>)", R"(<arc curvature="x"/>)"), "f.xodr");
   EXPECT_FALSE(validation.road_map);
   const auto has = [&](const char* rule) {
     return std::any_of(validation.findings.begin(), validation.findings.end(),
@@ -253,9 +256,8 @@ TEST(OpenDriveRules, CountWhatIsTooMuchToList) {
 }
 
 TEST(OpenDriveRules, GiveTheSidesOfTrafficTheirAsamRule) {
-  const auto findings =
-      of_rule(with({"", R"(fromLane="-2" toLane="-1")", R"(fromLane="-2" toLane="1")"}),
-              "signal.validity-orientation");
+  const auto findings = of_rule(with(R"(fromLane="-2" toLane="-1")", R"(fromLane="-2" toLane="1")"),
+                                "signal.validity-orientation");
   EXPECT_EQ(findings.at(0).asam_rule,
             "asam.net:xodr:1.7.0:road.signal.validity.right_hand_traffic_lane_ids");
 }

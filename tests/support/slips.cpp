@@ -1,0 +1,36 @@
+#include "roadbed/tests/support/slips.h"
+
+#include "roadbed/map/formats/xml.h"
+#include "roadbed/map/validation/source.h"
+
+namespace roadbed::tests {
+
+std::string with_slip(std::string text, const Slip& slip) {
+  const std::size_t at = text.find(slip.from);
+  EXPECT_NE(at, std::string::npos) << slip.rule << ": not in the file: " << slip.from;
+  return at == std::string::npos ? text : text.replace(at, slip.from.size(), slip.to);
+}
+
+std::vector<map::Finding> source_findings(const std::string& text, const std::string& file,
+                                          const std::string& rule) {
+  auto findings = map::rules::check_source(map::XmlDocument(text, file), {});
+  std::erase_if(findings, [&](const map::Finding& finding) { return finding.rule != rule; });
+  return findings;
+}
+
+void expect_each_is_found(const std::vector<Slip>& slips, const std::string& faultless,
+                          const std::string& file) {
+  for (const Slip& slip : slips) {
+    SCOPED_TRACE(slip.rule);
+    EXPECT_TRUE(source_findings(faultless, file, slip.rule).empty());
+    const auto findings = source_findings(with_slip(faultless, slip), file, slip.rule);
+    EXPECT_FALSE(findings.empty());
+    for (const map::Finding& finding : findings) {
+      EXPECT_FALSE(finding.element.empty());
+      EXPECT_GT(finding.line, 0);
+      EXPECT_GT(finding.message.size(), 20u);
+    }
+  }
+}
+
+}  // namespace roadbed::tests
