@@ -166,6 +166,11 @@ void ChunkedFile::read_header() {
   checked_ = std::make_unique<std::atomic<bool>[]>(hashes_.size());
 }
 
+bool ChunkedFile::has(std::string_view name) const {
+  return std::any_of(sections_.begin(), sections_.end(),
+                     [&](const Section& section) { return text(section.name) == name; });
+}
+
 const ChunkedFile::Section& ChunkedFile::section(std::string_view name) const {
   for (const Section& section : sections_) {
     if (text(section.name) != name) continue;

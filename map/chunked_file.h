@@ -41,6 +41,8 @@ class ChunkedFile {
   ChunkedFile(const ChunkedFile&) = delete;
   ChunkedFile& operator=(const ChunkedFile&) = delete;
 
+  bool has(std::string_view name) const;
+
   /// @throws InputError if there is no such section.
   const Section& section(std::string_view name) const;
 

@@ -17,7 +17,7 @@ namespace {
 
 using File = std::shared_ptr<const ChunkedFile>;
 
-constexpr std::string_view kNames = "names";
+constexpr std::string_view kNames = "names", kAppendix = "appendix";
 
 // Where the records of a list begin; one more than there are records.
 std::string places(std::string_view list) { return fmt::format("{}.at", list); }
@@ -116,7 +116,8 @@ RoadMapIndex open_index(const File& file) {
     array = std::remove_reference_t<decltype(array)>(file, name);
   };
   lane_index::visit(open, data);
-  return {LaneIndex(std::move(data)), FlatArray<std::uint32_t>(file, kNames)};
+  return {LaneIndex(std::move(data)), FlatArray<std::uint32_t>(file, kNames),
+          file->has(kAppendix) ? FlatArray<char>(file, kAppendix) : FlatArray<char>()};
 }
 
 RoadMap open_map(const File& file) {
@@ -159,6 +160,10 @@ std::size_t likely_size(const lane_index::Data& index) {
 }  // namespace
 
 std::string write_compiled_map(const RoadMap& road_map) {
+  return write_compiled_map(road_map, road_map.index().appendix.bytes());
+}
+
+std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix) {
   ChunkedFileWriter file;
   file.reserve(likely_size(road_map.index().lanes.data()));
   file.add("head", [&](std::string& bytes) {
@@ -174,6 +179,7 @@ std::string write_compiled_map(const RoadMap& road_map) {
     write_list(file, name, fields, list);
   };
   fields::lists(write, road_map.content());
+  if (!appendix.empty()) file.add(kAppendix, appendix);
   return std::move(file).finish();
 }
 

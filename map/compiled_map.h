@@ -10,8 +10,10 @@
 namespace roadbed::map {
 
 /// The compiled form of a map (`.rbm`): everything of it, with the index that locates points,
-/// ready to use. map/README.md shows its layout.
+/// ready to use. map/README.md shows its layout. The second form puts an appendix in place of the
+/// map's own, see RoadMapIndex.
 std::string write_compiled_map(const RoadMap& road_map);
+std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix);
 
 /// Whether the bytes begin as a compiled map does.
 bool is_compiled_map(std::string_view bytes);

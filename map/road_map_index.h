@@ -14,6 +14,9 @@ namespace roadbed::map {
 struct RoadMapIndex {
   LaneIndex lanes;
   FlatArray<std::uint32_t> by_name;  ///< lanes in order of name, of equal names the first id first
+  /// What a user of the map has made of it and wants to find again in its compiled form: bytes that
+  /// the map does not look into. Empty: nothing.
+  FlatArray<char> appendix = {};
 
   static RoadMapIndex of(const LazyList<Lane>& lanes);
 

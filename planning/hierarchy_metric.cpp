@@ -109,6 +109,7 @@ HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t low, std::uint32_t 
 
 std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
                                     std::span<const Ticks> weights) {
+  ++version_;
   std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
   for (std::size_t i = 0; i < graph_arcs.size(); ++i) {
     const std::uint32_t arc = graph_arcs[i], at = hierarchy_.arc_of[arc];
@@ -157,27 +158,27 @@ std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
   return computed;
 }
 
-void HierarchyMetric::unpack(std::uint32_t low, std::uint32_t high, bool upwards,
-                             std::vector<std::uint32_t>& arcs) const {
+HierarchyMetric::Meaning HierarchyMetric::meaning(std::uint32_t low, std::uint32_t high,
+                                                  bool upwards) const {
   const std::uint32_t arc = hierarchy_.arc_between(low, high);
   const std::int32_t weight = upwards ? up_[arc] : down_[arc];
-  bool found = false;
+  Meaning found;
   for_each_arc(graph_, hierarchy_.node_of_rank[upwards ? low : high],
                hierarchy_.node_of_rank[upwards ? high : low], [&](std::uint32_t of_graph) {
-                 found = static_cast<std::int32_t>(weights_[of_graph]) == weight;
-                 if (found) arcs.push_back(of_graph);
-                 return found;
+                 if (static_cast<std::int32_t>(weights_[of_graph]) != weight) return false;
+                 found = {true, of_graph};
+                 return true;
                });
-  if (found) return;
+  if (found.is_arc) return found;
   for_each_below(hierarchy_, low, high,
                  [&](std::uint32_t rank, std::uint32_t to_low, std::uint32_t to_high) {
                    const std::int32_t way =
                        upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];
                    if (way != weight) return false;
-                   unpack(rank, upwards ? low : high, false, arcs);
-                   unpack(rank, upwards ? high : low, true, arcs);
+                   found.arc_or_rank = rank;
                    return true;
                  });
+  return found;
 }
 
 }  // namespace roadbed::planning

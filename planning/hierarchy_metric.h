@@ -26,9 +26,16 @@ class HierarchyMetric {
   const std::vector<std::int32_t>& up() const { return up_; }
   const std::vector<std::int32_t>& down() const { return down_; }
 
-  /// Arcs of the graph that an arc of the hierarchy stands for, appended in driving order.
-  void unpack(std::uint32_t low, std::uint32_t high, bool upwards,
-              std::vector<std::uint32_t>& arcs) const;
+  /// What an arc of the hierarchy stands for: an arc of the graph, or two of the hierarchy over a
+  /// lower rank.
+  struct Meaning {
+    bool is_arc = false;
+    std::uint32_t arc_or_rank = kNoNode;
+  };
+  Meaning meaning(std::uint32_t low, std::uint32_t high, bool upwards) const;
+
+  /// Grows with every change().
+  std::uint64_t version() const { return version_; }
 
  private:
   struct Both {
@@ -43,6 +50,7 @@ class HierarchyMetric {
   const Hierarchy& hierarchy_;
   std::vector<Ticks> weights_;
   std::vector<std::int32_t> up_, down_;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace roadbed::planning

@@ -15,7 +15,8 @@ std::uint32_t lowest(const std::vector<std::uint32_t>& open) {
 
 }  // namespace
 
-HierarchySearch::HierarchySearch(const HierarchyMetric& metric) : metric_(metric) {
+HierarchySearch::HierarchySearch(const HierarchyMetric& metric)
+    : metric_(metric), known_(kKnown), known_version_(metric.version()) {
   const std::size_t nodes = metric.graph().nodes();
   for (Side* side : {&forward_, &backward_}) {
     side->cost.assign(nodes, kFar);
@@ -108,7 +109,33 @@ std::uint32_t HierarchySearch::seed_of(const Side& side, std::uint32_t rank,
   return side.parent[chain.front()] & ~kSeedBit;
 }
 
+HierarchyMetric::Meaning HierarchySearch::meaning(std::uint32_t low, std::uint32_t high,
+                                                  bool upwards) {
+  const std::size_t place = (2654435761U * (2 * low + (upwards ? 1 : 0)) + high) % kKnown;
+  Known& known = known_[place];
+  if (known.low != low || known.high != high || known.upwards != upwards) {
+    known = {low, high, upwards, metric_.meaning(low, high, upwards)};
+  }
+  return known.meaning;
+}
+
+// Arcs of the graph that an arc of the hierarchy stands for, appended in driving order.
+void HierarchySearch::unpack(std::uint32_t low, std::uint32_t high, bool upwards,
+                             std::vector<std::uint32_t>& arcs) {
+  const auto [is_arc, arc_or_rank] = meaning(low, high, upwards);
+  if (is_arc) {
+    arcs.push_back(arc_or_rank);
+    return;
+  }
+  unpack(arc_or_rank, upwards ? low : high, false, arcs);
+  unpack(arc_or_rank, upwards ? high : low, true, arcs);
+}
+
 GraphPath HierarchySearch::find(std::span<const Seed> from, std::span<const Seed> to) {
+  if (known_version_ != metric_.version()) {
+    known_.assign(kKnown, {});
+    known_version_ = metric_.version();
+  }
   const Meeting meeting = meet<true>(from, to);
   GraphPath path;
   if (meeting.cost < kFar) {
@@ -116,11 +143,11 @@ GraphPath HierarchySearch::find(std::span<const Seed> from, std::span<const Seed
     path.cost = static_cast<Ticks>(meeting.cost);
     path.from_seed = seed_of(forward_, meeting.rank, chain);
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-      metric_.unpack(chain[i], chain[i + 1], true, path.arcs);
+      unpack(chain[i], chain[i + 1], true, path.arcs);
     }
     path.to_seed = seed_of(backward_, meeting.rank, chain);
     for (std::size_t i = chain.size() - 1; i > 0; --i) {
-      metric_.unpack(chain[i - 1], chain[i], false, path.arcs);
+      unpack(chain[i - 1], chain[i], false, path.arcs);
     }
   }
   clear();

@@ -41,6 +41,13 @@ class HierarchySearch {
     std::uint32_t rank = 0;
   };
   static constexpr std::uint32_t kSeedBit = 1U << 31;
+  /// What was found out about arcs of the hierarchy: each has one place, and pushes out others.
+  struct Known {
+    std::uint32_t low = kNoNode, high = kNoNode;
+    bool upwards = false;
+    HierarchyMetric::Meaning meaning;
+  };
+  static constexpr std::size_t kKnown = 1U << 14;
 
   void start(Side& side, std::span<const Seed> seeds) const;
   void step(Side& side, std::uint32_t rank) const;
@@ -49,12 +56,17 @@ class HierarchySearch {
   template <bool kTraced>
   Meeting meet(std::span<const Seed> from, std::span<const Seed> to);
   void clear();
+  HierarchyMetric::Meaning meaning(std::uint32_t low, std::uint32_t high, bool upwards);
+  void unpack(std::uint32_t low, std::uint32_t high, bool upwards,
+              std::vector<std::uint32_t>& arcs);
   std::uint32_t seed_of(const Side& side, std::uint32_t rank,
                         std::vector<std::uint32_t>& chain) const;
 
   const HierarchyMetric& metric_;
   Side forward_, backward_;
   std::vector<std::uint32_t> visited_;
+  std::vector<Known> known_;
+  std::uint64_t known_version_ = 0;
 };
 
 /// Least cost between what a forward and a backward climb have seen. O(ranks of both).

@@ -9,6 +9,7 @@
 
 #include "roadbed/planning/route_obstacle.h"
 #include "roadbed/planning/route_solver.h"
+#include "roadbed/planning/stored_network.h"
 
 namespace roadbed::planning {
 namespace {
@@ -35,8 +36,10 @@ bool knows_limit(const RouteNetwork& network, std::uint32_t lane) {
 /// Lays passages behind one another as legs, priced by both measures.
 class Assembly {
  public:
-  Assembly(const TravelRules& time, const TravelRules& distance)
-      : network_(time.network()), time_(time), distance_(distance) {}
+  Assembly(const TravelRules& time, const TravelRules& distance, std::size_t passages)
+      : network_(time.network()), time_(time), distance_(distance) {
+    route_.legs.reserve(passages + passages / 4);
+  }
 
   void add(const Passage& passage, bool is_first) {
     double from = passage.range.from;
@@ -79,7 +82,8 @@ class Assembly {
                  .limit_known = knows_limit(network_, lane)};
     if (i + 1 < passage.chain.size()) {
       const ShareRange& window = passage.changes.ranges[i];
-      leg.change_window = {window.from * lane_m, window.to * lane_m};
+      leg.change_window = {window.from * lane_m - passage.changes.before_m,
+                           window.to * lane_m + passage.changes.behind_m};
       leg.exit = network_.lanes[lane].left == passage.chain[i + 1] ? LegExit::change_left
                                                                    : LegExit::change_right;
       leg.cost_s += time_.change_cost(1, passage.changes.room_m);
@@ -149,13 +153,20 @@ Router::Router(const map::RoadMap& road_map, RouteOptions options)
     }
   }
   solver_ = std::make_unique<RouteSolver>(
-      std::make_shared<const RouteNetwork>(make_route_network(road_map)), options_);
+      std::make_shared<const RouteNetwork>(route_network_of(road_map)), options_);
   measures_ = std::make_unique<const Measures>(solver_->network(), options_);
 }
 
 Router::~Router() = default;
+
+void Router::prepare() { solver_->prepare(); }
+
 Router::Router(Router&&) noexcept = default;
 Router& Router::operator=(Router&&) noexcept = default;
+
+bool Router::is_fit(const map::LanePlace& place) const {
+  return solver_->rules().may_enter(place.lane.index);
+}
 
 std::string Router::unfit(const map::LanePlace& place, const std::string& what) const {
   const map::Lane& lane = road_map_->lane(place.lane);
@@ -171,7 +182,7 @@ std::string Router::unfit(const map::LanePlace& place, const std::string& what) 
 }
 
 Route Router::route_along(const Way& way) const {
-  Assembly assembly(measures_->time, measures_->distance);
+  Assembly assembly(measures_->time, measures_->distance, way.passages.size());
   for (std::size_t i = 0; i < way.passages.size(); ++i) assembly.add(way.passages[i], i == 0);
   return std::move(assembly).take();
 }
@@ -185,21 +196,23 @@ RouteAnswer Router::find(std::span<const map::LanePlace> places) {
   if (places.size() < 2) throw std::invalid_argument("Router: a route needs two places");
   for (std::size_t i = 0; i < places.size(); ++i) {
     check(*road_map_, places[i]);
+    if (is_fit(places[i])) continue;
     std::string fault = unfit(places[i], place_name(i, places.size()));
-    if (!fault.empty()) return {{}, std::move(fault), {}, i == 0 ? 0 : i - 1};
+    return {{}, std::move(fault), {}, i == 0 ? 0 : i - 1};
   }
   RouteAnswer answer;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const auto way = solver_->solve(places[i], places[i + 1]);
     if (!way) {
-      const RouteObstacle obstacle = find_obstacle(*road_map_, *solver_, places[i], places[i + 1]);
+      if (!obstacles_) obstacles_ = std::make_unique<ObstacleFinder>(*road_map_, *solver_);
+      const RouteObstacle obstacle = obstacles_->find(places[i], places[i + 1]);
       return {{}, describe(*road_map_, places[i], places[i + 1], obstacle), obstacle, i};
     }
-    const Route part = route_along(*way);
+    Route part = route_along(*way);
     if (answer.route) {
       append(*answer.route, part);
     } else {
-      answer.route = part;
+      answer.route = std::move(part);
     }
   }
   return answer;

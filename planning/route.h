@@ -12,21 +12,23 @@
 
 namespace roadbed::planning {
 
+class ObstacleFinder;
 class RouteSolver;
 struct Way;
 
 /// How a leg of a route is left.
 enum class LegExit { goal, successor, change_left, change_right };
 
-/// A stretch of one lane. Where it is left to a neighbour, `to_s_m` is the middle of the change:
-/// half of it is still before that place, as far as there is room.
+/// A stretch of one lane. Where it is left to a neighbour, `to_s_m` is the middle of what the
+/// change has of this lane.
 struct RouteLeg {
   map::LaneId lane;
   double from_s_m = 0.0;
   double to_s_m = 0.0;
   LegExit exit = LegExit::goal;
   Turn turn = Turn::none;  ///< of the lane
-  /// Stations of the lane between which the change is made by which the leg is left.
+  /// Stations of the lane between which the change is made by which the leg is left: below 0, or
+  /// above its length, where it begins beside a lane before or ends beside one behind.
   std::optional<map::StationRange> change_window;
   double length_m = 0.0;  ///< along the last lane of the passage, so that lengths add up
   double cost_s = 0.0;    ///< of this leg, with the change that leaves it and the turn that it is
@@ -84,6 +86,10 @@ struct RouteAnswer {
 /// lane costs. Closed lanes are used nowhere. Costs are compared to 0.1 ms or 1 mm an arc; of
 /// equally cheap routes the one with the lower lane ids is taken.
 ///
+/// Where a passage is shorter than that, a change may begin in it and end in a following one, as
+/// long as both lanes stay neighbours across the section ends between, see ChangeSpan. Up to the
+/// middle of such a change passages cost what the lane that is left costs.
+///
 /// A* is guided by the straight-line distance times the least cost per metre that any link of the
 /// map has, so that it is right on maps with gaps, too.
 class Router {
@@ -94,6 +100,10 @@ class Router {
   ~Router();
   Router(Router&&) noexcept;
   Router& operator=(Router&&) noexcept;
+
+  /// Builds a hierarchy, by which find() then searches: for many questions. Of routes that cost the
+  /// same it may take another one.
+  void prepare();
 
   /// @throws std::invalid_argument if a lane is not in the map or a station not on its lane.
   RouteAnswer find(const map::LanePlace& from, const map::LanePlace& to);
@@ -106,7 +116,10 @@ class Router {
   /// A route of a way that was found elsewhere for the same options.
   Route route_along(const Way& way) const;
 
-  /// Why the place cannot be part of any route; empty if it can.
+  /// Whether the place can be part of a route.
+  bool is_fit(const map::LanePlace& place) const;
+
+  /// Why it cannot; empty if it can.
   std::string unfit(const map::LanePlace& place, const std::string& what) const;
 
   const map::RoadMap& road_map() const { return *road_map_; }
@@ -120,6 +133,7 @@ class Router {
   RouteOptions options_;
   std::unique_ptr<RouteSolver> solver_;
   std::unique_ptr<const Measures> measures_;
+  std::unique_ptr<ObstacleFinder> obstacles_;
 };
 
 /// One question to a router that nobody needs again.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "roadbed/planning/route_changes.h"
+
 namespace roadbed::planning {
 namespace {
 
@@ -44,16 +46,20 @@ std::vector<geometry::Polygon> area_of(const map::RoadMap& road_map,
 
 std::vector<LanePart> corridor_of(const map::RoadMap& road_map, const Route& route) {
   std::vector<LanePart> parts;
-  const RouteLeg* before = nullptr;
-  for (const RouteLeg& leg : route.legs) {
-    LanePart part{leg.lane, leg.from_s_m, leg.to_s_m};
-    if (before != nullptr && before->change_window) {
-      const double share = before->change_window->from_s_m / road_map.lane(before->lane).length_m();
-      part.from_s_m = std::min(part.from_s_m, share * road_map.lane(leg.lane).length_m());
+  for (const RouteLeg& leg : route.legs) parts.push_back({leg.lane, leg.from_s_m, leg.to_s_m});
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    for (const ChangePart& change : parts_of_change(road_map, route, i)) {
+      const double length_m = std::max(1e-3, road_map.lane(change.from).length_m());
+      const auto share_at = [&](double s_m) {
+        return std::clamp((s_m - change.offset_m) / length_m, 0.0, 1.0);
+      };
+      const double from = share_at(route.legs[i].change_window->from_s_m);
+      const double to = share_at(route.legs[i].change_window->to_s_m);
+      for (const map::LaneId lane : {change.from, change.to}) {
+        const double lane_m = road_map.lane(lane).length_m();
+        parts.push_back({lane, from * lane_m, to * lane_m});
+      }
     }
-    if (leg.change_window) part.to_s_m = std::max(part.to_s_m, leg.change_window->to_s_m);
-    parts.push_back(part);
-    before = &leg;
   }
   return parts;
 }

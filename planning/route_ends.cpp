@@ -5,6 +5,10 @@
 namespace roadbed::planning {
 namespace {
 
+constexpr double kSlack_m = 1e-6;
+constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth ending in it
+constexpr std::size_t kMostSpans = 64;
+
 double share_of(const RouteNetwork& network, const map::LanePlace& place) {
   const double length_m = network.lanes[place.lane.index].length_m;
   return length_m > 0.0 ? std::clamp(place.s_m / length_m, 0.0, 1.0) : 0.0;
@@ -30,9 +34,81 @@ std::vector<std::vector<std::uint32_t>> chains_to(const RouteGraph& graph,
   for (std::uint32_t i = graph.first_in[node]; i < graph.first_in[node + 1]; ++i) {
     const std::uint32_t arc = graph.in_arc[i];
     const std::uint32_t from = graph.lane_of_node[graph.tail[arc]];
-    if (graph.is_change(arc) && from != lane) chains.push_back(chain_between(network, from, lane));
+    if (!graph.is_advance(arc) && graph.span_of(arc) == nullptr && from != lane) {
+      chains.push_back(chain_between(network, from, lane));
+    }
   }
   return chains;
+}
+
+std::vector<std::uint32_t> predecessors_of(const RouteGraph& graph, std::uint32_t lane) {
+  std::vector<std::uint32_t> lanes;
+  const std::uint32_t node = graph.entry_of_lane[lane];
+  for (std::uint32_t i = graph.first_in[node]; i < graph.first_in[node + 1]; ++i) {
+    const std::uint32_t arc = graph.in_arc[i];
+    if (graph.is_advance(arc)) lanes.push_back(graph.lane_of_node[graph.tail[arc]]);
+  }
+  return lanes;
+}
+
+/// Changes over several passages that end at a place, from the last passage backwards.
+class SpansInto {
+ public:
+  SpansInto(const RouteGraph& graph, const RouteNetwork& network, double enough_m)
+      : graph_(graph), network_(network), enough_m_(enough_m) {}
+
+  std::vector<ChangeSpan> find(std::uint32_t lane, double share) {
+    for (const auto& chain : chains_to(graph_, network_, lane)) {
+      if (chain.size() != 2) continue;
+      const NetworkLane& from = network_.lanes[chain.front()];
+      const auto window = window_at_start(network_, chain.front(), lane);
+      if (!window) continue;
+      last_m_ = std::min(window->to_s_m, share * from.length_m);
+      if (last_m_ < kLeastPart_m) continue;
+      side_ = from.left == lane ? &NetworkLane::left : &NetworkLane::right;
+      extend({{{chain.front(), lane}}, 0.0, last_m_}, last_m_);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void extend(const ChangeSpan& open, double room_m) {
+    for (const std::uint32_t before : predecessors_of(graph_, open.lanes.front().from)) {
+      const std::uint32_t beside = network_.lanes[before].*side_;
+      if (beside == kNoLane || !leads_to(network_, beside, open.lanes.front().to)) continue;
+      const auto window = window_at_end(network_, before, beside);
+      const double length_m = network_.lanes[before].length_m;
+      if (!window || length_m - window->from_s_m < kLeastPart_m) continue;
+      const double longer_m = room_m + length_m - window->from_s_m;
+      // Else a change that ends in the passage before has all the room that helps.
+      if (longer_m - last_m_ >= enough_m_) continue;
+      if (found_.size() >= kMostSpans) continue;
+      ChangeSpan longer = open;
+      longer.lanes.insert(longer.lanes.begin(), {before, beside});
+      longer.start_s_m = window->from_s_m;
+      found_.push_back(longer);
+      if (window->from_s_m > kSlack_m || longer_m >= enough_m_) continue;
+      extend(longer, longer_m);
+    }
+  }
+
+  const RouteGraph& graph_;
+  const RouteNetwork& network_;
+  double enough_m_, last_m_ = 0.0;
+  std::uint32_t NetworkLane::*side_ = nullptr;
+  std::vector<ChangeSpan> found_;
+};
+
+std::optional<DirectWay> way_in_passage(const TravelRules& rules, const map::LanePlace& from,
+                                        const map::LanePlace& to) {
+  const RouteNetwork& network = rules.network();
+  Passage passage{chain_between(network, from.lane.index, to.lane.index),
+                  {share_of(network, from), share_of(network, to)},
+                  {}};
+  if (passage.chain.empty() || passage.range.from > passage.range.to) return {};
+  const auto cost = price(rules, passage);
+  if (!cost) return {};
+  return DirectWay{{std::move(passage)}, to_ticks(*cost, rules.options().cost)};
 }
 
 }  // namespace
@@ -42,16 +118,25 @@ RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules,
   RouteEnd end;
   const RouteNetwork& network = rules.network();
   const RouteCost measure = rules.options().cost;
+  const double share = share_of(network, place);
   for (const auto& chain : chains_from(network, place.lane.index)) {
-    Passage passage{chain, {share_of(network, place), 1.0}, {}};
+    Passage passage{chain, {share, 1.0}, {}};
     const auto cost = price(rules, passage);
     if (!cost) continue;
     for (const std::uint32_t next : network.successors.of(chain.back())) {
       if (!rules.may_enter(next)) continue;
       end.seeds.push_back(
           {graph.entry_of_lane[next], to_ticks(*cost + rules.turn_cost(next), measure)});
-      end.passages.push_back(passage);
+      end.ways.push_back({passage});
     }
+  }
+  const double enough_m = rules.enough_room_m();
+  for (const ChangeSpan& span : spans_from(network, place.lane.index, place.s_m, enough_m)) {
+    const auto plan = plan_span(rules, span);
+    if (!plan || !needs_first(network, span, enough_m)) continue;
+    end.seeds.push_back({graph.exit_of_lane[span.lanes.back().to],
+                         to_ticks(cost_of(rules, span, *plan, {share, 0.0}), measure)});
+    end.ways.push_back(passages_of(span, *plan, {share, 1.0}));
   }
   return end;
 }
@@ -59,28 +144,42 @@ RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules,
 RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place) {
   RouteEnd end;
   const RouteNetwork& network = rules.network();
+  const RouteCost measure = rules.options().cost;
+  const double share = share_of(network, place);
   for (const auto& chain : chains_to(graph, network, place.lane.index)) {
-    Passage passage{chain, {0.0, share_of(network, place)}, {}};
+    Passage passage{chain, {0.0, share}, {}};
     if (!rules.may_enter(chain.front())) continue;
     const auto cost = price(rules, passage);
     if (!cost) continue;
-    end.seeds.push_back(
-        {graph.entry_of_lane[chain.front()], to_ticks(*cost, rules.options().cost)});
-    end.passages.push_back(std::move(passage));
+    end.seeds.push_back({graph.entry_of_lane[chain.front()], to_ticks(*cost, measure)});
+    end.ways.push_back({std::move(passage)});
+  }
+  SpansInto spans(graph, network, rules.enough_room_m());
+  for (const ChangeSpan& span : spans.find(place.lane.index, share)) {
+    const auto plan = plan_span(rules, span);
+    if (!plan) continue;
+    end.seeds.push_back({graph.entry_of_lane[span.lanes.front().from],
+                         to_ticks(cost_of(rules, span, *plan, {0.0, share}), measure)});
+    end.ways.push_back(passages_of(span, *plan, {0.0, share}));
   }
   return end;
 }
 
 std::optional<DirectWay> direct_way(const TravelRules& rules, const map::LanePlace& from,
                                     const map::LanePlace& to) {
-  const RouteNetwork& network = rules.network();
-  Passage passage{chain_between(network, from.lane.index, to.lane.index),
-                  {share_of(network, from), share_of(network, to)},
-                  {}};
-  if (passage.chain.empty() || passage.range.from > passage.range.to) return {};
-  const auto cost = price(rules, passage);
-  if (!cost) return {};
-  return DirectWay{std::move(passage), to_ticks(*cost, rules.options().cost)};
+  std::optional<DirectWay> best = way_in_passage(rules, from, to);
+  const ShareRange ends{share_of(rules.network(), from), share_of(rules.network(), to)};
+  for (ChangeSpan& span :
+       spans_from(rules.network(), from.lane.index, from.s_m, rules.enough_room_m())) {
+    const auto [last, beside] = span.lanes.back();
+    if (beside != to.lane.index) continue;
+    span.end_s_m = std::min(span.end_s_m, ends.to * rules.network().lanes[last].length_m);
+    const auto plan = plan_span(rules, span);
+    if (!plan || !needs_first(rules.network(), span, rules.enough_room_m())) continue;
+    const Ticks cost = to_ticks(cost_of(rules, span, *plan, ends), rules.options().cost);
+    if (!best || cost < best->cost) best = DirectWay{passages_of(span, *plan, ends), cost};
+  }
+  return best;
 }
 
 }  // namespace roadbed::planning

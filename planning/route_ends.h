@@ -9,29 +9,25 @@
 
 namespace roadbed::planning {
 
-/// The lanes that one passage uses, in turn, the part of it that is driven, and its changes.
-struct Passage {
-  std::vector<std::uint32_t> chain;
-  ShareRange range;
-  ChangePlan changes;
-};
-
 /// The ways between a place in a passage and the nodes at which the graph begins or ends for it:
-/// seeds for a search, and the passage that each of them stands for.
+/// seeds for a search, and the passages that each of them stands for. It is one, or those of a
+/// change that takes several.
 struct RouteEnd {
   std::vector<Seed> seeds;
-  std::vector<Passage> passages;
+  std::vector<std::vector<Passage>> ways;
 };
 
-/// From a place to the entries of the passages behind its own.
+/// From a place to the entries of the passages behind its own; where a way is a change over several
+/// passages, to the exit of its last one, the cost of which is not counted yet.
 RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place);
 
-/// From the entry of its passage to a place.
+/// From the entry of its passage to a place, or from that of the first one of a change that ends
+/// there.
 RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place);
 
-/// A way within one passage.
+/// A way within one passage, or over those of one change.
 struct DirectWay {
-  Passage passage;
+  std::vector<Passage> passages;
   Ticks cost = 0;
 };
 std::optional<DirectWay> direct_way(const TravelRules& rules, const map::LanePlace& from,

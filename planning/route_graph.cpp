@@ -35,7 +35,23 @@ void add_arc(RouteGraph& graph, std::uint32_t from, std::uint32_t to) {
   graph.head.push_back(to);
 }
 
-void add_arcs_of(const RouteNetwork& network, std::uint32_t node, RouteGraph& graph) {
+void add_spans(const RouteNetwork& network, std::uint32_t node, double enough_m,
+               RouteGraph& graph) {
+  for (ChangeSpan& span : spans_from(network, graph.lane_of_node[node], 0.0, enough_m)) {
+    if (!needs_first(network, span, enough_m)) continue;
+    const auto arc = static_cast<std::uint32_t>(graph.arcs());
+    for (const auto [from, to] : span.lanes) {
+      graph.spans_over.push_back({from, arc});
+      graph.spans_over.push_back({to, arc});
+    }
+    add_arc(graph, node, graph.exit_of_lane[span.lanes.back().to]);
+    graph.span_arcs.push_back(arc);
+    graph.spans.push_back(std::move(span));
+  }
+}
+
+void add_arcs_of(const RouteNetwork& network, std::uint32_t node, double enough_m,
+                 RouteGraph& graph) {
   const std::uint32_t lane = graph.lane_of_node[node];
   const bool is_entry = graph.entry_of_lane[lane] == node;
   const bool is_exit = graph.exit_of_lane[lane] == node;
@@ -45,6 +61,7 @@ void add_arcs_of(const RouteNetwork& network, std::uint32_t node, RouteGraph& gr
       const std::uint32_t to = graph.exit_of_lane[chain.back()];
       if (to != node) add_arc(graph, node, to);
     }
+    add_spans(network, node, enough_m, graph);
   }
   graph.first_advance.push_back(static_cast<std::uint32_t>(graph.arcs()));
   if (!is_exit) return;
@@ -71,6 +88,11 @@ Ticks weigh_change(const RouteNetwork& network, const TravelRules& rules, std::u
               : kNever;
 }
 
+Ticks weigh_span(const TravelRules& rules, const ChangeSpan& span) {
+  const auto plan = plan_span(rules, span);
+  return plan ? to_ticks(cost_of(rules, span, *plan, {0.0, 0.0}), rules.options().cost) : kNever;
+}
+
 }  // namespace
 
 double ticks_per_unit(RouteCost cost) { return cost == RouteCost::time ? 1e4 : 1e3; }
@@ -80,10 +102,20 @@ Ticks to_ticks(double cost, RouteCost measure) {
   return ticks < static_cast<double>(kNever) ? static_cast<Ticks>(ticks) : kNever;
 }
 
-RouteGraph make_route_graph(const RouteNetwork& network) {
+const ChangeSpan* RouteGraph::span_of(std::uint32_t arc) const {
+  const auto at = std::lower_bound(span_arcs.begin(), span_arcs.end(), arc);
+  return at != span_arcs.end() && *at == arc
+             ? &spans[static_cast<std::size_t>(at - span_arcs.begin())]
+             : nullptr;
+}
+
+RouteGraph make_route_graph(const RouteNetwork& network, double enough_m) {
   RouteGraph graph;
   add_nodes(network, graph);
-  for (std::uint32_t node = 0; node < graph.nodes(); ++node) add_arcs_of(network, node, graph);
+  for (std::uint32_t node = 0; node < graph.nodes(); ++node) {
+    add_arcs_of(network, node, enough_m, graph);
+  }
+  std::sort(graph.spans_over.begin(), graph.spans_over.end());
   graph.first_out.push_back(static_cast<std::uint32_t>(graph.arcs()));
   add_backward_rows(graph);
   return graph;
@@ -93,7 +125,11 @@ Ticks weigh(const RouteGraph& graph, const TravelRules& rules, std::uint32_t arc
   const std::uint32_t from = graph.lane_of_node[graph.tail[arc]];
   const std::uint32_t to = graph.lane_of_node[graph.head[arc]];
   if (!rules.may_enter(from) || !rules.may_enter(to)) return kNever;
-  if (graph.is_change(arc)) return weigh_change(rules.network(), rules, from, to);
+  if (!graph.is_advance(arc)) {
+    const ChangeSpan* span = graph.span_of(arc);
+    return span != nullptr ? weigh_span(rules, *span)
+                           : weigh_change(rules.network(), rules, from, to);
+  }
   const double length_m = rules.network().lanes[from].length_m;
   return to_ticks(rules.travel_cost(from, 0.0, length_m) + rules.turn_cost(to),
                   rules.options().cost);
@@ -120,12 +156,17 @@ std::vector<std::uint32_t> arcs_of_lane(const RouteGraph& graph, std::uint32_t l
       const std::uint32_t arc = graph.in_arc[i];
       arcs.push_back(arc);
       // A change over several lanes passes over those between.
-      if (graph.is_change(arc)) add_out(graph.tail[arc]);
+      if (!graph.is_advance(arc)) add_out(graph.tail[arc]);
     }
   };
   for (const std::uint32_t node : {graph.entry_of_lane[lane], graph.exit_of_lane[lane]}) {
     add_out(node);
     add_in(node);
+  }
+  for (auto over = std::lower_bound(graph.spans_over.begin(), graph.spans_over.end(),
+                                    std::pair(lane, std::uint32_t{0}));
+       over != graph.spans_over.end() && over->first == lane; ++over) {
+    arcs.push_back(over->second);
   }
   std::sort(arcs.begin(), arcs.end());
   arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "roadbed/geometry/point_index.h"
 
@@ -19,22 +21,6 @@ constexpr std::array kRules = {Barrier::one_way, Barrier::participant, Barrier::
 
 bool holds(const std::vector<Barrier>& rules, Barrier rule) {
   return std::find(rules.begin(), rules.end(), rule) != rules.end();
-}
-
-std::optional<Way> way_without(const map::RoadMap& road_map, const RouteSolver& solver,
-                               const map::LanePlace& from, const map::LanePlace& to,
-                               const std::vector<Barrier>& rules) {
-  const Leniency leniency{.closed_lanes = holds(rules, Barrier::closed),
-                          .participants = holds(rules, Barrier::participant),
-                          .length = holds(rules, Barrier::length)};
-  const NetworkOptions options{.across_markings = holds(rules, Barrier::marking),
-                               .against_traffic = holds(rules, Barrier::one_way)};
-  if (!options.across_markings && !options.against_traffic) {
-    return RouteSolver(solver, solver.options(), leniency).solve(from, to);
-  }
-  return RouteSolver(std::make_shared<const RouteNetwork>(make_route_network(road_map, options)),
-                     solver.options(), leniency)
-      .solve(from, to);
 }
 
 void find_gap(const RouteNetwork& network, const std::vector<std::uint32_t>& from_start,
@@ -121,15 +107,56 @@ std::string_view name(Barrier barrier) {
   return "";
 }
 
-RouteObstacle find_obstacle(const map::RoadMap& road_map, RouteSolver& solver,
-                            const map::LanePlace& from, const map::LanePlace& to) {
+/// Solvers by the rules that they leave out, made when they are first needed.
+struct ObstacleFinder::Solvers {
+  const map::RoadMap& road_map;
+  RouteSolver strict;
+  std::map<std::vector<Barrier>, std::unique_ptr<RouteSolver>> lenient;
+  std::map<std::pair<bool, bool>, std::shared_ptr<const RouteNetwork>> networks;
+
+  Solvers(const map::RoadMap& of, const RouteSolver& solver)
+      : road_map(of), strict(solver, solver.options()) {}
+
+  std::optional<Way> way_without(const std::vector<Barrier>& rules, const map::LanePlace& from,
+                                 const map::LanePlace& to) {
+    std::unique_ptr<RouteSolver>& solver = lenient[rules];
+    if (!solver) solver = make(rules);
+    return solver->solve(from, to);
+  }
+
+ private:
+  std::unique_ptr<RouteSolver> make(const std::vector<Barrier>& rules) {
+    const Leniency leniency{.closed_lanes = holds(rules, Barrier::closed),
+                            .participants = holds(rules, Barrier::participant),
+                            .length = holds(rules, Barrier::length)};
+    const NetworkOptions options{.across_markings = holds(rules, Barrier::marking),
+                                 .against_traffic = holds(rules, Barrier::one_way)};
+    if (!options.across_markings && !options.against_traffic) {
+      return std::make_unique<RouteSolver>(strict, strict.options(), leniency);
+    }
+    auto& network = networks[{options.across_markings, options.against_traffic}];
+    if (!network) {
+      network = std::make_shared<const RouteNetwork>(make_route_network(road_map, options));
+    }
+    return std::make_unique<RouteSolver>(network, strict.options(), leniency);
+  }
+};
+
+ObstacleFinder::ObstacleFinder(const map::RoadMap& road_map, const RouteSolver& solver)
+    : solvers_(std::make_unique<Solvers>(road_map, solver)) {}
+
+ObstacleFinder::~ObstacleFinder() = default;
+ObstacleFinder::ObstacleFinder(ObstacleFinder&&) noexcept = default;
+
+RouteObstacle ObstacleFinder::find(const map::LanePlace& from, const map::LanePlace& to) {
   RouteObstacle obstacle;
-  const auto from_start = solver.lanes_from(from), to_goal = solver.lanes_to(to);
+  RouteSolver& strict = solvers_->strict;
+  const auto from_start = strict.lanes_from(from), to_goal = strict.lanes_to(to);
   obstacle.lanes_from_start = from_start.size();
   obstacle.lanes_to_goal = to_goal.size();
-  find_gap(solver.network(), from_start, to_goal, obstacle);
+  find_gap(strict.network(), from_start, to_goal, obstacle);
   std::vector<Barrier> left_out(kRules.begin(), kRules.end());
-  std::optional<Way> way = way_without(road_map, solver, from, to, left_out);
+  std::optional<Way> way = solvers_->way_without(left_out, from, to);
   if (!way) {
     obstacle.barriers = {Barrier::map_gap};
     return obstacle;
@@ -137,7 +164,7 @@ RouteObstacle find_obstacle(const map::RoadMap& road_map, RouteSolver& solver,
   for (const Barrier rule : kRules) {
     std::vector<Barrier> fewer = left_out;
     std::erase(fewer, rule);
-    std::optional<Way> other = way_without(road_map, solver, from, to, fewer);
+    std::optional<Way> other = solvers_->way_without(fewer, from, to);
     if (!other) continue;
     left_out = fewer;
     way = std::move(other);

@@ -1,8 +1,13 @@
 #include "roadbed/planning/route_options.h"
 
+#include <algorithm>
 #include <array>
 
 namespace roadbed::planning {
+
+double enough_room_m(const RouteOptions& options) {
+  return std::max(options.comfortable_lane_change_m, options.least_lane_change_m);
+}
 
 double default_speed_mps(map::LaneType type) {
   switch (type) {

@@ -32,6 +32,9 @@ struct RouteOptions {
   std::vector<map::LaneId> avoid;           ///< lanes that are closed
 };
 
+/// The length of a lane change from on which more of it makes it no cheaper [m].
+double enough_room_m(const RouteOptions& options);
+
 /// Speed where a map gives no limit, by the type of the lane [m/s]: 50 km/h, but 60 on ramps and
 /// motorway entries and exits, 30 on lanes of both directions, 20 on biking lanes, 5 on sidewalks
 /// and 10 on every other kind that is no road lane.

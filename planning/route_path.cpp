@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/planning/route_changes.h"
 
 namespace roadbed::planning {
 namespace {
@@ -24,27 +25,82 @@ double smooth_step(double t) {
   return x * x * x * (10.0 + x * (6.0 * x - 15.0));
 }
 
-// Lanes beside each other, and where (shares of their length) the path changes between them.
+// Where the path passes over from one lane to the next, in shares of the lanes' length: below 0 or
+// above 1 where that lies beside a stretch before or behind.
+struct Crossing {
+  double middle = 0.0, half = 0.0;
+};
+
+// Lanes beside each other, and how the path changes between them.
 struct Stretch {
   std::vector<LaneId> lanes;
-  std::vector<double> changes;
+  std::vector<Crossing> changes;
   double from = 0.0, to = 1.0;
 };
 
-std::vector<Stretch> stretches_of(const map::RoadMap& road_map, const Route& route) {
-  std::vector<Stretch> stretches;
-  bool joins = false;
-  for (const RouteLeg& leg : route.legs) {
-    const double length_m = road_map.lane(leg.lane).length_m();
-    if (!joins) stretches.push_back({{}, {}, leg.from_s_m / length_m, 1.0});
-    Stretch& stretch = stretches.back();
-    stretch.lanes.push_back(leg.lane);
-    stretch.to = leg.to_s_m / length_m;
-    joins = leg.exit == LegExit::change_left || leg.exit == LegExit::change_right;
-    if (joins) stretch.changes.push_back(stretch.to);
+class Stretches {
+ public:
+  Stretches(const map::RoadMap& road_map, const Route& route, double wanted_m)
+      : road_map_(road_map), route_(route), wanted_m_(wanted_m) {}
+
+  std::vector<Stretch> build() && {
+    bool joins = false;
+    for (const RouteLeg& leg : route_.legs) {
+      const double length_m = length_of(leg.lane);
+      if (!joins) made_.push_back({{}, {}, leg.from_s_m / length_m, 1.0});
+      Stretch& stretch = made_.back();
+      stretch_of_leg_.push_back(made_.size() - 1);
+      stretch.lanes.push_back(leg.lane);
+      stretch.to = leg.to_s_m / length_m;
+      joins = leg.exit == LegExit::change_left || leg.exit == LegExit::change_right;
+      if (joins) stretch.changes.push_back({stretch.to, 0.0});
+    }
+    for (Stretch& stretch : made_) fit(stretch);
+    for (std::size_t leg = 0; leg < route_.legs.size(); ++leg) spread(leg);
+    return std::move(made_);
   }
-  return stretches;
-}
+
+ private:
+  double length_of(LaneId lane) const { return std::max(1e-3, road_map_.lane(lane).length_m()); }
+
+  // As long as wanted, clear of the neighbours.
+  void fit(Stretch& stretch) const {
+    auto& at = stretch.changes;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const double before =
+          i == 0 ? at[i].middle - stretch.from : 0.5 * (at[i].middle - at[i - 1].middle);
+      const double after =
+          i + 1 == at.size() ? stretch.to - at[i].middle : 0.5 * (at[i + 1].middle - at[i].middle);
+      const double wanted = 0.5 * wanted_m_ / length_of(stretch.lanes[i]);
+      at[i].half = std::max(1e-9, std::min({before, after, wanted}));
+    }
+  }
+
+  // A change that takes several stretches goes over all of them about its own middle.
+  void spread(std::size_t leg) {
+    const std::vector<ChangePart> parts = parts_of_change(road_map_, route_, leg);
+    const auto is_plain = [&](const ChangePart& part) {
+      const Stretch& stretch = made_[stretch_of_leg_[part.leg]];
+      return stretch.lanes.size() == (&part == &parts.front() ? 2U : 1U);
+    };
+    if (parts.size() < 2 || !std::all_of(parts.begin(), parts.end(), is_plain)) return;
+    const map::StationRange window = *route_.legs[leg].change_window;
+    const double middle_m = 0.5 * (window.from_s_m + window.to_s_m);
+    const double half_m = 0.5 * std::min(wanted_m_, window.to_s_m - window.from_s_m);
+    for (const ChangePart& part : parts) {
+      const double length_m = length_of(part.from);
+      Stretch& stretch = made_[stretch_of_leg_[part.leg]];
+      stretch.lanes = {part.from, part.to};
+      stretch.changes = {{(middle_m - part.offset_m) / length_m, half_m / length_m}};
+    }
+  }
+
+  const map::RoadMap& road_map_;
+  const Route& route_;
+  double wanted_m_;
+  std::vector<Stretch> made_;
+  std::vector<std::size_t> stretch_of_leg_;
+};
 
 // Of a chord, since single segments of real centrelines may point anywhere.
 Eigen::Vector2d direction_of(const map::Lane& lane, double share) {
@@ -122,20 +178,11 @@ class Builder {
     return direction_of(road_map_.lane(lane), share);
   }
 
-  // Half the length of the i-th change as a share: as long as wanted, clear of its neighbours.
-  double half_change(const Stretch& stretch, std::size_t i) const {
-    const auto& at = stretch.changes;
-    const double before = i == 0 ? at[i] - stretch.from : 0.5 * (at[i] - at[i - 1]);
-    const double after = i + 1 == at.size() ? stretch.to - at[i] : 0.5 * (at[i + 1] - at[i]);
-    const double wanted = 0.5 * options_.lane_change_length_m / length_m(stretch.lanes[i]);
-    return std::max(1e-9, std::min({before, after, wanted}));
-  }
-
   RoutePathPoint place(const Stretch& stretch, double share) const {
     RoutePathPoint point{centre(stretch.lanes[0], share), stretch.lanes[0], share};
     for (std::size_t i = 0; i < stretch.changes.size(); ++i) {
-      const double half = half_change(stretch, i);
-      const double weight = smooth_step((share - stretch.changes[i] + half) / (2.0 * half));
+      const auto [middle, half] = stretch.changes[i];
+      const double weight = smooth_step((share - middle + half) / (2.0 * half));
       point.in_map +=
           weight * (centre(stretch.lanes[i + 1], share) - centre(stretch.lanes[i], share));
       if (weight > 0.5) point.lane = stretch.lanes[i + 1];
@@ -149,7 +196,7 @@ class Builder {
     if (path_.points.empty() || stretch.from > 0.0) return;
     const LaneId lane = stretch.lanes.front();
     const Eigen::Vector2d along = direction(lane, 0.0), left(-along.y(), along.x());
-    const double step_m = (path_.points.back().in_map - centre(lane, 0.0)).dot(left);
+    const double step_m = (path_.points.back().in_map - place(stretch, 0.0).in_map).dot(left);
     if (std::abs(step_m) < kStep_m || std::abs(step_m) > kMostStep_m) return;
     step_ = step_m * left;
     const double wanted_m = std::sqrt(6.0 * std::abs(step_m) / kStepCurvature_per_m);
@@ -201,7 +248,8 @@ class Builder {
 RoutePath path_along(const map::RoadMap& road_map, const Route& route,
                      const RoutePathOptions& options) {
   if (route.legs.empty()) throw std::invalid_argument("path_along: the route has no leg");
-  const std::vector<Stretch> stretches = stretches_of(road_map, route);
+  const std::vector<Stretch> stretches =
+      Stretches(road_map, route, options.lane_change_length_m).build();
   Builder builder(road_map, options);
   builder.lead(stretches.front());
   for (const Stretch& stretch : stretches) builder.follow(stretch);

@@ -30,10 +30,10 @@ struct RoutePath {
 };
 
 /// Samples a route. At a lane change the path passes over by 10t³ − 15t⁴ + 6t⁵, the quintic that
-/// begins and ends without slope and curvature, over `lane_change_length_m` or the room that the
-/// legs leave. Where a lane begins beside the end of the one before by more than 5 cm, the step is
-/// taken out in the same way over the first metres of the lane. Past the goal it follows the
-/// straightest successors, then goes on straight.
+/// begins and ends without slope and curvature, over `lane_change_length_m` or the room that there
+/// is, over section ends, too. Where a lane begins beside the end of the one before by more than 5
+/// cm, the step is taken out in the same way over the first metres of the lane. Past the goal it
+/// follows the straightest successors, then goes on straight.
 RoutePath path_along(const map::RoadMap& road_map, const Route& route,
                      const RoutePathOptions& options);
 

@@ -1,6 +1,9 @@
 #include "roadbed/planning/route_solver.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "roadbed/planning/dissection.h"
 
 namespace roadbed::planning {
 
@@ -8,7 +11,8 @@ RouteSolver::RouteSolver(std::shared_ptr<const RouteNetwork> network, const Rout
                          Leniency leniency)
     : options_(options),
       network_(std::move(network)),
-      graph_(std::make_shared<const RouteGraph>(make_route_graph(*network_))),
+      graph_(
+          std::make_shared<const RouteGraph>(make_route_graph(*network_, enough_room_m(options)))),
       rules_(*network_, options_, leniency),
       weights_(weigh_all(*graph_, rules_)),
       guide_(make_guide(*graph_, *network_, weights_)),
@@ -24,8 +28,18 @@ RouteSolver::RouteSolver(const RouteSolver& other, const RouteOptions& options, 
       search_(*graph_) {}
 
 std::optional<Way> RouteSolver::solve(const map::LanePlace& from, const map::LanePlace& to) {
-  return solve_with(weights_, from, to);
+  if (tree_ == nullptr) return solve_with(weights_, from, to);
+  RouteTask asked = task(from, to);
+  const GraphPath path = tree_->search.find(asked.start.seeds, asked.goal.seeds);
+  return answer(std::move(asked), path);
 }
+
+RouteSolver::Tree::Tree(const RouteGraph& graph, const Guide& guide, std::span<const Ticks> weights)
+    : hierarchy(make_hierarchy(graph, dissection_order(graph, guide.place_in_map))),
+      metric(graph, hierarchy, weights),
+      search(metric) {}
+
+void RouteSolver::prepare() { tree_ = std::make_unique<Tree>(*graph_, guide_, weights_); }
 
 std::optional<Way> RouteSolver::solve_with(std::span<const Ticks> weights,
                                            const map::LanePlace& from, const map::LanePlace& to) {
@@ -41,7 +55,7 @@ RouteTask RouteSolver::task(const map::LanePlace& from, const map::LanePlace& to
 
 std::optional<Way> RouteSolver::answer(RouteTask task, const GraphPath& path) const {
   if (task.direct && task.direct->cost <= path.cost) {
-    return Way{{std::move(task.direct->passage)}, task.direct->cost};
+    return Way{std::move(task.direct->passages), task.direct->cost};
   }
   if (path.cost == kNever) return {};
   return way_along(task.start, task.goal, path);
@@ -49,28 +63,47 @@ std::optional<Way> RouteSolver::answer(RouteTask task, const GraphPath& path) co
 
 Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
                            const GraphPath& path) const {
-  Way way{{start.passages[path.from_seed]}, path.cost};
-  std::uint32_t lane = graph_->lane_of_node[start.seeds[path.from_seed].node];
-  std::vector<std::uint32_t> chain{lane};
+  Way way{{}, path.cost};
+  std::vector<Passage>& passages = way.passages;
+  const std::vector<Passage>&first = start.ways[path.from_seed], &last = goal.ways[path.to_seed];
+  passages.reserve(first.size() + path.arcs.size() + last.size());
+  passages.insert(passages.end(), first.begin(), first.end());
+  // From here on the last passage is one that is entered, but not left yet.
+  const auto enter = [&](std::uint32_t lane) {
+    passages.emplace_back();
+    passages.back().chain.push_back(lane);
+  };
+  const bool in_last = first.size() > 1;
+  if (!in_last) enter(graph_->lane_of_node[start.seeds[path.from_seed].node]);
   for (const std::uint32_t arc : path.arcs) {
-    const std::uint32_t to = graph_->lane_of_node[graph_->head[arc]];
-    if (graph_->is_change(arc)) {
-      chain = chain_between(*network_, chain.front(), to);
+    if (graph_->is_advance(arc)) {
+      enter(graph_->lane_of_node[graph_->head[arc]]);
       continue;
     }
-    auto changes = rules_.plan_changes(chain, {});
-    way.passages.push_back({std::move(chain), {}, changes ? *std::move(changes) : ChangePlan{}});
-    chain = {to};
+    std::vector<Passage> changing = passages_of_change(passages.back().chain.front(), arc);
+    passages.pop_back();
+    std::move(changing.begin(), changing.end(), std::back_inserter(passages));
   }
-  way.passages.push_back(goal.passages[path.to_seed]);
+  passages.pop_back();
+  passages.insert(passages.end(), last.begin(), last.end());
   return way;
+}
+
+std::vector<Passage> RouteSolver::passages_of_change(std::uint32_t from, std::uint32_t arc) const {
+  if (const ChangeSpan* span = graph_->span_of(arc)) {
+    const auto plan = plan_span(rules_, *span);
+    return passages_of(*span, plan.value_or(SpanPlan{}), {});
+  }
+  Passage passage{chain_between(*network_, from, graph_->lane_of_node[graph_->head[arc]]), {}, {}};
+  passage.changes = rules_.plan_changes(passage.chain, {}).value_or(ChangePlan{});
+  return {std::move(passage)};
 }
 
 std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, std::uint32_t own,
                                                  bool backward) {
   std::vector<std::uint32_t> lanes{own};
-  for (const Passage& passage : end.passages) {
-    lanes.push_back(backward ? passage.chain.front() : passage.chain.back());
+  for (const std::vector<Passage>& way : end.ways) {
+    lanes.push_back(backward ? way.front().chain.front() : way.back().chain.back());
   }
   for (const Settled& settled : search_.reach(weights_, end.seeds, kNever - 1, backward)) {
     lanes.push_back(graph_->lane_of_node[settled.node]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/planning/graph_search.h"
+#include "roadbed/planning/hierarchy_search.h"
 #include "roadbed/planning/route_ends.h"
 
 namespace roadbed::planning {
@@ -38,6 +39,14 @@ class RouteSolver {
   const Guide& guide() const { return guide_; }
   const RouteOptions& options() const { return options_; }
 
+  /// Builds a hierarchy, by which solve() then searches: for many questions. Of ways that cost the
+  /// same it may take another one than A*.
+  void prepare();
+  bool is_prepared() const { return tree_ != nullptr; }
+
+  /// For searches of other threads. @pre is_prepared()
+  const HierarchyMetric& metric() const { return tree_->metric; }
+
   std::optional<Way> solve(const map::LanePlace& from, const map::LanePlace& to);
 
   /// The same with other weights, none of them less than the solver's own. The cost is by them.
@@ -58,6 +67,7 @@ class RouteSolver {
 
  private:
   Way way_along(const RouteEnd& start, const RouteEnd& goal, const GraphPath& path) const;
+  std::vector<Passage> passages_of_change(std::uint32_t from, std::uint32_t arc) const;
   std::vector<std::uint32_t> lanes_of(const RouteEnd& end, std::uint32_t own, bool backward);
 
   RouteOptions options_;
@@ -67,6 +77,13 @@ class RouteSolver {
   std::vector<Ticks> weights_;
   Guide guide_;
   GraphSearch search_;
+  struct Tree {
+    Tree(const RouteGraph& graph, const Guide& guide, std::span<const Ticks> weights);
+    Hierarchy hierarchy;
+    HierarchyMetric metric;
+    HierarchySearch search;
+  };
+  std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace roadbed::planning

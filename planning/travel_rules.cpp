@@ -11,12 +11,6 @@ constexpr double kLeastRoom_m = 0.1;  // a change takes some length, whatever th
 constexpr double kSlack_m = 1e-9;
 constexpr int kBisections = 60;
 
-std::span<const map::StationRange> windows_to(const RouteNetwork& network, std::uint32_t lane,
-                                              std::uint32_t beside) {
-  return network.lanes[lane].left == beside ? network.left_windows.of(lane)
-                                            : network.right_windows.of(lane);
-}
-
 void extend(const RouteNetwork& network, std::vector<std::uint32_t> chain,
             std::uint32_t NetworkLane::*side, std::vector<std::vector<std::uint32_t>>& chains) {
   for (;;) {
@@ -35,6 +29,10 @@ TravelRules::TravelRules(const RouteNetwork& network, const RouteOptions& option
       options_(options),
       leniency_(leniency),
       closed_(network.lanes.size(), false) {
+  whole_cost_.reserve(network.lanes.size());
+  for (std::uint32_t lane = 0; lane < network.lanes.size(); ++lane) {
+    whole_cost_.push_back(sum_of_pieces(lane, 0.0, network.lanes[lane].length_m));
+  }
   if (leniency.closed_lanes) return;
   for (const map::LaneId lane : options.avoid) closed_.at(lane.index) = true;
 }
@@ -52,6 +50,11 @@ double TravelRules::speed_mps(std::uint32_t lane, const SpeedPiece& piece) const
 }
 
 double TravelRules::travel_cost(std::uint32_t lane, double from_s_m, double to_s_m) const {
+  if (from_s_m <= 0.0 && to_s_m >= network_.lanes[lane].length_m) return whole_cost_[lane];
+  return sum_of_pieces(lane, from_s_m, to_s_m);
+}
+
+double TravelRules::sum_of_pieces(std::uint32_t lane, double from_s_m, double to_s_m) const {
   const double signal_s_m = network_.lanes[lane].signal_s_m;
   double cost =
       signal_s_m >= from_s_m && signal_s_m >= 0.0 && signal_s_m < to_s_m ? prices().signal : 0.0;
@@ -118,8 +121,8 @@ std::optional<ChangePlan> TravelRules::plan_changes(std::span<const std::uint32_
     high_m = std::min(high_m, (range.to - range.from) * network_.lanes[chain[i]].length_m);
   }
   if (chain.size() < 2) return ChangePlan{};
-  double low_m = leniency_.length ? 0.0 : std::max(kLeastRoom_m, options_.least_lane_change_m);
-  low_m = std::max(low_m, leniency_.length ? 1e-6 : kLeastRoom_m);
+  if (chain.size() == 2) return plan_change(chain[0], chain[1], range);
+  double low_m = least_room_m();
   if (!place(chain, range, low_m, nullptr)) return {};
   high_m = std::max(low_m, high_m / static_cast<double>(chain.size() - 1));
   if (!place(chain, range, high_m, nullptr)) {
@@ -136,10 +139,35 @@ std::optional<ChangePlan> TravelRules::plan_changes(std::span<const std::uint32_
   return plan;
 }
 
+std::optional<ChangePlan> TravelRules::plan_change(std::uint32_t from, std::uint32_t to,
+                                                   ShareRange range) const {
+  const double length_m = network_.lanes[from].length_m;
+  ChangePlan plan;
+  for (const map::StationRange& window : windows_to(network_, from, to)) {
+    const double first_m = std::max(range.from * length_m, window.from_s_m);
+    const double last_m = std::min(range.to * length_m, window.to_s_m);
+    if (last_m - first_m <= plan.room_m) continue;
+    plan.room_m = last_m - first_m;
+    plan.ranges = {{first_m / length_m, last_m / length_m}};
+  }
+  if (plan.ranges.empty() || plan.room_m < least_room_m() - kSlack_m) return {};
+  return plan;
+}
+
+double TravelRules::least_room_m() const {
+  return leniency_.length ? 1e-6 : std::max(kLeastRoom_m, options_.least_lane_change_m);
+}
+
 double TravelRules::change_cost(std::size_t changes, double room_m) const {
   if (changes == 0) return 0.0;
   const double tightness = std::max(1.0, options_.comfortable_lane_change_m / room_m);
   return static_cast<double>(changes) * prices().lane_change * tightness;
+}
+
+std::span<const map::StationRange> windows_to(const RouteNetwork& network, std::uint32_t lane,
+                                              std::uint32_t beside) {
+  return network.lanes[lane].left == beside ? network.left_windows.of(lane)
+                                            : network.right_windows.of(lane);
 }
 
 std::vector<std::vector<std::uint32_t>> chains_from(const RouteNetwork& network,

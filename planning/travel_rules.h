@@ -24,7 +24,15 @@ struct ShareRange {
 /// Where the changes of a passage are made: one range a change, in order and apart, as shares.
 struct ChangePlan {
   std::vector<ShareRange> ranges;
-  double room_m = 0.0;  ///< that each of them has
+  double room_m = 0.0;                    ///< that each of them has
+  double before_m = 0.0, behind_m = 0.0;  ///< of that, outside the passage: see ChangeSpan
+};
+
+/// The lanes that one passage uses, in turn, the part of it that is driven, and its changes.
+struct Passage {
+  std::vector<std::uint32_t> chain;
+  ShareRange range;
+  ChangePlan changes;
 };
 
 /// The rules and costs of travel over a network, by one measure. Refers to its arguments.
@@ -60,6 +68,12 @@ class TravelRules {
   std::optional<ChangePlan> plan_changes(std::span<const std::uint32_t> chain,
                                          ShareRange range) const;
 
+  /// The length that each change has to have at least.
+  double least_room_m() const;
+
+  /// The length from which on more of it helps no more.
+  double enough_room_m() const { return planning::enough_room_m(options_); }
+
   /// What so many changes cost, each of which has that room.
   double change_cost(std::size_t changes, double room_m) const;
 
@@ -67,6 +81,9 @@ class TravelRules {
   const ManoeuvrePrices& prices() const {
     return options_.cost == RouteCost::time ? options_.prices_s : options_.prices_m;
   }
+  double sum_of_pieces(std::uint32_t lane, double from_s_m, double to_s_m) const;
+  std::optional<ChangePlan> plan_change(std::uint32_t from, std::uint32_t to,
+                                        ShareRange range) const;
   bool place(std::span<const std::uint32_t> chain, ShareRange range, double room_m,
              std::vector<ShareRange>* placed) const;
 
@@ -74,7 +91,12 @@ class TravelRules {
   const RouteOptions& options_;
   Leniency leniency_;
   std::vector<bool> closed_;
+  std::vector<double> whole_cost_;  ///< travel_cost() of whole lanes
 };
+
+/// Where a lane may be left to the one beside it, by its stations.
+std::span<const map::StationRange> windows_to(const RouteNetwork& network, std::uint32_t lane,
+                                              std::uint32_t beside);
 
 /// The chain of neighbours that leads from one lane of a passage to another; empty if none does.
 std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint32_t from,

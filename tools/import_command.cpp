@@ -7,6 +7,7 @@
 
 #include "roadbed/map/compiled_map.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/stored_network.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/output_file.h"
 
@@ -43,7 +44,9 @@ class ImportCommand : public Command {
     check_writable(output_, force_);
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
-    write_output(output_, map::write_compiled_map(road_map));
+    const std::string network =
+        planning::write_route_network(planning::make_route_network(road_map));
+    write_output(output_, map::write_compiled_map(road_map, network));
     if (!common.quiet) report(streams.err, road_map);
     return Exit::ok;
   }

@@ -12,6 +12,7 @@
 #include "roadbed/planning/dissection.h"
 #include "roadbed/tests/support/boost_routes.h"
 #include "roadbed/tests/support/lane_grid.h"
+#include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::planning {
@@ -38,60 +39,88 @@ void expect_whole(const RouteGraph& graph, std::span<const Ticks> weights, const
   ASSERT_EQ(cost, path.cost);
 }
 
+/// All that searches of a network need.
+struct Prepared {
+  RouteNetwork network;
+  RouteOptions options;
+  TravelRules rules;
+  RouteGraph graph;
+  std::vector<Ticks> weights;
+  Guide guide;
+  Hierarchy hierarchy;
+  HierarchyMetric metric;
+
+  explicit Prepared(RouteNetwork of, RouteCost measure = RouteCost::time)
+      : network(std::move(of)),
+        options(with(measure)),
+        rules(network, options),
+        graph(make_route_graph(network)),
+        weights(weigh_all(graph, rules)),
+        guide(make_guide(graph, network, weights)),
+        hierarchy(make_hierarchy(graph, dissection_order(graph, guide.place_in_map))),
+        metric(graph, hierarchy, weights) {}
+  Prepared(const Prepared&) = delete;
+
+  static RouteOptions with(RouteCost measure) {
+    RouteOptions options;
+    options.cost = measure;
+    return options;
+  }
+
+  /// Closes or opens a lane, and gives the arcs whose weights depend on that.
+  std::vector<std::uint32_t> close(std::uint32_t lane, bool closed,
+                                   std::size_t* computed = nullptr) {
+    rules.close(lane, closed);
+    std::vector<std::uint32_t> arcs = arcs_of_lane(graph, lane);
+    std::vector<Ticks> now;
+    for (const std::uint32_t arc : arcs) now.push_back(weights[arc] = weigh(graph, rules, arc));
+    const std::size_t count = metric.change(arcs, now);
+    if (computed != nullptr) *computed = count;
+    return arcs;
+  }
+
+  std::uint32_t any_node(std::mt19937& random) const {
+    return static_cast<std::uint32_t>(random() % graph.nodes());
+  }
+  std::uint32_t any_lane(std::mt19937& random) const {
+    return static_cast<std::uint32_t>(random() % network.lanes.size());
+  }
+};
+
 struct Tally {
   long found = 0, none = 0;
 };
 
-// Random pairs; every few of them, random lanes are closed and opened.
+// Random pairs; every few of them, a random lane is closed and an earlier one opened.
 void compare(const RouteNetwork& network, RouteCost measure, int queries, std::mt19937& random,
              Tally& tally) {
-  RouteOptions options;
-  options.cost = measure;
-  TravelRules rules(network, options);
-  const RouteGraph graph = make_route_graph(network);
-  std::vector<Ticks> weights = weigh_all(graph, rules);
-  const Guide guide = make_guide(graph, network, weights);
-  const Hierarchy hierarchy = make_hierarchy(graph, dissection_order(graph, guide.place_in_map));
-  HierarchyMetric metric(graph, hierarchy, weights);
-  HierarchySearch by_hierarchy(metric);
+  Prepared prepared(network, measure);
+  const RouteGraph& graph = prepared.graph;
+  const std::vector<Ticks>& weights = prepared.weights;
+  HierarchySearch by_hierarchy(prepared.metric);
   GraphSearch by_a_star(graph);
   tests::BoostRoutes oracle(graph, weights);
-  std::uniform_int_distribution<std::uint32_t> any_node(
-      0, static_cast<std::uint32_t>(graph.nodes()) - 1);
-  std::uniform_int_distribution<std::uint32_t> any_lane(
-      0, static_cast<std::uint32_t>(network.lanes.size()) - 1);
+  const auto set = [&](std::uint32_t lane, bool closed) {
+    for (const std::uint32_t arc : prepared.close(lane, closed)) {
+      oracle.set_weight(arc, weights[arc]);
+    }
+  };
   constexpr int kPerSource = 50;
   std::vector<std::uint32_t> closed;
   for (int i = 0; i < queries; i += kPerSource) {
-    closed.push_back(any_lane(random));
-    rules.close(closed.back());
+    closed.push_back(prepared.any_lane(random));
+    set(closed.back(), true);
     if (closed.size() > 5) {
-      rules.close(closed.front(), false);
-      for (const std::uint32_t arc : arcs_of_lane(graph, closed.front())) {
-        weights[arc] = weigh(graph, rules, arc);
-        oracle.set_weight(arc, weights[arc]);
-      }
-      std::vector<std::uint32_t> arcs = arcs_of_lane(graph, closed.front());
-      std::vector<Ticks> now;
-      for (const std::uint32_t arc : arcs) now.push_back(weights[arc]);
-      metric.change(arcs, now);
+      set(closed.front(), false);
       closed.erase(closed.begin());
     }
-    const std::vector<std::uint32_t> arcs = arcs_of_lane(graph, closed.back());
-    std::vector<Ticks> now;
-    for (const std::uint32_t arc : arcs) {
-      weights[arc] = weigh(graph, rules, arc);
-      oracle.set_weight(arc, weights[arc]);
-      now.push_back(weights[arc]);
-    }
-    metric.change(arcs, now);
-    const std::uint32_t from = any_node(random);
+    const std::uint32_t from = prepared.any_node(random);
     const std::vector<Ticks>& expected = oracle.costs_from(from);
     for (int j = 0; j < kPerSource; ++j) {
-      const std::uint32_t to = any_node(random);
+      const std::uint32_t to = prepared.any_node(random);
       const Seed start{from, 0}, goal{to, 0};
       const GraphPath by_tree = by_hierarchy.find({&start, 1}, {&goal, 1});
-      const GraphPath by_star = by_a_star.find(weights, guide, {&start, 1}, {&goal, 1});
+      const GraphPath by_star = by_a_star.find(weights, prepared.guide, {&start, 1}, {&goal, 1});
       ASSERT_EQ(by_tree.cost, expected[to]) << from << " to " << to;
       ASSERT_EQ(by_star.cost, expected[to]) << from << " to " << to;
       if (expected[to] == kNever) {
@@ -135,48 +164,35 @@ TEST(GraphSearches, CostWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
 }
 
 TEST(Hierarchy, AClosureLeavesWhatCustomisingAfreshGives) {
-  const RouteNetwork network = tests::lane_grid(6, 6);
-  const RouteOptions options;
-  TravelRules rules(network, options);
-  const RouteGraph graph = make_route_graph(network);
-  std::vector<Ticks> weights = weigh_all(graph, rules);
-  const Guide guide = make_guide(graph, network, weights);
-  const Hierarchy hierarchy = make_hierarchy(graph, dissection_order(graph, guide.place_in_map));
-  HierarchyMetric metric(graph, hierarchy, weights);
-  std::mt19937 random(20261121);
-  for (int i = 0; i < 60; ++i) {
-    const auto lane = static_cast<std::uint32_t>(random() % network.lanes.size());
-    rules.close(lane, random() % 3 != 0);
-    const auto arcs = arcs_of_lane(graph, lane);
-    std::vector<Ticks> now;
-    for (const std::uint32_t arc : arcs) now.push_back(weights[arc] = weigh(graph, rules, arc));
-    EXPECT_LT(metric.change(arcs, now), hierarchy.arcs / 2);
-    ASSERT_EQ(weights, weigh_all(graph, rules)) << "arcs_of_lane leaves none out";
-    const HierarchyMetric afresh(graph, hierarchy, weights);
-    ASSERT_EQ(metric.up(), afresh.up());
-    ASSERT_EQ(metric.down(), afresh.down());
+  // The second one has changes that take several passages.
+  const tests::ShortSections road(std::vector<double>(30, 7.0));
+  for (const bool in_grid : {true, false}) {
+    Prepared prepared(in_grid ? tests::lane_grid(6, 6) : make_route_network(road.made.build()));
+    EXPECT_EQ(prepared.graph.spans.empty(), in_grid);
+    std::mt19937 random(20261121);
+    for (int i = 0; i < 60; ++i) {
+      std::size_t computed = 0;
+      prepared.close(prepared.any_lane(random), random() % 3 != 0, &computed);
+      EXPECT_LT(computed, prepared.hierarchy.arcs / 2);
+      ASSERT_EQ(prepared.weights, weigh_all(prepared.graph, prepared.rules))
+          << "arcs_of_lane leaves none out";
+      const HierarchyMetric afresh(prepared.graph, prepared.hierarchy, prepared.weights);
+      ASSERT_EQ(prepared.metric.up(), afresh.up());
+      ASSERT_EQ(prepared.metric.down(), afresh.down());
+    }
   }
 }
 
 TEST(Hierarchy, OfSeveralSeedsTakesTheCheapestPair) {
-  const RouteNetwork network = tests::lane_grid(5, 4);
-  const RouteOptions options;
-  const TravelRules rules(network, options);
-  const RouteGraph graph = make_route_graph(network);
-  const std::vector<Ticks> weights = weigh_all(graph, rules);
-  const Guide guide = make_guide(graph, network, weights);
-  const Hierarchy hierarchy = make_hierarchy(graph, dissection_order(graph, guide.place_in_map));
-  const HierarchyMetric metric(graph, hierarchy, weights);
-  HierarchySearch search(metric);
-  GraphSearch a_star(graph);
+  const Prepared prepared(tests::lane_grid(5, 4));
+  HierarchySearch search(prepared.metric);
+  GraphSearch a_star(prepared.graph);
   std::mt19937 random(20261121);
   for (int i = 0; i < 300; ++i) {
     std::vector<Seed> from, to;
     for (unsigned j = 0; j < 1 + random() % 4; ++j) {
-      from.push_back({static_cast<std::uint32_t>(random() % graph.nodes()),
-                      static_cast<Ticks>(random() % 200000)});
-      to.push_back({static_cast<std::uint32_t>(random() % graph.nodes()),
-                    static_cast<Ticks>(random() % 200000)});
+      from.push_back({prepared.any_node(random), static_cast<Ticks>(random() % 200000)});
+      to.push_back({prepared.any_node(random), static_cast<Ticks>(random() % 200000)});
     }
     Ticks expected = kNever;
     for (const Seed& a : from) {
@@ -187,11 +203,11 @@ TEST(Hierarchy, OfSeveralSeedsTakesTheCheapestPair) {
     }
     const GraphPath path = search.find(from, to);
     ASSERT_EQ(path.cost, expected);
-    ASSERT_EQ(a_star.find(weights, guide, from, to).cost, expected);
+    ASSERT_EQ(a_star.find(prepared.weights, prepared.guide, from, to).cost, expected);
     ASSERT_EQ(cost_between(search.climb(from, false), search.climb(to, true)), expected);
     if (path.cost == kNever) continue;
     Ticks cost = from[path.from_seed].cost + to[path.to_seed].cost;
-    for (const std::uint32_t arc : path.arcs) cost += weights[arc];
+    for (const std::uint32_t arc : path.arcs) cost += prepared.weights[arc];
     ASSERT_EQ(cost, expected);
   }
 }

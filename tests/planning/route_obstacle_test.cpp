@@ -11,23 +11,7 @@ namespace {
 using map::LaneId;
 using map::LanePlace;
 using testing::HasSubstr;
-
-// Two lanes of 100 m eastwards, -1 left of -2, and one behind each.
-struct TwoLanes {
-  tests::MadeMap made;
-  LaneId left, right, after_left, after_right;
-
-  explicit TwoLanes(bool change_allowed = true) {
-    const auto road = made.add_road("1"), next = made.add_road("2");
-    left = made.add_lane(road, "-1", {{0, 0}, {100, 0}}, {{0, -4}, {100, -4}});
-    right = made.add_lane(road, "-2", {{0, -4}, {100, -4}}, {{0, -8}, {100, -8}});
-    after_left = made.add_lane(next, "-1", {{100, 0}, {200, 0}}, {{100, -4}, {200, -4}});
-    after_right = made.add_lane(next, "-2", {{100, -4}, {200, -4}}, {{100, -8}, {200, -8}});
-    made.link(left, after_left);
-    made.link(right, after_right);
-    made.put_beside(left, right, change_allowed);
-  }
-};
+using tests::TwoLanes;
 
 RouteAnswer no_route(const tests::MadeMap& made, LaneId from, double from_s_m, LaneId to,
                      const RouteOptions& options = {}) {

@@ -46,6 +46,22 @@ class BoostOracle {
     }
     const double begin = from.s_m / road_map_.lane(from.lane).length_m();
     const double end = to.s_m / road_map_.lane(to.lane).length_m();
+    for (const map::Lane& lane : road_map_.lanes()) {
+      if (!usable(lane.id)) continue;
+      for (const bool at_start : {false, true}) {
+        if (at_start && lane.id != from.lane) continue;
+        const std::size_t node = at_start ? start : lane.id.index;
+        for_each_span(lane.id, [&](const Span& span) {
+          const LaneId last = span.to.back();
+          if (const auto price = price_of(span, at_start ? begin : 0.0, 1.0)) {
+            add_edge(node, lanes + last.index, *price - travel(last, 0, 1), graph);
+          }
+          if (last != to.lane) return;
+          const auto price = price_of(span, at_start ? begin : 0.0, end);
+          if (price) add_edge(node, goal, *price, graph);
+        });
+      }
+    }
     for (const auto& [last, price] : changes(from.lane, 1.0 - begin)) {
       for (const LaneId next : road_map_.graph().of(last).successors) {
         if (usable(next)) add_edge(start, next.index, price + travel(last, begin, 1.0), graph);
@@ -90,6 +106,69 @@ class BoostOracle {
                                   options_.max_speed_mps);
     }
     return time_s;
+  }
+
+  // One change beside several passages.
+  struct Span {
+    std::vector<LaneId> from, to;
+  };
+
+  template <typename Visit>
+  void for_each_span(LaneId lane, const Visit& visit) const {
+    for (const bool leftwards : {true, false}) {
+      if (const auto beside = changed_to(lane, leftwards)) {
+        lengthen({{lane}, {*beside}}, leftwards, visit);
+      }
+    }
+  }
+
+  template <typename Visit>
+  void lengthen(const Span& span, bool leftwards, const Visit& visit) const {
+    if (span.from.size() > 6) return;
+    for (const LaneId next : road_map_.graph().of(span.from.back()).successors) {
+      const auto beside = changed_to(next, leftwards);
+      const auto& ahead = road_map_.graph().of(span.to.back()).successors;
+      if (!beside || std::count(ahead.begin(), ahead.end(), *beside) == 0) continue;
+      Span longer = span;
+      longer.from.push_back(next);
+      longer.to.push_back(*beside);
+      visit(longer);
+      lengthen(longer, leftwards, visit);
+    }
+  }
+
+  std::optional<LaneId> changed_to(LaneId lane, bool leftwards) const {
+    const map::LaneLinks& links = road_map_.graph().of(lane);
+    const auto& next = leftwards ? links.left : links.right;
+    const bool may = next && next->same_direction && next->change_allowed();
+    return may ? std::optional(next->lane) : std::nullopt;
+  }
+
+  // The way from a share of the first passage to one of the last, and the change on it; none if
+  // there is too little room, or one passage fewer has enough of it.
+  std::optional<double> price_of(const Span& span, double begin, double end) const {
+    std::vector<double> parts_m;
+    double room_m = 0.0;
+    for (std::size_t i = 0; i < span.from.size(); ++i) {
+      if (!usable(span.from[i]) || !usable(span.to[i])) return {};
+      const double share = (i + 1 == span.from.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
+      parts_m.push_back(share * road_map_.lane(span.from[i]).length_m());
+      room_m += parts_m.back();
+    }
+    const double enough_m =
+        std::max(options_.comfortable_lane_change_m, options_.least_lane_change_m);
+    if (parts_m.front() < 0.1 || parts_m.back() < 0.1) return {};
+    if (room_m < options_.least_lane_change_m) return {};
+    if (room_m - parts_m.front() >= enough_m || room_m - parts_m.back() >= enough_m) return {};
+    const double price = options_.cost == RouteCost::distance ? options_.prices_m.lane_change
+                                                              : options_.prices_s.lane_change;
+    double cost = price * std::max(1.0, options_.comfortable_lane_change_m / room_m), done_m = 0.0;
+    for (std::size_t i = 0; i < span.from.size(); ++i) {
+      done_m += parts_m[i];
+      cost += travel(done_m < 0.5 * room_m ? span.from[i] : span.to[i], i == 0 ? begin : 0.0,
+                     i + 1 == span.from.size() ? end : 1.0);
+    }
+    return cost;
   }
 
   // Lanes that a chain of changes leads to within a share of the passage, and what it costs.
@@ -278,22 +357,7 @@ TEST(FindRoute, CostsWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
   EXPECT_GT(tally.found, 60);
 }
 
-// Two lanes of 100 m eastwards, -1 left of -2, and one behind each.
-struct TwoLanes {
-  tests::MadeMap made;
-  LaneId left, right, after_left, after_right;
-
-  explicit TwoLanes(bool change_allowed = true) {
-    const auto road = made.add_road("1"), next = made.add_road("2");
-    left = made.add_lane(road, "-1", {{0, 0}, {100, 0}}, {{0, -4}, {100, -4}});
-    right = made.add_lane(road, "-2", {{0, -4}, {100, -4}}, {{0, -8}, {100, -8}});
-    after_left = made.add_lane(next, "-1", {{100, 0}, {200, 0}}, {{100, -4}, {200, -4}});
-    after_right = made.add_lane(next, "-2", {{100, -4}, {200, -4}}, {{100, -8}, {200, -8}});
-    made.link(left, after_left);
-    made.link(right, after_right);
-    made.put_beside(left, right, change_allowed);
-  }
-};
+using tests::TwoLanes;
 
 TEST(FindRoute, ChangesLaneInTheMiddleOfThePassageAndCountsItsLengthOnce) {
   const TwoLanes lanes;

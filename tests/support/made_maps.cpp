@@ -112,4 +112,29 @@ MadeMap three_roads_in_a_row() {
   return made;
 }
 
+TwoLanes::TwoLanes(bool change_allowed) {
+  const auto road = made.add_road("1"), next = made.add_road("2");
+  left = made.add_lane(road, "-1", {{0, 0}, {100, 0}}, {{0, -4}, {100, -4}});
+  right = made.add_lane(road, "-2", {{0, -4}, {100, -4}}, {{0, -8}, {100, -8}});
+  after_left = made.add_lane(next, "-1", {{100, 0}, {200, 0}}, {{100, -4}, {200, -4}});
+  after_right = made.add_lane(next, "-2", {{100, -4}, {200, -4}}, {{100, -8}, {200, -8}});
+  made.link(left, after_left);
+  made.link(right, after_right);
+  made.put_beside(left, right, change_allowed);
+}
+
+ShortSections::ShortSections(const std::vector<double>& lengths_m) {
+  double x_m = 0.0;
+  for (std::size_t i = 0; i < lengths_m.size(); ++i) {
+    const auto road = made.add_road(std::to_string(i));
+    const double end_m = x_m + lengths_m[i];
+    left.push_back(made.add_lane(road, "-1", {{x_m, 0}, {end_m, 0}}, {{x_m, -4}, {end_m, -4}}));
+    right.push_back(made.add_lane(road, "-2", {{x_m, -4}, {end_m, -4}}, {{x_m, -8}, {end_m, -8}}));
+    made.put_beside(left.back(), right.back());
+    if (i > 0) made.link(left[i - 1], left[i]);
+    if (i > 0) made.link(right[i - 1], right[i]);
+    x_m = end_m;
+  }
+}
+
 }  // namespace roadbed::tests

@@ -47,4 +47,22 @@ MadeMap straight_two_lane_road(double length_m = 100.0);
 /// lanes 1/0/-1, 2/0/-1 and 3/0/-1 linked both ways; the middle one is in junction 7.
 MadeMap three_roads_in_a_row();
 
+/// Two lanes of 100 m eastwards, 4 m wide, and one behind each: 1/0/-1 (y from 0 to −4) left of
+/// 1/0/-2, linked to 2/0/-1 and 2/0/-2, between which nobody may change.
+struct TwoLanes {
+  MadeMap made;
+  map::LaneId left, right, after_left, after_right;
+
+  explicit TwoLanes(bool change_allowed = true);
+};
+
+/// Sections of two lanes eastwards, one behind the other, each as long as said, 4 m wide, between
+/// which changes are allowed everywhere: lanes 0/0/-1, 1/0/-1, … left of 0/0/-2, 1/0/-2, …
+struct ShortSections {
+  MadeMap made;
+  std::vector<map::LaneId> left, right;
+
+  explicit ShortSections(const std::vector<double>& lengths_m);
+};
+
 }  // namespace roadbed::tests

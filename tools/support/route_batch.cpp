@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
-#include "roadbed/planning/dissection.h"
 #include "roadbed/planning/hierarchy_search.h"
+#include "roadbed/planning/route_obstacle.h"
 #include "roadbed/planning/route_solver.h"
+#include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/route_output.h"
 
@@ -20,75 +20,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Row {
-  std::size_t line = 0;
-  std::string from_text, to_text;
-  std::optional<map::LanePlace> from, to;
-  std::string fault;  ///< why the row cannot be used
+struct Row : OdRow {
+  std::optional<map::LanePlace> from_place, to_place;
 };
 
 struct Cell {
-  std::string csv;
-  Json json;
+  std::string csv, json;
   bool found = false;
 };
-
-[[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line,
-                         const std::string& found) {
-  throw map::InputError({.file = file.string(),
-                         .place = std::to_string(line),
-                         .element = {},
-                         .found = found,
-                         .needed = "a header line with the columns from and to, then a row a pair",
-                         .remedy = "mend the file"});
-}
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string made = "\"";
-  for (const char sign : text) made += sign == '"' ? "\"\"" : std::string(1, sign);
-  return made + "\"";
-}
 
 void place_row(const map::RoadMap& road_map, const planning::Router& router,
                map::Participant participant, Row& row) {
   try {
-    row.from = find_place(road_map, row.from_text, participant).on_lane;
-    row.to = find_place(road_map, row.to_text, participant).on_lane;
+    row.from_place = find_place(road_map, row.from, participant).on_lane;
+    row.to_place = find_place(road_map, row.to, participant).on_lane;
   } catch (const map::InputError& error) {
     row.fault = error.what();
     return;
   }
-  row.fault = router.unfit(*row.from, "start");
-  if (row.fault.empty()) row.fault = router.unfit(*row.to, "goal");
+  row.fault = router.unfit(*row.from_place, "start");
+  if (row.fault.empty()) row.fault = router.unfit(*row.to_place, "goal");
 }
 
 std::vector<Row> read_rows(const std::filesystem::path& file) {
-  std::istringstream text(map::read_file(file));
-  std::string line;
-  std::getline(text, line);
-  const std::vector<std::string> names = csv_fields(line);
-  const auto column = [&](const char* name) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) refuse(file, 1, fmt::format("no column {}", name));
-    return static_cast<std::size_t>(found - names.begin());
-  };
-  const std::size_t from = column("from"), to = column("to");
   std::vector<Row> rows;
-  for (std::size_t number = 2; std::getline(text, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    const std::vector<std::string> fields = csv_fields(line);
-    Row row{.line = number, .from_text = {}, .to_text = {}, .from = {}, .to = {}, .fault = {}};
-    if (fields.size() != names.size()) {
-      row.fault = fmt::format("{} fields, the header has {}; put places with commas in quotes",
-                              fields.size(), names.size());
-    } else {
-      row.from_text = fields[from];
-      row.to_text = fields[to];
-    }
-    rows.push_back(std::move(row));
+  for (OdRow& row : parse_od_csv(map::read_file(file), file.string())) {
+    rows.push_back({std::move(row), {}, {}});
   }
-  if (rows.empty()) refuse(file, 1, "no row");
   return rows;
 }
 
@@ -112,11 +70,9 @@ class Batch {
       : road_map_(road_map),
         options_(options),
         router_(road_map, rules),
-        solver_(router_.solver()),
-        hierarchy_(planning::make_hierarchy(
-            solver_.graph(),
-            planning::dissection_order(solver_.graph(), solver_.guide().place_in_map))),
-        metric_(solver_.graph(), hierarchy_, solver_.weights()) {}
+        solver_(router_.solver()) {
+    router_.prepare();
+  }
 
   void place(std::vector<Row>& rows) const {
     in_threads(
@@ -131,27 +87,28 @@ class Batch {
   std::vector<Cell> answer_rows(const std::vector<Row>& rows) const {
     std::vector<Cell> cells(rows.size());
     in_threads(
-        rows.size(), options_.threads, [&] { return planning::HierarchySearch(metric_); },
-        [&](planning::HierarchySearch& search, std::size_t i) {
-          cells[i] = answer(search, rows[i]);
-        });
+        rows.size(), options_.threads,
+        [&] {
+          return Own{planning::HierarchySearch(solver_.metric()), {}};
+        },
+        [&](Own& own, std::size_t i) { cells[i] = answer(own, rows[i]); });
     return cells;
   }
 
   std::vector<Cell> answer_matrix(const std::vector<Row>& rows) const {
     std::vector<planning::ClimbedSpace> goals(rows.size());
-    const auto make = [&] { return planning::HierarchySearch(metric_); };
+    const auto make = [&] { return planning::HierarchySearch(solver_.metric()); };
     in_threads(rows.size(), options_.threads, make,
                [&](planning::HierarchySearch& search, std::size_t i) {
                  if (!rows[i].fault.empty()) return;
-                 const auto end = arrive_at(solver_.graph(), solver_.rules(), *rows[i].to);
+                 const auto end = arrive_at(solver_.graph(), solver_.rules(), *rows[i].to_place);
                  goals[i] = search.climb(end.seeds, true);
                });
     std::vector<Cell> cells(rows.size() * rows.size());
     in_threads(rows.size(), options_.threads, make,
                [&](planning::HierarchySearch& search, std::size_t i) {
                  if (!rows[i].fault.empty()) return;
-                 const auto end = leave_from(solver_.graph(), solver_.rules(), *rows[i].from);
+                 const auto end = leave_from(solver_.graph(), solver_.rules(), *rows[i].from_place);
                  const planning::ClimbedSpace start = search.climb(end.seeds, false);
                  for (std::size_t j = 0; j < rows.size(); ++j) {
                    if (!rows[j].fault.empty()) continue;
@@ -163,16 +120,18 @@ class Batch {
   }
 
  private:
-  Cell answer(planning::HierarchySearch& search, const Row& row) const {
+  /// What each thread has for itself.
+  struct Own {
+    planning::HierarchySearch search;
+    std::optional<planning::ObstacleFinder> obstacles;
+  };
+
+  Cell answer(Own& own, const Row& row) const {
     if (!row.fault.empty()) return none(row, row.fault);
-    planning::RouteTask task = solver_.task(*row.from, *row.to);
-    const planning::GraphPath path = search.find(task.start.seeds, task.goal.seeds);
+    planning::RouteTask task = solver_.task(*row.from_place, *row.to_place);
+    const planning::GraphPath path = own.search.find(task.start.seeds, task.goal.seeds);
     const auto way = solver_.answer(std::move(task), path);
-    if (!way) {
-      return none(
-          row, fmt::format("no lane sequence leads from lane {} to lane {}",
-                           road_map_.lane(row.from->lane).name, road_map_.lane(row.to->lane).name));
-    }
+    if (!way) return no_route(own, row);
     const planning::Route route = router_.route_along(*way);
     std::string lanes;
     for (const planning::RouteLeg& leg : route.legs) {
@@ -181,39 +140,57 @@ class Batch {
     Cell cell;
     cell.found = true;
     cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
-                           csv_text(row.from_text), csv_text(row.to_text), route.cost_s,
-                           route.cost_m, route.length_m, route.lane_changes, csv_text(lanes));
-    if (options_.json) {
-      cell.json = route_json(road_map_, route);
-      cell.json["row"] = row.line;
-    }
+                           csv_field(row.from), csv_field(row.to), route.cost_s, route.cost_m,
+                           route.length_m, route.lane_changes, csv_field(lanes));
+    if (options_.json) cell.json = with_row(route_json(road_map_, route), row);
     return cell;
   }
 
   Cell none(const Row& row, const std::string& reason) const {
     Cell cell;
-    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, csv_text(row.from_text),
-                           csv_text(row.to_text), csv_text(reason));
-    if (options_.json) cell.json = {{"found", false}, {"reason", reason}, {"row", row.line}};
+    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, csv_field(row.from), csv_field(row.to),
+                           csv_field(reason));
+    if (options_.json) cell.json = with_row({{"found", false}, {"reason", reason}}, row);
     return cell;
+  }
+
+  // The table says that there is none, the document why.
+  Cell no_route(Own& own, const Row& row) const {
+    const map::LanePlace from = *row.from_place, to = *row.to_place;
+    Cell cell =
+        none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
+                              road_map_.lane(from.lane).name, road_map_.lane(to.lane).name));
+    if (!options_.json) return cell;
+    if (!own.obstacles) own.obstacles.emplace(road_map_, solver_);
+    planning::RouteAnswer answer;
+    answer.obstacle = own.obstacles->find(from, to);
+    answer.reason = describe(road_map_, from, to, *answer.obstacle);
+    cell.json = with_row(no_route_json(road_map_, answer), row);
+    return cell;
+  }
+
+  static std::string with_row(Json json, const Row& row) {
+    json["row"] = row.line;
+    return text_of(json, 1);
   }
 
   Cell matrix_cell(const Row& from, const Row& to, const planning::ClimbedSpace& start,
                    const planning::ClimbedSpace& goal) const {
     planning::Ticks ticks = cost_between(start, goal);
-    const auto direct = direct_way(solver_.rules(), *from.from, *to.to);
+    const auto direct = direct_way(solver_.rules(), *from.from_place, *to.to_place);
     if (direct) ticks = std::min(ticks, direct->cost);
     const planning::RouteCost measure = solver_.options().cost;
     const double cost = static_cast<double>(ticks) / planning::ticks_per_unit(measure);
     Cell cell;
     cell.found = ticks != planning::kNever;
-    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, csv_text(from.from_text),
-                           csv_text(to.to_text), cell.found ? 1 : 0,
+    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, csv_field(from.from),
+                           csv_field(to.to), cell.found ? 1 : 0,
                            cell.found ? fmt::format("{:.4f}", cost) : "");
     if (!options_.json) return cell;
-    cell.json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};
+    Json json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};
     const char* key = measure == planning::RouteCost::time ? "cost_s" : "cost_m";
-    if (cell.found) cell.json[key] = cost;
+    if (cell.found) json[key] = cost;
+    cell.json = text_of(json, 1);
     return cell;
   }
 
@@ -221,9 +198,16 @@ class Batch {
   const BatchOptions& options_;
   planning::Router router_;
   const planning::RouteSolver& solver_;
-  planning::Hierarchy hierarchy_;
-  planning::HierarchyMetric metric_;
 };
+
+// One more element of an array in a document that is indented by one space a level.
+void add_element(const std::string& json, std::string& array) {
+  array += array.empty() ? "\n  " : ",\n  ";
+  for (const char sign : json) {
+    array += sign;
+    if (sign == '\n') array += "  ";
+  }
+}
 
 std::string header(const planning::RouteOptions& rules, bool matrix) {
   if (!matrix) return "row,from,to,found,cost_s,cost_m,length_m,lane_changes,lanes,reason\n";
@@ -232,25 +216,6 @@ std::string header(const planning::RouteOptions& rules, bool matrix) {
 }
 
 }  // namespace
-
-std::vector<std::string> csv_fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool in_quotes = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char sign = line[i];
-    if (in_quotes && sign == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += '"';
-      ++i;
-    } else if (sign == '"') {
-      in_quotes = !in_quotes;
-    } else if (sign == ',' && !in_quotes) {
-      fields.emplace_back();
-    } else if (sign != '\r' || i + 1 < line.size()) {
-      fields.back() += sign;
-    }
-  }
-  return fields;
-}
 
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const BatchOptions& options) {
@@ -261,10 +226,10 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
       options.matrix ? batch.answer_matrix(rows) : batch.answer_rows(rows);
   BatchAnswer answer;
   answer.csv = header(rules, options.matrix);
-  Json list = Json::array();
+  std::string documents;
   for (const Cell& cell : cells) {
     answer.csv += cell.csv;
-    if (options.json) list.push_back(cell.json);
+    if (options.json) add_element(cell.json, documents);
     ++(cell.found ? answer.found : answer.none);
   }
   for (const Row& row : rows) {
@@ -272,7 +237,8 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
     answer.faults.push_back(fmt::format("{}:{}: {}", file.string(), row.line, row.fault));
   }
   if (!options.matrix) answer.none -= answer.faults.size();
-  if (options.json) answer.json = text_of(Json{{"answers", std::move(list)}}, 1) + "\n";
+  if (!documents.empty()) documents += "\n ";
+  if (options.json) answer.json = "{\n \"answers\": [" + documents + "]\n}\n";
   return answer;
 }
 

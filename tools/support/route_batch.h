@@ -29,7 +29,4 @@ struct BatchAnswer {
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const BatchOptions& options);
 
-/// Fields of a line of CSV (RFC 4180 without line breaks in fields).
-std::vector<std::string> csv_fields(const std::string& line);
-
 }  // namespace roadbed::tools
