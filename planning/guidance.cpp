@@ -60,8 +60,9 @@ std::vector<Instruction> instructions_for(const map::RoadMap& road_map, const Ro
     const std::string turn = words(leg.turn);
     if (!turn.empty() && i > 0) made.push_back({at_m, i, turn + onto(road_map, route, i)});
     if (leg.change_window) {
-      const double to_window_m = std::max(0.0, leg.change_window->from_s_m - leg.from_s_m);
-      made.push_back({at_m + to_window_m, i, change_words(leg)});
+      // A change may begin beside a leg before.
+      const double to_window_m = leg.change_window->from_s_m - leg.from_s_m;
+      made.push_back({std::max(0.0, at_m + to_window_m), i, change_words(leg)});
     }
     for (; stop < route.stops.size() && route.stops[stop].leg == i; ++stop) {
       const double to_stop_m = std::clamp(route.stops[stop].s_m - leg.from_s_m, 0.0, leg.length_m);

@@ -127,7 +127,7 @@ RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules,
       if (!rules.may_enter(next)) continue;
       end.seeds.push_back(
           {graph.entry_of_lane[next], to_ticks(*cost + rules.turn_cost(next), measure)});
-      end.ways.push_back({passage});
+      end.ways.emplace_back(1, passage);
     }
   }
   const double enough_m = rules.enough_room_m();
@@ -152,7 +152,7 @@ RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map:
     const auto cost = price(rules, passage);
     if (!cost) continue;
     end.seeds.push_back({graph.entry_of_lane[chain.front()], to_ticks(*cost, measure)});
-    end.ways.push_back({std::move(passage)});
+    end.ways.emplace_back().push_back(std::move(passage));
   }
   SpansInto spans(graph, network, rules.enough_room_m());
   for (const ChangeSpan& span : spans.find(place.lane.index, share)) {

@@ -80,6 +80,8 @@ Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
       enter(graph_->lane_of_node[graph_->head[arc]]);
       continue;
     }
+    const bool stays = graph_->lane_of_node[graph_->head[arc]] == passages.back().chain.front();
+    if (stays && graph_->span_of(arc) == nullptr) continue;
     std::vector<Passage> changing = passages_of_change(passages.back().chain.front(), arc);
     passages.pop_back();
     std::move(changing.begin(), changing.end(), std::back_inserter(passages));

@@ -180,8 +180,15 @@ std::vector<std::vector<std::uint32_t>> chains_from(const RouteNetwork& network,
 
 std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint32_t from,
                                          std::uint32_t to) {
-  for (const auto& chain : chains_from(network, from)) {
-    if (chain.back() == to) return chain;
+  if (from == to) return {from};
+  for (const auto side : {&NetworkLane::left, &NetworkLane::right}) {
+    std::vector<std::uint32_t> chain{from};
+    for (;;) {
+      const std::uint32_t next = network.lanes[chain.back()].*side;
+      if (next == kNoLane || std::find(chain.begin(), chain.end(), next) != chain.end()) break;
+      chain.push_back(next);
+      if (next == to) return chain;
+    }
   }
   return {};
 }

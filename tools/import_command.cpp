@@ -44,8 +44,7 @@ class ImportCommand : public Command {
     check_writable(output_, force_);
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
-    const std::string network =
-        planning::write_route_network(planning::make_route_network(road_map));
+    const std::string network = planning::write_route_network(planning::route_network_of(road_map));
     write_output(output_, map::write_compiled_map(road_map, network));
     if (!common.quiet) report(streams.err, road_map);
     return Exit::ok;

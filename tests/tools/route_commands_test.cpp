@@ -161,6 +161,29 @@ TEST(RouteCommand, AnswersGoodRowsOfABatchAndNamesTheBadOnes) {
   EXPECT_EQ(run_roadbed({"route", kTown, "--matrix"}).status, 2);
 }
 
+TEST(RouteCommand, ABatchAsJsonExplainsRowsWithoutARouteAsSingleQuestionsDo) {
+  const TemporaryFolder folder;
+  const std::string pairs = folder.write("pairs.csv", std::string("from,to\n") + kFrom + "," + kTo +
+                                                          "\n" + kFrom + ",lane:1/1/-1@1\n");
+  const ProgramRun run =
+      run_roadbed({"route", kTown, "--batch", pairs, "--avoid", "road:20", "--json"});
+  EXPECT_EQ(run.status, 1);
+  const json answers = json::parse(run.out)["answers"];
+  ASSERT_EQ(answers.size(), 2U);
+  json expected = json::parse(
+      run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", "road:20", "--json"})
+          .out);
+  expected.erase("from");
+  expected.erase("to");
+  expected["row"] = 2;
+  EXPECT_EQ(answers[0], expected);
+  EXPECT_EQ(answers[0]["barriers"], json::parse(R"(["closed"])"));
+  EXPECT_EQ(answers[1]["found"], true);
+  EXPECT_EQ(run.out, run_roadbed({"route", kTown, "--batch", pairs, "--avoid", "road:20", "--json",
+                                  "--threads", "2"})
+                         .out);
+}
+
 TEST(RouteCommand, AMatrixHoldsEveryPairAsSingleQuestionsDo) {
   const TemporaryFolder folder;
   const std::string pairs = folder.write(
