@@ -10,6 +10,7 @@
 
 #include "roadbed/geometry/exact.h"
 #include "roadbed/geometry/monotone_ring.h"
+#include "roadbed/geometry/ring_crossings.h"
 #include "roadbed/geometry/weld.h"
 
 namespace roadbed::geometry {
@@ -270,6 +271,7 @@ std::vector<Polygon> make_simple(const Ring& ring) {
   check_finite(ring, "make_simple");
   const std::vector<Ring> cleaned = weld({ring}, 0.0).rings;
   if (is_simple(cleaned.front())) return {{oriented(cleaned.front(), true), {}}};
+  if (!has_few_crossings(cleaned.front())) return {};
   return simple_region(cleaned);
 }
 

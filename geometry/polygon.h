@@ -42,8 +42,8 @@ RayCrossing crossing(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
 /// Whether no two edges meet except neighbours at their shared point. Exact predicates (CGAL).
 bool is_simple(const Ring& ring);
 
-/// The region that a ring winds around (non-zero rule) as simple polygons: a ring that folds over
-/// itself, as an inner border in a tight bend, falls into pieces. Exact (CGAL).
+/// What a ring winds around (non-zero rule) as simple polygons: where it folds over itself it falls
+/// into pieces; none if its edges cross so often that has_few_crossings() denies. Exact (CGAL).
 std::vector<Polygon> make_simple(const Ring& ring);
 
 /// Union of regions. Points within `weld_m` of each other are taken as one first, since roads of

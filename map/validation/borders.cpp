@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "roadbed/geometry/polygon.h"
+#include "roadbed/geometry/ring_crossings.h"
 #include "roadbed/map/validation/rules.h"
 
 namespace roadbed::map::rules {
@@ -72,11 +73,15 @@ geometry::Ring outline(const Lane& lane) {
   return ring;
 }
 
-/// Whether the outline encloses more than one region, or a hole, that a human could see.
+/// Whether the outline encloses more than one region, or a hole, that a human could see, or folds
+/// too often to tell.
 bool winds_over_itself(const Lane& lane) {
   constexpr double kVisible = 0.01;  // [m²]
   int visible = 0;
-  for (const geometry::Polygon& piece : geometry::make_simple(outline(lane))) {
+  const geometry::Ring ring = outline(lane);
+  const auto pieces = geometry::make_simple(ring);
+  if (pieces.empty()) return !geometry::has_few_crossings(ring);
+  for (const geometry::Polygon& piece : pieces) {
     if (geometry::area_m2(piece) > kVisible) ++visible;
     if (!piece.holes.empty()) return true;
   }

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "roadbed/geometry/pose2.h"
+#include "roadbed/geometry/ring_crossings.h"
 
 namespace roadbed::geometry {
 namespace {
@@ -187,6 +188,33 @@ TEST(MakeSimple, DropsSpikesRepeatedPointsAndRingsWithoutArea) {
   EXPECT_TRUE(make_simple({{0, 0}, {1, 1}, {2, 2}, {1, 1}}).empty());
   EXPECT_TRUE(make_simple({{0, 0}, {1, 1}}).empty());
   EXPECT_TRUE(make_simple({}).empty());
+}
+
+/// Up and down across the square from 0 to `lines`, then to and fro: lines² crossings of straight
+/// strokes, 4 · lines points.
+Ring woven(int lines) {
+  Ring ring;
+  const double far = lines;
+  for (int i = 0; i < lines; ++i) {
+    const double at = i + 0.5;
+    ring.emplace_back(at, i % 2 == 0 ? -1.0 : far + 1.0);
+    ring.emplace_back(at, i % 2 == 0 ? far + 1.0 : -1.0);
+  }
+  for (int i = 0; i < lines; ++i) {
+    const double at = i + 0.25;
+    ring.emplace_back(i % 2 == 0 ? far + 2.0 : -2.0, at);
+    ring.emplace_back(i % 2 == 0 ? -2.0 : far + 2.0, at);
+  }
+  return ring;
+}
+
+TEST(MakeSimple, TakesApartARingThatCrossesItselfOftenButNotOneThatDoesEndlessly) {
+  expect_valid(make_simple(woven(8)));
+  EXPECT_TRUE(has_few_crossings(woven(8)));
+  EXPECT_GT(make_simple(woven(8)).size(), 0u);
+  EXPECT_FALSE(has_few_crossings(woven(60)));  // 15 crossings per point
+  EXPECT_TRUE(make_simple(woven(60)).empty());
+  EXPECT_TRUE(make_simple(woven(3000)).empty());  // exact repair would take gigabytes
 }
 
 TEST(MakeSimple, KeepsTheHoleOfAKeyholeRing) {
