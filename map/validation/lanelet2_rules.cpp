@@ -295,13 +295,13 @@ void broken_coordinates(const Source& source, const ValidateOptions&, Report& re
 }
 
 void borders_without_type(const Source& source, const ValidateOptions&, Report& report) {
-  std::set<std::string_view> said;
+  std::set<std::string_view> seen;
   for (const Lanelet& lanelet : source.lanelets) {
     for (const auto member : lanelet.node.children("member")) {
       const std::string_view role = member.attribute("role").value();
       const auto way = source.ways.find(member.attribute("ref").value());
       if ((role != "left" && role != "right") || way == source.ways.end()) continue;
-      if (!tag(way->second, "type").empty() || !said.insert(way->first).second) continue;
+      if (!seen.insert(way->first).second || !tag(way->second, "type").empty()) continue;
       add_at(report, source, way->second,
              "is a border without a type, so that nobody knows whether it may be crossed; add "
              "type=line_thin, curbstone, virtual or another one");

@@ -149,12 +149,8 @@ TEST(LaneIndex, FindsTheFewNearestOfAll) {
   }
 }
 
-TEST(LaneIndex, AnswersManyPointsAsOneByOne) {
-  const RoadMap road_map = tests::curved_two_lane_road();
-  auto points = points_near_lanes(road_map, 500, 60.0);
-  points[7] = {std::nan(""), 0.0};
-  points[8] = {INFINITY, 0.0};
-  const LaneQuery query{.radius_m = 25.0, .count = 2};
+void expect_as_one_by_one(const RoadMap& road_map, const std::vector<Eigen::Vector2d>& points,
+                          const LaneQuery& query) {
   const LaneMatches many = road_map.index().lanes.near(points, query);
   ASSERT_EQ(many.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -165,8 +161,19 @@ TEST(LaneIndex, AnswersManyPointsAsOneByOne) {
       EXPECT_EQ(many.of(i)[k].place.s_m, one[k].place.s_m);
     }
   }
-  EXPECT_TRUE(many.of(7).empty());
-  EXPECT_TRUE(many.of(8).empty());
+}
+
+TEST(LaneIndex, AnswersManyPointsAsOneByOne) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  auto points = points_near_lanes(town, 2000, 60.0);
+  points[7] = {std::nan(""), 0.0};
+  points[8] = {INFINITY, 0.0};
+  for (const std::size_t count : {1, 2, 5}) {
+    expect_as_one_by_one(town, points, {.radius_m = 25.0, .count = count});
+    expect_as_one_by_one(town, points, {.radius_m = 1000.0, .count = count});
+  }
+  EXPECT_TRUE(town.index().lanes.near(points, {.radius_m = 25.0, .count = 1}).of(7).empty());
+  EXPECT_TRUE(town.index().lanes.near(points, {.radius_m = 25.0, .count = 1}).of(8).empty());
 }
 
 TEST(LaneIndex, FindsEveryLaneWithACornerInABox) {

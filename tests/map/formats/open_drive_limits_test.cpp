@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <string>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/bounded_reading.h"
 #include "roadbed/tests/support/made_road.h"
 
 namespace roadbed::map {
@@ -22,64 +20,12 @@ using tests::made_road;
 using tests::made_section;
 using tests::MadeRoad;
 
-constexpr bool kMeasuresMemory =
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    false;
-#else
-    true;
-#endif
-
-struct Reading {
-  std::string outcome;  // "read" or the refusal
-  long peak_bytes = 0;  // of a process that only reads it
-};
-
 std::string outcome_of(const std::string& bytes) {
   try {
     return fmt::format("read {} lanes", parse_map(bytes, "made.xodr").lanes().size());
   } catch (const InputError& error) {
     return error.what();
   }
-}
-
-Reading read_in_a_child(const std::string& bytes) {
-  int pipe_ends[2];
-  if (::pipe(pipe_ends) != 0) throw std::runtime_error("pipe failed");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const std::string outcome = outcome_of(bytes);
-    const auto written =
-        ::write(pipe_ends[1], outcome.data(), std::min<std::size_t>(outcome.size(), 4000));
-    ::_exit(written > 0 ? 0 : 1);
-  }
-  ::close(pipe_ends[1]);
-  Reading reading;
-  char buffer[4096];
-  for (ssize_t got = 0; (got = ::read(pipe_ends[0], buffer, sizeof buffer)) > 0;) {
-    reading.outcome.append(buffer, static_cast<std::size_t>(got));
-  }
-  ::close(pipe_ends[0]);
-  int state = 0;
-  rusage usage{};
-  ::wait4(child, &state, 0, &usage);
-  if (!WIFEXITED(state) || WEXITSTATUS(state) != 0) reading.outcome = "crashed";
-  reading.peak_bytes = usage.ru_maxrss * 1024;
-  return reading;
-}
-
-void expect_bounded(const std::string& bytes, const std::string& outcome) {
-  const Reading reading = read_in_a_child(bytes);
-  EXPECT_THAT(reading.outcome, HasSubstr(outcome));
-  if (!kMeasuresMemory) return;
-  EXPECT_LT(reading.peak_bytes, 256'000'000 + 8 * static_cast<long>(bytes.size()))
-      << "of " << bytes.size() << " bytes";
-}
-
-std::string repeated(int times, const std::string& text) {
-  std::string all;
-  all.reserve(static_cast<std::size_t>(times) * text.size());
-  for (int i = 0; i < times; ++i) all += text;
-  return all;
 }
 
 std::string sections(int count, const std::string& inside) {
@@ -93,7 +39,7 @@ std::string sections(int count, const std::string& inside) {
 TEST(OpenDriveLimits, AMillionEmptyLaneSectionsAreRead) {
   MadeRoad road;
   road.lanes = sections(1'000'000, "");
-  expect_bounded(made_document(made_road(road)), "read 0 lanes");
+  tests::expect_read_in_bounds(made_document(made_road(road)), "read 0 lanes");
 }
 
 TEST(OpenDriveLimits, AMillionLaneSectionsWithLanesAreRefused) {
@@ -101,7 +47,8 @@ TEST(OpenDriveLimits, AMillionLaneSectionsWithLanesAreRefused) {
   road.lanes = sections(
       1'000'000,
       R"(<right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right>)");
-  expect_bounded(made_document(made_road(road)), "more lanes than a map of this size can hold");
+  tests::expect_read_in_bounds(made_document(made_road(road)),
+                               "more lanes than a map of this size can hold");
 }
 
 TEST(OpenDriveLimits, SingleSidedSectionsByTheHundredThousandTakeNoQuadraticTime) {
@@ -114,15 +61,15 @@ TEST(OpenDriveLimits, SingleSidedSectionsByTheHundredThousandTakeNoQuadraticTime
         fmt::format(R"(<laneSection s="{}" singleSide="true">{}</laneSection>)", 0.005 * i, left);
   }
   road.lanes = all;
-  expect_bounded(made_document(made_road(road)), "read 20001 lanes");
+  tests::expect_read_in_bounds(made_document(made_road(road)), "read 20001 lanes");
 }
 
 TEST(OpenDriveLimits, EmptyElementsAndLinesAreBounded) {
-  expect_bounded("<OpenDRIVE>" + repeated(5'000'000, "<a/>") + "</OpenDRIVE>",
-                 "next to nothing but empty elements");
-  expect_bounded("<OpenDRIVE>" + std::string(30'000'000, '\n') + "</OpenDRIVE>",
-                 "no road with a geometry");
-  expect_bounded(repeated(200'000, "<a>"), "not well-formed XML");
+  tests::expect_read_in_bounds("<OpenDRIVE>" + tests::repeated(5'000'000, "<a/>") + "</OpenDRIVE>",
+                               "next to nothing but empty elements");
+  tests::expect_read_in_bounds("<OpenDRIVE>" + std::string(30'000'000, '\n') + "</OpenDRIVE>",
+                               "no road with a geometry");
+  tests::expect_read_in_bounds(tests::repeated(200'000, "<a>"), "not well-formed XML");
 }
 
 TEST(OpenDriveLimits, ARoadOfEndlessCurvesIsRefused) {
@@ -135,15 +82,16 @@ TEST(OpenDriveLimits, ARoadOfEndlessCurvesIsRefused) {
         100 * i);
   }
   road.plan_view = pieces;
-  expect_bounded(made_document(made_road(road)), "more points than a map of this size can hold");
+  tests::expect_read_in_bounds(made_document(made_road(road)),
+                               "more points than a map of this size can hold");
 }
 
 TEST(OpenDriveLimits, EntityBombsStayWords) {
   std::string bomb = "<!DOCTYPE x [<!ENTITY a0 \"aaaaaaaaaa\">";
   for (int i = 1; i < 30; ++i) bomb += fmt::format("<!ENTITY a{} \"&a{};&a{};\">", i, i - 1, i - 1);
   bomb += "<!ENTITY e SYSTEM \"file:///etc/passwd\">]>";
-  expect_bounded(bomb + made_document("<road id=\"&a29;&e;\" length=\"0\"/>" + made_road({})),
-                 "read 2 lanes");
+  tests::expect_read_in_bounds(
+      bomb + made_document("<road id=\"&a29;&e;\" length=\"0\"/>" + made_road({})), "read 2 lanes");
 }
 
 TEST(OpenDriveLimits, NumbersBeyondAnyRoadAreRefusedOrSaid) {
