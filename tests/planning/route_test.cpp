@@ -2,16 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/route_oracle.h"
 
 namespace roadbed::planning {
 namespace {
@@ -20,183 +18,7 @@ using map::LaneId;
 using map::LanePlace;
 using map::RoadMap;
 
-// The documented rules as a plain graph, solved by Boost: each lane has an entry, at which changes
-// may still be made, and an exit, at which the rest of it is driven. Markings are all or nothing.
-class BoostOracle {
- public:
-  BoostOracle(const RoadMap& road_map, const RouteOptions& options)
-      : road_map_(road_map), options_(options) {}
-
-  double cost(const LanePlace& from, const LanePlace& to) const {
-    const std::size_t lanes = road_map_.lanes().size(), start = 2 * lanes, goal = start + 1;
-    Graph graph(goal + 1);
-    for (const map::Lane& lane : road_map_.lanes()) {
-      if (!usable(lane.id)) continue;
-      for (const auto& [last, price] : changes(lane.id, 1.0)) {
-        add_edge(lane.id.index, lanes + last.index, price, graph);
-        if (last != to.lane) continue;
-        const double end = to.s_m / road_map_.lane(last).length_m();
-        for (const auto& [same, at_goal] : changes(lane.id, end)) {
-          if (same == last) add_edge(lane.id.index, goal, at_goal + travel(last, 0, end), graph);
-        }
-      }
-      for (const LaneId next : road_map_.graph().of(lane.id).successors) {
-        if (usable(next)) add_edge(lanes + lane.id.index, next.index, travel(lane.id, 0, 1), graph);
-      }
-    }
-    const double begin = from.s_m / road_map_.lane(from.lane).length_m();
-    const double end = to.s_m / road_map_.lane(to.lane).length_m();
-    for (const map::Lane& lane : road_map_.lanes()) {
-      if (!usable(lane.id)) continue;
-      for (const bool at_start : {false, true}) {
-        if (at_start && lane.id != from.lane) continue;
-        const std::size_t node = at_start ? start : lane.id.index;
-        for_each_span(lane.id, [&](const Span& span) {
-          const LaneId last = span.to.back();
-          if (const auto price = price_of(span, at_start ? begin : 0.0, 1.0)) {
-            add_edge(node, lanes + last.index, *price - travel(last, 0, 1), graph);
-          }
-          if (last != to.lane) return;
-          const auto price = price_of(span, at_start ? begin : 0.0, end);
-          if (price) add_edge(node, goal, *price, graph);
-        });
-      }
-    }
-    for (const auto& [last, price] : changes(from.lane, 1.0 - begin)) {
-      for (const LaneId next : road_map_.graph().of(last).successors) {
-        if (usable(next)) add_edge(start, next.index, price + travel(last, begin, 1.0), graph);
-      }
-    }
-    if (begin <= end) {
-      for (const auto& [last, price] : changes(from.lane, end - begin)) {
-        if (last == to.lane) add_edge(start, goal, price + travel(last, begin, end), graph);
-      }
-    }
-    std::vector<double> distance(goal + 1);
-    boost::dijkstra_shortest_paths(
-        graph, start,
-        boost::distance_map(distance.data()).distance_inf(std::numeric_limits<double>::infinity()));
-    return distance[goal];
-  }
-
- private:
-  using Graph =
-      boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property,
-                            boost::property<boost::edge_weight_t, double>>;
-
-  bool usable(LaneId lane) const {
-    const bool closed =
-        std::find(options_.avoid.begin(), options_.avoid.end(), lane) != options_.avoid.end();
-    return is_drivable(road_map_.lane(lane).type) && !closed;
-  }
-
-  double travel(LaneId id, double begin, double end) const {
-    const map::Lane& lane = road_map_.lane(id);
-    const double from_m = begin * lane.length_m(), to_m = end * lane.length_m();
-    if (options_.cost == RouteCost::distance) return to_m - from_m;
-    double time_s = 0.0;
-    for (std::size_t i = 0; i <= lane.speed_limits.size(); ++i) {
-      const double first_m = i == 0 ? 0.0 : lane.speed_limits[i - 1].from_s_m;
-      const double last_m =
-          i < lane.speed_limits.size() ? lane.speed_limits[i].from_s_m : lane.length_m();
-      const double part_m = std::min(to_m, last_m) - std::max(from_m, first_m);
-      if (part_m <= 0.0) continue;
-      const auto limit = i == 0 ? std::nullopt : lane.speed_limits[i - 1].limit_mps;
-      time_s += part_m / std::min(limit && *limit > 0.0 ? *limit : default_speed_mps(lane.type),
-                                  options_.max_speed_mps);
-    }
-    return time_s;
-  }
-
-  // One change beside several passages.
-  struct Span {
-    std::vector<LaneId> from, to;
-  };
-
-  template <typename Visit>
-  void for_each_span(LaneId lane, const Visit& visit) const {
-    for (const bool leftwards : {true, false}) {
-      if (const auto beside = changed_to(lane, leftwards)) {
-        lengthen({{lane}, {*beside}}, leftwards, visit);
-      }
-    }
-  }
-
-  template <typename Visit>
-  void lengthen(const Span& span, bool leftwards, const Visit& visit) const {
-    if (span.from.size() > 6) return;
-    for (const LaneId next : road_map_.graph().of(span.from.back()).successors) {
-      const auto beside = changed_to(next, leftwards);
-      const auto& ahead = road_map_.graph().of(span.to.back()).successors;
-      if (!beside || std::count(ahead.begin(), ahead.end(), *beside) == 0) continue;
-      Span longer = span;
-      longer.from.push_back(next);
-      longer.to.push_back(*beside);
-      visit(longer);
-      lengthen(longer, leftwards, visit);
-    }
-  }
-
-  std::optional<LaneId> changed_to(LaneId lane, bool leftwards) const {
-    const map::LaneLinks& links = road_map_.graph().of(lane);
-    const auto& next = leftwards ? links.left : links.right;
-    const bool may = next && next->same_direction && next->change_allowed();
-    return may ? std::optional(next->lane) : std::nullopt;
-  }
-
-  // The way from a share of the first passage to one of the last, and the change on it; none if
-  // there is too little room, or one passage fewer has enough of it.
-  std::optional<double> price_of(const Span& span, double begin, double end) const {
-    std::vector<double> parts_m;
-    double room_m = 0.0;
-    for (std::size_t i = 0; i < span.from.size(); ++i) {
-      if (!usable(span.from[i]) || !usable(span.to[i])) return {};
-      const double share = (i + 1 == span.from.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
-      parts_m.push_back(share * road_map_.lane(span.from[i]).length_m());
-      room_m += parts_m.back();
-    }
-    const double enough_m =
-        std::max(options_.comfortable_lane_change_m, options_.least_lane_change_m);
-    if (parts_m.front() < 0.1 || parts_m.back() < 0.1) return {};
-    if (room_m < options_.least_lane_change_m) return {};
-    if (room_m - parts_m.front() >= enough_m || room_m - parts_m.back() >= enough_m) return {};
-    const double price = options_.cost == RouteCost::distance ? options_.prices_m.lane_change
-                                                              : options_.prices_s.lane_change;
-    double cost = price * std::max(1.0, options_.comfortable_lane_change_m / room_m), done_m = 0.0;
-    for (std::size_t i = 0; i < span.from.size(); ++i) {
-      done_m += parts_m[i];
-      cost += travel(done_m < 0.5 * room_m ? span.from[i] : span.to[i], i == 0 ? begin : 0.0,
-                     i + 1 == span.from.size() ? end : 1.0);
-    }
-    return cost;
-  }
-
-  // Lanes that a chain of changes leads to within a share of the passage, and what it costs.
-  std::vector<std::pair<LaneId, double>> changes(LaneId from, double share) const {
-    std::vector<std::pair<LaneId, double>> reached{{from, 0.0}};
-    for (const bool leftwards : {true, false}) {
-      double least_m = std::numeric_limits<double>::infinity();
-      LaneId lane = from;
-      for (int count = 1;; ++count) {
-        const map::LaneLinks& links = road_map_.graph().of(lane);
-        const auto& next = leftwards ? links.left : links.right;
-        if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane)) break;
-        least_m = std::min(least_m, share * road_map_.lane(lane).length_m());
-        const double room_m = least_m / count;
-        if (room_m < options_.least_lane_change_m - 1e-9) break;
-        const double price = options_.cost == RouteCost::distance ? options_.prices_m.lane_change
-                                                                  : options_.prices_s.lane_change;
-        lane = next->lane;
-        reached.push_back(
-            {lane, count * price * std::max(1.0, options_.comfortable_lane_change_m / room_m)});
-      }
-    }
-    return reached;
-  }
-
-  const RoadMap& road_map_;
-  const RouteOptions& options_;
-};
+using tests::RouteOracle;
 
 // Crossings in a grid, with roads of one to four lanes between neighbours, random limits, types,
 // markings and links; link ends do not meet, so straight lines are shorter than lanes are long.
@@ -297,7 +119,7 @@ struct Tally {
 
 void compare_with_boost(const RoadMap& road_map, std::mt19937& random, int pairs,
                         const RouteOptions& options, Tally& tally) {
-  const BoostOracle oracle(road_map, options);
+  const RouteOracle oracle(road_map, options);
   Router router(road_map, options);
   for (int i = 0; i < pairs; ++i) {
     const LanePlace from = random_place(random, road_map), to = random_place(random, road_map);

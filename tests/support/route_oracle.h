@@ -1,0 +1,197 @@
+#pragma once
+
+#include <algorithm>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "roadbed/map/road_map.h"
+#include "roadbed/planning/route_options.h"
+
+namespace roadbed::tests {
+
+/// The documented rules as a plain graph, solved by Boost: each lane has an entry, at which changes
+/// may still be made, and an exit, at which the rest of it is driven. Markings are all or nothing.
+class RouteOracle {
+ public:
+  RouteOracle(const map::RoadMap& road_map, const planning::RouteOptions& options)
+      : road_map_(road_map), options_(options) {}
+
+  double cost(const map::LanePlace& from, const map::LanePlace& to) const {
+    const std::size_t lanes = road_map_.lanes().size(), start = 2 * lanes, goal = start + 1;
+    Graph graph(goal + 1);
+    for (const map::Lane& lane : road_map_.lanes()) {
+      if (!usable(lane.id)) continue;
+      for (const auto& [last, price] : changes(lane.id, 1.0)) {
+        add_edge(lane.id.index, lanes + last.index, price, graph);
+        if (last != to.lane) continue;
+        const double end = to.s_m / road_map_.lane(last).length_m();
+        for (const auto& [same, at_goal] : changes(lane.id, end)) {
+          if (same == last) add_edge(lane.id.index, goal, at_goal + travel(last, 0, end), graph);
+        }
+      }
+      for (const map::LaneId next : road_map_.graph().of(lane.id).successors) {
+        if (usable(next)) add_edge(lanes + lane.id.index, next.index, travel(lane.id, 0, 1), graph);
+      }
+    }
+    const double begin = from.s_m / road_map_.lane(from.lane).length_m();
+    const double end = to.s_m / road_map_.lane(to.lane).length_m();
+    for (const map::Lane& lane : road_map_.lanes()) {
+      if (!usable(lane.id)) continue;
+      for (const bool at_start : {false, true}) {
+        if (at_start && lane.id != from.lane) continue;
+        const std::size_t node = at_start ? start : lane.id.index;
+        for_each_span(lane.id, [&](const Span& span) {
+          const map::LaneId last = span.to.back();
+          if (const auto price = price_of(span, at_start ? begin : 0.0, 1.0)) {
+            add_edge(node, lanes + last.index, *price - travel(last, 0, 1), graph);
+          }
+          if (last != to.lane) return;
+          const auto price = price_of(span, at_start ? begin : 0.0, end);
+          if (price) add_edge(node, goal, *price, graph);
+        });
+      }
+    }
+    for (const auto& [last, price] : changes(from.lane, 1.0 - begin)) {
+      for (const map::LaneId next : road_map_.graph().of(last).successors) {
+        if (usable(next)) add_edge(start, next.index, price + travel(last, begin, 1.0), graph);
+      }
+    }
+    if (begin <= end) {
+      for (const auto& [last, price] : changes(from.lane, end - begin)) {
+        if (last == to.lane) add_edge(start, goal, price + travel(last, begin, end), graph);
+      }
+    }
+    std::vector<double> distance(goal + 1);
+    boost::dijkstra_shortest_paths(
+        graph, start,
+        boost::distance_map(distance.data()).distance_inf(std::numeric_limits<double>::infinity()));
+    return distance[goal];
+  }
+
+ private:
+  using Graph =
+      boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property,
+                            boost::property<boost::edge_weight_t, double>>;
+
+  bool usable(map::LaneId lane) const {
+    const bool closed =
+        std::find(options_.avoid.begin(), options_.avoid.end(), lane) != options_.avoid.end();
+    return map::is_drivable(road_map_.lane(lane).type) && !closed;
+  }
+
+  double travel(map::LaneId id, double begin, double end) const {
+    const map::Lane& lane = road_map_.lane(id);
+    const double from_m = begin * lane.length_m(), to_m = end * lane.length_m();
+    if (options_.cost == planning::RouteCost::distance) return to_m - from_m;
+    double time_s = 0.0;
+    for (std::size_t i = 0; i <= lane.speed_limits.size(); ++i) {
+      const double first_m = i == 0 ? 0.0 : lane.speed_limits[i - 1].from_s_m;
+      const double last_m =
+          i < lane.speed_limits.size() ? lane.speed_limits[i].from_s_m : lane.length_m();
+      const double part_m = std::min(to_m, last_m) - std::max(from_m, first_m);
+      if (part_m <= 0.0) continue;
+      const auto limit = i == 0 ? std::nullopt : lane.speed_limits[i - 1].limit_mps;
+      time_s +=
+          part_m / std::min(limit && *limit > 0.0 ? *limit : planning::default_speed_mps(lane.type),
+                            options_.max_speed_mps);
+    }
+    return time_s;
+  }
+
+  // One change beside several passages.
+  struct Span {
+    std::vector<map::LaneId> from, to;
+  };
+
+  template <typename Visit>
+  void for_each_span(map::LaneId lane, const Visit& visit) const {
+    for (const bool leftwards : {true, false}) {
+      if (const auto beside = changed_to(lane, leftwards)) {
+        lengthen({{lane}, {*beside}}, leftwards, visit);
+      }
+    }
+  }
+
+  template <typename Visit>
+  void lengthen(const Span& span, bool leftwards, const Visit& visit) const {
+    if (span.from.size() > 6) return;
+    for (const map::LaneId next : road_map_.graph().of(span.from.back()).successors) {
+      const auto beside = changed_to(next, leftwards);
+      const auto& ahead = road_map_.graph().of(span.to.back()).successors;
+      if (!beside || std::count(ahead.begin(), ahead.end(), *beside) == 0) continue;
+      Span longer = span;
+      longer.from.push_back(next);
+      longer.to.push_back(*beside);
+      visit(longer);
+      lengthen(longer, leftwards, visit);
+    }
+  }
+
+  std::optional<map::LaneId> changed_to(map::LaneId lane, bool leftwards) const {
+    const map::LaneLinks& links = road_map_.graph().of(lane);
+    const auto& next = leftwards ? links.left : links.right;
+    const bool may = next && next->same_direction && next->change_allowed();
+    return may ? std::optional(next->lane) : std::nullopt;
+  }
+
+  // The way from a share of the first passage to one of the last, and the change on it; none if
+  // there is too little room, or one passage fewer has enough of it.
+  std::optional<double> price_of(const Span& span, double begin, double end) const {
+    std::vector<double> parts_m;
+    double room_m = 0.0;
+    for (std::size_t i = 0; i < span.from.size(); ++i) {
+      if (!usable(span.from[i]) || !usable(span.to[i])) return {};
+      const double share = (i + 1 == span.from.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
+      parts_m.push_back(share * road_map_.lane(span.from[i]).length_m());
+      room_m += parts_m.back();
+    }
+    const double enough_m =
+        std::max(options_.comfortable_lane_change_m, options_.least_lane_change_m);
+    if (parts_m.front() < 0.1 || parts_m.back() < 0.1) return {};
+    if (room_m < options_.least_lane_change_m) return {};
+    if (room_m - parts_m.front() >= enough_m || room_m - parts_m.back() >= enough_m) return {};
+    const double price = options_.cost == planning::RouteCost::distance
+                             ? options_.prices_m.lane_change
+                             : options_.prices_s.lane_change;
+    double cost = price * std::max(1.0, options_.comfortable_lane_change_m / room_m), done_m = 0.0;
+    for (std::size_t i = 0; i < span.from.size(); ++i) {
+      done_m += parts_m[i];
+      cost += travel(done_m < 0.5 * room_m ? span.from[i] : span.to[i], i == 0 ? begin : 0.0,
+                     i + 1 == span.from.size() ? end : 1.0);
+    }
+    return cost;
+  }
+
+  // Lanes that a chain of changes leads to within a share of the passage, and what it costs.
+  std::vector<std::pair<map::LaneId, double>> changes(map::LaneId from, double share) const {
+    std::vector<std::pair<map::LaneId, double>> reached{{from, 0.0}};
+    for (const bool leftwards : {true, false}) {
+      double least_m = std::numeric_limits<double>::infinity();
+      map::LaneId lane = from;
+      for (int count = 1;; ++count) {
+        const map::LaneLinks& links = road_map_.graph().of(lane);
+        const auto& next = leftwards ? links.left : links.right;
+        if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane)) break;
+        least_m = std::min(least_m, share * road_map_.lane(lane).length_m());
+        const double room_m = least_m / count;
+        if (room_m < options_.least_lane_change_m - 1e-9) break;
+        const double price = options_.cost == planning::RouteCost::distance
+                                 ? options_.prices_m.lane_change
+                                 : options_.prices_s.lane_change;
+        lane = next->lane;
+        reached.push_back(
+            {lane, count * price * std::max(1.0, options_.comfortable_lane_change_m / room_m)});
+      }
+    }
+    return reached;
+  }
+
+  const map::RoadMap& road_map_;
+  const planning::RouteOptions& options_;
+};
+
+}  // namespace roadbed::tests
