@@ -83,7 +83,7 @@ Trajectory stopping_drive(const StopQuestion& question, double deceleration_mps2
   const auto driven_m = [&](double t_s) {
     return t_s * (speed_mps - 0.5 * deceleration_mps2 * t_s);
   };
-  const int steps = static_cast<int>(std::ceil(stop_s / kStopStep_s));
+  const int steps = static_cast<int>(std::ceil(stop_s / kStopStep_s - 1e-6));
   std::vector<TrajectoryPoint> points;
   double s_m = question.input.start.s_m, last_t_s = 0.0;
   for (int i = 0; i <= steps; ++i) {
@@ -100,6 +100,7 @@ Trajectory stopping_drive(const StopQuestion& question, double deceleration_mps2
     last_t_s = t_s;
   }
   TrajectoryPoint standing = points.back();
+  standing.speed_mps = standing.acceleration_mps2 = 0.0;
   standing.t_s = question.input.start_t_s + std::max(question.until_s, last_t_s + kStopStep_s);
   points.push_back(standing);
   return Trajectory(std::move(points));
