@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "roadbed/geometry/cross.h"
+
 namespace roadbed::geometry {
 namespace {
 
@@ -17,10 +19,6 @@ std::size_t segment_at(const std::vector<double>& stations_m, double s_m) {
   std::size_t segment = std::min(static_cast<std::size_t>(index), stations_m.size() - 2);
   while (segment > 0 && stations_m[segment + 1] <= stations_m[segment]) --segment;
   return segment;
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 }  // namespace

@@ -8,14 +8,11 @@
 #include <stdexcept>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/cross.h"
 #include "roadbed/geometry/taylor.h"
 
 namespace roadbed::geometry {
 namespace {
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Σⱼ basisⱼ cⱼ of one span, relative to its first control point so that no digits are lost.
 void accumulate(SpanPolynomial& sum, const SpanPolynomial& basis, double factor) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "roadbed/geometry/box_tree.h"
+#include "roadbed/geometry/cross.h"
 #include "roadbed/map/lane_piece.h"
 
 namespace roadbed::map {
@@ -16,17 +17,15 @@ using Eigen::Vector2d;
 using geometry::Box;
 using geometry::Ring;
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Station of the cross-section through a point of the piece: the share u of the way with
 /// (p − l(u)) × (r(u) − l(u)) = 0, where l and r go straight along the borders.
 double station_of(const LanePiece& piece, const Vector2d& point) {
   const Vector2d to_point = point - piece.left_from, along = piece.left_to - piece.left_from;
   const Vector2d across = piece.right_from - piece.left_from;
   const Vector2d widening = piece.right_to - piece.left_to - across;
-  const double a = -cross(along, widening);
-  const double b = cross(to_point, widening) - cross(along, across);
-  const double c = cross(to_point, across);
+  const double a = -geometry::cross(along, widening);
+  const double b = geometry::cross(to_point, widening) - geometry::cross(along, across);
+  const double c = geometry::cross(to_point, across);
   const double root = std::sqrt(std::max(b * b - 4.0 * a * c, 0.0));
   const double q = -0.5 * (b + std::copysign(root, b));  // without cancellation
   const double one = a != 0.0 ? q / a : 0.5, other = q != 0.0 ? c / q : 0.5;
@@ -41,7 +40,7 @@ std::array<Triangle, 2> triangles(const LanePiece& piece) {
   std::array<Triangle, 2> both{{{piece.left_from, piece.right_from, piece.right_to},
                                 {piece.left_from, piece.right_to, piece.left_to}}};
   for (Triangle& triangle : both) {
-    const double turn = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const double turn = geometry::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     if (turn < 0.0) std::swap(triangle[1], triangle[2]);
   }
   return both;
@@ -53,7 +52,8 @@ Ring clipped(const Ring& ring, const Vector2d& from, const Vector2d& to) {
   Ring kept;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    const double side_a = cross(to - from, a - from), side_b = cross(to - from, b - from);
+    const double side_a = geometry::cross(to - from, a - from),
+                 side_b = geometry::cross(to - from, b - from);
     if (side_a >= 0.0) kept.push_back(a);
     if ((side_a > 0.0 && side_b < 0.0) || (side_a < 0.0 && side_b > 0.0)) {
       kept.push_back(a + side_a / (side_a - side_b) * (b - a));

@@ -5,13 +5,13 @@
 #include <set>
 #include <tuple>
 
+#include "roadbed/geometry/cross.h"
+
 namespace roadbed::map {
 namespace {
 
 using Eigen::Vector2d;
 using geometry::Ring;
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Whether a segment has a point in the box: its part within each pair of sides (Liang, Barsky
 /// 1984, doi:10.1145/357332.357333).
@@ -43,9 +43,10 @@ std::vector<double> cuts(const Ring& ring, const Vector2d& from, const Vector2d&
   std::vector<double> shares{0.0, 1.0};
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Vector2d edge = ring[(i + 1) % ring.size()] - ring[i], to_edge = ring[i] - from;
-    const double turn = cross(way, edge);
+    const double turn = geometry::cross(way, edge);
     if (turn == 0.0) continue;
-    const double on_way = cross(to_edge, edge) / turn, on_edge = cross(to_edge, way) / turn;
+    const double on_way = geometry::cross(to_edge, edge) / turn,
+                 on_edge = geometry::cross(to_edge, way) / turn;
     if (on_way > 0.0 && on_way < 1.0 && on_edge >= 0.0 && on_edge <= 1.0) shares.push_back(on_way);
   }
   std::sort(shares.begin(), shares.end());

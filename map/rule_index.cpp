@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <tuple>
 
+#include "roadbed/geometry/cross.h"
+
 namespace roadbed::map {
 namespace {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Station at which the centreline crosses the segment from `a` to `b`, the first of several.
 std::optional<double> crossing_m(const geometry::Polyline& line, const Vector2d& a,
@@ -16,10 +16,10 @@ std::optional<double> crossing_m(const geometry::Polyline& line, const Vector2d&
   const auto& points = line.points();
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vector2d piece = points[i + 1] - points[i], segment = b - a, to_segment = a - points[i];
-    const double turn = cross(piece, segment);
+    const double turn = geometry::cross(piece, segment);
     if (turn == 0.0) continue;
-    const double on_piece = cross(to_segment, segment) / turn;
-    const double on_segment = cross(to_segment, piece) / turn;
+    const double on_piece = geometry::cross(to_segment, segment) / turn;
+    const double on_segment = geometry::cross(to_segment, piece) / turn;
     if (on_piece < 0.0 || on_piece > 1.0 || on_segment < 0.0 || on_segment > 1.0) continue;
     return line.stations_m()[i] + on_piece * piece.norm();
   }

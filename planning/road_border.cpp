@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/geometry/cross.h"
+
 namespace roadbed::planning {
 namespace {
 
 constexpr double kStep_m = 0.25;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 }  // namespace
 
@@ -66,7 +64,8 @@ double RoadBorder::excess_of_point_m(const Eigen::Vector2d& point, double near_s
   const double share =
       along_a + along_b > 0.0 ? std::clamp(along_a / (along_a + along_b), 0.0, 1.0) : 0.0;
   const auto between = [&](double at_a, double at_b) { return at_a + share * (at_b - at_a); };
-  const double d_m = between(cross(a.tangent, from_a), cross(b.tangent, from_b));
+  const double d_m =
+      between(geometry::cross(a.tangent, from_a), geometry::cross(b.tangent, from_b));
   return margin_m_ +
          std::max(d_m - between(a.left_m, b.left_m), -d_m - between(a.right_m, b.right_m));
 }

@@ -70,10 +70,12 @@ class AuditCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description(
-        "Prove that a drive keeps clear of occupied space, or show where it does not. Between rows "
-        "of the drive position and heading are linear, and every point of the body is covered");
+        "Prove that a drive keeps clear of occupied space, or show where it does not");
     arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)").required();
-    arguments.add("--trajectory", trajectory_, "Drive to audit (.csv), poses of the rear axle")
+    arguments
+        .add("--trajectory", trajectory_,
+             "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
+             "the body is covered")
         .required();
     arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
     arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");

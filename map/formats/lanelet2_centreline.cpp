@@ -7,18 +7,16 @@
 #include <optional>
 #include <utility>
 
+#include "roadbed/geometry/cross.h"
+
 namespace roadbed::map::lanelet2 {
 namespace {
 
 constexpr std::size_t kReach = 256;  // vertices that a rung looks ahead and behind
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 // Positive if the point is to the left of the line from a to b.
 double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& point) {
-  return cross(b - a, point - a);
+  return geometry::cross(b - a, point - a);
 }
 
 struct Segment {

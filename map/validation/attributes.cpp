@@ -88,7 +88,7 @@ void broken_crs(const RoadMap& road_map, const ValidateOptions&, Report& report)
                          road_map.crs().substr(0, 60)));
 }
 
-constexpr std::array<MapRule, 5> kRules = {{
+constexpr std::array<MapRule, 5> kAttributeRules = {{
     {{"speed.missing",
       {},
       Severity::info,
@@ -112,6 +112,6 @@ constexpr std::array<MapRule, 5> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> attribute_rules() { return kRules; }
+std::span<const MapRule> attribute_rules() { return kAttributeRules; }
 
 }  // namespace roadbed::map::rules

@@ -234,7 +234,7 @@ void elevation_spikes(const RoadMap& road_map, const ValidateOptions&, Report& r
   }
 }
 
-constexpr std::array<MapRule, 9> kRules = {{
+constexpr std::array<MapRule, 9> kBorderRules = {{
     {{"geometry.negative-width", "asam.net:xodr:1.4.0:road.lane.width.lane_width_validity",
       Severity::error, "a lane's borders are swapped by more than 2 mm, twice the sampling"},
      negative_widths},
@@ -267,6 +267,6 @@ constexpr std::array<MapRule, 9> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> border_rules() { return kRules; }
+std::span<const MapRule> border_rules() { return kBorderRules; }
 
 }  // namespace roadbed::map::rules

@@ -215,7 +215,7 @@ void broken_intersections(const Source& source, const ValidateOptions&, Report& 
   }
 }
 
-constexpr std::array<SourceRule, 10> kRules = {{
+constexpr std::array<SourceRule, 10> kSourceRules = {{
     {{"common-road.version", {}, Severity::warning, "the file's version is not 2018b or 2020a"},
      unknown_versions},
     {{"common-road.duplicate-id", {}, Severity::error, "two elements have one id"}, duplicate_ids},
@@ -269,7 +269,7 @@ Source::Source(const XmlDocument& document) : xml(document) {
   }
 }
 
-std::span<const SourceRule> source_rules() { return kRules; }
+std::span<const SourceRule> source_rules() { return kSourceRules; }
 
 ElementLines element_lines(const XmlDocument& xml) {
   ElementLines lines;

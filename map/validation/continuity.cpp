@@ -219,7 +219,7 @@ void slope_jumps(const RoadMap& road_map, const ValidateOptions& options, Report
   });
 }
 
-constexpr std::array<MapRule, 6> kRules = {{
+constexpr std::array<MapRule, 6> kContinuityRules = {{
     {{"geometry.gap", "asam.net:xodr:1.7.0:lane_smoothness.contact_point_no_horizontal_gaps",
       Severity::warning,
       "borders of linked lanes do not meet within --max-gap; where a lane splits or lanes merge, "
@@ -251,6 +251,6 @@ constexpr std::array<MapRule, 6> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> continuity_rules() { return kRules; }
+std::span<const MapRule> continuity_rules() { return kContinuityRules; }
 
 }  // namespace roadbed::map::rules

@@ -89,7 +89,7 @@ void regulations_without_lane(const RoadMap& road_map, const ValidateOptions&, R
   }
 }
 
-constexpr std::array<MapRule, 6> kRules = {{
+constexpr std::array<MapRule, 6> kFurnitureRules = {{
     {{"signal.off-road",
       {},
       Severity::warning,
@@ -114,6 +114,6 @@ constexpr std::array<MapRule, 6> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> furniture_rules() { return kRules; }
+std::span<const MapRule> furniture_rules() { return kFurnitureRules; }
 
 }  // namespace roadbed::map::rules

@@ -5,7 +5,7 @@
 namespace roadbed::map::rules {
 namespace {
 
-constexpr std::array<RuleInfo, 2> kRules = {{
+constexpr std::array<RuleInfo, 2> kImportRules = {{
     {"import.refused", {}, Severity::error, "the file cannot be read as a map"},
     {"import.…",
      {},
@@ -30,6 +30,6 @@ std::vector<Finding> import_remarks(const RoadMap& road_map) {
   return findings;
 }
 
-std::span<const RuleInfo> import_rules() { return kRules; }
+std::span<const RuleInfo> import_rules() { return kImportRules; }
 
 }  // namespace roadbed::map::rules

@@ -58,7 +58,7 @@ void unused_regulations(const Source& source, const ValidateOptions&, Report& re
   }
 }
 
-constexpr std::array<SourceRule, 3> kRules = {{
+constexpr std::array<SourceRule, 3> kRegulationRules = {{
     {{"lanelet2.unknown-regulation",
       {},
       Severity::info,
@@ -78,6 +78,6 @@ constexpr std::array<SourceRule, 3> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> regulation_rules() { return kRules; }
+std::span<const SourceRule> regulation_rules() { return kRegulationRules; }
 
 }  // namespace roadbed::map::rules::lanelet2

@@ -330,7 +330,7 @@ void broken_speeds(const Source& source, const ValidateOptions&, Report& report)
   }
 }
 
-constexpr std::array<SourceRule, 14> kRules = {{
+constexpr std::array<SourceRule, 14> kLaneletRules = {{
     {{"lanelet2.duplicate-id", {}, Severity::error, "two nodes, ways or relations have one id"},
      duplicate_ids},
     {{"lanelet2.dangling-member",
@@ -385,6 +385,6 @@ constexpr std::array<SourceRule, 14> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> lanelet_rules() { return kRules; }
+std::span<const SourceRule> lanelet_rules() { return kLaneletRules; }
 
 }  // namespace roadbed::map::rules::lanelet2

@@ -128,7 +128,7 @@ void separate_parts(const RoadMap& road_map, const ValidateOptions&, Report& rep
   }
 }
 
-constexpr std::array<MapRule, 7> kRules = {{
+constexpr std::array<MapRule, 7> kLinkRules = {{
     {{"link.one-sided", "asam.net:xodr:1.4.0:road.lane.link.lanes_across_lane_sections",
       Severity::error, "a lane's successor or predecessor does not know of it"},
      one_sided_links},
@@ -160,7 +160,7 @@ constexpr std::array<MapRule, 7> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> link_rules() { return kRules; }
+std::span<const MapRule> link_rules() { return kLinkRules; }
 
 std::vector<MapRule> map_rules() {
   std::vector<MapRule> all;

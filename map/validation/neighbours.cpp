@@ -93,7 +93,7 @@ void neighbours_against(const RoadMap& road_map, const ValidateOptions&, Report&
   });
 }
 
-constexpr std::array<MapRule, 3> kRules = {{
+constexpr std::array<MapRule, 3> kNeighbourRules = {{
     {{"neighbour.one-sided", {}, Severity::warning, "a lane's neighbour does not know of it"},
      one_sided_neighbours},
     {{"neighbour.apart",
@@ -110,6 +110,6 @@ constexpr std::array<MapRule, 3> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> neighbour_rules() { return kRules; }
+std::span<const MapRule> neighbour_rules() { return kNeighbourRules; }
 
 }  // namespace roadbed::map::rules

@@ -10,7 +10,7 @@
 namespace roadbed::map::rules::open_drive {
 namespace {
 
-constexpr double kSameStation = 1e-3;  // [m] files round s to a few digits
+constexpr double kGap_m = 1e-3;  // files round s to a few digits
 
 Finding& add(Report& report, const Source& source, const RoadSource& road,
              const GeometrySource& piece, std::string message) {
@@ -44,7 +44,7 @@ void wrong_stations(const Source& source, const ValidateOptions&, Report& report
     double sum_m = 0.0;
     for (const GeometrySource& piece : road.geometry) {
       const double off_m = piece.s_m - sum_m;
-      if (std::abs(off_m) > kSameStation) {
+      if (std::abs(off_m) > kGap_m) {
         add(report, source, road, piece,
             fmt::format("geometry says s {:.4f} m, but those before it end at {:.4f} m; correct s "
                         "or a length",
@@ -253,7 +253,7 @@ void constant_spirals(const Source& source, const ValidateOptions&, Report& repo
   }
 }
 
-constexpr std::array<SourceRule, 16> kRules = {{
+constexpr std::array<SourceRule, 16> kCurveRules = {{
     {{"curve.missing", "asam.net:xodr:1.4.0:road.geometry.refline_exists", Severity::error,
       "a road has no reference line"},
      missing_curves},
@@ -308,6 +308,6 @@ constexpr std::array<SourceRule, 16> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> curve_rules() { return kRules; }
+std::span<const SourceRule> curve_rules() { return kCurveRules; }
 
 }  // namespace roadbed::map::rules::open_drive

@@ -90,7 +90,7 @@ void far_coordinates(const Source& source, const ValidateOptions&, Report& repor
   }
 }
 
-constexpr std::array<SourceRule, 6> kRules = {{
+constexpr std::array<SourceRule, 6> kHeaderRules = {{
     {{"header.missing", "asam.net:xodr:1.0.0:xml.fileheader_is_present", Severity::error,
       "an OpenDRIVE file has no header"},
      missing_header},
@@ -111,6 +111,6 @@ constexpr std::array<SourceRule, 6> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> header_rules() { return kRules; }
+std::span<const SourceRule> header_rules() { return kHeaderRules; }
 
 }  // namespace roadbed::map::rules::open_drive

@@ -145,7 +145,7 @@ void dangling_signals(const Source& source, const ValidateOptions&, Report& repo
 
 constexpr std::string_view kDefined = "asam.net:xodr:1.4.0:ids.only_ref_defined_ids";
 
-constexpr std::array<SourceRule, 6> kRules = {{
+constexpr std::array<SourceRule, 6> kIdRules = {{
     {{"id.duplicate", "asam.net:xodr:1.4.0:ids.id_unique_in_class", Severity::error,
       "two elements of one kind have the same id"},
      duplicate_ids},
@@ -168,6 +168,6 @@ constexpr std::array<SourceRule, 6> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> id_rules() { return kRules; }
+std::span<const SourceRule> id_rules() { return kIdRules; }
 
 }  // namespace roadbed::map::rules::open_drive

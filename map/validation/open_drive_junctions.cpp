@@ -206,7 +206,7 @@ void unknown_lanes(const Source& source, const ValidateOptions&, Report& report)
   });
 }
 
-constexpr std::array<SourceRule, 12> kRules = {{
+constexpr std::array<SourceRule, 12> kJunctionRules = {{
     {{"junction.no-lane-links", {}, Severity::warning, "a connection has no lane links"},
      connections_without_lanes},
     {{"junction.incoming-elsewhere",
@@ -251,6 +251,6 @@ constexpr std::array<SourceRule, 12> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> junction_rules() { return kRules; }
+std::span<const SourceRule> junction_rules() { return kJunctionRules; }
 
 }  // namespace roadbed::map::rules::open_drive

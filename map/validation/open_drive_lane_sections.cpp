@@ -39,17 +39,13 @@ void unordered_sections(const Source& source, const ValidateOptions&, Report& re
   }
 }
 
-bool is_single_sided(const SectionSource& section) {
-  return section.node.attribute("singleSide").as_bool();
-}
-
 void empty_sections(const Source& source, const ValidateOptions&, Report& report) {
   for (const RoadSource& road : source.roads) {
     for (std::size_t i = 0; i < road.sections.size(); ++i) {
       const SectionSource& section = road.sections[i];
       const double length_m = section.end_s_m - section.s_m;
-      const bool shares = is_single_sided(section) ||
-                          (i + 1 < road.sections.size() && is_single_sided(road.sections[i + 1]));
+      const bool shares = section.is_single_sided() ||
+                          (i + 1 < road.sections.size() && road.sections[i + 1].is_single_sided());
       if (!(length_m <= 0.0) || shares) continue;
       add_at(report, source, road, section.node,
              fmt::format("lane section at s {} m has no length; remove it or correct its s",
@@ -241,7 +237,7 @@ void crossing_borders(const Source& source, const ValidateOptions&, Report& repo
   }
 }
 
-constexpr std::array<SourceRule, 11> kRules = {{
+constexpr std::array<SourceRule, 11> kLaneRules = {{
     {{"section.missing", "asam.net:xodr:1.4.0:road.lane_section.lane_sect_req", Severity::error,
       "a road has no lane section"},
      missing_sections},
@@ -279,6 +275,6 @@ constexpr std::array<SourceRule, 11> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> lane_rules() { return kRules; }
+std::span<const SourceRule> lane_rules() { return kLaneRules; }
 
 }  // namespace roadbed::map::rules::open_drive

@@ -137,10 +137,6 @@ struct SeamSide {
   End end;
 };
 
-bool is_single_sided(const SectionSource& section) {
-  return section.node.attribute("singleSide").as_bool();
-}
-
 /// Links over a seam that the other side does not return.
 void find_one_sided(const Source& source, const SeamSide& here, const SeamSide& there,
                     Report& report) {
@@ -164,7 +160,7 @@ void one_sided_lanes(const Source& source, const ValidateOptions&, Report& repor
   for (const RoadSource& road : source.roads) {
     for (std::size_t i = 1; i < road.sections.size(); ++i) {
       const SectionSource &before = road.sections[i - 1], &after = road.sections[i];
-      if (is_single_sided(before) || is_single_sided(after)) continue;
+      if (before.is_single_sided() || after.is_single_sided()) continue;
       find_one_sided(source, {&road, &before, End::end}, {&road, &after, End::start}, report);
       find_one_sided(source, {&road, &after, End::start}, {&road, &before, End::end}, report);
     }
@@ -248,7 +244,7 @@ void roads_linked_without_lanes(const Source& source, const ValidateOptions&, Re
   });
 }
 
-constexpr std::array<SourceRule, 8> kRules = {{
+constexpr std::array<SourceRule, 8> kLinkageRules = {{
     {{"link.road-one-sided", "asam.net:xodr:1.9.0:road.linkage.both_sides_consistency",
       Severity::warning, "a road's link is not returned by the other road"},
      one_sided_roads},
@@ -279,6 +275,6 @@ constexpr std::array<SourceRule, 8> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> linkage_rules() { return kRules; }
+std::span<const SourceRule> linkage_rules() { return kLinkageRules; }
 
 }  // namespace roadbed::map::rules::open_drive

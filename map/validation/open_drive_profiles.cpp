@@ -83,9 +83,9 @@ void superelevation_steps(const Source& source, const ValidateOptions&, Report& 
 /// Whether a lane section begins there: its lanes may be numbered from another line on, and whether
 /// their borders go on is asked of the lanes.
 bool begins_section(const RoadSource& road, double s_m) {
-  constexpr double kSameStation = 0.01;  // [m]
+  constexpr double kSame_m = 0.01;
   return std::any_of(road.sections.begin(), road.sections.end(), [&](const SectionSource& section) {
-    return std::abs(section.s_m - s_m) < kSameStation;
+    return std::abs(section.s_m - s_m) < kSame_m;
   });
 }
 
@@ -312,7 +312,7 @@ void unordered_records(const Source& source, const ValidateOptions&, Report& rep
   }
 }
 
-constexpr std::array<SourceRule, 14> kRules = {{
+constexpr std::array<SourceRule, 14> kProfileRules = {{
     {{"profile.order", "asam.net:xodr:1.4.0:road.elevation.elem_asc_order", Severity::warning,
       "records of elevation, superelevation, lane offset, width, border, speed, road mark or type "
       "are not in ascending order"},
@@ -368,6 +368,6 @@ constexpr std::array<SourceRule, 14> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> profile_rules() { return kRules; }
+std::span<const SourceRule> profile_rules() { return kProfileRules; }
 
 }  // namespace roadbed::map::rules::open_drive

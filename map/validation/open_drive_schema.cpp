@@ -224,7 +224,7 @@ void schema_faults(const Source& source, const ValidateOptions&, Report& report)
 
 using Kind = SchemaFault::Kind;
 
-constexpr std::array<SourceRule, 4> kRules = {{
+constexpr std::array<SourceRule, 4> kSchemaRules = {{
     {{"schema.missing-element", kValidSchema, Severity::error,
       "an element that the standard asks for is missing"},
      schema_faults<Kind::missing_element>},
@@ -248,6 +248,6 @@ std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml) {
   return checker.take();
 }
 
-std::span<const SourceRule> schema_rules() { return kRules; }
+std::span<const SourceRule> schema_rules() { return kSchemaRules; }
 
 }  // namespace roadbed::map::rules::open_drive

@@ -33,12 +33,12 @@ Finding& add(Report& report, const Source& source, const RoadSource& road, pugi:
 }
 
 /// Files round lengths; a thing at the very end of its road is on it.
-constexpr double kSameStation = 0.01;  // [m]
+constexpr double kAtEnd_m = 0.01;
 
 void find_stations_off(const Source& source, const char* parent, const char* name, Report& report) {
   for_each(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
     const double s_m = source.number(node, "s");
-    if (!(s_m < -kSameStation || s_m > road.length_m + kSameStation)) return;
+    if (!(s_m < -kAtEnd_m || s_m > road.length_m + kAtEnd_m)) return;
     add(report, source, road, node,
         fmt::format("is at s {:.2f} m of road {}, which is {:.2f} m long; correct s or the road",
                     s_m, road.id, road.length_m));
@@ -57,7 +57,7 @@ void objects_off_station(const Source& source, const ValidateOptions&, Report& r
 const SectionSource* section_at(const RoadSource& road, double s_m) {
   if (road.sections.empty()) return nullptr;
   const auto after =
-      std::upper_bound(road.sections.begin() + 1, road.sections.end(), s_m + kSameStation,
+      std::upper_bound(road.sections.begin() + 1, road.sections.end(), s_m + kAtEnd_m,
                        [](double s, const SectionSource& section) { return s < section.s_m; });
   return &*std::prev(after);
 }
@@ -236,7 +236,7 @@ void absurd_speeds(const Source& source, const ValidateOptions& options, Report&
   });
 }
 
-constexpr std::array<SourceRule, 11> kRules = {{
+constexpr std::array<SourceRule, 11> kSignalRules = {{
     {{"signal.station", {}, Severity::warning, "a signal's s is not on its road"},
      signals_off_station},
     {{"object.station", {}, Severity::warning, "an object's s is not on its road"},
@@ -279,6 +279,6 @@ constexpr std::array<SourceRule, 11> kRules = {{
 
 }  // namespace
 
-std::span<const SourceRule> signal_rules() { return kRules; }
+std::span<const SourceRule> signal_rules() { return kSignalRules; }
 
 }  // namespace roadbed::map::rules::open_drive

@@ -48,6 +48,8 @@ struct SectionSource {
 
   /// The first lane of that id.
   const LaneSource* find(int id) const;
+  /// Whether it counts for the one side only that it has lanes on.
+  bool is_single_sided() const { return node.attribute("singleSide").as_bool(); }
 };
 
 struct RoadSource {

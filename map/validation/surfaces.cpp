@@ -95,7 +95,7 @@ void lanes_far_away(const RoadMap& road_map, const ValidateOptions&, Report& rep
   }
 }
 
-constexpr std::array<MapRule, 2> kRules = {{
+constexpr std::array<MapRule, 2> kSurfaceRules = {{
     {{"geometry.overlap", "asam.net:xodr:1.4.0:road.no_overlap_outside_junction", Severity::warning,
       "drivable lanes of two roads lie on top of each other for --min-overlap, outside junctions"},
      overlapping_lanes},
@@ -108,6 +108,6 @@ constexpr std::array<MapRule, 2> kRules = {{
 
 }  // namespace
 
-std::span<const MapRule> surface_rules() { return kRules; }
+std::span<const MapRule> surface_rules() { return kSurfaceRules; }
 
 }  // namespace roadbed::map::rules
