@@ -1,56 +1,141 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <xxhash.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <filesystem>
-#include <optional>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/input_error.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/tools/command.h"
-#include "roadbed/tools/report/from_drive.h"
-#include "roadbed/tools/report/report.h"
-#include "roadbed/tools/report/scene_svg.h"
-#include "roadbed/tools/simulation/closed_loop.h"
-#include "roadbed/tools/simulation/metrics.h"
+#include "roadbed/tools/report/drive_files.h"
 #include "roadbed/tools/support/output_file.h"
-#include "roadbed/tools/support/trajectory_csv.h"
 
 namespace roadbed::tools {
 namespace {
 
 namespace fs = std::filesystem;
 
-ReportSource source(const std::string& role, const fs::path& file) {
-  const std::string bytes = map::read_file(file);
-  return {.role = role,
-          .name = file.filename().string(),
-          .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
+void write_files(const DrivenScenario& driven, const fs::path& folder) {
+  for (const auto& [name, bytes] : driven.files) write_output(folder / name, bytes);
 }
 
-std::vector<ReportSource> sources_of(const Scenario& scenario) {
-  std::vector<ReportSource> sources{source("scenario", scenario.file),
-                                    source("map", scenario.map_file)};
-  for (const fs::path& file : scenario.occupancy_files) sources.push_back(source("cloud", file));
-  return sources;
+std::string timings_csv(const std::vector<double>& cycle_ms) {
+  std::string csv = "cycle,wall_ms\n";
+  for (std::size_t i = 0; i < cycle_ms.size(); ++i)
+    csv += fmt::format("{},{:.3f}\n", i, cycle_ms[i]);
+  return csv;
 }
 
-std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const World& world,
-                                              const Drive& drive) {
-  if (!world.field) return std::nullopt;
-  return planning::audit(*world.field, drive.trajectory, scenario.vehicle);
+/// One scenario of many: what became of it.
+struct Row {
+  fs::path file;
+  std::string outcome = {}, text = {};
+  double at_s = 0.0, slowest_ms = 0.0, median_ms = 0.0;
+  bool is_good = false;
+};
+
+/// Scenarios right in the folder, by name.
+std::vector<Row> rows_of(const fs::path& folder) {
+  std::vector<Row> rows;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string suffix = entry.path().extension().string();
+    if (suffix == ".json" || suffix == ".xml") rows.push_back({.file = entry.path()});
+  }
+  std::ranges::sort(rows, {}, &Row::file);
+  return rows;
+}
+
+void note_times(std::vector<double> cycle_ms, Row& row) {
+  if (cycle_ms.empty()) return;
+  std::ranges::sort(cycle_ms);
+  row.slowest_ms = cycle_ms.back();
+  row.median_ms = cycle_ms[cycle_ms.size() / 2];
+}
+
+/// Drives one; whatever goes wrong with it is its own outcome.
+void drive_row(const fs::path& output, Row& row) {
+  try {
+    const DrivenScenario driven = drive_scenario(row.file);
+    const fs::path folder = output / row.file.stem();
+    make_output_folder(folder, true);
+    write_files(driven, folder);
+    row.outcome = name(driven.verdict.outcome);
+    row.text = driven.verdict.text;
+    row.at_s = driven.verdict.at_s;
+    row.is_good = driven.verdict.outcome == Outcome::goal_reached;
+    note_times(driven.cycle_ms, row);
+  } catch (const std::exception& error) {
+    row.outcome = "unusable";
+    row.text = error.what();
+  }
+}
+
+class Progress {
+ public:
+  Progress(std::ostream& err, std::size_t all, bool is_shown)
+      : err_(err), all_(all), is_shown_(is_shown) {}
+
+  void done_one() {
+    const std::scoped_lock lock(mutex_);
+    ++done_;
+    if (!is_shown_) return;
+    constexpr std::size_t width = 40;
+    const std::size_t full = width * done_ / all_;
+    fmt::print(err_, "\r[{:#<{}}{:.<{}}] {}/{}{}", "", full, "", width - full, done_, all_,
+               done_ == all_ ? "\n" : "");
+    err_.flush();
+  }
+
+ private:
+  std::ostream& err_;
+  std::size_t all_, done_ = 0;
+  bool is_shown_;
+  std::mutex mutex_;
+};
+
+void drive_all(std::vector<Row>& rows, const fs::path& output, int threads, Progress& progress) {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < rows.size(); i = next++) {
+      drive_row(output, rows[i]);
+      progress.done_one();
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+}
+
+std::string table_csv(const std::vector<Row>& rows) {
+  std::string csv = "scenario,outcome,at_s,text\n";
+  for (const Row& row : rows) {
+    std::string text = row.text;
+    std::ranges::replace(text, '"', '\'');
+    csv +=
+        fmt::format("{},{},{:.2f},\"{}\"\n", row.file.stem().string(), row.outcome, row.at_s, text);
+  }
+  return csv;
 }
 
 class SimulateCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Drive a scenario in a closed loop and report on it");
-    arguments.add("SCENARIO", scenario_file_, "Scenario file (.json)").required();
+    arguments.description("Drive scenarios in a closed loop and report on them");
+    arguments
+        .add("SCENARIO", scenario_file_,
+             "Scenario file (.json, or CommonRoad .xml), or a folder of them")
+        .required();
     arguments
         .add("-o,--output", folder_,
-             "Folder for trajectory.csv, metrics.json, report.html and drive.svg")
+             "Folder for trajectory.csv, metrics.json, report.html and drive.svg, for CommonRoad "
+             "solution.xml too; of a folder, one for each scenario, and drives.csv")
         .required();
     arguments.add("--timings", timings_file_,
                   "File for the wall clock of each planning cycle (.csv)");
@@ -60,39 +145,61 @@ class SimulateCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!timings_file_.empty()) check_writable(timings_file_, force_);
-    const Scenario scenario = read_scenario(scenario_file_);
-    const World world = make_world(scenario);
+    return fs::is_directory(scenario_file_) ? run_folder(streams, common)
+                                            : run_one(streams, common);
+  }
+
+ private:
+  Exit run_one(const Streams& streams, const CommonOptions& common) const {
+    const DrivenScenario driven = drive_scenario(scenario_file_);
     make_output_folder(folder_, force_);
-    std::string timings = "cycle,wall_ms\n";
-    int cycle = 0;
-    const Drive driven =
-        drive(scenario, world,
-              {.on_cycle = [&](double ms) { timings += fmt::format("{},{:.3f}\n", cycle++, ms); }});
-    const auto audit = audit_of(scenario, world, driven);
-    write(scenario, world, driven, audit);
-    if (!timings_file_.empty()) write_output(timings_file_, timings);
-    fmt::print(streams.out, "{}: {}\n", scenario.name, driven.verdict.text);
-    if (audit) fmt::print(streams.out, "occupancy: {}\n", planning::name(audit->verdict));
+    write_files(driven, folder_);
+    if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
+    fmt::print(streams.out, "{}: {}\n", driven.name, driven.verdict.text);
+    if (driven.audit) {
+      fmt::print(streams.out, "occupancy: {}\n", planning::name(driven.audit->verdict));
+    }
     if (!common.quiet) {
       fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
     }
     return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::failed;
   }
 
- private:
-  void write(const Scenario& scenario, const World& world, const Drive& driven,
-             const std::optional<planning::AuditReport>& audit) const {
-    const ReportInput report = report_of(
-        scenario, world, driven,
-        {.command = fmt::format("roadbed simulate {} -o DIR", scenario_file_.filename().string()),
-         .version = "roadbed " ROADBED_VERSION,
-         .sources = sources_of(scenario),
-         .audit = audit});
-    write_output(folder_ / "trajectory.csv", write_trajectory_csv(driven.trajectory));
-    write_output(folder_ / "metrics.json",
-                 metrics_of(scenario, world, driven, audit).dump(2) + "\n");
-    write_output(folder_ / "report.html", drive_report_html(report));
-    write_output(folder_ / "drive.svg", drive_scene_svg(report));
+  Exit run_folder(const Streams& streams, const CommonOptions& common) const {
+    std::vector<Row> rows = rows_of(scenario_file_);
+    if (rows.empty()) {
+      throw map::InputError({.file = scenario_file_.string(),
+                             .place = {},
+                             .element = {},
+                             .found = "no scenario",
+                             .needed = "files that end in .json or .xml",
+                             .remedy = "give another folder"});
+    }
+    make_output_folder(folder_, force_);
+    Progress progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    drive_all(rows, folder_, common.threads, progress);
+    write_output(folder_ / "drives.csv", table_csv(rows));
+    if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
+    print_table(streams.out, rows);
+    const bool all_good = std::ranges::all_of(rows, &Row::is_good);
+    return all_good ? Exit::ok : Exit::failed;
+  }
+
+  static std::string folder_timings_csv(const std::vector<Row>& rows) {
+    std::string csv = "scenario,median_ms,slowest_ms\n";
+    for (const Row& row : rows) {
+      csv += fmt::format("{},{:.3f},{:.3f}\n", row.file.stem().string(), row.median_ms,
+                         row.slowest_ms);
+    }
+    return csv;
+  }
+
+  static void print_table(std::ostream& out, const std::vector<Row>& rows) {
+    for (const Row& row : rows) {
+      fmt::print(out, "{:32} {:13} {}\n", row.file.stem().string(), row.outcome, row.text);
+    }
+    fmt::print(out, "{} of {} reach their goal\n", std::ranges::count_if(rows, &Row::is_good),
+               rows.size());
   }
 
   fs::path scenario_file_, folder_, timings_file_;

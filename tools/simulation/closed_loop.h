@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "roadbed/planning/speed_ceiling.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
@@ -16,6 +17,9 @@ struct LoopOptions {
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
 };
+
+/// Greatest speeds along the world's line for the scenario's vehicle and options.
+planning::SpeedCeiling ceiling_of(const Scenario& scenario, const World& world);
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
 /// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.

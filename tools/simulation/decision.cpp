@@ -15,6 +15,8 @@ constexpr double kAtRest_mps = 0.3;
 constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
 constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
 constexpr double kFollowSlack_mps = 2.0;
+constexpr double kBrakes_mps2 = 0.5;  // less is no braking
+constexpr double kFar_m = 1e4;
 
 struct Option {
   SpeedTarget now, ahead;  ///< at the station, and where the actuator will have answered
@@ -48,18 +50,28 @@ Option by_path(const SpeedQuestion& q, double ahead_m, double deceleration) {
           fmt::format("no candidate is feasible, the last path is good for {:.1f} m", left_m)};
 }
 
-/// In the lead's frame the approach is a stop: at the gap that belongs to the lead's speed.
+/// Until a braking lead will stand if it brakes on; far for one that does not brake.
+double stopping_way_m(const Lead& lead) {
+  if (lead.acceleration_mps2 > -kBrakes_mps2 || lead.speed_mps <= 0.0) return kFar_m;
+  return 0.5 * lead.speed_mps * lead.speed_mps / -lead.acceleration_mps2;
+}
+
+/// In the lead's frame the approach is a stop, at the gap that belongs to the lead's speed; behind
+/// a lead that brakes it is one in the road's frame, where the lead will stand.
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   const double lead_mps = std::max(0.0, q.lead->speed_mps);
   const double room = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
   const double closing_m =
       std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
-  const auto approach = [&](double room_m) {
-    SpeedTarget target = planning::stopping_speed(room_m, options.deceleration_mps2);
+  const double stop_m = q.lead->gap_m - options.standstill_gap_m + stopping_way_m(*q.lead);
+  const auto approach = [&](double driven_m, double closed_m) {
+    SpeedTarget target = planning::stopping_speed(room - closed_m, options.deceleration_mps2);
     target.speed_mps += lead_mps;
-    return target;
+    const SpeedTarget stop = planning::stopping_speed(stop_m - driven_m, options.deceleration_mps2);
+    return stop.speed_mps < target.speed_mps ? stop : target;
   };
-  return {approach(room), approach(room - closing_m), Behaviour::follow,
+  return {approach(0.0, 0.0), approach(preview_m(q, options.preview_s), closing_m),
+          Behaviour::follow,
           fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
                       q.lead->speed_mps)};
 }

@@ -8,6 +8,7 @@ namespace {
 using geometry::Rectangle;
 
 constexpr double kStep_m = 0.5;
+constexpr double kSeenFor_s = 0.3;    // a lead's acceleration is taken over the last moments
 constexpr double kMostStretch = 1.5;  // of a path against its line, outside of a bend
 constexpr int kHalvings = 8;          // 0.5 m to 2 mm
 
@@ -80,8 +81,12 @@ std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_a
     if (!touch) continue;
     const double heading = path.pose_at(*touch).heading_rad;
     within_m = *touch - s_m;
-    nearest = {
-        .obstacle = i, .gap_m = within_m, .speed_mps = speed_along(obstacles[i], t_s, heading)};
+    const double speed = speed_along(obstacles[i], t_s, heading);
+    nearest = {.obstacle = i,
+               .gap_m = within_m,
+               .speed_mps = speed,
+               .acceleration_mps2 =
+                   (speed - speed_along(obstacles[i], t_s - kSeenFor_s, heading)) / kSeenFor_s};
   }
   return nearest;
 }

@@ -14,9 +14,10 @@ namespace roadbed::tools {
 /// The first obstacle that the vehicle would touch if it drove on along its path and everything
 /// else stood still.
 struct Lead {
-  std::size_t obstacle = 0;  ///< index
-  double gap_m = 0.0;        ///< that the vehicle can still drive, along the reference line
-  double speed_mps = 0.0;    ///< of the obstacle along the path; negative if it comes nearer
+  std::size_t obstacle = 0;        ///< index
+  double gap_m = 0.0;              ///< that the vehicle can still drive, along the reference line
+  double speed_mps = 0.0;          ///< of the obstacle along the path; negative if it comes nearer
+  double acceleration_mps2 = 0.0;  ///< of the same, over the last 0.3 s
 };
 
 /// @param s_m            station of the rear axle.

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "roadbed/tools/simulation/comfort.h"
+#include "roadbed/tools/simulation/encounters.h"
+
 namespace roadbed::tools {
 namespace {
 
@@ -49,6 +52,16 @@ ordered_json least_clearance(const Drive& drive) {
   return {{"least_clearance_m", nearest->clearance_m}, {"least_clearance_at_s", nearest->t_s}};
 }
 
+/// ∫ max(0, v − limit) dt over the rows.
+double over_speed_m(const Drive& drive) {
+  double sum = 0.0;
+  for (const DriveSample& sample : drive.samples) {
+    sum += kCycle_s *
+           std::max(0.0, drive.trajectory.at(sample.t_s).speed_mps - sample.speed_limit_mps);
+  }
+  return sum;
+}
+
 ordered_json motion(const Drive& drive) {
   const auto& rows = drive.trajectory.points();
   return {{"largest_speed_mps", largest(rows, [](const auto& row) { return row.speed_mps; })},
@@ -57,6 +70,7 @@ ordered_json motion(const Drive& drive) {
                                                return drive.trajectory.at(sample.t_s).speed_mps -
                                                       sample.speed_limit_mps;
                                              })},
+          {"over_speed_m", over_speed_m(drive)},
           {"largest_acceleration_mps2",
            largest(rows, [](const auto& row) { return row.acceleration_mps2; })},
           {"largest_deceleration_mps2",
@@ -64,6 +78,33 @@ ordered_json motion(const Drive& drive) {
           {"largest_lateral_acceleration_mps2", largest(rows, [](const TrajectoryPoint& row) {
              return std::abs(row.curvature_per_m) * row.speed_mps * row.speed_mps;
            })}};
+}
+
+ordered_json comfort(const Drive& drive) {
+  const Comfort found = comfort_of(drive.trajectory);
+  return {{"comfort",
+           {{"least_longitudinal_mps2", found.least_longitudinal_mps2},
+            {"most_longitudinal_mps2", found.most_longitudinal_mps2},
+            {"most_lateral_mps2", found.most_lateral_mps2},
+            {"most_yaw_acceleration_radps2", found.most_yaw_acceleration_radps2},
+            {"most_yaw_rate_radps", found.most_yaw_rate_radps},
+            {"most_longitudinal_jerk_mps3", found.most_longitudinal_jerk_mps3},
+            {"most_jerk_mps3", found.most_jerk_mps3},
+            {"is_comfortable", found.is_comfortable()}}}};
+}
+
+ordered_json encounter(const char* key, const std::optional<Encounter>& found) {
+  if (!found) return {{std::string(key) + "_s", nullptr}};
+  return {{std::string(key) + "_s", found->time_s}, {std::string(key) + "_at_s", found->at_s}};
+}
+
+ordered_json encounters(const Scenario& scenario, const World& world, const Drive& drive) {
+  ordered_json all =
+      encounter("least_time_to_collision", least_time_to_collision(drive, world, scenario.vehicle));
+  all.update(encounter("least_headway", least_headway(drive)));
+  all["wrong_way_m"] = wrong_way_m(drive);
+  all["progress_m"] = drive.samples.back().s_m - drive.samples.front().s_m;
+  return all;
 }
 
 ordered_json tracking(const Drive& drive) {
@@ -95,6 +136,41 @@ ordered_json cycles(const Drive& drive) {
           {"behaviour", per_behaviour}};
 }
 
+std::string_view name(EventLevel level) {
+  switch (level) {
+    case EventLevel::info:
+      return "info";
+    case EventLevel::warning:
+      return "warning";
+    case EventLevel::fault:
+      return "fault";
+  }
+  return "";
+}
+
+ordered_json events(const Drive& drive) {
+  ordered_json list = ordered_json::array();
+  for (const DriveEvent& event : drive.events) {
+    list.push_back({{"t_s", event.t_s}, {"level", name(event.level)}, {"text", event.text}});
+  }
+  return list;
+}
+
+/// Where the behaviour changes, with the reason at that time.
+ordered_json decisions(const Drive& drive) {
+  ordered_json list = ordered_json::array();
+  const DriveCycle* last = nullptr;
+  for (const DriveCycle& cycle : drive.cycles) {
+    if (!last || last->behaviour != cycle.behaviour) {
+      list.push_back({{"t_s", cycle.t_s},
+                      {"behaviour", tools::name(cycle.behaviour)},
+                      {"reason", cycle.reason}});
+    }
+    last = &cycle;
+  }
+  return list;
+}
+
 ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
   if (!audit) return nullptr;
   return {{"verdict", std::string(planning::name(audit->verdict))},
@@ -120,10 +196,12 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
       {"driven_m", driven_m(drive.trajectory)},
       {"to_goal_m", world.line.goal_s_m() - drive.samples.back().s_m},
   };
-  for (const ordered_json& part :
-       {least_clearance(drive), motion(drive), tracking(drive), cycles(drive)}) {
+  for (const ordered_json& part : {least_clearance(drive), encounters(scenario, world, drive),
+                                   motion(drive), comfort(drive), tracking(drive), cycles(drive)}) {
     metrics.update(part);
   }
+  metrics["decisions"] = decisions(drive);
+  metrics["events"] = events(drive);
   metrics["audit"] = audit_summary(audit);
   return metrics;
 }

@@ -24,7 +24,9 @@ Observer::Observer(const World& world, const geometry::VehicleShape& vehicle)
 
 void Observer::look(double t_s, const VehicleState& truth) {
   const geometry::Rectangle body = geometry::body_at(truth.motion.pose, vehicle_);
-  for (const planning::Obstacle& obstacle : world_.obstacles) {
+  for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
+    if (!world_.is_there(i, t_s)) continue;
+    const planning::Obstacle& obstacle = world_.obstacles[i];
     const geometry::Rectangle other = rectangle_at(obstacle, t_s);
     const double bound = (other.centre - body.centre).norm() - other.radius_m() - body.radius_m();
     if (bound >= clearance_m_) continue;

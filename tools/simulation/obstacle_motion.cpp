@@ -20,15 +20,6 @@ double turn_of(const map::Lane& lane) {
   return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
 }
 
-std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from) {
-  std::optional<map::LaneId> best;
-  for (const map::LaneId next : road_map.graph().of(from).successors) {
-    if (!map::is_drivable(road_map.lane(next).type)) continue;
-    if (!best || turn_of(road_map.lane(next)) < turn_of(road_map.lane(*best))) best = next;
-  }
-  return best;
-}
-
 void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line, double from_m) {
   points.push_back(line.at(from_m));
   for (std::size_t i = 0; i < line.points().size(); ++i) {
@@ -55,6 +46,15 @@ void fill_speeds(std::vector<TrajectoryPoint>& points) {
 }
 
 }  // namespace
+
+std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from) {
+  std::optional<map::LaneId> best;
+  for (const map::LaneId next : road_map.graph().of(from).successors) {
+    if (!map::is_drivable(road_map.lane(next).type)) continue;
+    if (!best || turn_of(road_map.lane(next)) < turn_of(road_map.lane(*best))) best = next;
+  }
+  return best;
+}
 
 geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlace& from,
                                double length_m) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/polyline.h"
@@ -12,6 +13,9 @@ namespace roadbed::tools {
 
 /// Pose of a centre at a distance along its way, in the map.
 using Way = std::function<geometry::Pose2(double distance_m)>;
+
+/// Of the drivable lanes that follow on a lane, the one that turns least (of equal ones the first).
+std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from);
 
 /// Centres of the lanes from a place on, at least `length_m` long unless the lanes end before;
 /// where lanes part, along the one that turns least (of equal ones the first).

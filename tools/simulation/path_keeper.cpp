@@ -12,7 +12,10 @@ using planning::LateralState;
 using planning::Rejection;
 
 constexpr double kReturn_m = 20.0;
-constexpr double kBeyondTheEdge_m[] = {0.0, 0.3, 0.6};
+constexpr double kCoarse_m = 0.6;  // between ends of what is tried after the first plan
+constexpr double kCrawl_mps = 1.5, kBraking_mps2 = 5.0;
+constexpr double kHoldStep_m = 1.0;
+constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
 
 /// 1 up to `from`, 0 from `from` + kReturn_m on.
 double fade(double s_m, double from_m) {
@@ -43,7 +46,9 @@ PathKeeper::PathKeeper(const Scenario& scenario, const World& world, const Bound
     : scenario_(scenario),
       world_(world),
       bounds_(bounds),
-      line_(straight_past(world.line, world.line.goal_s_m() + scenario.vehicle.front_m() + 1.0)) {}
+      line_(straight_past(world.line,
+                          world.goal ? world.line.length_m()
+                                     : world.line.goal_s_m() + scenario.vehicle.front_m() + 1.0)) {}
 
 LateralState PathKeeper::start_state(const VehicleState& measured) {
   const control::SingleTrackState& motion = measured.motion;
@@ -61,17 +66,23 @@ LateralState PathKeeper::start_state(const VehicleState& measured) {
   return from_measurement_ ? here : planned;
 }
 
-void PathKeeper::plan(double t_s, const VehicleState& measured, double target_mps) {
-  const LateralState start = start_state(measured);
+void PathKeeper::plan(const Question& question) {
+  locate(question.measured);
+  take(propose(question, {}));
+}
+
+PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets& offsets,
+                                         bool may_leave_lanes) const {
   planning::PlanOptions options;
-  options.clearance_m = scenario_.options.clearance_m;
+  options.min_d_m = offsets.least_m;
+  options.max_d_m = offsets.most_m;
+  options.min_l_m = question.ends.least_m;
+  options.max_l_m = question.ends.most_m;
   planning::PlanInput input{.line = line_,
-                            .start = start,
-                            .start_t_s = t_s,
-                            .speed = {.speed_mps = measured.motion.speed_mps,
-                                      .acceleration_mps2 = measured.acceleration_mps2,
-                                      .target_mps = target_mps},
-                            .obstacles = world_.obstacles,
+                            .start = start_,
+                            .start_t_s = question.t_s,
+                            .speed = question.speed,
+                            .obstacles = question.obstacles,
                             .static_field = world_.field.get(),
                             .origin_in_source = world_.road_map.origin_in_source(),
                             .previous_d_m = {}};
@@ -79,26 +90,79 @@ void PathKeeper::plan(double t_s, const VehicleState& measured, double target_mp
     input.previous_d_m = [this](double s_m) { return path_->lateral_at(s_m).d_m; };
   }
   // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
-  for (const double beyond_m : kBeyondTheEdge_m) {
-    options.border_margin_m = -beyond_m;
-    plan_ = planning::plan_path(input, scenario_.vehicle, options);
-    beyond_the_edge_m_ = beyond_m;
-    if (plan_.chosen || something_is_in_the_way()) break;
+  Proposal proposal;
+  for (const Room& room : bounds_.rooms) {
+    if (room.border_m < 0.0 && !may_leave_lanes) break;
+    options.border_margin_m = room.border_m;
+    options.clearance_m = room.clearance_m;
+    for (const planning::SpeedPlan& speed : speeds_to_try(question)) {
+      input.speed = speed;
+      proposal = {planning::plan_path(input, scenario_.vehicle, options),
+                  std::max(0.0, -room.border_m), options.max_l_m};
+      if (proposal.plan.chosen || (in_the_way(proposal.plan) && !bounds_.squeezes_past)) {
+        return proposal;
+      }
+      if (bounds_.squeezes_past) options.l_step_m = kCoarse_m;
+    }
   }
+  return proposal;
+}
+
+/// A bend or a gap that is too sharp at the planned speed may be driven while braking.
+std::vector<planning::SpeedPlan> PathKeeper::speeds_to_try(const Question& question) const {
+  std::vector<planning::SpeedPlan> speeds{question.speed};
+  if (bounds_.squeezes_past && question.speed.speed_mps > 2.0 * kCrawl_mps) {
+    speeds.push_back({.speed_mps = question.speed.speed_mps,
+                      .acceleration_mps2 = -kBraking_mps2,
+                      .target_mps = kCrawl_mps});
+  }
+  return speeds;
+}
+
+/// Past the plan's end its offset is held as long as the corridor has room for it.
+double PathKeeper::held_until_m(const planning::Plan& plan) const {
+  const double offset = plan.chosen->end_d_m;
+  double s_m = plan.start.s_m + plan.chosen->end_l_m;
+  for (; s_m < world_.line.length_m(); s_m += kHoldStep_m) {
+    const planning::Corridor corridor = world_.line.corridor_at(s_m);
+    const double room_m = offset > 0.0 ? corridor.left_m : corridor.right_m;
+    if (std::abs(offset) + 0.5 * scenario_.vehicle.width_m > room_m) break;
+  }
+  return std::max(plan.start.s_m + plan.chosen->end_l_m, s_m - kReturn_m);
+}
+
+PlannedPath PathKeeper::path_of(const Proposal& proposal) const {
+  if (!bounds_.squeezes_past || std::abs(proposal.plan.chosen->end_d_m) < kHeldOffset_m) {
+    return PlannedPath(world_.line,
+                       [kept = proposal.plan](double s_m) { return kept.lateral_at(s_m); });
+  }
+  const double held_m = held_until_m(proposal.plan);
+  return PlannedPath(world_.line, [kept = proposal.plan, held_m](double s_m) {
+    LateralState lateral = kept.lateral_at(s_m);
+    lateral.d_m *= fade(s_m, held_m);
+    return lateral;
+  });
+}
+
+void PathKeeper::take(const Proposal& proposal) {
+  plan_ = proposal.plan;
+  beyond_the_edge_m_ = proposal.beyond_the_edge_m;
   if (plan_.chosen) {
     path_end_s_m_ = plan_.start.s_m + plan_.chosen->end_l_m;
-    checked_to_s_m_ = plan_.start.s_m + options.max_l_m;
-    path_.emplace(world_.line, [kept = plan_](double s_m) { return kept.lateral_at(s_m); });
+    checked_to_s_m_ = plan_.start.s_m + proposal.checked_m;
+    path_.emplace(path_of(proposal));
   } else if (!path_) {
-    path_end_s_m_ = checked_to_s_m_ = start.s_m;
+    path_end_s_m_ = checked_to_s_m_ = start_.s_m;
     path_.emplace(world_.line,
-                  [d_m = start.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
+                  [d_m = start_.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
   }
 }
 
-bool PathKeeper::something_is_in_the_way() const {
-  return plan_.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
+bool PathKeeper::in_the_way(const planning::Plan& plan) const {
+  return plan.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
 }
+
+bool PathKeeper::something_is_in_the_way() const { return in_the_way(plan_); }
 
 PlannedPath PathKeeper::expected_path() const {
   return PlannedPath(world_.line, [path = *path_, end_m = path_end_s_m_](double s_m) {

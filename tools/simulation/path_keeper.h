@@ -14,16 +14,61 @@ namespace roadbed::tools {
 /// vehicle follows it well enough, and keeps the last path when nothing is feasible.
 class PathKeeper {
  public:
+  /// What is kept from the corridor's edges (less than 0: the body may stick out so far) and from
+  /// obstacles.
+  struct Room {
+    double border_m, clearance_m;
+  };
+
   struct Bounds {
     double tracking_error_m;
     double heading_error_rad;
+    /// What is tried in turn until something is feasible.
+    std::vector<Room> rooms;
+    /// Whether an obstacle in the way is a reason to ask for less room, or to wait.
+    bool squeezes_past = false;
   };
 
   PathKeeper(const Scenario& scenario, const World& world, const Bounds& bounds);
 
-  /// Plans from where the vehicle is measured to be.
-  /// @param target_mps  the set speed of the last cycle.
-  void plan(double t_s, const VehicleState& measured, double target_mps);
+  /// How far ahead candidates may end.
+  struct Ends {
+    double least_m = planning::PlanOptions{}.min_l_m, most_m = planning::PlanOptions{}.max_l_m;
+  };
+
+  /// What is planned from and against.
+  struct Question {
+    double t_s;
+    const VehicleState& measured;
+    planning::SpeedPlan speed;  ///< the longitudinal plan so far
+    Ends ends = {};
+    const std::vector<planning::Obstacle>& obstacles;
+  };
+
+  /// End offsets that candidates may have.
+  struct Offsets {
+    double least_m = planning::PlanOptions{}.min_d_m, most_m = planning::PlanOptions{}.max_d_m;
+  };
+
+  /// A plan to look at before it is taken.
+  struct Proposal {
+    planning::Plan plan;
+    double beyond_the_edge_m = 0.0;
+    double checked_m = 0.0;  ///< from the start on
+  };
+
+  /// Plans from where the vehicle is measured to be, and takes the plan.
+  void plan(const Question& question);
+
+  /// Where the vehicle is: the start of what is proposed until the next call.
+  void locate(const VehicleState& measured) { start_ = start_state(measured); }
+
+  /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too.
+  Proposal propose(const Question& question, const Offsets& offsets,
+                   bool may_leave_lanes = true) const;
+  void take(const Proposal& proposal);
+  /// The path of a proposal. @pre it has a candidate
+  PlannedPath path_of(const Proposal& proposal) const;
 
   /// Of the last cycle; `chosen` is empty if nothing was feasible.
   const planning::Plan& last_plan() const { return plan_; }
@@ -50,11 +95,15 @@ class PathKeeper {
 
  private:
   planning::LateralState start_state(const VehicleState& measured);
+  bool in_the_way(const planning::Plan& plan) const;
+  std::vector<planning::SpeedPlan> speeds_to_try(const Question& question) const;
+  double held_until_m(const planning::Plan& plan) const;
 
   const Scenario& scenario_;
   const World& world_;
   Bounds bounds_;
   planning::LineView line_;
+  planning::LateralState start_;
   planning::Plan plan_;
   std::optional<PlannedPath> path_;
   double path_end_s_m_ = 0.0;

@@ -133,6 +133,14 @@ void refuse_overlap(const Scenario& scenario, const World& world) {
 
 }  // namespace
 
+std::vector<Obstacle> World::obstacles_at(double t_s) const {
+  std::vector<Obstacle> there;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (is_there(i, t_s)) there.push_back(obstacles[i]);
+  }
+  return there;
+}
+
 World make_world(const Scenario& scenario) {
   map::RoadMap road_map = map::load_map(scenario.map_file);
   const Place start = find(scenario, road_map, scenario.start);

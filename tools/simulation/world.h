@@ -12,8 +12,14 @@
 #include "roadbed/planning/reference_line.h"
 #include "roadbed/planning/route.h"
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/timed_goal.h"
 
 namespace roadbed::tools {
+
+/// Seconds of the drive during which an obstacle is there.
+struct Presence {
+  double from_s = 0.0, to_s = 0.0;
+};
 
 /// What a scenario means: its files loaded, its places found, its obstacles set in motion. All
 /// poses are in the map's frame.
@@ -25,6 +31,16 @@ struct World {
   planning::Route route;
   planning::ReferenceLine line;
   std::vector<planning::Obstacle> obstacles;  ///< motions last for the scenario's duration
+  std::vector<Presence> presence = {};        ///< one per obstacle; empty: always there
+  std::optional<TimedGoal> goal = {};         ///< none: to stand at the end of the route
+  double road_end_s_m = 1e9;                  ///< station at which the lanes behind the goal end
+
+  bool is_there(std::size_t obstacle, double t_s) const {
+    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
+  }
+
+  /// Obstacles that are there at a time.
+  std::vector<planning::Obstacle> obstacles_at(double t_s) const;
 };
 
 /// @throws InputError if a file is unusable, a place is not on the map, there is no route to the

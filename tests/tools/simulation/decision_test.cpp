@@ -56,6 +56,19 @@ TEST(Decision, ApproachesALeadDownToItsSpeedAndGap) {
   EXPECT_EQ(ask(question).behaviour, Behaviour::cruise);
 }
 
+TEST(Decision, BrakesForALeadThatBrakesToAStop) {
+  SpeedQuestion question = free_road(10.0);
+  question.lead = Lead{.gap_m = 35.0, .speed_mps = 8.0};
+  EXPECT_EQ(ask(question).behaviour, Behaviour::cruise);
+  question.lead->acceleration_mps2 = -4.0;  // it stands after 8 m: 38 m are left to stop in
+  question.speed_mps = 12.0;
+  const SpeedAnswer answer = ask(question);
+  EXPECT_LT(answer.set.speed_mps, 10.7);
+  EXPECT_EQ(answer.behaviour, Behaviour::follow);
+  question.lead->gap_m = 20.0;
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -1.5, 1e-12);
+}
+
 TEST(Decision, WaitsBehindAStandingLeadAndFollowsWhenItLeaves) {
   SpeedQuestion question = free_road(0.0);
   question.lead = Lead{.gap_m = 5.2};

@@ -1,0 +1,82 @@
+#include "roadbed/tools/report/drive_files.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "roadbed/map/read_file.h"
+#include "roadbed/tools/report/from_drive.h"
+#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/scene_svg.h"
+#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/simulation/metrics.h"
+#include "roadbed/tools/simulation/solution_xml.h"
+#include "roadbed/tools/support/trajectory_csv.h"
+
+namespace roadbed::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+ReportSource source(const std::string& role, const fs::path& file) {
+  const std::string bytes = map::read_file(file);
+  return {.role = role,
+          .name = file.filename().string(),
+          .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
+}
+
+std::vector<ReportSource> sources_of(const Scenario& scenario) {
+  std::vector<ReportSource> sources{source("scenario", scenario.file)};
+  if (scenario.map_file != scenario.file) sources.push_back(source("map", scenario.map_file));
+  for (const fs::path& file : scenario.occupancy_files) sources.push_back(source("cloud", file));
+  return sources;
+}
+
+std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const World& world,
+                                              const Drive& drive) {
+  if (!world.field) return std::nullopt;
+  return planning::audit(*world.field, drive.trajectory, scenario.vehicle);
+}
+
+struct Driven {
+  DrivenScenario result;
+  Drive drive;
+};
+
+Driven drive_and_describe(const Scenario& scenario, const World& world) {
+  Driven driven;
+  DrivenScenario& result = driven.result;
+  driven.drive =
+      drive(scenario, world, {.on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
+  result.name = scenario.name;
+  result.verdict = driven.drive.verdict;
+  result.audit = audit_of(scenario, world, driven.drive);
+  const ReportInput report = report_of(
+      scenario, world, driven.drive,
+      {.command = fmt::format("roadbed simulate {} -o DIR", scenario.file.filename().string()),
+       .version = "roadbed " ROADBED_VERSION,
+       .sources = sources_of(scenario),
+       .audit = result.audit});
+  result.files = {
+      {"trajectory.csv", write_trajectory_csv(driven.drive.trajectory)},
+      {"metrics.json", metrics_of(scenario, world, driven.drive, result.audit).dump(2) + "\n"},
+      {"report.html", drive_report_html(report)},
+      {"drive.svg", drive_scene_svg(report)}};
+  return driven;
+}
+
+}  // namespace
+
+DrivenScenario drive_scenario(const fs::path& file) {
+  if (is_common_road(file)) {
+    const CommonRoadDrive problem = read_common_road_drive(file);
+    Driven driven = drive_and_describe(problem.scenario, problem.world);
+    driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
+    return std::move(driven.result);
+  }
+  const Scenario scenario = read_scenario(file);
+  const World world = make_world(scenario);
+  return drive_and_describe(scenario, world).result;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roadbed/planning/audit.h"
+#include "roadbed/tools/simulation/drive.h"
+
+namespace roadbed::tools {
+
+/// A drive and everything that is written of it.
+struct DrivenScenario {
+  std::string name;
+  DriveVerdict verdict;
+  std::optional<planning::AuditReport> audit;
+  std::vector<std::pair<std::string, std::string>> files;  ///< name and bytes, for one folder
+  std::vector<double> cycle_ms;                            ///< wall clock of each planning cycle
+};
+
+/// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:
+/// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml.
+/// @throws InputError if the scenario is unusable.
+DrivenScenario drive_scenario(const std::filesystem::path& file);
+
+}  // namespace roadbed::tools

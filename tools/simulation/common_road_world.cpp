@@ -1,0 +1,337 @@
+#include "roadbed/tools/simulation/common_road_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <utility>
+
+#include "roadbed/geometry/rectangle.h"
+#include "roadbed/map/formats/common_road_scenario_reader.h"
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/read_file.h"
+#include "roadbed/planning/match_place.h"
+#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
+#include "roadbed/tools/simulation/recorded_obstacle.h"
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::Pose2;
+using map::LanePlace;
+using map::common_road::ObstacleRole;
+using map::common_road::PlanningProblem;
+using map::common_road::State;
+using planning::Route;
+
+constexpr double kDefaultSpeed_mps = 50.0 / 3.6;
+constexpr double kStopping_s = 10.0;      // to come to rest after the goal is missed
+constexpr double kNothingAsked_s = 10.0;  // a drive without a goal
+constexpr double kRoadAhead_m = 120.0;    // beyond what is driven, to brake on
+constexpr double kBeyondGoal_m = 100.0;   // the line goes on past the goal
+constexpr double kNearGoal_m = 3.0;       // a region's middle may lie so far beside its lane
+
+struct Source {
+  std::string file;
+  const map::RoadMap& road_map;
+  const PlanningProblem& problem;
+  double step_s;
+
+  [[noreturn]] void refuse(const std::string& found, const std::string& needed,
+                           const std::string& remedy) const {
+    throw map::InputError({.file = file,
+                           .place = {},
+                           .element = "planning problem " + problem.id,
+                           .found = found,
+                           .needed = needed,
+                           .remedy = remedy});
+  }
+};
+
+double exact(const Source& source, const std::optional<map::common_road::Range<double>>& range,
+             const char* what) {
+  if (!range) {
+    source.refuse(fmt::format("an initial state without {}", what), "one number", "add it");
+  }
+  return 0.5 * (range->least + range->most);
+}
+
+/// CommonRoad gives the vehicle's centre.
+Pose2 rear_axle(const Source& source, const geometry::VehicleShape& vehicle) {
+  const State& start = source.problem.initial_state;
+  if (!start.position_m) {
+    source.refuse("an initial state without a point", "its position", "add it");
+  }
+  const Eigen::Vector2d place = source.road_map.to_map(*start.position_m);
+  const Pose2 centre{place.x(), place.y(), exact(source, start.heading_rad, "an orientation")};
+  return centre * Pose2{vehicle.rear_overhang_m - 0.5 * vehicle.length_m, 0.0, 0.0};
+}
+
+Window seconds(const map::common_road::Range<long>& steps, long start_step, double step_s) {
+  return {step_s * static_cast<double>(steps.least - start_step),
+          step_s * static_cast<double>(steps.most - start_step)};
+}
+
+Window window(const map::common_road::Range<double>& range) { return {range.least, range.most}; }
+
+GoalState goal_state(const Source& source, const State& from) {
+  GoalState state{.time_s = seconds(from.time_step, source.problem.initial_state.time_step.least,
+                                    source.step_s),
+                  .speed_mps = from.speed_mps ? window(*from.speed_mps) : Window{},
+                  .heading_rad = {},
+                  .region_in_source = from.region,
+                  .lanes = {}};
+  if (from.heading_rad) state.heading_rad = window(*from.heading_rad);
+  for (const std::string& name : from.lanelets) {
+    const auto lane = source.road_map.find_lane(name);
+    if (!lane) {
+      source.refuse(fmt::format("a goal on lanelet {}", name), "a lanelet of the file",
+                    "correct the reference");
+    }
+    state.lanes.push_back(*lane);
+  }
+  return state;
+}
+
+TimedGoal goal_of(const Source& source) {
+  TimedGoal goal{.step_s = source.step_s, .states = {}};
+  for (const State& state : source.problem.goals) goal.states.push_back(goal_state(source, state));
+  return goal;
+}
+
+/// Lanes that the vehicle's centre may be on, the best match first, at the rear axle's station.
+std::vector<LanePlace> start_places(const Source& source, const Pose2& start,
+                                    const geometry::VehicleShape& vehicle) {
+  const double ahead_m = 0.5 * vehicle.length_m - vehicle.rear_overhang_m;
+  const Eigen::Vector2d centre = start * Eigen::Vector2d(ahead_m, 0.0);
+  std::vector<LanePlace> places;
+  for (const planning::PlaceCandidate& match :
+       planning::match_place(source.road_map, centre, start.heading_rad)) {
+    if (match.verdict != planning::MatchVerdict::chosen &&
+        match.verdict != planning::MatchVerdict::possible) {
+      continue;
+    }
+    LanePlace place = match.place;
+    place.s_m = std::max(0.0, place.s_m - ahead_m);
+    places.push_back(place);
+  }
+  if (places.empty()) {
+    source.refuse("a start off the road", "a lane that a car may use there",
+                  "correct the initial state");
+  }
+  return places;
+}
+
+/// The last place of the way that is driven if no lane is chosen on purpose.
+LanePlace straight_ahead(const map::RoadMap& road_map, const LanePlace& from, double length_m) {
+  constexpr int kMostLanes = 1000;
+  LanePlace at = from;
+  for (int i = 0; i < kMostLanes; ++i) {
+    const double left_m = road_map.lane(at.lane).length_m() - at.s_m;
+    const std::optional<map::LaneId> next = straightest(road_map, at.lane);
+    if (left_m >= length_m || !next) {
+      at.s_m += std::min(left_m, length_m);
+      break;
+    }
+    length_m -= left_m;
+    at = {.lane = *next, .s_m = 0.0};
+  }
+  return at;
+}
+
+/// Lanes' length beyond a place, up to `length_m`.
+double road_after_m(const map::RoadMap& road_map, const LanePlace& from, double length_m) {
+  constexpr int kMostLanes = 1000;
+  double found_m = road_map.lane(from.lane).length_m() - from.s_m;
+  std::optional<map::LaneId> next = straightest(road_map, from.lane);
+  for (int i = 0; i < kMostLanes && next && found_m < length_m; ++i) {
+    found_m += road_map.lane(*next).length_m();
+    next = straightest(road_map, *next);
+  }
+  return std::min(found_m, length_m);
+}
+
+/// How far the vehicle may come until a time, so that lane changes are made before.
+double reach_m(double speed_mps, double limit_mps, double until_s) {
+  return std::max(speed_mps, limit_mps) * std::max(0.0, until_s);
+}
+
+/// Places of a goal state that a route may lead to.
+std::vector<LanePlace> goal_places(const Source& source, const GoalState& state) {
+  std::vector<LanePlace> places;
+  for (const map::LaneId lane : state.lanes) {
+    places.push_back({.lane = lane, .s_m = source.road_map.lane(lane).length_m()});
+  }
+  if (!state.region_in_source.empty()) {
+    const Eigen::Vector2d middle = source.road_map.to_map(middle_of(state.region_in_source));
+    std::optional<double> heading;
+    if (state.heading_rad) heading = 0.5 * (state.heading_rad->least + state.heading_rad->most);
+    for (const auto& match :
+         planning::match_place(source.road_map, middle, heading, {.reach_m = kNearGoal_m})) {
+      if (match.verdict == planning::MatchVerdict::chosen) places.push_back(match.place);
+    }
+  }
+  return places;
+}
+
+/// A lane goal is reached where the vehicle can be in time, not at the lane's end.
+LanePlace within_reach(const map::RoadMap& road_map, const Route& to_end, LanePlace place,
+                       double reach) {
+  const double entry_m = to_end.length_m - road_map.lane(place.lane).length_m();
+  const double s_m = std::max(reach - entry_m, 5.0);
+  place.s_m = std::min(place.s_m, s_m);
+  return place;
+}
+
+std::optional<Route> cheaper(std::optional<Route> a, std::optional<Route> b) {
+  if (!a || (b && b->cost_s < a->cost_s)) return b;
+  return a;
+}
+
+std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>& starts,
+                              const GoalState& state, double reach) {
+  std::optional<Route> best;
+  for (const LanePlace& goal : goal_places(source, state)) {
+    for (const LanePlace& start : starts) {
+      auto answer = planning::find_route(source.road_map, start, goal);
+      if (!answer.route) continue;
+      if (!state.lanes.empty()) {
+        const LanePlace near = within_reach(source.road_map, *answer.route, goal, reach);
+        if (auto nearer = planning::find_route(source.road_map, start, near); nearer.route) {
+          answer = std::move(nearer);
+        }
+      }
+      best = cheaper(std::move(best), std::move(answer.route));
+    }
+  }
+  return best;
+}
+
+Route route_of(const Source& source, const std::vector<LanePlace>& starts, const TimedGoal& goal,
+               double speed_mps) {
+  const double until_s = goal.latest_s().value_or(kNothingAsked_s);
+  const double reach = reach_m(speed_mps, kDefaultSpeed_mps, until_s);
+  std::optional<Route> best;
+  bool anywhere = goal.states.empty();
+  for (const GoalState& state : goal.states) {
+    anywhere = anywhere || state.is_anywhere();
+    if (!state.is_anywhere())
+      best = cheaper(std::move(best), route_to(source, starts, state, reach));
+  }
+  if (best) return *std::move(best);
+  if (!anywhere) {
+    source.refuse("a goal that no route leads to", "a way over lanes that a car may use",
+                  "correct the goal, or the lanelets' links");
+  }
+  const LanePlace end = straight_ahead(source.road_map, starts.front(), reach + kRoadAhead_m);
+  auto answer = planning::find_route(source.road_map, starts.front(), end);
+  if (!answer.route) source.refuse("no lane ahead: " + answer.reason, "a lane", "correct the map");
+  return *std::move(answer.route);
+}
+
+/// Where the file knows no limit: what towns allow, or what start and goal show to be usual.
+double usual_speed_mps(double start_mps, const TimedGoal& goal) {
+  double usual = std::max(kDefaultSpeed_mps, start_mps);
+  for (const GoalState& state : goal.states) {
+    if (std::isfinite(state.speed_mps.least)) usual = std::max(usual, state.speed_mps.least + 1.0);
+  }
+  return usual;
+}
+
+void add_obstacles(const map::common_road::Scenario& from, const Source& source, World& world) {
+  const long start_step = source.problem.initial_state.time_step.least;
+  for (const map::common_road::Obstacle& obstacle : from.obstacles) {
+    const bool can_be_hit =
+        obstacle.role == ObstacleRole::fixed || obstacle.role == ObstacleRole::dynamic;
+    if (!can_be_hit) continue;
+    RecordedObstacle recorded =
+        recorded_obstacle(obstacle, world.road_map, start_step, from.time_step_s);
+    world.obstacles.push_back(std::move(recorded.obstacle));
+    world.presence.push_back(recorded.presence);
+  }
+}
+
+void refuse_overlap(const Source& source, const World& world,
+                    const geometry::VehicleShape& vehicle) {
+  const geometry::Rectangle body = geometry::body_at(world.start, vehicle);
+  for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+    if (!world.is_there(i, 0.0)) continue;
+    if (geometry::distance_m(body, rectangle_at(world.obstacles[i], 0.0)) > 0.0) continue;
+    source.refuse(fmt::format("obstacle {} touches the ego at the start", world.obstacles[i].id),
+                  "room to start from", "move one of the two");
+  }
+}
+
+Scenario scenario_of(const std::filesystem::path& file, const std::string& benchmark_id,
+                     double speed_mps, const TimedGoal& goal) {
+  Scenario scenario;
+  scenario.file = scenario.map_file = file;
+  scenario.name = benchmark_id.empty() ? file.stem().string() : benchmark_id;
+  scenario.start_speed_mps = speed_mps;
+  const double until_s = std::max(0.0, goal.latest_s().value_or(kNothingAsked_s));
+  scenario.duration_s = std::min(until_s + kStopping_s, 3600.0);
+  return scenario;
+}
+
+}  // namespace
+
+bool is_common_road(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(4096, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+  return map::common_road::holds_scenario(head);
+}
+
+CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
+  const std::string bytes = map::read_file(file);
+  const map::common_road::Scenario from = map::common_road::parse_scenario(bytes, file.string());
+  if (from.planning_problems.empty()) {
+    throw map::InputError({.file = file.string(),
+                           .place = {},
+                           .element = "commonRoad",
+                           .found = "no planning problem",
+                           .needed = "one to solve",
+                           .remedy = "add a planningProblem"});
+  }
+  map::RoadMap road_map = map::parse_map(bytes, file.string());
+  const PlanningProblem& problem = from.planning_problems.front();
+  const Source source{file.string(), road_map, problem, from.time_step_s};
+  const double speed_mps = exact(source, problem.initial_state.speed_mps, "a velocity");
+  TimedGoal goal = goal_of(source);
+  Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
+  const Pose2 start = rear_axle(source, scenario.vehicle);
+  Route route = route_of(source, start_places(source, start, scenario.vehicle), goal, speed_mps);
+  planning::ReferenceLine line = planning::ReferenceLine::along(
+      road_map, route,
+      {.default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m});
+  const planning::RouteLeg& last = route.legs.back();
+  const double beyond_m =
+      road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
+  const double road_end_s_m = line.goal_s_m() + beyond_m;
+  World world{.road_map = std::move(road_map),
+              .occupancy = {},
+              .field = {},
+              .start = start,
+              .route = std::move(route),
+              .line = std::move(line),
+              .obstacles = {},
+              .presence = {},
+              .goal = std::move(goal),
+              .road_end_s_m = road_end_s_m};
+  const Source placed{file.string(), world.road_map, problem, from.time_step_s};
+  add_obstacles(from, placed, world);
+  refuse_overlap(placed, world, scenario.vehicle);
+  return {.scenario = std::move(scenario),
+          .world = std::move(world),
+          .benchmark_id = from.benchmark_id,
+          .version = from.version,
+          .problem_id = problem.id,
+          .start_step = problem.initial_state.time_step.least};
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/decision.h"
+#include "roadbed/tools/simulation/pilot.h"
+#include "roadbed/tools/simulation/safety.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
+constexpr double kHoldingBrake_mps2 = -1.0;
+constexpr double kPassOffset_m = 0.5;  // off the reference line this far is passing
+
+/// Distance ahead that matters: to brake comfortably, and the gap to keep.
+double look_ahead_m(double speed_mps, const DecisionOptions& options) {
+  return 20.0 + options.standstill_gap_m + options.headway_s * speed_mps +
+         0.5 * speed_mps * speed_mps / options.deceleration_mps2;
+}
+
+/// In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
+std::vector<PathKeeper::Room> rooms(double clearance_m) {
+  return {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
+}
+
+class CruisePilot : public Pilot {
+ public:
+  CruisePilot(const Scenario& scenario, const World& world, const LoopOptions& options)
+      : scenario_(scenario),
+        world_(world),
+        ceiling_(ceiling_of(scenario, world)),
+        cruise_(cruise_options_),
+        keeper_(scenario, world,
+                {.tracking_error_m = options.max_tracking_error_m,
+                 .heading_error_rad = options.max_heading_error_rad,
+                 .rooms = rooms(scenario.options.clearance_m)}) {
+    decision_options_.deceleration_mps2 = scenario.options.comfort_deceleration_mps2;
+  }
+
+  const PathKeeper& keeper() const override { return keeper_; }
+
+  /// Set speed, cruise control and safety layer.
+  PilotCommand decide(const PilotView& view) override {
+    const double speed = view.measured.motion.speed_mps;
+    keeper_.plan({.t_s = view.t_s,
+                  .measured = view.measured,
+                  .speed = {.speed_mps = speed,
+                            .acceleration_mps2 = view.measured.acceleration_mps2,
+                            .target_mps = set_speed_mps_},
+                  .obstacles = world_.obstacles});
+    const std::optional<Lead> lead = lead_ahead(view);
+    const SpeedAnswer answer = choose_speed(question(view.measured, lead), decision_options_);
+    std::optional<control::LeadMeasurement> seen;
+    if (lead) seen = view.sensors.measure(*lead, view.true_speed_mps);
+    PilotCommand command;
+    command.acceleration_mps2 =
+        cruise_.update(speed, view.measured.acceleration_mps2, answer.set, seen);
+    command.saturated = std::abs(command.acceleration_mps2) >= cruise_options_.max_command_mps2;
+    if (answer.hold) {
+      command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
+    }
+    command.set_speed_mps = set_speed_mps_ = answer.set.speed_mps;
+    if (lead) {
+      command.lead = {world_.obstacles[lead->obstacle].id, lead->gap_m, lead->speed_mps};
+    }
+    explain(answer, lead, speed, command);
+    return command;
+  }
+
+ private:
+  std::optional<Lead> lead_ahead(const PilotView& view) const {
+    const double speed = view.measured.motion.speed_mps;
+    const double to_goal_m = world_.line.goal_s_m() - keeper_.s_m();
+    const double look_m = std::min(look_ahead_m(speed, decision_options_),
+                                   std::max(0.0, to_goal_m) + scenario_.vehicle.front_m());
+    return find_lead(keeper_.expected_path(), keeper_.s_m(), look_m, world_.obstacles, view.t_s,
+                     scenario_.vehicle, kSideMargin_m);
+  }
+
+  SpeedQuestion question(const VehicleState& measured, const std::optional<Lead>& lead) const {
+    return {.ceiling = ceiling_,
+            .s_m = keeper_.s_m(),
+            .goal_s_m = world_.line.goal_s_m(),
+            .speed_mps = measured.motion.speed_mps,
+            .acceleration_mps2 = measured.acceleration_mps2,
+            .lead = lead,
+            .lead_name = lead ? lead_name(*lead) : "",
+            .path_left_m = path_left_m(lead)};
+  }
+
+  /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
+  std::optional<double> path_left_m(const std::optional<Lead>& lead) const {
+    if (keeper_.last_plan().chosen) return std::nullopt;
+    if (keeper_.something_is_in_the_way() && !lead) return 0.0;
+    return keeper_.checked_ahead_m();
+  }
+
+  std::string lead_name(const Lead& lead) const {
+    const planning::Obstacle& obstacle = world_.obstacles[lead.obstacle];
+    return fmt::format("{} {}", obstacle.kind, obstacle.id);
+  }
+
+  void explain(const SpeedAnswer& answer, const std::optional<Lead>& lead, double speed_mps,
+               PilotCommand& command) const {
+    command.behaviour = answer.behaviour;
+    command.reason = answer.reason;
+    const double offset_m = keeper_.path().lateral_at(keeper_.s_m()).d_m;
+    const auto& chosen = keeper_.last_plan().chosen;
+    const double end_m = chosen ? chosen->end_d_m : offset_m;
+    if (answer.behaviour == Behaviour::cruise &&
+        std::max(std::abs(offset_m), std::abs(end_m)) > kPassOffset_m) {
+      command.behaviour = Behaviour::pass;
+      command.reason = fmt::format("the way is free {:.1f} m {} of the reference line",
+                                   std::abs(end_m), end_m < 0.0 ? "right" : "left");
+    }
+    if (!lead) return;
+    if (const auto braking = emergency_deceleration_mps2(speed_mps, *lead)) {
+      command.acceleration_mps2 = std::min(command.acceleration_mps2, -*braking);
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("braking at {:.1f} m/s²: {} is {:.1f} m ahead, closing at {:.1f} m/s",
+                      *braking, lead_name(*lead), lead->gap_m, speed_mps - lead->speed_mps);
+    }
+  }
+
+  const Scenario& scenario_;
+  const World& world_;
+  DecisionOptions decision_options_;
+  control::CruiseOptions cruise_options_;
+  planning::SpeedCeiling ceiling_;
+  control::CruiseControl cruise_;
+  PathKeeper keeper_;
+  double set_speed_mps_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Pilot> make_cruise_pilot(const Scenario& scenario, const World& world,
+                                         const LoopOptions& options) {
+  return std::make_unique<CruisePilot>(scenario, world, options);
+}
+
+}  // namespace roadbed::tools

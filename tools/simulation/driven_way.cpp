@@ -1,0 +1,56 @@
+#include "roadbed/tools/simulation/driven_way.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kFine_m = 0.5, kCoarse_m = 1.0, kFineUntil_m = 40.0;
+constexpr double kFastest_mps = 60.0;
+
+double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
+                      const geometry::VehicleShape& vehicle, const BendLimits& limits) {
+  const double by_acceleration =
+      std::sqrt(limits.max_lateral_acceleration_mps2 / std::max(1e-6, std::abs(curvature_per_m)));
+  const double turn = vehicle.wheelbase_m * curvature_per_m;
+  const double steering_per_m =
+      vehicle.wheelbase_m * std::abs(curvature_d1_per_m2) / (1.0 + turn * turn);  // of atan(L k)
+  const double rate = limits.steering_rate_share * vehicle.max_steering_rate_radps;
+  return std::min({kFastest_mps, by_acceleration, rate / std::max(1e-6, steering_per_m)});
+}
+
+}  // namespace
+
+std::size_t DrivenWay::before(double distance_m) const {
+  const auto after = std::upper_bound(ahead_m.begin(), ahead_m.end(), distance_m);
+  return after == ahead_m.begin() ? 0 : static_cast<std::size_t>(after - ahead_m.begin() - 1);
+}
+
+DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
+                     const planning::SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
+                     const BendLimits& limits) {
+  DrivenWay way;
+  std::vector<double> curvature;
+  Eigen::Vector2d last(0.0, 0.0);
+  for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kCoarse_m) {
+    const geometry::Pose2 pose = path.pose_at(from_s_m + l_m);
+    const double ahead_m =
+        way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (pose.position() - last).norm();
+    last = pose.position();
+    way.ahead_m.push_back(ahead_m);
+    way.station_m.push_back(from_s_m + l_m);
+    way.body.push_back(geometry::body_at(pose, vehicle));
+    way.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
+    curvature.push_back(path.curvature_per_m(from_s_m + l_m));
+  }
+  for (std::size_t i = 0; i < curvature.size(); ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, curvature.size() - 1);
+    const double apart = std::max(1e-6, way.ahead_m[b] - way.ahead_m[a]);
+    way.most_mps.push_back(
+        bend_speed_mps(curvature[i], (curvature[b] - curvature[a]) / apart, vehicle, limits));
+  }
+  return way;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/tools/simulation/planned_path.h"
+
+namespace roadbed::tools {
+
+/// Speeds that a bend allows.
+struct BendLimits {
+  double max_lateral_acceleration_mps2 = 3.2;
+  double steering_rate_share = 0.85;  ///< of the vehicle's
+};
+
+/// The way ahead along a path, sampled: what longitudinal planning needs to know of it. All lists
+/// have one entry per sample.
+struct DrivenWay {
+  std::vector<double> ahead_m;    ///< driven since the first sample, by the rear axle; ascends
+  std::vector<double> station_m;  ///< of the reference line
+  std::vector<geometry::Rectangle> body;
+  std::vector<double> wanted_mps;  ///< by the ceiling of the line
+  std::vector<double> most_mps;    ///< that the path's own bends allow
+
+  double length_m() const { return ahead_m.back(); }
+
+  /// Index of the last sample that is not further ahead.
+  std::size_t before(double distance_m) const;
+};
+
+/// Samples a path from a station on over `length_m` of its reference line, every 0.5 m, beyond 40 m
+/// every metre.
+DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
+                     const planning::SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
+                     const BendLimits& limits = {});
+
+}  // namespace roadbed::tools

@@ -1,0 +1,39 @@
+#include "roadbed/tools/simulation/event_log.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace roadbed::tools {
+
+std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last) {
+  std::vector<DriveEvent> events;
+  const auto log = [&](EventLevel level, std::string text) {
+    events.push_back({cycle.t_s, level, std::move(text)});
+  };
+  if (cycle.from_measurement) {
+    log(EventLevel::warning, "planned from the measured state: tracking was too far off");
+  }
+  if (!cycle.chosen && (!last || last->chosen)) {
+    log(EventLevel::warning, "nothing is feasible: " + cycle.plan_reason);
+  }
+  if (cycle.chosen && cycle.beyond_the_edge_m > 0.0 &&
+      (!last || last->beyond_the_edge_m < cycle.beyond_the_edge_m)) {
+    log(EventLevel::info, fmt::format("no candidate keeps to the lanes; up to {:.1f} m beyond",
+                                      cycle.beyond_the_edge_m));
+  }
+  if (cycle.behaviour == Behaviour::emergency &&
+      (!last || last->behaviour != Behaviour::emergency)) {
+    log(EventLevel::warning, "emergency braking: " + cycle.reason);
+  }
+  const std::string lead = cycle.lead ? cycle.lead->id : "";
+  const std::string last_lead = last && last->lead ? last->lead->id : "";
+  if (lead != last_lead) {
+    log(EventLevel::info,
+        lead.empty() ? last_lead + " is no longer ahead" : lead + " is ahead on the path");
+  }
+  return events;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "roadbed/map/formats/common_road_scenario.h"
+#include "roadbed/map/road_map.h"
+#include "roadbed/planning/obstacle.h"
+#include "roadbed/tools/simulation/world.h"
+
+namespace roadbed::tools {
+
+/// An obstacle as recorded, and when it is there.
+struct RecordedObstacle {
+  planning::Obstacle obstacle;
+  Presence presence;
+};
+
+/// An obstacle of a CommonRoad file as the smallest rectangle along its heading that holds its
+/// shape. What moves is there from its first to its last recorded time step; what does not, always.
+/// @param start_step  the time step that is second 0.
+/// @pre it has an initial state and a shape.
+RecordedObstacle recorded_obstacle(const map::common_road::Obstacle& from,
+                                   const map::RoadMap& road_map, long start_step, double step_s);
+
+}  // namespace roadbed::tools

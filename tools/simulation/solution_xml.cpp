@@ -1,0 +1,54 @@
+#include "roadbed/tools/simulation/solution_xml.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace roadbed::tools {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char sign : text) {
+    if (sign == '&') {
+      safe += "&amp;";
+    } else if (sign == '<') {
+      safe += "&lt;";
+    } else if (sign == '"') {
+      safe += "&quot;";
+    } else {
+      safe += sign;
+    }
+  }
+  return safe;
+}
+
+std::string state_xml(const geometry::TrajectoryPoint& row, long step, double ahead_m) {
+  const Eigen::Vector2d centre = row.pose() * Eigen::Vector2d(ahead_m, 0.0);
+  return fmt::format(
+      "    <ksState>\n      <x>{}</x>\n      <y>{}</y>\n"
+      "      <steeringAngle>{}</steeringAngle>\n      <velocity>{}</velocity>\n"
+      "      <orientation>{}</orientation>\n      <time>{}</time>\n    </ksState>\n",
+      centre.x(), centre.y(), row.steering_rad, row.speed_mps, row.heading_rad, step);
+}
+
+}  // namespace
+
+std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive) {
+  const geometry::VehicleShape& vehicle = problem.scenario.vehicle;
+  const double ahead_m = 0.5 * vehicle.length_m - vehicle.rear_overhang_m;
+  const double step_s = problem.world.goal->step_s;
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<CommonRoadSolution benchmark_id=\"KS2:SM1:{}:{}\">\n"
+      "  <ksTrajectory planningProblem=\"{}\">\n",
+      escaped(problem.benchmark_id), escaped(problem.version), escaped(problem.problem_id));
+  const auto steps = static_cast<long>(std::floor(drive.trajectory.end_s() / step_s + 1e-6));
+  for (long k = 0; k <= steps; ++k) {
+    const auto row = drive.trajectory.at(step_s * static_cast<double>(k));
+    xml += state_xml(row, problem.start_step + k, ahead_m);
+  }
+  return xml + "  </ksTrajectory>\n</CommonRoadSolution>\n";
+}
+
+}  // namespace roadbed::tools

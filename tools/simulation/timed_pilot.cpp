@@ -1,0 +1,330 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/driven_way.h"
+#include "roadbed/tools/simulation/pilot.h"
+#include "roadbed/tools/simulation/speed_search.h"
+#include "roadbed/tools/simulation/way_occupancy.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kLeastHorizon_s = 5.0, kMostHorizon_s = 12.0;
+constexpr double kBeyondGoal_s = 1.5;
+constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
+constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
+constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
+
+/// How much is dared: room to obstacles, and braking.
+struct Daring {
+  double margin_m;
+  SpeedSearchOptions speed;
+  bool is_emergency;
+};
+
+constexpr std::array<Daring, 3> kDarings{{
+    {.margin_m = 0.4, .speed = {}, .is_emergency = false},
+    {.margin_m = 0.4, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
+    {.margin_m = 0.1, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
+}};
+
+/// What is tried beside the planner's own choice where that is not good enough: ends to the right
+/// and left of the reference line.
+constexpr std::array<PathKeeper::Offsets, 6> kBeside{
+    {{-0.9, -0.4}, {0.4, 0.9}, {-1.8, -1.0}, {1.0, 1.8}, {-3.5, -2.0}, {2.0, 3.5}}};
+constexpr std::array<PathKeeper::Offsets, 2> kOtherLanes{{{-3.5, -2.6}, {2.6, 3.5}}};
+constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
+constexpr double kBesideCost = 0.3;     // per metre of the end's offset
+constexpr double kBearable_mps = 0.3;   // beyond what a bend allows
+constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
+
+/// One path, the way along it, and the best drive found on it.
+struct Attempt {
+  std::optional<PathKeeper::Proposal> proposal;  ///< none: the path that is being driven
+  DrivenWay way;
+  SpeedSearchAnswer answer;
+  const Daring* daring = nullptr;
+  double cost = 0.0;
+  std::optional<DriveLead> lead;
+};
+
+/// How far beside the reference line the path ends.
+double beside_m(const Attempt& attempt) {
+  return attempt.proposal ? std::abs(attempt.proposal->plan.chosen->end_d_m) : 0.0;
+}
+
+bool is_good(const Attempt& attempt) {
+  return attempt.answer.is_free && attempt.answer.bend_excess_mps <= kBearable_mps &&
+         !attempt.answer.misses_goal;
+}
+
+/// Free before not free; then by cost, or by how long it is free.
+bool is_better(const Attempt& a, const Attempt& b) {
+  if (a.answer.is_free != b.answer.is_free) return a.answer.is_free;
+  if (a.answer.is_free) return a.cost < b.cost;
+  return a.answer.free_until_s > b.answer.free_until_s;
+}
+
+class TimedPilot : public Pilot {
+ public:
+  TimedPilot(const Scenario& scenario, const World& world, const LoopOptions& options)
+      : scenario_(scenario),
+        world_(world),
+        ceiling_(ceiling_of(scenario, world)),
+        stretches_(goal_stretches(*world.goal, world.road_map, world.line, scenario.vehicle)),
+        keeper_(scenario, world,
+                {.tracking_error_m = options.max_tracking_error_m,
+                 .heading_error_rad = options.max_heading_error_rad,
+                 .rooms = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}},
+                 .squeezes_past = true}) {}
+
+  const PathKeeper& keeper() const override { return keeper_; }
+
+  PilotCommand decide(const PilotView& view) override {
+    const std::vector<planning::Obstacle> standing = standing_at(view.t_s);
+    keeper_.locate(view.measured);
+    const PathKeeper::Question question{.t_s = view.t_s,
+                                        .measured = view.measured,
+                                        .speed = speed_plan(view.measured),
+                                        .ends = ends_at(view.measured.motion.speed_mps),
+                                        .obstacles = standing};
+    const Attempt best = best_attempt(view, question);
+    if (best.proposal) keeper_.take(*best.proposal);
+    last_plan_ = best.answer.plan;
+    PilotCommand command = command_of(best);
+    explain(best, view, command);
+    last_command_mps2_ = command.acceleration_mps2;
+    return command;
+  }
+
+ private:
+  /// The planner's own choice first, then paths beside it, and all of them with more daring.
+  Attempt best_attempt(const PilotView& view, const PathKeeper::Question& question) {
+    Attempt best = attempt_on(view, first_proposal(question));
+    search(view, kDarings.front(), best);
+    std::vector<Attempt> all{best};
+    for (const Daring& daring : kDarings) {
+      for (std::size_t i = 0; i < all.size() && !is_good(best); ++i) {
+        if (&daring != &kDarings.front()) search(view, daring, all[i]);
+        if (is_better(all[i], best)) best = all[i];
+      }
+      if (is_good(best)) break;
+      if (all.size() > 1) continue;
+      if (!best.answer.is_free) add_paths_beside(view, question, kBeside, all, best);
+      if (best.answer.misses_goal) add_paths_beside(view, question, kOtherLanes, all, best);
+    }
+    return best;
+  }
+
+  /// The planner's choice; near a goal that lies beside the line, one that leads through it.
+  PathKeeper::Proposal first_proposal(const PathKeeper::Question& question) const {
+    for (const GoalStretch& stretch : stretches_) {
+      const double ahead_m = stretch.s_m.most - keeper_.s_m();
+      if (std::abs(stretch.d_m) < kBesideGoal_m || !(ahead_m > 0.0 && ahead_m < kNearGoal_m))
+        continue;
+      PathKeeper::Proposal to_goal = keeper_.propose(
+          question, {stretch.d_m - kBesideGoal_m, stretch.d_m + kBesideGoal_m}, false);
+      if (to_goal.plan.chosen) return to_goal;
+    }
+    return keeper_.propose(question, {});
+  }
+
+  void add_paths_beside(const PilotView& view, const PathKeeper::Question& question,
+                        std::span<const PathKeeper::Offsets> beside, std::vector<Attempt>& all,
+                        Attempt& best) {
+    for (const PathKeeper::Offsets& offsets : beside) {
+      PathKeeper::Proposal proposal = keeper_.propose(question, offsets, false);
+      if (!proposal.plan.chosen) continue;
+      all.push_back(attempt_on(view, std::move(proposal)));
+      search(view, kDarings.front(), all.back());
+      if (is_better(all.back(), best)) best = all.back();
+    }
+  }
+
+  /// @param proposal  the path that is being driven is kept if it has no candidate.
+  Attempt attempt_on(const PilotView& view, PathKeeper::Proposal proposal) {
+    if (!proposal.plan.chosen) {
+      keeper_.take(proposal);
+      return {.proposal = {}, .way = way_along(keeper_.path(), view), .answer = {}, .lead = {}};
+    }
+    DrivenWay way = way_along(keeper_.path_of(proposal), view);
+    return {.proposal = std::move(proposal), .way = std::move(way), .answer = {}, .lead = {}};
+  }
+
+  DrivenWay way_along(const PlannedPath& path, const PilotView& view) const {
+    return sample_way(path, keeper_.s_m(), look_ahead_m(view), ceiling_, scenario_.vehicle);
+  }
+
+  void search(const PilotView& view, const Daring& daring, Attempt& attempt) const {
+    const WayOccupancy occupancy(attempt.way, world_, view.t_s, steps(view.t_s), daring.margin_m);
+    attempt.answer = search_speed(
+        question_of(view, attempt.way, occupancy, attempt.proposal.has_value()), daring.speed);
+    attempt.daring = &daring;
+    attempt.cost = attempt.answer.cost + kBesideCost * beside_m(attempt);
+    attempt.lead = lead_on(occupancy, view);
+  }
+
+  /// The slower, the nearer: a bend of a few metres wants paths that are no longer.
+  static PathKeeper::Ends ends_at(double speed_mps) {
+    const double least_m = std::clamp(2.0 * speed_mps, 7.0, planning::PlanOptions{}.min_l_m);
+    return {.least_m = least_m, .most_m = 2.0 * least_m};
+  }
+
+  /// The last longitudinal plan as lateral planning understands it.
+  planning::SpeedPlan speed_plan(const VehicleState& measured) const {
+    const double speed = measured.motion.speed_mps;
+    double target = speed, reached_s = kLookForPath_s;
+    for (const SpeedState& state : last_plan_) {
+      if (state.t_s > kLookForPath_s) break;
+      target = state.speed_mps;
+      reached_s = state.t_s;
+    }
+    return {.speed_mps = speed,
+            .acceleration_mps2 = (target - speed) / std::max(1.0, reached_s),
+            .target_mps = target};
+  }
+
+  /// What stands for a while, as something that stands for ever.
+  std::vector<planning::Obstacle> standing_at(double t_s) const {
+    std::vector<planning::Obstacle> standing;
+    for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
+      if (!world_.is_there(i, t_s)) continue;
+      const planning::Obstacle& obstacle = world_.obstacles[i];
+      const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
+      const geometry::TrajectoryPoint later = obstacle.motion.at(t_s + kStillFor_s);
+      if ((later.pose().position() - now.pose().position()).norm() > kStill_m) continue;
+      standing.push_back(obstacle);
+      standing.back().motion = geometry::Trajectory({now});
+    }
+    return standing;
+  }
+
+  double horizon_s(double t_s) const {
+    const double to_goal_s = world_.goal->latest_s().value_or(t_s) - t_s;
+    return std::clamp(to_goal_s + kBeyondGoal_s, kLeastHorizon_s, kMostHorizon_s);
+  }
+
+  int steps(double t_s) const {
+    return static_cast<int>(std::ceil((horizon_s(t_s) + 1.0) / WayOccupancy::kStep_s));
+  }
+
+  double look_ahead_m(const PilotView& view) const {
+    const double fastest = std::max(view.measured.motion.speed_mps, kUsual_mps) + 3.0;
+    return fastest * horizon_s(view.t_s) + 20.0;
+  }
+
+  bool goal_is_past(double t_s) const {
+    const std::optional<double> latest = world_.goal->latest_s();
+    return latest && t_s > *latest;
+  }
+
+  SpeedSearchQuestion question_of(const PilotView& view, const DrivenWay& way,
+                                  const WayOccupancy& occupancy, bool has_path) const {
+    const double road_end_s_m = world_.line.length_m() - scenario_.vehicle.front_m() - kRoadEnd_m;
+    SpeedSearchQuestion asked{.way = way,
+                              .occupancy = occupancy,
+                              .speed_mps = view.measured.motion.speed_mps,
+                              .acceleration_mps2 = view.measured.acceleration_mps2,
+                              .last_command_mps2 = last_command_mps2_,
+                              .horizon_s = horizon_s(view.t_s),
+                              .end_m = ahead_of(way, road_end_s_m),
+                              .goals = {}};
+    if (goal_is_past(view.t_s) || world_.goal->states.empty()) {
+      asked.most_wanted_mps = 0.0;
+      return asked;
+    }
+    if (!has_path) asked.most_wanted_mps = 0.0;
+    for (const GoalStretch& stretch : stretches_) asked.goals.push_back(ahead(way, stretch, view));
+    return asked;
+  }
+
+  static double ahead_of(const DrivenWay& way, double s_m) {
+    if (!std::isfinite(s_m)) return s_m;
+    const auto& stations = way.station_m;
+    if (s_m >= stations.back()) return way.ahead_m.back() + s_m - stations.back();
+    if (s_m <= stations.front()) return s_m - stations.front();
+    const auto after = std::upper_bound(stations.begin(), stations.end(), s_m);
+    const auto i = static_cast<std::size_t>(after - stations.begin());
+    const double share = (s_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+    return way.ahead_m[i - 1] + share * (way.ahead_m[i] - way.ahead_m[i - 1]);
+  }
+
+  static GoalAhead ahead(const DrivenWay& way, const GoalStretch& stretch, const PilotView& view) {
+    return {.time_s = {stretch.time_s.least - view.t_s, stretch.time_s.most - view.t_s},
+            .speed_mps = stretch.speed_mps,
+            .ahead_m = {ahead_of(way, stretch.s_m.least), ahead_of(way, stretch.s_m.most)}};
+  }
+
+  static PilotCommand command_of(const Attempt& best) {
+    PilotCommand command;
+    const std::vector<SpeedState>& plan = best.answer.plan;
+    const bool leads_on = plan.size() > 1;
+    command.acceleration_mps2 = leads_on ? plan[1].command_mps2 : best.daring->speed.least_mps2;
+    command.set_speed_mps = leads_on ? plan[1].speed_mps : 0.0;
+    command.lead = best.lead;
+    return command;
+  }
+
+  std::optional<DriveLead> lead_on(const WayOccupancy& occupancy, const PilotView& view) const {
+    const Blocked* nearest = nullptr;
+    for (const Blocked& part : occupancy.at(0)) {
+      if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
+    }
+    if (!nearest) return std::nullopt;
+    const planning::Obstacle& obstacle = world_.obstacles[nearest->obstacle];
+    const double speed = obstacle.is_static() ? 0.0 : obstacle.motion.at(view.t_s).speed_mps;
+    return DriveLead{obstacle.id, nearest->from_m, speed};
+  }
+
+  void explain(const Attempt& best, const PilotView& view, PilotCommand& command) const {
+    if (!best.answer.is_free) {
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("every speed meets something after {:.1f} s", best.answer.free_until_s);
+    } else if (best.daring->is_emergency) {
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command.acceleration_mps2);
+    } else if (goal_is_past(view.t_s) || world_.goal->states.empty()) {
+      command.behaviour = Behaviour::stop;
+      command.reason =
+          world_.goal->states.empty() ? "no goal is asked for" : "the goal's time is over";
+    } else if (beside_m(best) > kPassOffset_m) {
+      command.behaviour = Behaviour::pass;
+      command.reason =
+          fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));
+    } else if (command.lead && command.lead->gap_m < kFollow_m) {
+      command.behaviour = Behaviour::follow;
+      command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,
+                                   command.lead->gap_m, command.lead->speed_mps);
+    } else {
+      command.reason =
+          best.answer.reaches_goal ? "the goal is reached in time" : "the road is free";
+    }
+  }
+
+  static constexpr double kUsual_mps = 50.0 / 3.6;
+
+  const Scenario& scenario_;
+  const World& world_;
+  planning::SpeedCeiling ceiling_;
+  std::vector<GoalStretch> stretches_;
+  PathKeeper keeper_;
+  double last_command_mps2_ = 0.0;
+  std::vector<SpeedState> last_plan_;
+};
+
+}  // namespace
+
+std::unique_ptr<Pilot> make_timed_pilot(const Scenario& scenario, const World& world,
+                                        const LoopOptions& options) {
+  return std::make_unique<TimedPilot>(scenario, world, options);
+}
+
+}  // namespace roadbed::tools
