@@ -6,7 +6,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kSlack_m = 1e-6;
+constexpr double kAtEnd_m = 1e-6;
 constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth beginning in it
 constexpr std::size_t kMostSpans = 64;
 
@@ -35,7 +35,7 @@ void extend(const RouteNetwork& network, const ChangeSpan& open, double room_m, 
     longer.end_s_m = window->to_s_m;
     spans.push_back(longer);
     const double length_m = network.lanes[next].length_m;
-    if (window->to_s_m < length_m - kSlack_m || room_m + length_m >= enough_m) continue;
+    if (window->to_s_m < length_m - kAtEnd_m || room_m + length_m >= enough_m) continue;
     extend(network, longer, room_m + length_m, enough_m, side, spans);
   }
 }
@@ -51,14 +51,14 @@ std::optional<map::StationRange> window_at_end(const RouteNetwork& network, std:
                                                std::uint32_t beside) {
   const auto windows = windows_to(network, lane, beside);
   if (windows.empty()) return {};
-  const bool reaches = windows.back().to_s_m >= network.lanes[lane].length_m - kSlack_m;
+  const bool reaches = windows.back().to_s_m >= network.lanes[lane].length_m - kAtEnd_m;
   return reaches ? std::optional(windows.back()) : std::nullopt;
 }
 
 std::optional<map::StationRange> window_at_start(const RouteNetwork& network, std::uint32_t lane,
                                                  std::uint32_t beside) {
   const auto windows = windows_to(network, lane, beside);
-  if (windows.empty() || windows.front().from_s_m > kSlack_m) return {};
+  if (windows.empty() || windows.front().from_s_m > kAtEnd_m) return {};
   return windows.front();
 }
 
@@ -99,7 +99,7 @@ std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& sp
   const double middle_m = 0.5 * plan.changes.room_m;
   double here_m = part_m(network, span, 0);
   while (plan.passage + 1 < span.lanes.size() &&
-         plan.changes.before_m + here_m < middle_m - kSlack_m) {
+         plan.changes.before_m + here_m < middle_m - kAtEnd_m) {
     plan.changes.before_m += here_m;
     here_m = part_m(network, span, ++plan.passage);
   }

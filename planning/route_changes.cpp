@@ -5,7 +5,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kSlack_m = 1e-3;
+constexpr double kApart_m = 1e-3;
 
 std::optional<map::LaneId> beside(const map::RoadMap& road_map, map::LaneId lane, bool left) {
   const map::LaneLinks& links = road_map.graph().of(lane);
@@ -31,7 +31,7 @@ std::vector<ChangePart> parts_of_change(const map::RoadMap& road_map, const Rout
   const bool left = left_leg.exit == LegExit::change_left;
   std::vector<ChangePart> parts{{leg, left_leg.lane, route.legs.at(leg + 1).lane, 0.0}};
   double offset_m = 0.0;
-  for (std::size_t i = leg; i > 0 && left_leg.change_window->from_s_m < offset_m - kSlack_m;) {
+  for (std::size_t i = leg; i > 0 && left_leg.change_window->from_s_m < offset_m - kApart_m;) {
     const map::LaneId lane = route.legs[--i].lane;
     const auto other = beside(road_map, lane, left);
     if (!other || route.legs[i].exit != LegExit::successor) break;
@@ -41,7 +41,7 @@ std::vector<ChangePart> parts_of_change(const map::RoadMap& road_map, const Rout
   offset_m = road_map.lane(left_leg.lane).length_m();
   map::LaneId lane = left_leg.lane;
   for (std::size_t i = leg + 2;
-       i < route.legs.size() && left_leg.change_window->to_s_m > offset_m + kSlack_m; ++i) {
+       i < route.legs.size() && left_leg.change_window->to_s_m > offset_m + kApart_m; ++i) {
     const auto next = next_beside(road_map, lane, route.legs[i].lane, left);
     if (!next) break;
     lane = *next;

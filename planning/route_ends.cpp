@@ -5,7 +5,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kSlack_m = 1e-6;
+constexpr double kSectionEnd_m = 1e-6;
 constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth ending in it
 constexpr std::size_t kMostSpans = 64;
 
@@ -87,7 +87,7 @@ class SpansInto {
       longer.lanes.insert(longer.lanes.begin(), {before, beside});
       longer.start_s_m = window->from_s_m;
       found_.push_back(longer);
-      if (window->from_s_m > kSlack_m || longer_m >= enough_m_) continue;
+      if (window->from_s_m > kSectionEnd_m || longer_m >= enough_m_) continue;
       extend(longer, longer_m);
     }
   }

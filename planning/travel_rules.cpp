@@ -8,7 +8,7 @@ namespace roadbed::planning {
 namespace {
 
 constexpr double kLeastRoom_m = 0.1;  // a change takes some length, whatever the options say
-constexpr double kSlack_m = 1e-9;
+constexpr double kRounding_m = 1e-9;
 constexpr int kBisections = 60;
 
 void extend(const RouteNetwork& network, std::vector<std::uint32_t> chain,
@@ -98,7 +98,7 @@ bool TravelRules::place(std::span<const std::uint32_t> chain, ShareRange range, 
   double share = range.from;
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const double length_m = network_.lanes[chain[i]].length_m;
-    const double needed = (room_m - kSlack_m) / length_m;
+    const double needed = (room_m - kRounding_m) / length_m;
     bool fits = false;
     for (const map::StationRange& window : windows_to(network_, chain[i], chain[i + 1])) {
       const double from = std::max(share, window.from_s_m / length_m);
@@ -150,7 +150,7 @@ std::optional<ChangePlan> TravelRules::plan_change(std::uint32_t from, std::uint
     plan.room_m = last_m - first_m;
     plan.ranges = {{first_m / length_m, last_m / length_m}};
   }
-  if (plan.ranges.empty() || plan.room_m < least_room_m() - kSlack_m) return {};
+  if (plan.ranges.empty() || plan.room_m < least_room_m() - kRounding_m) return {};
   return plan;
 }
 

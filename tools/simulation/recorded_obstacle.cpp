@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "roadbed/geometry/pose2.h"
+#include "roadbed/tools/simulation/shape_bounds.h"
 #include "roadbed/tools/simulation/timed_goal.h"
 
 namespace roadbed::tools {
@@ -14,39 +15,10 @@ namespace {
 
 using geometry::Pose2;
 using geometry::TrajectoryPoint;
-using map::common_road::CircleShape;
 using map::common_road::Occupancy;
-using map::common_road::PolygonShape;
-using map::common_road::RectangleShape;
-using map::common_road::Shape;
 using map::common_road::State;
 
 constexpr double kAlways_s = std::numeric_limits<double>::infinity();
-
-void extend(Eigen::AlignedBox2d& box, const RectangleShape& shape) {
-  const Pose2 pose{shape.centre_m.x(), shape.centre_m.y(), shape.heading_rad};
-  for (const double along : {-0.5, 0.5}) {
-    for (const double across : {-0.5, 0.5}) {
-      box.extend(pose * Eigen::Vector2d(along * shape.length_m, across * shape.width_m));
-    }
-  }
-}
-
-void extend(Eigen::AlignedBox2d& box, const CircleShape& shape) {
-  const Eigen::Vector2d reach(shape.radius_m, shape.radius_m);
-  box.extend(shape.centre_m - reach);
-  box.extend(shape.centre_m + reach);
-}
-
-void extend(Eigen::AlignedBox2d& box, const PolygonShape& shape) {
-  for (const Eigen::Vector2d& corner : shape.corners_m) box.extend(corner);
-}
-
-Eigen::AlignedBox2d box_of(const Shape& shape) {
-  Eigen::AlignedBox2d box;
-  for (const auto& part : shape) std::visit([&](const auto& form) { extend(box, form); }, part);
-  return box;
-}
 
 double middle(const std::optional<map::common_road::Range<double>>& range) {
   return range ? 0.5 * (range->least + range->most) : 0.0;
@@ -90,14 +62,14 @@ class Recording {
 
 RecordedObstacle recorded_obstacle(const map::common_road::Obstacle& from,
                                    const map::RoadMap& road_map, long start_step, double step_s) {
-  Eigen::AlignedBox2d box = box_of(from.shape);
+  Eigen::AlignedBox2d box = bounds_of(from.shape);
   Recording recording(road_map, start_step, step_s);
   recording.add(*from.initial_state, box.center());
   for (const State& state : from.trajectory) recording.add(state, box.center());
   Eigen::Vector2d size = box.sizes();
   for (const Occupancy& part : from.occupancy_set) {
     if (part.region.empty()) continue;
-    const Eigen::AlignedBox2d area = box_of(part.region);
+    const Eigen::AlignedBox2d area = bounds_of(part.region);
     size = size.cwiseMax(area.sizes());
     recording.add(part.time_step.least, area.center(), 0.0, 0.0);
   }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSubstep_s = WayOccupancy::kStep_s;
 constexpr double kCell_m = 0.75, kCell_mps = 0.6;
+constexpr double kLeast_mps2 = -12.0;  // no vehicle brakes harder
 constexpr double kMostLayers = 16.0;
 constexpr double kTimeSlack_s = 0.051;  // a goal's moment may lie between two substeps
 
@@ -155,9 +156,14 @@ class Search {
     return kNearAhead * a * a + kNearBehind * b * b;
   }
 
+  /// With the lag T, s + T v and v + T a follow the command as a double integrator does, whatever a
+  /// is now. So states of one cell of these two go on alike, which those of one cell of s and v do
+  /// not.
   void keep(const Node& node) {
-    const auto column = static_cast<std::size_t>(node.speed_mps / kCell_mps);
-    const auto row = static_cast<std::size_t>(node.ahead_m / kCell_m);
+    const double lag_s = options_.actuator_lag_s;
+    const double future_mps = node.speed_mps + lag_s * (node.acceleration_mps2 - kLeast_mps2);
+    const auto column = static_cast<std::size_t>(std::max(0.0, future_mps) / kCell_mps);
+    const auto row = static_cast<std::size_t>((node.ahead_m + lag_s * node.speed_mps) / kCell_m);
     constexpr std::size_t columns = 128;
     if (column >= columns) return;
     const std::size_t cell = (row * columns + column) * 2 + (node.reached ? 1 : 0);

@@ -50,8 +50,8 @@ struct SpeedSearchAnswer {
 
 /// Least-cost drive along a way among everything that moves: a search over the s–t graph, where
 /// the desired acceleration is chosen anew a few times up to the horizon and reaches the vehicle
-/// through the actuator, a = K/(T s + 1) u, exactly. States of one time that fall into the same
-/// cell of distance and speed keep the cheapest. Cost counts the speed that is missing, commands
+/// through the actuator, a = K/(T s + 1) u, exactly. Of states of one time that go on
+/// nearly alike the cheapest is kept. Cost counts the speed that is missing, commands
 /// and their changes, gaps to what is ahead and behind, and a goal that is missed.
 SpeedSearchAnswer search_speed(const SpeedSearchQuestion& question,
                                const SpeedSearchOptions& options);

@@ -7,6 +7,7 @@
 
 #include "roadbed/geometry/angle.h"
 #include "roadbed/geometry/rectangle.h"
+#include "roadbed/tools/simulation/shape_bounds.h"
 
 namespace roadbed::tools {
 namespace {
@@ -20,13 +21,6 @@ using map::common_road::Shape;
 constexpr double kStationStep_m = 0.1;
 constexpr double kOffsetStep_m = 0.25;
 constexpr int kMostOffsets = 8;
-
-geometry::Rectangle rectangle_of(const RectangleShape& shape) {
-  return {.centre = shape.centre_m,
-          .axis = {std::cos(shape.heading_rad), std::sin(shape.heading_rad)},
-          .half_length_m = 0.5 * shape.length_m,
-          .half_width_m = 0.5 * shape.width_m};
-}
 
 bool is_in(const RectangleShape& shape, const Eigen::Vector2d& point) {
   return geometry::distance_m(rectangle_of(shape), point) <= 0.0;
@@ -50,20 +44,6 @@ bool is_in(const geometry::Ring& ring, const Eigen::Vector2d& point) {
 
 bool is_in(const PolygonShape& shape, const Eigen::Vector2d& point) {
   return is_in(shape.corners_m, point);
-}
-
-void extend(Eigen::AlignedBox2d& box, const RectangleShape& shape) {
-  for (const Eigen::Vector2d& corner : rectangle_of(shape).corners()) box.extend(corner);
-}
-
-void extend(Eigen::AlignedBox2d& box, const CircleShape& shape) {
-  const Eigen::Vector2d reach(shape.radius_m, shape.radius_m);
-  box.extend(shape.centre_m - reach);
-  box.extend(shape.centre_m + reach);
-}
-
-void extend(Eigen::AlignedBox2d& box, const PolygonShape& shape) {
-  for (const Eigen::Vector2d& corner : shape.corners_m) box.extend(corner);
 }
 
 bool holds_heading(const Window& window, double heading_rad) {
@@ -111,11 +91,7 @@ bool contains(const Shape& shape, const Eigen::Vector2d& point) {
   });
 }
 
-Eigen::Vector2d middle_of(const Shape& shape) {
-  Eigen::AlignedBox2d box;
-  for (const auto& part : shape) std::visit([&](const auto& form) { extend(box, form); }, part);
-  return box.center();
-}
+Eigen::Vector2d middle_of(const Shape& shape) { return bounds_of(shape).center(); }
 
 std::optional<double> TimedGoal::latest_s() const {
   if (states.empty()) return std::nullopt;
