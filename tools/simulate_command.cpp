@@ -40,14 +40,24 @@ struct Row {
   bool is_good = false;
 };
 
-/// Scenarios right in the folder, by name.
+/// Scenarios right in the folder, by name, which is also that of a scenario's outputs.
 std::vector<Row> rows_of(const fs::path& folder) {
   std::vector<Row> rows;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string suffix = entry.path().extension().string();
     if (suffix == ".json" || suffix == ".xml") rows.push_back({.file = entry.path()});
   }
-  std::ranges::sort(rows, {}, &Row::file);
+  const auto stem = [](const Row& row) { return row.file.stem(); };
+  std::ranges::sort(rows, {}, stem);
+  const auto twice = std::ranges::adjacent_find(rows, {}, stem);
+  if (twice != rows.end()) {
+    throw map::InputError({.file = folder.string(),
+                           .place = {},
+                           .element = {},
+                           .found = "two scenarios of the name " + twice->file.stem().string(),
+                           .needed = "names that differ, not only in their suffix",
+                           .remedy = "rename one"});
+  }
   return rows;
 }
 

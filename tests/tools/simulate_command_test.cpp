@@ -97,6 +97,32 @@ TEST_F(SimulateCommand, UnusableInputLeavesNothingBehind) {
   refused("/obstacles", json::array({inside}), "scenario.json:/obstacles/0: a touches the ego");
 }
 
+TEST_F(SimulateCommand, FolderDrivesEveryScenarioAndABadOneIsARow) {
+  json late = short_drive();
+  late["duration_s"] = 0.5;
+  const TemporaryFolder scenarios;
+  scenarios.write("good.json", short_drive().dump());
+  scenarios.write("late.json", late.dump());
+  scenarios.write("bad.json", "{}");
+  const ProgramRun one = run_roadbed({"simulate", scenarios.path().string(), "-o", out("one")});
+  const ProgramRun two =
+      run_roadbed({"simulate", scenarios.path().string(), "-o", out("two"), "--threads", "2"});
+  EXPECT_EQ(one.status, 1);
+  EXPECT_EQ(one.out, two.out);
+  EXPECT_THAT(one.out, HasSubstr("\n1 of 3 reach their goal\n"));
+  const std::vector<std::string> files = files_below(out("one"));
+  EXPECT_EQ(files.size(), 9U);
+  EXPECT_EQ(files, files_below(out("two")));
+  for (const std::string& file : files) {
+    EXPECT_EQ(bytes_of(out("one") / file), bytes_of(out("two") / file)) << file;
+  }
+  scenarios.write("good.xml", "<commonRoad/>");
+  const ProgramRun same = run_roadbed({"simulate", scenarios.path().string(), "-o", out("same")});
+  EXPECT_EQ(same.status, 1);
+  EXPECT_THAT(same.err, HasSubstr("two scenarios of the name good"));
+  EXPECT_FALSE(std::filesystem::exists(out("same")));
+}
+
 TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
   const ProgramRun run = run_roadbed({"control", "design", "--json"});
   EXPECT_EQ(run.status, 0);

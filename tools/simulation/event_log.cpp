@@ -25,7 +25,7 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
   }
   if (cycle.behaviour == Behaviour::emergency &&
       (!last || last->behaviour != Behaviour::emergency)) {
-    log(EventLevel::warning, "emergency braking: " + cycle.reason);
+    log(EventLevel::warning, "emergency: " + cycle.reason);
   }
   const std::string lead = cycle.lead ? cycle.lead->id : "";
   const std::string last_lead = last && last->lead ? last->lead->id : "";

@@ -153,7 +153,7 @@ TEST(ClosedLoop, BrakesHarderThanTheCruiseControlMayOnlyIfItMust) {
   EXPECT_TRUE(does(drive, Behaviour::emergency));
   EXPECT_GT(least_clearance_m(drive), 0.3);
   EXPECT_TRUE(std::any_of(drive.events.begin(), drive.events.end(), [](const DriveEvent& event) {
-    return event.text.starts_with("emergency braking");
+    return event.text.starts_with("emergency: ");
   }));
 }
 
