@@ -19,6 +19,8 @@ std::filesystem::path tests_folder();
 }  // namespace roadbed::tests
 
 /// Skips the test with its reason where the real data is not there; else defines `folder`.
+// NOLINTBEGIN(bugprone-macro-parentheses): a name to define stands without parentheses.
 #define ROADBED_REAL_DATA_OR_SKIP(folder)                                    \
   const std::filesystem::path folder = ::roadbed::tests::real_data_folder(); \
   if (folder.empty()) GTEST_SKIP() << "no real data: set ROADBED_REAL_DATA to its folder"
+// NOLINTEND(bugprone-macro-parentheses)
