@@ -50,5 +50,6 @@ std::unique_ptr<Command> make_control_command();
 std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_occupancy_command();
 std::unique_ptr<Command> make_audit_command();
+std::unique_ptr<Command> make_figures_command();
 
 }  // namespace roadbed::tools

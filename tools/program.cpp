@@ -37,6 +37,7 @@ constexpr Entry kCommands[] = {
     {"simulate", make_simulate_command},
     {"occupancy", make_occupancy_command},
     {"audit", make_audit_command},
+    {"figures", make_figures_command},
 };
 // clang-format on
 

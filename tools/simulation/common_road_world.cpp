@@ -33,7 +33,7 @@ constexpr double kStopping_s = 10.0;      // to come to rest after the goal is m
 constexpr double kNothingAsked_s = 10.0;  // a drive without a goal
 constexpr double kRoadAhead_m = 120.0;    // beyond what is driven, to brake on
 constexpr double kBeyondGoal_m = 100.0;   // the line goes on past the goal
-constexpr double kNearGoal_m = 3.0;       // a region's middle may lie so far beside its lane
+constexpr double kAtGoal_m = 3.0;         // a region's middle may lie so far beside its lane
 
 struct Source {
   std::string file;
@@ -171,7 +171,7 @@ std::vector<LanePlace> goal_places(const Source& source, const GoalState& state)
     std::optional<double> heading;
     if (state.heading_rad) heading = 0.5 * (state.heading_rad->least + state.heading_rad->most);
     for (const auto& match :
-         planning::match_place(source.road_map, middle, heading, {.reach_m = kNearGoal_m})) {
+         planning::match_place(source.road_map, middle, heading, {.reach_m = kAtGoal_m})) {
       if (match.verdict == planning::MatchVerdict::chosen) places.push_back(match.place);
     }
   }

@@ -6,7 +6,7 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr double kFine_m = 0.5, kCoarse_m = 1.0, kFineUntil_m = 40.0;
+constexpr double kFine_m = 0.5, kWayStep_m = 1.0, kFineUntil_m = 40.0;
 constexpr double kFastest_mps = 60.0;
 
 double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
@@ -33,7 +33,7 @@ DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
   DrivenWay way;
   std::vector<double> curvature;
   Eigen::Vector2d last(0.0, 0.0);
-  for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kCoarse_m) {
+  for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kWayStep_m) {
     const geometry::Pose2 pose = path.pose_at(from_s_m + l_m);
     const double ahead_m =
         way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (pose.position() - last).norm();

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Rectangle;
 
-constexpr double kLook_s = 3.0, kStep_s = 0.1;
+constexpr double kLook_s = 3.0, kLookStep_s = 0.1;
 constexpr double kLeastSpeed_mps = 1.0;
 
 Rectangle moved(Rectangle body, const Eigen::Vector2d& velocity_mps, double duration_s) {
@@ -31,9 +31,9 @@ std::optional<double> time_to_touch(const Rectangle& a, const Eigen::Vector2d& v
                                     double within_s) {
   const double reach = a.radius_m() + b.radius_m() + (velocity_b - velocity_a).norm() * within_s;
   if ((a.centre - b.centre).norm() > reach) return std::nullopt;
-  const auto steps = static_cast<int>(std::lround(within_s / kStep_s));
+  const auto steps = static_cast<int>(std::lround(within_s / kLookStep_s));
   for (int k = 0; k < steps; ++k) {
-    const double ahead_s = kStep_s * k;
+    const double ahead_s = kLookStep_s * k;
     if (geometry::distance_m(moved(a, velocity_a, ahead_s), moved(b, velocity_b, ahead_s)) <= 0.0)
       return ahead_s;
   }
@@ -45,7 +45,7 @@ std::optional<double> time_to_touch(const Rectangle& a, const Eigen::Vector2d& v
 std::optional<Encounter> least_time_to_collision(const Drive& drive, const World& world,
                                                  const geometry::VehicleShape& vehicle) {
   std::optional<Encounter> least;
-  double within_s = kLook_s + kStep_s;
+  double within_s = kLook_s + kLookStep_s;
   for (const geometry::TrajectoryPoint& row : drive.trajectory.points()) {
     const Eigen::Vector2d in_map = world.road_map.to_map({row.x_m, row.y_m});
     const Rectangle body = geometry::body_at({in_map.x(), in_map.y(), row.heading_rad}, vehicle);

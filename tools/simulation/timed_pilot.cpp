@@ -18,7 +18,7 @@ namespace {
 constexpr double kLeastHorizon_s = 5.0, kMostHorizon_s = 12.0;
 constexpr double kBeyondGoal_s = 1.5;
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
-constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
+constexpr double kTimedPassOffset_m = 0.5, kFollow_m = 20.0;
 constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
 
 /// How much is dared: room to obstacles, and braking.
@@ -295,7 +295,7 @@ class TimedPilot : public Pilot {
       command.behaviour = Behaviour::stop;
       command.reason =
           world_.goal->states.empty() ? "no goal is asked for" : "the goal's time is over";
-    } else if (beside_m(best) > kPassOffset_m) {
+    } else if (beside_m(best) > kTimedPassOffset_m) {
       command.behaviour = Behaviour::pass;
       command.reason =
           fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));

@@ -1,0 +1,119 @@
+// `figures` as a user runs it: the tables say what the paper's figures show.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tools/support/od_csv.h"
+
+namespace roadbed::tests {
+namespace {
+
+struct FigureRow {
+  double x, y;
+};
+using FigureTable = std::map<std::string, std::vector<FigureRow>>;
+
+FigureTable read_figure(const std::filesystem::path& file) {
+  std::istringstream lines(bytes_of(file));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "series,x,y");
+  FigureTable table;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> fields = tools::csv_fields(line);
+    EXPECT_EQ(fields.size(), 3u) << line;
+    table[fields.at(0)].push_back({std::stod(fields.at(1)), std::stod(fields.at(2))});
+  }
+  return table;
+}
+
+class FiguresCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder();
+    run_ = run_roadbed({"figures", "-o", (*folder_ / "figures").string()});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  static FigureTable table(const std::string& name) {
+    return read_figure(*folder_ / ("figures/" + name + ".csv"));
+  }
+
+  inline static TemporaryFolder* folder_ = nullptr;
+  inline static ProgramRun run_;
+};
+
+TEST_F(FiguresCommand, WritesAPictureAndATableOfEach) {
+  ASSERT_EQ(run_.status, 0) << run_.err;
+  std::vector<std::string> names;
+  for (const char* figure : {"figure_2_path_model", "figure_3_cubic_spline", "figure_4_corner",
+                             "figure_5_first_derivative", "figure_6_second_derivative",
+                             "figure_7_curvature", "figure_8_overtaking", "figure_9_candidates"}) {
+    names.push_back(std::string(figure) + ".csv");
+    names.push_back(std::string(figure) + ".svg");
+  }
+  EXPECT_EQ(files_below(*folder_ / "figures"), names);
+  const ProgramRun again = run_roadbed({"figures", "-o", (*folder_ / "figures").string()});
+  EXPECT_EQ(again.status, 1) << "an existing folder is not replaced";
+}
+
+TEST_F(FiguresCommand, CornerHasThePapersControlPoints) {
+  const auto points = table("figure_4_corner").at("control points P0 … P5");
+  ASSERT_EQ(points.size(), 6u);
+  const double before[] = {14.0, 11.0, 8.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(points[i].x, -before[i], 1e-9);
+    EXPECT_NEAR(points[5 - i].y, before[i], 1e-9);
+  }
+}
+
+TEST_F(FiguresCommand, DerivativesAndCurvatureAreContinuous) {
+  for (const char* name :
+       {"figure_5_first_derivative", "figure_6_second_derivative", "figure_7_curvature"}) {
+    for (const auto& [series, rows] : table(name)) {
+      for (std::size_t i = 1; i < rows.size(); ++i) {
+        // The greatest slope is κ′ = 0.142 1/m², or κ = 0.13 1/m for the first derivative.
+        EXPECT_LE(std::abs(rows[i].y - rows[i - 1].y), 0.15 * (rows[i].x - rows[i - 1].x) + 1e-9)
+            << name << ", " << series << " at " << rows[i].x << " m";
+      }
+    }
+  }
+}
+
+TEST_F(FiguresCommand, PeakCurvatureIsThatOfTheGaps) {
+  const FigureTable curves = table("figure_7_curvature");
+  const auto peak = [&](const std::string& name) {
+    return std::ranges::max(curves.at(name), {}, &FigureRow::y).y;
+  };
+  EXPECT_NEAR(peak("gaps 3, 3, 8 m"), 0.130, 0.001);
+  EXPECT_NEAR(peak("gaps 5, 5, 4 m"), 0.113, 0.001);
+}
+
+TEST_F(FiguresCommand, VehicleOvertakesAndComesBack) {
+  const FigureTable drive = table("figure_8_overtaking");
+  const auto &vehicle = drive.at("vehicle, 12 m/s (rear axle)"),
+             &other = drive.at("car ahead, 4 m/s");
+  ASSERT_EQ(vehicle.size(), other.size());
+  ASSERT_GT(vehicle.size(), 20u);
+  EXPECT_LT(vehicle.front().x, other.front().x - 20.0);
+  EXPECT_GT(vehicle.back().x, other.back().x + 20.0);
+  for (std::size_t i = 0; i < vehicle.size(); ++i) {
+    EXPECT_GT(std::hypot(vehicle[i].x - other[i].x, vehicle[i].y - other[i].y), 1.6);
+  }
+}
+
+TEST_F(FiguresCommand, CandidatesAreThePapers1596) {
+  const FigureTable candidates = table("figure_9_candidates");
+  EXPECT_EQ(candidates.at("candidates").size(), 16u * 1596u);
+  const auto& chosen = candidates.at("optimal, free of collision");
+  EXPECT_NEAR(chosen.front().y, 0.0, 1e-12);
+  EXPECT_GE(chosen.back().y, 2.0 - 1e-9);
+}
+
+}  // namespace
+}  // namespace roadbed::tests

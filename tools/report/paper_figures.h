@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "roadbed/tools/report/chart.h"
+
+namespace roadbed::tools {
+
+/// A figure of the paper, computed.
+struct Figure {
+  std::string name;  ///< of its files, without suffix
+  Chart chart;
+};
+
+/// Figs. 2–7: the reference line. The centreline of Fig. 2 is measured points of a bending road,
+/// with uneven gaps and noise; Figs. 4–7 are the right angle with the gaps 3, 3 and 8 m.
+std::vector<Figure> reference_line_figures();
+
+/// Figs. 8 and 9: overtaking a slower car, planned ten times a second, and one cycle's candidates.
+std::vector<Figure> lateral_planner_figures();
+
+}  // namespace roadbed::tools

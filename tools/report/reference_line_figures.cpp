@@ -1,0 +1,204 @@
+// Figs. 2–7 of the paper.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "roadbed/geometry/quintic_bezier.h"
+#include "roadbed/geometry/spline_curve.h"
+#include "roadbed/planning/reference_line.h"
+#include "roadbed/tools/report/paper_figures.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Eigen::Vector2d;
+using Points = std::vector<Vector2d>;
+
+// A bending road as it is measured: every 3 to 14 m, each point up to 0.25 m off.
+Points measured_centreline() {
+  std::mt19937 random(2);
+  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  Points points;
+  for (double x_m = 0.0; x_m <= 150.0; x_m += 3.0 + 11.0 * share()) {
+    const Vector2d noise(0.5 * share() - 0.25, 0.5 * share() - 0.25);
+    points.push_back(Vector2d(x_m, 8.0 * std::sin(x_m / 22.0)) + noise);
+  }
+  return points;
+}
+
+Points points_of(const planning::ReferenceLine& line, double step_m) {
+  Points points;
+  for (double s_m = 0.0; s_m <= line.length_m(); s_m += step_m) {
+    points.push_back(line.at(s_m).in_map);
+  }
+  return points;
+}
+
+Figure path_model() {
+  const Points way_points = measured_centreline();
+  const auto line =
+      planning::ReferenceLine::through(way_points, 1.75, 14.0, {.max_smoothing_m = 0.5});
+  return {"figure_2_path_model",
+          {.title = "Fig. 2: path model",
+           .x_label = "x [m]",
+           .y_label = "y [m]",
+           .series = {{"way-points of the centreline", Mark::circles, kBlack, way_points},
+                      {"interpolated: cubic spline", Mark::dashed, kRed,
+                       geometry::SplineCurve::through(way_points).resample(0.25)},
+                      {"smoothed within 0.5 m: reference line", Mark::line, kBlue,
+                       points_of(line, 0.25)}},
+           .is_plan = true}};
+}
+
+Figure cubic_spline() {
+  const Points way_points = {{0.0, 0.0},  {8.0, 5.0},   {14.0, 4.0},  {23.0, -3.0}, {30.0, 1.0},
+                             {34.0, 9.0}, {30.0, 16.0}, {20.0, 17.0}, {11.0, 14.0}};
+  const auto curve = geometry::SplineCurve::through(way_points);
+  return {"figure_3_cubic_spline",
+          {.title = "Fig. 3: cubic spline interpolation of a road that turns back",
+           .x_label = "x [m]",
+           .y_label = "y [m]",
+           .series = {{"way-points", Mark::dots, kRed, way_points},
+                      {"natural spline of x(s) and y(s)", Mark::line, kBlue, curve.resample(0.1)}},
+           .is_plan = true}};
+}
+
+// A right angle of two legs of 14 m and 6 m more, smoothed with the given gaps.
+class Corner {
+ public:
+  explicit Corner(const geometry::CornerGaps& gaps)
+      : curve_(geometry::QuinticBezier::corner(kBefore, kAt, kAfter, gaps)) {}
+
+  Points control_points() const {
+    return {curve_.control_points().begin(), curve_.control_points().end()};
+  }
+
+  // The leg, the curve and the other leg, about 5 cm apart. For each point: the arc length, and
+  // what `of` makes of the derivatives with respect to it.
+  template <typename Of>
+  Points along(const Of& of) const {
+    Points rows;
+    const auto add_leg = [&](const Vector2d& from, const Vector2d& to, double from_s_m) {
+      const double length_m = (to - from).norm();
+      for (double l_m = 0.0; l_m < length_m; l_m += 0.05) {
+        rows.push_back({from_s_m + l_m, of(State::on_leg(from, to, l_m))});
+      }
+    };
+    add_leg(kBefore, curve_.at(0.0), 0.0);
+    double s_m = (curve_.at(0.0) - kBefore).norm();
+    Vector2d last = curve_.at(0.0);
+    for (int i = 0; i <= kSamples; ++i) {
+      const double t = static_cast<double>(i) / kSamples;
+      s_m += (curve_.at(t) - last).norm();
+      last = curve_.at(t);
+      rows.push_back({s_m, of(State::on_curve(curve_, t))});
+    }
+    add_leg(last, kAfter, s_m);
+    return rows;
+  }
+
+  struct State {
+    Vector2d position, tangent, bend;  // bend: second derivative by arc length
+    double curvature_per_m;
+
+    static State on_leg(const Vector2d& from, const Vector2d& to, double s_m) {
+      const Vector2d tangent = (to - from).normalized();
+      return {from + s_m * tangent, tangent, {0.0, 0.0}, 0.0};
+    }
+    static State on_curve(const geometry::QuinticBezier& curve, double t) {
+      const Vector2d tangent = curve.derivative(t, 1).normalized();
+      const double curvature = curve.curvature_per_m(t);
+      return {curve.at(t), tangent, curvature * Vector2d(-tangent.y(), tangent.x()), curvature};
+    }
+  };
+
+  Points positions() const {
+    Points points;
+    along([&](const State& state) {
+      points.push_back(state.position);
+      return 0.0;
+    });
+    return points;
+  }
+
+  inline static const Vector2d kBefore{-20.0, 0.0}, kAt{0.0, 0.0}, kAfter{0.0, 20.0};
+
+ private:
+  static constexpr int kSamples = 500;
+  geometry::QuinticBezier curve_;
+};
+
+Figure corner_curve() {
+  const Corner corner(geometry::kPaperGaps);
+  Points legs;
+  for (double s_m = -20.0; s_m <= 0.0; s_m += 0.5) legs.push_back({s_m, 0.0});
+  for (double s_m = 0.5; s_m <= 20.0; s_m += 0.5) legs.push_back({0.0, s_m});
+  return {"figure_4_corner",
+          {.title = "Fig. 4: Bézier curve at a corner, gaps 3, 3 and 8 m",
+           .x_label = "x [m]",
+           .y_label = "y [m]",
+           .series = {{"road centreline, every 0.5 m", Mark::circles, kBlack, legs},
+                      {"reference line", Mark::line, kBlue, corner.positions()},
+                      {"control points P0 … P5", Mark::dots, kRed, corner.control_points()}},
+           .is_plan = true}};
+}
+
+Figure first_derivative(const Corner& corner) {
+  using State = Corner::State;
+  return {"figure_5_first_derivative",
+          {.title = "Fig. 5: first derivative of the reference line at the corner",
+           .x_label = "arc length s [m]",
+           .y_label = "dx/ds, dy/ds [1]",
+           .series = {{"dx/ds", Mark::line, kBlue,
+                       corner.along([](const State& at) { return at.tangent.x(); })},
+                      {"dy/ds", Mark::dashed, kRed,
+                       corner.along([](const State& at) { return at.tangent.y(); })}}}};
+}
+
+Figure second_derivative(const Corner& corner) {
+  using State = Corner::State;
+  return {"figure_6_second_derivative",
+          {.title = "Fig. 6: second derivative of the reference line at the corner",
+           .x_label = "arc length s [m]",
+           .y_label = "d²x/ds², d²y/ds² [1/m]",
+           .series = {{"d²x/ds²", Mark::line, kBlue,
+                       corner.along([](const State& at) { return at.bend.x(); })},
+                      {"d²y/ds²", Mark::dashed, kRed,
+                       corner.along([](const State& at) { return at.bend.y(); })}}}};
+}
+
+Figure curvature(const Corner& corner) {
+  const auto of = [](const Corner::State& at) { return at.curvature_per_m; };
+  const auto line = planning::ReferenceLine::through(
+      {Corner::kBefore, {-10.0, 0.0}, Corner::kAt, {0.0, 10.0}, Corner::kAfter}, 1.75, 10.0);
+  Points planned;
+  for (double s_m = 0.0; s_m <= line.length_m(); s_m += 0.05) {
+    planned.push_back({s_m, line.at(s_m).curvature_per_m});
+  }
+  return {
+      "figure_7_curvature",
+      {.title = "Fig. 7: curvature of the reference line at the corner",
+       .x_label = "arc length s [m]",
+       .y_label = "curvature [1/m]",
+       .series = {{"gaps 3, 3, 8 m", Mark::line, kBlue, corner.along(of)},
+                  {"gaps 5, 5, 4 m", Mark::dashed, kRed, Corner(geometry::kGentleGaps).along(of)},
+                  {"line that is planned along", Mark::line, kGreen, planned}}}};
+}
+
+}  // namespace
+
+std::vector<Figure> reference_line_figures() {
+  const Corner corner(geometry::kPaperGaps);
+  return {path_model(),
+          cubic_spline(),
+          corner_curve(),
+          first_derivative(corner),
+          second_derivative(corner),
+          curvature(corner)};
+}
+
+}  // namespace roadbed::tools
