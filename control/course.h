@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadbed/geometry/pose2.h"
+
+namespace roadbed::control {
+
+/// A path to track, as densely sampled poses; between two of them place and heading are linear,
+/// past both ends it leads straight on. Immutable.
+class Course {
+ public:
+  /// @param poses  at least two; their headings are those of the path, and need not be unwrapped.
+  /// @throws std::invalid_argument if there are fewer than two, or two neighbours coincide.
+  explicit Course(std::vector<geometry::Pose2> poses);
+
+  double length_m() const { return stations_m_.back(); }
+
+  geometry::Pose2 at(double s_m) const;
+
+  /// Station nearest to a point, of those within `window_m` of `near_s_m`: the course may come back
+  /// beside itself. Negative, or beyond the length, past an end.
+  double nearest_s_m(const Eigen::Vector2d& point, double near_s_m, double window_m = 10.0) const;
+
+ private:
+  std::vector<geometry::Pose2> poses_;  ///< headings unwrapped
+  std::vector<double> stations_m_;
+};
+
+}  // namespace roadbed::control

@@ -1,0 +1,131 @@
+#include "roadbed/control/course_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "roadbed/control/baseline_steering.h"
+#include "roadbed/control/stanley.h"
+
+namespace roadbed::control {
+namespace {
+
+class CourseRun {
+ public:
+  CourseRun(const Course& course, const CourseRunOptions& options)
+      : course_(course), options_(options) {
+    state_.pose = course.at(0.0);
+    state_.speed_mps = options.speed_mps;
+  }
+
+  std::vector<CourseRunRow> rows() {
+    std::vector<CourseRunRow> rows;
+    const double longest_s = 2.0 * course_.length_m() / options_.speed_mps;
+    for (int k = 0; k * options_.step_s < longest_s; ++k) {
+      const TrackingError error = locate();
+      if (front_s_m_ >= course_.length_m()) break;
+      rows.push_back(advance(k * options_.step_s, error));
+    }
+    return rows;
+  }
+
+ private:
+  double wheelbase_m() const { return options_.vehicle.wheelbase_m; }
+
+  TrackingError locate() {
+    const Eigen::Vector2d front = state_.pose * Eigen::Vector2d(wheelbase_m(), 0.0);
+    front_s_m_ = course_.nearest_s_m(front, front_s_m_);
+    rear_s_m_ = course_.nearest_s_m(state_.pose.position(), rear_s_m_);
+    return tracking_error(state_.pose, wheelbase_m(), course_.at(front_s_m_));
+  }
+
+  CourseRunRow advance(double t_s, const TrackingError& error) {
+    const double before = state_.steering_rad, wanted = steering(error);
+    CourseRunRow row{.t_s = t_s,
+                     .state = state_,
+                     .cross_track_m = error.cross_track_m,
+                     .heading_rad = error.heading_rad};
+    if (options_.euler) {
+      euler_step(wanted);
+    } else {
+      state_ = step(state_, {.steering_rate_radps = (wanted - before) / options_.step_s},
+                    options_.step_s, options_.vehicle);
+    }
+    row.steering_rate_radps = (state_.steering_rad - before) / options_.step_s;
+    row.lateral_jerk_mps3 = options_.speed_mps * options_.speed_mps / wheelbase_m() *
+                            (std::tan(state_.steering_rad) - std::tan(before)) / options_.step_s;
+    return row;
+  }
+
+  double steering(TrackingError error) const {
+    const double speed = options_.speed_mps;
+    switch (options_.law) {
+      case SteeringLaw::stanley:
+        error.heading_rad += course_.at(front_s_m_ + speed * options_.preview_s).heading_rad -
+                             course_.at(front_s_m_).heading_rad;
+        return stanley_steering_rad(error, speed, options_.vehicle);
+      case SteeringLaw::original_stanley:
+        return original_stanley_steering_rad(error, speed, options_.original_gain_per_s,
+                                             options_.vehicle);
+      case SteeringLaw::pure_pursuit:
+        break;
+    }
+    return pure_pursuit_steering_rad(state_.pose, course_, rear_s_m_, pursuit_distance_m(speed),
+                                     options_.vehicle);
+  }
+
+  void euler_step(double steering_rad) {
+    const double way_m = options_.speed_mps * options_.step_s;
+    geometry::Pose2& pose = state_.pose;
+    pose = {pose.x_m + way_m * std::cos(pose.heading_rad),
+            pose.y_m + way_m * std::sin(pose.heading_rad),
+            pose.heading_rad + way_m / wheelbase_m() * std::tan(steering_rad)};
+    state_.steering_rad = steering_rad;
+  }
+
+  const Course& course_;
+  const CourseRunOptions& options_;
+  SingleTrackState state_;
+  double front_s_m_ = 0.0, rear_s_m_ = 0.0;
+};
+
+struct Extent {
+  double squares = 0.0, largest = 0.0;
+
+  void add(double value) {
+    squares += value * value;
+    largest = std::max(largest, std::abs(value));
+  }
+  double rms(std::size_t count) const { return std::sqrt(squares / static_cast<double>(count)); }
+};
+
+}  // namespace
+
+std::vector<CourseRunRow> run_course(const Course& course, const CourseRunOptions& options) {
+  if (!(options.speed_mps > 0.0) || !(options.step_s > 0.0)) {
+    throw std::invalid_argument("run_course: speed and step must be positive");
+  }
+  return CourseRun(course, options).rows();
+}
+
+CourseRunSummary summarise(const std::vector<CourseRunRow>& run) {
+  if (run.empty()) return {};
+  Extent cross_track, heading, rate, jerk;
+  for (const CourseRunRow& row : run) {
+    cross_track.add(row.cross_track_m);
+    heading.add(row.heading_rad);
+    rate.add(row.steering_rate_radps);
+    jerk.add(row.lateral_jerk_mps3);
+  }
+  const std::size_t n = run.size();
+  return {.cross_track_rms_m = cross_track.rms(n),
+          .largest_cross_track_m = cross_track.largest,
+          .heading_rms_rad = heading.rms(n),
+          .largest_heading_rad = heading.largest,
+          .steering_rate_rms_radps = rate.rms(n),
+          .largest_steering_rate_radps = rate.largest,
+          .lateral_jerk_rms_mps3 = jerk.rms(n),
+          .largest_lateral_jerk_mps3 = jerk.largest};
+}
+
+}  // namespace roadbed::control
