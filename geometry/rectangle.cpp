@@ -55,7 +55,8 @@ double distance_m(const Rectangle& rectangle, const Eigen::Vector2d& point) {
   const Eigen::Vector2d offset = point - rectangle.centre;
   const double along = std::abs(offset.dot(rectangle.axis)) - rectangle.half_length_m;
   const double across = std::abs(offset.dot(left_of(rectangle.axis))) - rectangle.half_width_m;
-  return std::hypot(std::max(along, 0.0), std::max(across, 0.0));
+  const double beyond = std::max(along, 0.0), beside = std::max(across, 0.0);
+  return std::sqrt(beyond * beyond + beside * beside);
 }
 
 double distance_m(const Rectangle& a, const Rectangle& b) {

@@ -2,15 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "roadbed/geometry/quadrature.h"
 
 namespace roadbed::geometry {
 namespace {
 
 constexpr double kSamePoint_m = 1e-6;
 constexpr int kPanelsPerPiece = 4;  // of the quadrature: a chord's speed may vary much
+
+constexpr double kArcPiece_m = 0.25;
+
+// A place on the curve with its derivatives by arc length.
+struct ArcNode {
+  double s_m;
+  Eigen::Vector2d position, tangent, bend;
+};
+
+// The curve between two places without a knot between them: the polynomial of degree five in arc
+// length that has their positions and first two derivatives. A quarter of a metre apart, it is
+// off by h⁶/(46,080 r⁵): 5 nm at a radius of 1 m.
+class ArcPiece {
+ public:
+  ArcPiece(const ArcNode& from, const ArcNode& to) : from_m_(from.s_m) {
+    const double h = to.s_m - from.s_m;
+    const Eigen::Vector2d slope = h * from.tangent, bend = 0.5 * h * h * from.bend;
+    const Eigen::Vector2d missing = to.position - (from.position + slope + bend);
+    const Eigen::Vector2d missing_slope = h * to.tangent - (slope + 2.0 * bend);
+    const Eigen::Vector2d missing_bend = h * h * to.bend - 2.0 * bend;
+    c_ = {from.position,
+          slope,
+          bend,
+          10.0 * missing - 4.0 * missing_slope + 0.5 * missing_bend,
+          -15.0 * missing + 7.0 * missing_slope - missing_bend,
+          6.0 * missing - 3.0 * missing_slope + 0.5 * missing_bend};
+    per_m_ = 1.0 / h;
+  }
+
+  Eigen::Vector2d at(double s_m) const {
+    const double t = (s_m - from_m_) * per_m_;
+    return c_[0] + t * (c_[1] + t * (c_[2] + t * (c_[3] + t * (c_[4] + t * c_[5]))));
+  }
+
+ private:
+  double from_m_, per_m_ = 0.0;
+  std::array<Eigen::Vector2d, 6> c_;
+};
 
 // Points without repetition, and the length of the chords up to each.
 struct Chords {
@@ -106,11 +147,38 @@ std::vector<Eigen::Vector2d> SplineCurve::resample(double step_m) const {
         fmt::format("SplineCurve: the step must be positive, got {} m", step_m));
   }
   const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m() / step_m - 1e-9)));
+  const auto station_m = [&](std::size_t i) {
+    return length_m() * static_cast<double>(i) / static_cast<double>(steps);
+  };
   std::vector<Eigen::Vector2d> points;
   points.reserve(steps + 1);
-  for (std::size_t i = 0; i <= steps; ++i) {
-    points.push_back(at(length_m() * static_cast<double>(i) / static_cast<double>(steps)));
+  const auto emit_below = [&](const ArcPiece& piece, double end_m) {
+    while (points.size() < steps && station_m(points.size()) < end_m) {
+      points.push_back(piece.at(station_m(points.size())));
+    }
+  };
+  const auto node_at = [&](double u, double s_m) {
+    const Eigen::Vector2d first = derivative(u, 1), second = derivative(u, 2);
+    const double squared = first.squaredNorm(), speed = std::sqrt(squared);
+    const double curvature = (first.x() * second.y() - first.y() * second.x()) / (squared * speed);
+    const Eigen::Vector2d tangent = first / speed;
+    return ArcNode{s_m, derivative(u, 0), tangent,
+                   curvature * Eigen::Vector2d(-tangent.y(), tangent.x())};
+  };
+  const auto speed = [this](double u) { return derivative(u, 1).norm(); };
+  ArcNode from = node_at(knots().front(), 0.0);
+  for (std::size_t i = 0; i + 1 < knots().size(); ++i) {
+    const double begin = knots()[i], width = knots()[i + 1] - begin;
+    const int parts = static_cast<int>(std::ceil(width / kArcPiece_m));
+    for (int part = 1; part <= parts; ++part) {
+      const double u0 = begin + width * (part - 1) / parts;
+      const double u1 = part == parts ? knots()[i + 1] : begin + width * part / parts;
+      const ArcNode to = node_at(u1, from.s_m + integrate(speed, u0, u1));
+      emit_below(ArcPiece(from, to), to.s_m);
+      from = to;
+    }
   }
+  while (points.size() <= steps) points.push_back(derivative(knots().back(), 0));
   return points;
 }
 

@@ -43,6 +43,13 @@ bool is_off_road(const std::vector<Station>& stations, const geometry::Quintic& 
   });
 }
 
+// tan δ = L k, so δ̇ = L v dk/dσ / (1 + L² k²).
+double steering_rate_radps(const CostPoint& point, double wheelbase_m) {
+  const double tangent = wheelbase_m * point.curvature_per_m;
+  return std::abs(wheelbase_m * point.speed_mps * point.curvature_d1_per_m2) /
+         (1.0 + tangent * tangent);
+}
+
 geometry::TrajectoryPoint trajectory_point(const Station& station, double d_m,
                                            const geometry::OffsetCurve& curve, double wheelbase_m) {
   const double heading_rad = station.line.heading_rad;
@@ -62,7 +69,7 @@ geometry::TrajectoryPoint trajectory_point(const Station& station, double d_m,
 
 std::string_view name(Rejection rejection) {
   constexpr std::array<std::string_view, kRejections> kNames = {
-      "none", "off_road", "beyond_curvature", "lateral_acceleration", "collision"};
+      "none", "off_road", "beyond_curvature", "lateral_acceleration", "steering_rate", "collision"};
   return kNames.at(static_cast<std::size_t>(rejection));
 }
 
@@ -148,14 +155,16 @@ Rejection judge(const std::vector<Station>& stations, const geometry::Quintic& q
                 const std::vector<CostPoint>& points, const DrivingLimits& limits) {
   if (is_off_road(stations, quintic)) return Rejection::off_road;
   if (points.empty()) return Rejection::beyond_curvature;
-  double curvature_per_m = 0.0, lateral_mps2 = 0.0;
+  double curvature_per_m = 0.0, lateral_mps2 = 0.0, steering_radps = 0.0;
   for (const CostPoint& point : points) {
     const double curvature = std::abs(point.curvature_per_m);
     curvature_per_m = std::max(curvature_per_m, curvature);
     lateral_mps2 = std::max(lateral_mps2, point.speed_mps * point.speed_mps * curvature);
+    steering_radps = std::max(steering_radps, steering_rate_radps(point, limits.wheelbase_m));
   }
   if (curvature_per_m > limits.max_curvature_per_m) return Rejection::beyond_curvature;
   if (lateral_mps2 > limits.max_lateral_acceleration_mps2) return Rejection::lateral_acceleration;
+  if (steering_radps > limits.max_steering_rate_radps) return Rejection::steering_rate;
   return Rejection::none;
 }
 
@@ -181,6 +190,36 @@ std::vector<geometry::TrajectoryPoint> drive_along(const std::vector<Station>& s
     last_stretch = curve->stretch;
   }
   return drive;
+}
+
+std::optional<DrivePoint> drive_point(const std::vector<Station>& stations, std::size_t station,
+                                      const geometry::Quintic& quintic, double start_t_s) {
+  const auto& c = quintic.coefficients();
+  DrivePoint point{.pose = {}, .t_s = start_t_s};
+  double last_stretch = 0.0;
+  for (std::size_t i = 0; i <= station; ++i) {
+    const double l = stations[i].l_m;
+    const double d_m = c[0] + l * (c[1] + l * (c[2] + l * (c[3] + l * (c[4] + l * c[5]))));
+    const double across =
+        c[1] + l * (2.0 * c[2] + l * (3.0 * c[3] + l * (4.0 * c[4] + l * 5.0 * c[5])));
+    const ReferencePoint& line = stations[i].line;
+    const double along = 1.0 - line.curvature_per_m * d_m;
+    if (!(along > kLeastUnfolded)) return std::nullopt;
+    const double stretch = std::sqrt(along * along + across * across);
+    if (i > 0) {
+      const double length_m = 0.5 * (last_stretch + stretch) * (l - stations[i - 1].l_m);
+      const double mean_mps = 0.5 * (stations[i - 1].speed.speed_mps + stations[i].speed.speed_mps);
+      point.t_s += length_m / std::max(mean_mps, kSlowest_mps);
+      point.driven_m += length_m;
+    }
+    last_stretch = stretch;
+    if (i < station) continue;
+    const double heading_rad = line.heading_rad;
+    point.pose = {line.in_map.x() - d_m * std::sin(heading_rad),
+                  line.in_map.y() + d_m * std::cos(heading_rad),
+                  heading_rad + std::atan2(across, along)};
+  }
+  return point;
 }
 
 }  // namespace roadbed::planning

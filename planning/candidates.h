@@ -30,9 +30,10 @@ enum class Rejection {
   off_road,          ///< leaves the corridor
   beyond_curvature,  ///< 1 − κ d is not safely positive, or the vehicle cannot steer it
   lateral_acceleration,
+  steering_rate,  ///< the wheels cannot be turned that fast at that speed
   collision,
 };
-inline constexpr int kRejections = 5;
+inline constexpr int kRejections = 6;
 std::string_view name(Rejection rejection);
 
 /// A quintic d(l) over [0, l_e] ahead of the start (paper eq. 13–22).
@@ -91,9 +92,14 @@ inline constexpr double kLimitSlack = 1e-9;
 struct DrivingLimits {
   double max_curvature_per_m = 0.0;  ///< of the steering
   double max_lateral_acceleration_mps2 = 0.0;
+  double max_steering_rate_radps = kNoLimit;
+  double wheelbase_m = 1.0;  ///< for the steering rate
+
+  static constexpr double kNoLimit = 1e100;
 };
 
-/// What the vehicle can drive: tan(max_steering) / wheelbase, and the given acceleration.
+/// What the vehicle can drive: tan(max_steering) / wheelbase, and the given acceleration. The
+/// steering rate stays without a limit.
 DrivingLimits driving_limits(const geometry::VehicleShape& vehicle,
                              double max_lateral_acceleration_mps2);
 
@@ -140,5 +146,17 @@ Rejection judge(const std::vector<Station>& stations, const geometry::Quintic& q
 std::vector<geometry::TrajectoryPoint> drive_along(const std::vector<Station>& stations,
                                                    const geometry::Quintic& quintic,
                                                    double start_t_s, double wheelbase_m);
+
+/// One point of such a drive.
+struct DrivePoint {
+  geometry::Pose2 pose;
+  double t_s = 0.0;
+  double driven_m = 0.0;
+};
+
+/// The point of drive_along() at one of the candidate's own stations, without the others. None if
+/// the candidate is folded before. @pre the station is not past the quintic's end
+std::optional<DrivePoint> drive_point(const std::vector<Station>& stations, std::size_t station,
+                                      const geometry::Quintic& quintic, double start_t_s);
 
 }  // namespace roadbed::planning

@@ -19,6 +19,12 @@ using geometry::TrajectoryPoint;
 // bound from the circles will do.
 constexpr double kNear_m = 0.5;
 
+// What a contact is with: the standing obstacles, the occupied cells, or the mover of an index.
+constexpr std::size_t kStanding = 0, kOccupied = 1, kFirstMover = 2;
+
+// Nearer than demanded by this much is too near, whatever the demand was rounded to.
+constexpr double kSure_m = 0.01;
+
 // The vehicle at one moment of a drive.
 struct Moment {
   double t_s = 0.0;
@@ -110,8 +116,9 @@ struct CollisionChecker::Impl {
   void look_at(const std::vector<TrajectoryPoint>& drive, Place place, Moment& moment) const;
 
   template <typename Clearance>
-  bool keeps_clear(const std::vector<TrajectoryPoint>& drive, const std::vector<Leg>& legs,
-                   double rate_mps, double until_s, const Clearance& clearance) const;
+  std::optional<Contact> contact(std::size_t with, const std::vector<TrajectoryPoint>& drive,
+                                 const std::vector<Leg>& legs, double rate_mps, double until_s,
+                                 const Clearance& clearance) const;
   Place follow(const std::vector<Leg>& legs, Place from, double rate_mps, double slack_m) const;
 
   double from_standing_m(const Moment& moment, double enough_m) const;
@@ -163,20 +170,22 @@ Place CollisionChecker::Impl::follow(const std::vector<Leg>& legs, Place from, d
 
 // `clearance(moment, enough)` is the distance at a moment, or any lower bound above `enough`.
 template <typename Clearance>
-bool CollisionChecker::Impl::keeps_clear(const std::vector<TrajectoryPoint>& drive,
-                                         const std::vector<Leg>& legs, double rate_mps,
-                                         double until_s, const Clearance& clearance) const {
+std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
+                                                       const std::vector<TrajectoryPoint>& drive,
+                                                       const std::vector<Leg>& legs,
+                                                       double rate_mps, double until_s,
+                                                       const Clearance& clearance) const {
   Moment moment;
   for (Place place; place.leg < legs.size();) {
     look_at(drive, place, moment);
-    if (moment.t_s > until_s) return true;
+    if (moment.t_s > until_s) return std::nullopt;
     const Leg& leg = legs[place.leg];
     const double demanded = demanded_m(leg.from_m + place.share * leg.length_m);
     const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
-    if (!(slack_m >= options.tolerance_m)) return false;
+    if (!(slack_m >= options.tolerance_m)) return Contact{place.leg, with};
     place = follow(legs, place, rate_mps, slack_m);
   }
-  return true;
+  return std::nullopt;
 }
 
 double CollisionChecker::Impl::from_standing_m(const Moment& moment, double enough_m) const {
@@ -220,28 +229,48 @@ CollisionChecker::~CollisionChecker() = default;
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
 CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
 
-bool CollisionChecker::is_free(const std::vector<TrajectoryPoint>& drive) const {
+std::optional<Contact> CollisionChecker::first_contact(
+    const std::vector<TrajectoryPoint>& drive) const {
   const Impl& impl = *impl_;
   const double for_ever = std::numeric_limits<double>::infinity();
   const std::vector<Leg> legs = legs_of(drive, impl.vehicle.reach_m());
-  if (!impl.standing.empty() &&
-      !impl.keeps_clear(drive, legs, 0.0, for_ever, [&](const Moment& moment, double enough_m) {
-        return impl.from_standing_m(moment, enough_m);
-      })) {
-    return false;
+  std::optional<Contact> found;
+  if (!impl.standing.empty()) {
+    found = impl.contact(kStanding, drive, legs, 0.0, for_ever,
+                         [&](const Moment& moment, double enough_m) {
+                           return impl.from_standing_m(moment, enough_m);
+                         });
   }
-  if (impl.scene.field != nullptr &&
-      !impl.keeps_clear(drive, legs, 0.0, for_ever, [&](const Moment& moment, double enough_m) {
-        return impl.from_occupied_m(moment, enough_m);
-      })) {
-    return false;
+  if (!found && impl.scene.field != nullptr) {
+    found = impl.contact(kOccupied, drive, legs, 0.0, for_ever,
+                         [&](const Moment& moment, double enough_m) {
+                           return impl.from_occupied_m(moment, enough_m);
+                         });
   }
-  return std::ranges::all_of(impl.movers, [&](const Mover& mover) {
-    return impl.keeps_clear(drive, legs, mover.rate_mps, mover.until_s,
-                            [&](const Moment& moment, double enough_m) {
-                              return impl.from_mover_m(moment, mover, enough_m);
-                            });
-  });
+  for (std::size_t i = 0; !found && i < impl.movers.size(); ++i) {
+    const Mover& mover = impl.movers[i];
+    found = impl.contact(kFirstMover + i, drive, legs, mover.rate_mps, mover.until_s,
+                         [&](const Moment& moment, double enough_m) {
+                           return impl.from_mover_m(moment, mover, enough_m);
+                         });
+  }
+  return found;
+}
+
+bool CollisionChecker::surely_hits(const Contact& other, const geometry::Pose2& pose, double t_s,
+                                   double driven_m) const {
+  const Impl& impl = *impl_;
+  const Rectangle body = geometry::body_at(pose, impl.vehicle);
+  double distance_m = std::numeric_limits<double>::infinity();
+  if (other.with == kStanding) {
+    distance_m = impl.standing.distance_m(body);
+  } else if (other.with >= kFirstMover) {
+    const Mover& mover = impl.movers[other.with - kFirstMover];
+    if (t_s > mover.until_s) return false;
+    distance_m = geometry::distance_m(
+        body, body_around(mover.centre_at(t_s), mover.length_m, mover.width_m));
+  }
+  return distance_m < impl.demanded_m(driven_m) - kSure_m;
 }
 
 }  // namespace roadbed::planning

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "roadbed/planning/candidate_queue.h"
+#include "roadbed/planning/candidate_search.h"
 #include "roadbed/planning/collision.h"
 #include "roadbed/planning/road_border.h"
 #include "roadbed/planning/row.h"
@@ -117,28 +117,20 @@ struct Cycle {
   std::vector<std::vector<Station>> rows;  // stations, one list per l_e
 };
 
-// Cost and verdict so far of every candidate of the grid.
-struct PricedGrid {
-  std::vector<double> cost;
-  std::vector<Rejection> rejection;
-};
-
-PricedGrid price_candidates(const Cycle& cycle, const PlanOptions& options) {
-  PricedGrid priced;
+CandidateSearch search_of(const Cycle& cycle, const PlanOptions& options) {
   RowQuestion question{
       .end_d_m = cycle.grid.end_d_m(),
       .weights = options.weights,
       .frame = {},
       .limits = driving_limits(cycle.vehicle, options.max_lateral_acceleration_mps2)};
+  std::vector<Row> rows;
+  rows.reserve(cycle.rows.size());
   for (std::size_t row = 0; row < cycle.rows.size(); ++row) {
     question.frame = cycle.frame(cycle.grid.end_l_m()[row]);
     const QuinticFamily family(cycle.input.start, question.frame.end_l_m);
-    const RowResult result = evaluate_row(cycle.rows[row], family, question);
-    priced.cost.insert(priced.cost.end(), result.cost.begin(), result.cost.end());
-    priced.rejection.insert(priced.rejection.end(), result.rejection.begin(),
-                            result.rejection.end());
+    rows.emplace_back(cycle.rows[row], family, question);
   }
-  return priced;
+  return {std::move(rows), cycle.grid.lanes(), options.exhaustive || options.keep_candidates};
 }
 
 // A candidate, and on at d_e up to the length of the longest one.
@@ -169,50 +161,103 @@ bool keeps_to_the_road(const Cycle& cycle, const CandidateDrive& drive) {
   return true;
 }
 
-// What is too dear to ask of every candidate.
-Rejection look_closer(const Cycle& cycle, std::size_t index) {
-  const CandidateDrive drive = drive_of(cycle, index);
-  if (!keeps_to_the_road(cycle, drive)) return Rejection::off_road;
-  return cycle.collision.is_free(drive.points) ? Rejection::none : Rejection::collision;
-}
+// What is too dear to ask of every candidate. Candidates that are looked at one after the other
+// are much alike, so the last contacts are tried first.
+class CloserLook {
+ public:
+  explicit CloserLook(const Cycle& cycle) : cycle_(cycle) {}
 
-Candidate candidate_at(const Cycle& cycle, const PricedGrid& priced, std::size_t index) {
+  Rejection at(std::size_t index) {
+    const CandidateDrive drive = drive_of(cycle_, index);
+    if (!keeps_to_the_road(cycle_, drive)) return Rejection::off_road;
+    const auto contact = cycle_.collision.first_contact(drive.points);
+    if (!contact) return Rejection::none;
+    const std::size_t deeper = std::min(contact->leg + kDeeper, drive.points.size() - 1);
+    remember({*contact, drive.stations[deeper].l_m});
+    return Rejection::collision;
+  }
+
+  /// Whether a candidate cannot pass, for a reason that is not told apart.
+  bool surely_fails(std::size_t index) const {
+    const geometry::Quintic quintic = cycle_.quintic(index);
+    return std::ranges::any_of(contacts_, [&](const Place& place) {
+      if (place.l_m > quintic.length()) return false;
+      const auto& stations = cycle_.stations(index);
+      const double share = place.l_m / quintic.length();
+      const auto nearest =
+          static_cast<std::size_t>(std::lround(share * static_cast<double>(stations.size() - 1)));
+      const auto point = drive_point(stations, nearest, quintic, cycle_.input.start_t_s);
+      return point &&
+             cycle_.collision.surely_hits(place.contact, point->pose, point->t_s, point->driven_m);
+    });
+  }
+
+ private:
+  struct Place {
+    Contact contact;
+    double l_m;
+  };
+  static constexpr std::size_t kRemembered = 3;
+  static constexpr std::size_t kDeeper = 2;  // stations on from where the clearance is lost
+
+  void remember(const Place& place) {
+    contacts_.insert(contacts_.begin(), place);
+    if (contacts_.size() > kRemembered) contacts_.pop_back();
+  }
+
+  const Cycle& cycle_;
+  std::vector<Place> contacts_;  // the last one first
+};
+
+Candidate candidate_at(const Cycle& cycle, const CandidateSearch& search, std::size_t index) {
   return {.end_d_m = cycle.grid.end_d_m(index),
           .end_l_m = cycle.grid.end_l_m(index),
           .terms = {},
-          .cost = priced.cost[index],
-          .rejection = priced.rejection[index]};
+          .cost = search.cost(index),
+          .rejection = search.rejections()[index]};
 }
 
-Candidate candidate_with_terms(const Cycle& cycle, const PricedGrid& priced, std::size_t index) {
-  Candidate candidate = candidate_at(cycle, priced, index);
+Candidate candidate_with_terms(const Cycle& cycle, const CandidateSearch& search,
+                               std::size_t index) {
+  Candidate candidate = candidate_at(cycle, search, index);
   const auto points = cost_points(cycle.stations(index), cycle.quintic(index));
   if (!points.empty()) candidate.terms = cost_terms(points, cycle.frame(candidate.end_l_m));
   return candidate;
 }
 
-// The first one, cheapest first, that keeps to the road and collides with nothing.
-std::optional<std::size_t> choose_lazily(const Cycle& cycle, PricedGrid& priced) {
-  for (CandidateQueue queue(priced.cost, priced.rejection); !queue.empty();) {
-    std::vector<std::size_t> equals = queue.pop_equals();
+// The first one, cheapest first, that keeps to the road and collides with nothing. Only if there
+// is none, it is told apart why each of them fails.
+std::optional<std::size_t> choose_lazily(const Cycle& cycle, CandidateSearch& search) {
+  CloserLook look(cycle);
+  std::vector<std::size_t> failed;
+  for (auto equals = search.pop_equals(); !equals.empty(); equals = search.pop_equals()) {
     std::ranges::sort(equals, [&](std::size_t a, std::size_t b) {
-      return is_preferred(candidate_at(cycle, priced, a), candidate_at(cycle, priced, b));
+      return is_preferred(candidate_at(cycle, search, a), candidate_at(cycle, search, b));
     });
     for (const std::size_t index : equals) {
-      priced.rejection[index] = look_closer(cycle, index);
-      if (priced.rejection[index] == Rejection::none) return index;
+      if (look.surely_fails(index)) {
+        search.reject(index, Rejection::collision);
+        failed.push_back(index);
+        continue;
+      }
+      search.reject(index, look.at(index));
+      if (search.rejections()[index] == Rejection::none) return index;
     }
   }
+  for (const std::size_t index : failed) search.reject(index, look.at(index));
   return std::nullopt;
 }
 
-std::vector<Candidate> all_candidates(const Cycle& cycle, PricedGrid& priced) {
+std::vector<Candidate> all_candidates(const Cycle& cycle, CandidateSearch& search) {
+  CloserLook look(cycle);
   std::vector<Candidate> candidates;
   candidates.reserve(cycle.grid.size());
   for (std::size_t index = 0; index < cycle.grid.size(); ++index) {
-    Rejection& rejection = priced.rejection[index];
-    if (rejection == Rejection::none) rejection = look_closer(cycle, index);
-    candidates.push_back(candidate_with_terms(cycle, priced, index));
+    const Rejection found = search.rejections()[index];
+    if (found == Rejection::none || found == Rejection::collision) {
+      search.reject(index, look.at(index));
+    }
+    candidates.push_back(candidate_with_terms(cycle, search, index));
   }
   return candidates;
 }
@@ -228,9 +273,10 @@ std::string reason_for_none(std::size_t candidates, const RejectionCounts& rejec
   const auto of = [&](Rejection cause) { return rejected[static_cast<std::size_t>(cause)]; };
   return fmt::format(
       "none of {} candidates can be driven: {} leave the road, {} are beyond the curvature that "
-      "can be steered, {} are beyond the lateral acceleration, {} collide",
+      "can be steered, {} are beyond the lateral acceleration, {} are beyond the steering rate, {} "
+      "collide",
       candidates, of(Rejection::off_road), of(Rejection::beyond_curvature),
-      of(Rejection::lateral_acceleration), of(Rejection::collision));
+      of(Rejection::lateral_acceleration), of(Rejection::steering_rate), of(Rejection::collision));
 }
 
 }  // namespace
@@ -253,19 +299,20 @@ LateralState Plan::lateral_at(double s_m) const {
 Plan plan_path(const PlanInput& input, const VehicleShape& vehicle, const PlanOptions& options) {
   check(input.start, options);
   const Cycle cycle(input, vehicle, options);
-  PricedGrid priced = price_candidates(cycle, options);
-  const std::optional<std::size_t> choice = choose_lazily(cycle, priced);
+  CandidateSearch search = search_of(cycle, options);
+  const std::optional<std::size_t> choice = choose_lazily(cycle, search);
 
   Plan plan;
+  plan.evaluated = search.evaluated();
   plan.start = input.start;
-  plan.rejected = count(priced.rejection);
+  plan.rejected = count(search.rejections());
   if (choice) {
-    plan.chosen = candidate_with_terms(cycle, priced, *choice);
+    plan.chosen = candidate_with_terms(cycle, search, *choice);
     plan.trajectory = geometry::Trajectory(drive_of(cycle, *choice).points);
   } else {
     plan.reason = reason_for_none(cycle.grid.size(), plan.rejected);
   }
-  if (options.keep_candidates) plan.candidates = all_candidates(cycle, priced);
+  if (options.keep_candidates) plan.candidates = all_candidates(cycle, search);
   return plan;
 }
 

@@ -34,6 +34,7 @@ struct PlanOptions {
   double horizon_s = 5.0;        ///< moving obstacles are checked this far ahead
   CostTerms weights = default_weights();
   bool keep_candidates = false;  ///< fill Plan::candidates, every one fully judged
+  bool exhaustive = false;       ///< evaluate even what cannot be the cheapest; same answer
 };
 
 /// The question of one planning cycle.
@@ -59,8 +60,11 @@ struct Plan {
   LateralState start;                 ///< of the chosen candidate's quintic
   geometry::Trajectory trajectory;    ///< the chosen drive over time; rear axle; empty if none
   std::vector<Candidate> candidates;  ///< the whole grid, d_e fastest, if asked for
-  RejectionCounts rejected{};         ///< of those that were looked at before the choice
-  std::string reason;                 ///< counts per cause if nothing is feasible
+  /// Of those that were looked at before the choice; if there is one, a candidate that collides and
+  /// leaves the road with a corner may count as either.
+  RejectionCounts rejected{};
+  std::size_t evaluated = 0;  ///< candidates whose cost had to be computed
+  std::string reason;         ///< counts per cause if nothing is feasible
 
   /// d, its slope and second derivative of the chosen quintic at a station of the line; past its
   /// end d stays. @pre chosen

@@ -1,202 +1,123 @@
 #include "roadbed/planning/row.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "roadbed/planning/row_kernel.h"
 
 namespace roadbed::planning {
 namespace {
 
-using geometry::FrameVelocity;
-using geometry::Quintic;
-using geometry::SpeedAndTurn;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A row at one station: d and its derivatives are at_zero + d_e · per_unit.
-struct RowStation {
-  const Station& station;
-  Quintic::Derivatives at_zero, per_unit;
-  double share;  // of the trapezoidal mean
-};
-
-std::vector<RowStation> row_stations(const std::vector<Station>& stations,
-                                     const QuinticFamily& family) {
-  const double step = 1.0 / static_cast<double>(stations.size() - 1);
-  std::vector<RowStation> row;
-  row.reserve(stations.size());
-  for (const Station& station : stations) {
-    row.push_back({station, family.at_zero.at(station.l_m), family.per_unit.at(station.l_m), step});
-  }
-  row.front().share = row.back().share = 0.5 * step;
-  return row;
-}
-
-double weight_of(const RowQuestion& question, CostTerm term, double scale) {
-  return of(question.weights, term) / (scale * scale);
-}
-
-void set_quadratics(const RowStation& at, KernelPoint& point) {
-  const geometry::CurvatureDerivatives line = curvatures(at.station.line);
-  const FrameVelocity u = geometry::frame_velocity(line, at.at_zero);
-  FrameVelocity v = geometry::frame_velocity(line, at.per_unit);
-  v.along[0] -= 1.0;  // 1 − κ d: the one belongs to at_zero
-  const SpeedAndTurn uu = geometry::mixed(line, u, u), uv = geometry::mixed(line, u, v),
-                     vu = geometry::mixed(line, v, u), vv = geometry::mixed(line, v, v);
-  for (std::size_t i = 0; i < 4; ++i) {
-    point.g[i][0] = uu.g[i];
-    point.g[i][1] = uv.g[i] + vu.g[i];
-    point.g[i][2] = vv.g[i];
-    point.q[i][0] = uu.q[i];
-    point.q[i][1] = uv.q[i] + vu.q[i];
-    point.q[i][2] = vv.q[i];
-  }
-}
-
-void set_weights(const RowStation& at, const RowQuestion& question, KernelPoint& point) {
-  const double v = at.station.speed.speed_mps, a = at.station.speed.acceleration_mps2;
-  const auto weight = [&](CostTerm term, double scale) {
-    return at.share * weight_of(question, term, scale);
-  };
-  point.fourth_power = v * v * v * v;
-  point.curvature_weight =
-      weight(CostTerm::curvature, cost_scale::kCurvature_per_m) +
-      weight(CostTerm::lateral_acceleration, cost_scale::kAcceleration_mps2) * point.fourth_power;
-  point.curvature_d1_weight = weight(CostTerm::curvature_rate, cost_scale::kCurvatureD1_per_m2);
-  point.curvature_d2_weight = weight(CostTerm::curvature_second, cost_scale::kCurvatureD2_per_m3);
-  point.curvature_d3_weight = weight(CostTerm::curvature_third, cost_scale::kCurvatureD3_per_m4);
-  const double jerk = std::sqrt(weight(CostTerm::lateral_jerk, cost_scale::kJerk_mps3));
-  point.jerk_per_k = jerk * 2.0 * v * a;
-  point.jerk_per_d1 = jerk * v * v * v;
-  point.time_weight = at.share * question.frame.end_l_m / std::max(v, kSlowestCounted_mps);
-}
-
-// Those terms whose sum over a row's stations is c[0] + e (c[1] + e c[2]) in closed form.
-struct Quadratic {
-  double c[3] = {0.0, 0.0, 0.0};
-  void add_square(double weight, double at_zero, double per_unit) {
-    c[0] += weight * at_zero * at_zero;
-    c[1] += 2.0 * weight * at_zero * per_unit;
-    c[2] += weight * per_unit * per_unit;
-  }
-  double at(double e) const { return c[0] + e * (c[1] + e * c[2]); }
-};
-
-Quadratic closed_form_cost(const std::vector<RowStation>& row, const RowQuestion& question) {
-  const double acceleration =
-      weight_of(question, CostTerm::longitudinal_acceleration, cost_scale::kAcceleration_mps2);
-  const double jerk = weight_of(question, CostTerm::longitudinal_jerk, cost_scale::kJerk_mps3);
-  const double offset = weight_of(question, CostTerm::offset, cost_scale::kOffset_m);
-  const double consistency = weight_of(question, CostTerm::consistency, cost_scale::kConsistency_m);
-  Quadratic sum;
-  sum.c[0] = of(question.weights, CostTerm::length) * length_term(question.frame);
-  for (const RowStation& at : row) {
-    sum.add_square(at.share * acceleration, at.station.speed.acceleration_mps2, 0.0);
-    sum.add_square(at.share * jerk, at.station.speed.jerk_mps3, 0.0);
-    sum.add_square(at.share * offset, at.at_zero[0], at.per_unit[0]);
-    if (at.station.previous_d_m) {
-      sum.add_square(at.share * consistency, at.at_zero[0] - *at.station.previous_d_m,
-                     at.per_unit[0]);
-    }
-  }
-  return sum;
-}
-
-// Values of d_e for which every station keeps a limit on d.
-struct Interval {
-  double from = -std::numeric_limits<double>::infinity();
-  double to = std::numeric_limits<double>::infinity();
-
-  void keep(double least_d, double most_d, const RowStation& at) {
-    const double at_zero = at.at_zero[0], per_unit = at.per_unit[0];
-    if (per_unit > kFixed) {
-      from = std::max(from, (least_d - at_zero) / per_unit);
-      to = std::min(to, (most_d - at_zero) / per_unit);
-    } else if (!(at_zero >= least_d && at_zero <= most_d)) {
-      from = std::numeric_limits<double>::infinity();  // the start breaks it for all of them
-    }
-  }
-  bool holds(double e) const { return e >= from && e <= to; }
-
-  static constexpr double kFixed = 1e-12;  // at the start d does not depend on d_e
-};
-
-Interval on_road(const std::vector<RowStation>& row) {
-  Interval interval;
-  for (const RowStation& at : row) {
-    interval.keep(at.station.min_d_m - kLimitSlack, at.station.max_d_m + kLimitSlack, at);
-  }
-  return interval;
-}
-
-// 1 − κ d > kLeastUnfolded.
-Interval unfolded(const std::vector<RowStation>& row) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  Interval interval;
-  for (const RowStation& at : row) {
-    const double curvature = at.station.line.curvature_per_m;
-    if (curvature == 0.0) continue;
-    const double limit_d = (1.0 - kLeastUnfolded) / curvature;
-    interval.keep(curvature < 0.0 ? limit_d : -infinity, curvature < 0.0 ? infinity : limit_d, at);
-  }
-  return interval;
-}
+// What rounding may add to a bound: a share of all of it, and of a quartic's largest part.
+constexpr double kRounding = 1e-9, kQuarticRounding = 1e-13;
 
 double squared(double value) { return value * value; }
 
-struct LaneSums {
-  explicit LaneSums(std::size_t lanes)
-      : cost(lanes), duration_s(lanes), curvature_squared(lanes), acceleration_squared(lanes) {}
-  KernelSums view() { return {cost, duration_s, curvature_squared, acceleration_squared}; }
-  std::vector<double> cost, duration_s, curvature_squared, acceleration_squared;
+// T of a candidate is at least that of its part along the line, dσ/ds ≥ 1 − κ d: linear in d_e.
+struct LeastDuration {
+  double at_zero_s = 0.0, per_unit_s = 0.0;
+  double at(double e) const { return at_zero_s + e * per_unit_s; }
 };
 
-LaneSums sum_over_stations(const std::vector<RowStation>& row, const RowQuestion& question) {
-  std::vector<KernelPoint> points(row.size());
+LeastDuration least_duration(const std::vector<RowStation>& row,
+                             const std::vector<KernelPoint>& points) {
+  LeastDuration least;
   for (std::size_t i = 0; i < row.size(); ++i) {
-    set_quadratics(row[i], points[i]);
-    set_weights(row[i], question, points[i]);
+    const double curvature = row[i].station.line.curvature_per_m;
+    least.at_zero_s += points[i].time_weight * (1.0 - curvature * row[i].at_zero[0]);
+    least.per_unit_s -= points[i].time_weight * curvature * row[i].per_unit[0];
   }
-  LaneSums sums(question.end_d_m.size());
-  run_kernel(points, question.end_d_m, sums.view());
-  return sums;
+  return least;
 }
 
-std::vector<Rejection> verdicts(const std::vector<RowStation>& row, const RowQuestion& question,
-                                const LaneSums& sums) {
-  const Interval road = on_road(row), plain = unfolded(row);
-  const double curvature_squared = squared(question.limits.max_curvature_per_m);
-  const double acceleration_squared = squared(question.limits.max_lateral_acceleration_mps2);
-  std::vector<Rejection> rejection(question.end_d_m.size(), Rejection::none);
-  for (std::size_t lane = 0; lane < rejection.size(); ++lane) {
-    const double e = question.end_d_m[lane];
-    if (!road.holds(e)) {
-      rejection[lane] = Rejection::off_road;
-    } else if (!plain.holds(e) || !(sums.curvature_squared[lane] <= curvature_squared)) {
-      rejection[lane] = Rejection::beyond_curvature;
-    } else if (!(sums.acceleration_squared[lane] <= acceleration_squared)) {
-      rejection[lane] = Rejection::lateral_acceleration;
-    }
-  }
-  return rejection;
+// A quartic, less what rounding may have added. Its even coefficients are sums of squares but for
+// parts that those of degree 0 and 4 outweigh, so that they bound every part of the sums.
+double rounded_down(const Quartic& c, double e) {
+  const double ee = e * e;
+  const double parts = 2.0 * c[0] + ee * (std::abs(c[2]) + 2.0 * ee * c[4]);
+  return c[0] + e * (c[1] + e * (c[2] + e * (c[3] + e * c[4]))) - 3.0 * kQuarticRounding * parts;
 }
 
 }  // namespace
 
+Row::Row(const std::vector<Station>& stations, const QuinticFamily& family,
+         const RowQuestion& question)
+    : question_(question) {
+  const std::vector<RowStation> row = row_stations(stations, family);
+  points_.reserve(row.size());
+  for (const RowStation& at : row) points_.push_back(kernel_point(at, question));
+  closed_form_ = closed_form_cost(row, question);
+  on_road_ = lanes_on_road(row);
+  unfolded_ = lanes_unfolded(row);
+  set_bounds(row);
+}
+
+double Row::time_cost(double duration_s) const {
+  const double per_duration =
+      std::max(question_.frame.start_speed_mps, kSlowestCounted_mps) / question_.frame.max_l_m;
+  return of(question_.weights, CostTerm::time) * squared(duration_s * per_duration);
+}
+
+Rejection Row::first_verdict(std::size_t lane) const {
+  const double end_d_m = question_.end_d_m[lane];
+  if (!on_road_.holds(end_d_m)) return Rejection::off_road;
+  return unfolded_.holds(end_d_m) ? Rejection::none : Rejection::beyond_curvature;
+}
+
+void Row::set_bounds(const std::vector<RowStation>& row) {
+  const std::vector<double>& end_d_m = question_.end_d_m;
+  bounds_.assign((end_d_m.size() + kLanesPerBlock - 1) / kLanesPerBlock, kInfinity);
+  std::vector<double> from_d_m(bounds_.size()), to_d_m(bounds_.size());
+  for (std::size_t block = 0; block < bounds_.size(); ++block) {
+    from_d_m[block] = end_d_m[first_lane(block)];
+    to_d_m[block] = end_d_m[first_lane(block) + lanes_in(block) - 1];
+  }
+  std::vector<Quartic> curvature(bounds_.size(), Quartic{});
+  add_curvature_bounds(points_, from_d_m, to_d_m, curvature);
+  const LeastDuration duration = least_duration(row, points_);
+  for (std::size_t lane = 0; lane < end_d_m.size(); ++lane) {
+    const double e = end_d_m[lane];
+    if (first_verdict(lane) != Rejection::none) continue;
+    double& bound = bounds_[lane / kLanesPerBlock];
+    const double cost = closed_form_.at(e) + time_cost(duration.at(e)) +
+                        std::max(0.0, rounded_down(curvature[lane / kLanesPerBlock], e));
+    bound = std::min(bound, cost * (1.0 - kRounding));
+  }
+}
+
+void Row::evaluate(std::size_t block, std::span<double> cost,
+                   std::span<Rejection> rejection) const {
+  std::array<double, kLanesPerBlock> sums{}, duration_s{}, curvature{}, acceleration{}, steering{};
+  const std::span<const double> end_d_m(question_.end_d_m.data() + first_lane(block),
+                                        lanes_in(block));
+  run_kernel(points_, end_d_m, {sums, duration_s, curvature, acceleration, steering});
+  const DrivingLimits& limits = question_.limits;
+  for (std::size_t i = 0; i < end_d_m.size(); ++i) {
+    cost[i] = sums[i] + closed_form_.at(end_d_m[i]) + time_cost(duration_s[i]);
+    rejection[i] = first_verdict(first_lane(block) + i);
+    if (rejection[i] != Rejection::none) continue;
+    if (!(curvature[i] <= squared(limits.max_curvature_per_m))) {
+      rejection[i] = Rejection::beyond_curvature;
+    } else if (!(acceleration[i] <= squared(limits.max_lateral_acceleration_mps2))) {
+      rejection[i] = Rejection::lateral_acceleration;
+    } else if (!(steering[i] <= kLimitSlack * squared(limits.max_steering_rate_radps))) {
+      rejection[i] = Rejection::steering_rate;
+    }
+  }
+}
+
 RowResult evaluate_row(const std::vector<Station>& stations, const QuinticFamily& family,
                        const RowQuestion& question) {
-  const std::vector<RowStation> row = row_stations(stations, family);
-  LaneSums sums = sum_over_stations(row, question);
-  const Quadratic closed_form = closed_form_cost(row, question);
-  const double per_duration =
-      std::max(question.frame.start_speed_mps, kSlowestCounted_mps) / question.frame.max_l_m;
-  for (std::size_t lane = 0; lane < sums.cost.size(); ++lane) {
-    sums.cost[lane] +=
-        closed_form.at(question.end_d_m[lane]) +
-        of(question.weights, CostTerm::time) * squared(sums.duration_s[lane] * per_duration);
+  const Row row(stations, family, question);
+  RowResult result{std::vector<double>(question.end_d_m.size()),
+                   std::vector<Rejection>(question.end_d_m.size())};
+  for (std::size_t block = 0; block < row.blocks(); ++block) {
+    row.evaluate(block, std::span(result.cost).subspan(row.first_lane(block), row.lanes_in(block)),
+                 std::span(result.rejection).subspan(row.first_lane(block), row.lanes_in(block)));
   }
-  std::vector<Rejection> rejection = verdicts(row, question, sums);
-  return {std::move(sums.cost), std::move(rejection)};
+  return result;
 }
 
 }  // namespace roadbed::planning

@@ -1,11 +1,49 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <vector>
 
-#include "roadbed/planning/candidates.h"
-#include "roadbed/planning/cost.h"
+#include "roadbed/planning/row_station.h"
 
 namespace roadbed::planning {
+
+/// All candidates of one length, with the work at a station shared by all of them: the same costs
+/// (to rounding) and verdicts as cost_terms() and judge() of each one. Lanes come in blocks, and
+/// what a block costs at least is known before it is evaluated.
+class Row {
+ public:
+  Row(const std::vector<Station>& stations, const QuinticFamily& family,
+      const RowQuestion& question);
+
+  std::size_t blocks() const { return bounds_.size(); }
+  std::size_t first_lane(std::size_t block) const { return block * kLanesPerBlock; }
+  std::size_t lanes_in(std::size_t block) const {
+    return std::min(kLanesPerBlock, question_.end_d_m.size() - first_lane(block));
+  }
+
+  /// No candidate of the block that can be driven costs less; infinite if every lane leaves the
+  /// road or is folded. planning/README.md, eq. B.
+  double bound(std::size_t block) const { return bounds_[block]; }
+
+  /// Cost and verdict of a block's lanes; a cost is meaningless where folded or off the road.
+  /// @pre both spans have lanes_in(block) elements
+  void evaluate(std::size_t block, std::span<double> cost, std::span<Rejection> rejection) const;
+
+  /// A lane's verdict as far as it is known without looking at curvature.
+  Rejection first_verdict(std::size_t lane) const;
+
+ private:
+  double time_cost(double duration_s) const;
+  void set_bounds(const std::vector<RowStation>& row);
+
+  RowQuestion question_;
+  std::vector<KernelPoint> points_;
+  RowQuadratic closed_form_;
+  LaneInterval on_road_, unfolded_;
+  std::vector<double> bounds_;  // one per block
+};
 
 /// Cost and verdict of every candidate of one length.
 struct RowResult {
@@ -13,16 +51,7 @@ struct RowResult {
   std::vector<Rejection> rejection;  ///< as judge() finds it
 };
 
-/// What all rows of a cycle are evaluated with.
-struct RowQuestion {
-  const std::vector<double>& end_d_m;  ///< of the lanes, ascending
-  CostTerms weights;
-  CostFrame frame;  ///< end_l_m is that of the row
-  DrivingLimits limits;
-};
-
-/// All candidates of one length at once: the same costs (to rounding) and verdicts as
-/// cost_terms() and judge() of each one, with the work at a station shared by all of them.
+/// Every block of a row evaluated.
 RowResult evaluate_row(const std::vector<Station>& stations, const QuinticFamily& family,
                        const RowQuestion& question);
 

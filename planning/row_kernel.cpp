@@ -9,13 +9,13 @@
 namespace roadbed::planning {
 namespace {
 
-// Lanes that go through all stations together: their sums stay in registers, and what they share
-// at a station is loaded once for all of them.
-constexpr std::size_t kBlock = 8;
+// The sums of a block stay in registers, and what its lanes share at a station is loaded once.
+constexpr std::size_t kBlock = kLanesPerBlock;
 
 struct Block {
   double cost[kBlock] = {}, duration_s[kBlock] = {};
   double curvature_squared[kBlock] = {}, acceleration_squared[kBlock] = {};
+  double steering_excess[kBlock] = {};
 };
 
 inline double larger(double a, double b) { return a > b ? a : b; }
@@ -56,9 +56,37 @@ ROADBED_CLONES void sum_block(const KernelPoint* points, std::size_t count,
       sum.duration_s[i] += p.time_weight * stretch;
       sum.curvature_squared[i] = larger(kk, sum.curvature_squared[i]);
       sum.acceleration_squared[i] = larger(p.fourth_power * kk, sum.acceleration_squared[i]);
+      const double turn = p.steering_per_k1 * k1;
+      const double most = p.steering_rate + p.steering_rate_per_kk * kk;
+      sum.steering_excess[i] = larger(turn * turn - most * most, sum.steering_excess[i]);
     }
   }
   result = sum;
+}
+
+// Bounds of kBounds blocks at once; c[j] holds the coefficient of d_e^j of each.
+constexpr std::size_t kBounds = 16;
+struct Bounds {
+  double from[kBounds] = {}, to[kBounds] = {};
+  double c[5][kBounds] = {};
+};
+
+ROADBED_CLONES void sum_bounds(const KernelPoint* points, std::size_t count,
+                               Bounds& __restrict bounds) {
+  for (std::size_t station = 0; station < count; ++station) {
+    const KernelPoint& p = points[station];
+    const double a = p.q[0][0], b = p.q[0][1], c = p.q[0][2], w = p.curvature_weight;
+    const double square[5] = {w * a * a, 2.0 * w * a * b, w * (b * b + 2.0 * a * c),
+                              2.0 * w * b * c, w * c * c};
+    for (std::size_t i = 0; i < kBounds; ++i) {
+      const double e = bounds.from[i], f = bounds.to[i];
+      // g = |p′|² is convex in d_e: the greatest is at an end.
+      const double g = larger(p.g[0][0] + e * (p.g[0][1] + e * p.g[0][2]),
+                              p.g[0][0] + f * (p.g[0][1] + f * p.g[0][2]));
+      const double share = 1.0 / (g * g * g);
+      for (std::size_t j = 0; j < 5; ++j) bounds.c[j][i] += share * square[j];
+    }
+  }
 }
 
 }  // namespace
@@ -75,6 +103,21 @@ void run_kernel(std::span<const KernelPoint> points, std::span<const double> end
     std::copy_n(block.duration_s, lanes, sums.duration_s.data() + lane);
     std::copy_n(block.curvature_squared, lanes, sums.curvature_squared.data() + lane);
     std::copy_n(block.acceleration_squared, lanes, sums.acceleration_squared.data() + lane);
+    std::copy_n(block.steering_excess, lanes, sums.steering_excess.data() + lane);
+  }
+}
+
+void add_curvature_bounds(std::span<const KernelPoint> points, std::span<const double> from_d_m,
+                          std::span<const double> to_d_m, std::span<Quartic> bounds) {
+  for (std::size_t first = 0; first < bounds.size(); first += kBounds) {
+    const std::size_t blocks = std::min(kBounds, bounds.size() - first);
+    Bounds sums;
+    std::copy_n(from_d_m.data() + first, blocks, sums.from);
+    std::copy_n(to_d_m.data() + first, blocks, sums.to);
+    sum_bounds(points.data(), points.size(), sums);
+    for (std::size_t i = 0; i < blocks; ++i) {
+      for (std::size_t j = 0; j < 5; ++j) bounds[first + i][j] += sums.c[j][i];
+    }
   }
 }
 

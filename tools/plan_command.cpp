@@ -128,34 +128,54 @@ ordered_json to_json(const Plan& plan) {
           {"runner_up", second ? to_json(*second) : ordered_json()}};
 }
 
-void print_terms(std::ostream& out, const Candidate& chosen, const std::optional<Candidate>& second,
-                 const CostTerms& weights) {
-  fmt::print(out, "{:<26}{:>8}{:>12}{:>12}\n", "weighted term", "weight", "chosen", "runner-up");
-  for (int i = 0; i < planning::kCostTerms; ++i) {
-    const auto term = static_cast<CostTerm>(i);
-    const double weight = planning::of(weights, term);
-    const std::string other =
-        second ? fmt::format("{:.6f}", weight * planning::of(second->terms, term)) : "";
-    fmt::print(out, "{:<26}{:>8g}{:>12.6f}{:>12}\n", planning::name(term), weight,
-               weight * planning::of(chosen.terms, term), other);
-  }
-  fmt::print(out, "{:<34}{:>12.6f}{:>12}\n", "cost", chosen.cost,
-             second ? fmt::format("{:.6f}", second->cost) : "");
+// The weighted terms of a candidate, and with --explain the share of its cost that each one has.
+std::string term_columns(const Candidate& candidate, CostTerm term, const CostTerms& weights,
+                         bool with_share) {
+  const double cost = planning::of(weights, term) * planning::of(candidate.terms, term);
+  const double share = candidate.cost > 0.0 ? 100.0 * cost / candidate.cost : 0.0;
+  return with_share ? fmt::format("{:>12.6f}{:>7.1f} %", cost, share)
+                    : fmt::format("{:>12.6f}", cost);
 }
 
-void print_text(std::ostream& out, const Plan& plan, const CostTerms& weights) {
+void print_terms(std::ostream& out, const Plan& plan, const CostTerms& weights, bool with_share) {
+  const auto second = runner_up(plan);
+  const int width = with_share ? 21 : 12;
+  fmt::print(out, "{:<26}{:>8}{:>{}}{:>{}}\n", "weighted term", "weight", "chosen", width,
+             "runner-up", width);
+  for (int i = 0; i < planning::kCostTerms; ++i) {
+    const auto term = static_cast<CostTerm>(i);
+    fmt::print(out, "{:<26}{:>8g}{}{}\n", planning::name(term), planning::of(weights, term),
+               term_columns(*plan.chosen, term, weights, with_share),
+               second ? term_columns(*second, term, weights, with_share) : "");
+  }
+  fmt::print(out, "{:<34}{:>12.6f}{}{:>12}\n", "cost", plan.chosen->cost,
+             with_share ? "         " : "", second ? fmt::format("{:.6f}", second->cost) : "");
+}
+
+void print_text(std::ostream& out, const Plan& plan, const CostTerms& weights, bool explain) {
   const auto counts = verdicts(plan);
   fmt::print(out,
              "{} candidates: {} feasible, {} leave the road, {} beyond curvature, {} beyond "
-             "lateral acceleration, {} collide\n",
-             plan.candidates.size(), counts[0], counts[1], counts[2], counts[3], counts[4]);
+             "lateral acceleration, {} beyond the steering rate, {} collide\n",
+             plan.candidates.size(), counts[0], counts[1], counts[2], counts[3], counts[4],
+             counts[5]);
   if (!plan.chosen) {
     fmt::print(out, "no plan: {}\n", plan.reason);
     return;
   }
   fmt::print(out, "chosen: d_e {:+.1f} m, l_e {:.1f} m, cost {:.6f}\n", plan.chosen->end_d_m,
              plan.chosen->end_l_m, plan.chosen->cost);
-  print_terms(out, *plan.chosen, runner_up(plan), weights);
+  print_terms(out, plan, weights, explain);
+  if (!explain) return;
+  if (const auto second = runner_up(plan)) {
+    fmt::print(out, "runner-up: d_e {:+.1f} m, l_e {:.1f} m\n", second->end_d_m, second->end_l_m);
+  }
+}
+
+void print_circles(std::ostream& out, const geometry::VehicleShape& vehicle, int count) {
+  const geometry::CoveringCircles circles = geometry::covering_circles(vehicle, count);
+  fmt::print(out, "{} circles of {:.3f} m cover the vehicle; they stick out by {:.3f} m\n", count,
+             circles.radius_m, circles.radius_m - 0.5 * vehicle.width_m);
 }
 
 class PlanCommand : public Command {
@@ -168,14 +188,20 @@ class PlanCommand : public Command {
         .required();
     arguments.add("--weights", weights_file_,
                   "JSON file with weights by term; others keep their defaults");
+    arguments.add("--circles", circles_, "Circles that cover the vehicle, for the first look")
+        .within(1, 20)
+        .with_default();
+    arguments.flag("--explain", explain_,
+                   "Each term's share of the cost, for the chosen candidate and the runner-up");
     arguments.flag("--json", json_, "One JSON document on stdout");
     arguments.flag("--force", force_, "Replace files in the folder");
-    arguments.example("  roadbed plan data/scenarios/parked_car.json -o /tmp/plan");
+    arguments.example("  roadbed plan data/scenarios/parked_car.json -o /tmp/plan --explain");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
     const Scenario scenario = read_scenario(scene_file_);
-    const planning::PlanOptions options = options_of(scenario, weights_file_);
+    planning::PlanOptions options = options_of(scenario, weights_file_);
+    options.circles = circles_;
     const World world = make_world(scenario);
     const planning::PlanInput input = input_of(scenario, world);
     make_output_folder(folder_, force_);
@@ -184,7 +210,8 @@ class PlanCommand : public Command {
     if (json_) {
       fmt::print(streams.out, "{}\n", to_json(plan).dump(2));
     } else {
-      print_text(streams.out, plan, options.weights);
+      print_text(streams.out, plan, options.weights, explain_);
+      if (explain_) print_circles(streams.out, scenario.vehicle, circles_);
     }
     return plan.chosen ? Exit::ok : Exit::failed;
   }
@@ -213,7 +240,8 @@ class PlanCommand : public Command {
   }
 
   std::string scene_file_, folder_, weights_file_;
-  bool json_ = false, force_ = false;
+  int circles_ = planning::PlanOptions{}.circles;
+  bool json_ = false, force_ = false, explain_ = false;
 };
 
 }  // namespace

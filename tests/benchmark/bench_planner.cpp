@@ -1,6 +1,7 @@
 // bench_planner --path F --points N --reps R --json [--dump F]: times one planning cycle of 5,396
 // candidates and twelve terms on one core, so that it can be run in turn with other planners.
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,26 +23,35 @@ struct Options {
   std::string path_file, dump_file;
   int points = 31;
   int repetitions = 51;
-  bool json = false;
+  bool json = false, exhaustive = false, blocked = false;
 };
 
 struct Timing {
   double median_ms, least_ms, worst_ms;
+  std::size_t evaluated, colliding;
 };
+
+planning::PlanOptions plan_options_of(const Options& options) {
+  planning::PlanOptions plan_options = benchmark_scene::options_with(options.points);
+  plan_options.exhaustive = options.exhaustive;
+  return plan_options;
+}
 
 Timing time_cycles(const benchmark_scene::PlannerScene& scene, const Options& options) {
   using Clock = std::chrono::steady_clock;
   const planning::PlanInput input = scene.input();
-  const planning::PlanOptions plan_options = benchmark_scene::options_with(options.points);
+  const planning::PlanOptions plan_options = plan_options_of(options);
+  planning::Plan plan;
   std::vector<double> times_ms;
   for (int i = -2; i < options.repetitions; ++i) {  // two to warm up
     const auto begin = Clock::now();
-    const planning::Plan plan = planning::plan_path(input, geometry::VehicleShape{}, plan_options);
+    plan = planning::plan_path(input, geometry::VehicleShape{}, plan_options);
     const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
     if (i >= 0) times_ms.push_back(taken.count());
   }
   std::ranges::sort(times_ms);
-  return {times_ms[times_ms.size() / 2], times_ms.front(), times_ms.back()};
+  return {times_ms[times_ms.size() / 2], times_ms.front(), times_ms.back(), plan.evaluated,
+          plan.rejected[static_cast<std::size_t>(planning::Rejection::collision)]};
 }
 
 ordered_json terms_json(const planning::CostTerms& terms) {
@@ -102,9 +112,17 @@ std::string dump(const benchmark_scene::PlannerScene& scene, const Options& opti
   return json.dump() + "\n";
 }
 
+// Of the whole program, the reference line included.
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
 void run(const Options& options) {
   if (!options.dump_file.empty()) tools::check_writable(options.dump_file, true);
-  const benchmark_scene::PlannerScene scene(benchmark_scene::read_way_points(options.path_file));
+  const benchmark_scene::PlannerScene scene(benchmark_scene::read_way_points(options.path_file),
+                                            options.blocked);
   const Timing timing = time_cycles(scene, options);
   if (!options.dump_file.empty()) tools::write_output(options.dump_file, dump(scene, options));
   if (options.json) {
@@ -114,12 +132,17 @@ void run(const Options& options) {
                                {"median_ms", timing.median_ms},
                                {"least_ms", timing.least_ms},
                                {"worst_ms", timing.worst_ms},
+                               {"evaluated", timing.evaluated},
+                               {"colliding", timing.colliding},
+                               {"peak_memory_mb", peak_memory_mb()},
                                {"repetitions", options.repetitions}};
     fmt::print("{}\n", json.dump());
   } else {
     fmt::print(
-        "5396 candidates, {} terms, {} points: median {:.3f} ms, least {:.3f}, worst {:.3f}\n",
-        planning::kCostTerms, options.points, timing.median_ms, timing.least_ms, timing.worst_ms);
+        "5396 candidates, {} terms, {} points: median {:.3f} ms, least {:.3f}, worst {:.3f}; {} "
+        "evaluated, {} cheaper ones collide; {:.1f} MB\n",
+        planning::kCostTerms, options.points, timing.median_ms, timing.least_ms, timing.worst_ms,
+        timing.evaluated, timing.colliding, peak_memory_mb());
   }
 }
 
@@ -135,6 +158,8 @@ int main(int argc, char** argv) {
   app.add_option("--reps", options.repetitions, "Timed cycles")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_flag("--exhaustive", options.exhaustive, "Evaluate even what cannot be the cheapest");
+  app.add_flag("--blocked", options.blocked, "Ten slow cars on the line: the cheapest collide");
   app.add_flag("--json", options.json, "One JSON document on stdout");
   app.add_option("--dump", options.dump_file, "Writes every candidate and the winner as JSON");
   app.footer("Example: bench_planner --path path.csv --points 31 --reps 51 --json");

@@ -108,5 +108,34 @@ TEST(SplineCurve, DropsRepeatedPointsAndRefusesTooFew) {
   EXPECT_THROW(SplineCurve::through(points).resample(0.0), std::invalid_argument);
 }
 
+TEST(SplineCurve, ResamplesToThePointsOfItsStations) {
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> turn(-0.6, 0.6), gap(0.8, 12.0);
+  std::vector<Eigen::Vector2d> points{{10.0, -3.0}};
+  double heading = 0.3;
+  for (int i = 0; i < 30; ++i) {
+    heading += turn(random);
+    points.push_back(points.back() +
+                     gap(random) * Eigen::Vector2d(std::cos(heading), std::sin(heading)));
+  }
+  std::vector<Eigen::Vector2d> ring;
+  for (int i = 0; i < 30; ++i) {
+    const double angle = 0.2 * i, radius_m = 30.0 + 5.0 * turn(random);
+    ring.push_back(radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  for (const SplineCurve& curve :
+       {SplineCurve::through(points), SplineCurve::closed_through(ring)}) {
+    for (const double step_m : {0.01, 0.37, 40.0}) {
+      const auto resampled = curve.resample(step_m);
+      const double apart_m = curve.length_m() / static_cast<double>(resampled.size() - 1);
+      EXPECT_LE(apart_m, step_m * (1.0 + 1e-9));
+      for (std::size_t i = 0; i < resampled.size(); ++i) {
+        const Eigen::Vector2d expected = curve.at(apart_m * static_cast<double>(i));
+        ASSERT_LE((resampled[i] - expected).norm(), 1e-6) << "point " << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::geometry

@@ -164,6 +164,10 @@ SlowCandidate slow_candidate(const PlanInput& input, const PlanOptions& options,
     slow.worst_curvature_per_m = std::max(slow.worst_curvature_per_m, k);
     slow.worst_lateral_mps2 =
         std::max(slow.worst_lateral_mps2, k * state.speed_mps * state.speed_mps);
+    const Real wheelbase = geometry::VehicleShape{}.wheelbase_m, tangent = wheelbase * motion.k;
+    const Real turn = wheelbase * motion.k1 * Real(state.speed_mps) / (1 + tangent * tangent);
+    slow.worst_steering_radps =
+        std::max(slow.worst_steering_radps, static_cast<double>(std::abs(turn)));
     slow.least_d_m = std::min(slow.least_d_m, static_cast<double>(d[0]));
     slow.most_d_m = std::max(slow.most_d_m, static_cast<double>(d[0]));
     return true;

@@ -15,6 +15,7 @@ struct SlowCandidate {
   double cost = 0.0;
   double worst_curvature_per_m = 0.0;
   double worst_lateral_mps2 = 0.0;
+  double worst_steering_radps = 0.0;  ///< rate of the default vehicle's steering angle
   double least_d_m = 0.0, most_d_m = 0.0;
 
   /// Poses and times at the candidate's points, and on at d_e over the longest candidate.

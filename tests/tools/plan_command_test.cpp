@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
@@ -29,6 +31,29 @@ TEST(PlanCommand, PassesALorryAndShowsEveryCandidate) {
   const std::string csv = bytes_of(folder / "plan/candidates.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5397);
   EXPECT_GT(tools::read_trajectory_csv(folder / "plan/trajectory.csv").points().size(), 30u);
+}
+
+TEST(PlanCommand, ExplainsTheSharesOfTheChosenAndTheRunnerUp) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_roadbed({"plan", scene("pass_lorry.json"), "-o",
+                                      (folder / "plan").string(), "--explain", "--circles", "4"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  double chosen = 0.0, second = 0.0;
+  std::istringstream lines(run.out);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() < 2 || line.substr(line.size() - 2) != " %") continue;
+    std::istringstream words(line);
+    std::string name, percent;
+    double weight = 0.0, cost = 0.0, share = 0.0;
+    words >> name >> weight >> cost >> share >> percent;
+    chosen += share;
+    words >> cost >> share;
+    second += share;
+  }
+  EXPECT_NEAR(chosen, 100.0, 0.7);
+  EXPECT_NEAR(second, 100.0, 0.7);
+  EXPECT_NE(run.out.find("runner-up: d_e"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("4 circles"), std::string::npos) << run.out;
 }
 
 TEST(PlanCommand, WeightsFromAFileChangeTheChoice) {

@@ -32,6 +32,7 @@ constexpr std::array<Look, planning::kRejections> kLooks{{
     {Rejection::off_road, "off", "leaves the road"},
     {Rejection::beyond_curvature, "bent", "beyond curvature"},
     {Rejection::lateral_acceleration, "fast", "beyond lateral acceleration"},
+    {Rejection::steering_rate, "quick", "beyond the steering rate"},
     {Rejection::collision, "hit", "collides"},
     {Rejection::none, "free", "free, but dearer"},
 }};
@@ -42,6 +43,7 @@ constexpr std::string_view kStyle = R"(<style>
 .off{fill:none;stroke:#8a8f98;stroke-width:.4;stroke-opacity:.22}
 .bent{fill:none;stroke:#7b3fa0;stroke-width:.6;stroke-opacity:.45}
 .fast{fill:none;stroke:#c79a00;stroke-width:.5;stroke-opacity:.35}
+.quick{fill:none;stroke:#7a5cc7;stroke-width:.5;stroke-opacity:.35}
 .hit{fill:none;stroke:#d62728;stroke-width:.5;stroke-opacity:.25}
 .free{fill:none;stroke:#1f77b4;stroke-width:.6;stroke-opacity:.45}
 .chosen{fill:none;stroke:#00785a;stroke-width:3.2;stroke-linecap:round}
