@@ -85,7 +85,8 @@ Grid::Grid(const GridRange& range)
 DrivingLimits driving_limits(const geometry::VehicleShape& vehicle,
                              double max_lateral_acceleration_mps2) {
   return {.max_curvature_per_m = std::tan(vehicle.max_steering_rad) / vehicle.wheelbase_m,
-          .max_lateral_acceleration_mps2 = max_lateral_acceleration_mps2};
+          .max_lateral_acceleration_mps2 = max_lateral_acceleration_mps2,
+          .wheelbase_m = vehicle.wheelbase_m};
 }
 
 double allowed_excess_m(const Course& course, double l_m) {

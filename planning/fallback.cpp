@@ -13,11 +13,7 @@ namespace roadbed::planning {
 namespace {
 
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using geometry::VehicleShape;
-
-constexpr double kStopStep_s = 0.05;
-constexpr double kLeastStretch = 0.05;  // of a path that is all but folded
 
 bool all_positive(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double v) { return v > 0.0 && std::isfinite(v); });
@@ -43,28 +39,6 @@ PlanOptions widened(const PlanOptions& options, const FallbackOptions& fallback)
   return wide;
 }
 
-// The vehicle on a path beside the line, and how far it drives per metre of station.
-struct PlaceOnPath {
-  TrajectoryPoint point;
-  double stretch;
-};
-
-PlaceOnPath place_on(const LineView& line, const LateralState& at, const VehicleShape& vehicle) {
-  const ReferencePoint on_line = line.at(at.s_m);
-  const double cos = std::cos(on_line.heading_rad), sin = std::sin(on_line.heading_rad);
-  const double along = 1.0 - on_line.curvature_per_m * at.d_m;
-  const auto curve = geometry::offset_curve(
-      curvatures(on_line), {at.d_m, at.d_slope, at.d_curvature_per_m, 0.0, 0.0, 0.0},
-      kLeastUnfolded);
-  const double curvature = curve ? curve->curvature_per_m : 0.0;
-  return {{.x_m = on_line.in_map.x() - at.d_m * sin,
-           .y_m = on_line.in_map.y() + at.d_m * cos,
-           .heading_rad = on_line.heading_rad + std::atan2(at.d_slope, along),
-           .steering_rad = std::atan(vehicle.wheelbase_m * curvature),
-           .curvature_per_m = curvature},
-          std::max(kLeastStretch, std::hypot(along, at.d_slope))};
-}
-
 struct StopQuestion {
   const PlanInput& input;
   LateralPath path;
@@ -77,38 +51,18 @@ double speed_now_mps(const PlanInput& input) {
                                      : PlannedSpeed(input.speed_profile).at(0.0).speed_mps;
 }
 
-Trajectory stopping_drive(const StopQuestion& question, double deceleration_mps2) {
-  const double speed_mps = speed_now_mps(question.input);
-  const double stop_s = speed_mps / deceleration_mps2;
-  const auto driven_m = [&](double t_s) {
-    return t_s * (speed_mps - 0.5 * deceleration_mps2 * t_s);
-  };
-  const int steps = static_cast<int>(std::ceil(stop_s / kStopStep_s - 1e-6));
-  std::vector<TrajectoryPoint> points;
-  double s_m = question.input.start.s_m, last_t_s = 0.0;
-  for (int i = 0; i <= steps; ++i) {
-    const double t_s = std::min(stop_s, kStopStep_s * i);
-    LateralState lateral = question.path(s_m);
-    lateral.s_m = s_m;
-    PlaceOnPath place = place_on(question.input.line, lateral, question.vehicle);
-    place.point.t_s = question.input.start_t_s + t_s;
-    place.point.speed_mps = std::max(0.0, speed_mps - deceleration_mps2 * t_s);
-    place.point.acceleration_mps2 = t_s < stop_s ? -deceleration_mps2 : 0.0;
-    points.push_back(place.point);
-    const double next_t_s = std::min(stop_s, kStopStep_s * (i + 1));
-    s_m += (driven_m(next_t_s) - driven_m(t_s)) / place.stretch;
-    last_t_s = t_s;
-  }
-  TrajectoryPoint standing = points.back();
-  standing.speed_mps = standing.acceleration_mps2 = 0.0;
-  standing.t_s = question.input.start_t_s + std::max(question.until_s, last_t_s + kStopStep_s);
-  points.push_back(standing);
-  return Trajectory(std::move(points));
-}
-
 ControlledStop choose_stop(const StopQuestion& question, const PlanOptions& options,
                            const std::vector<double>& decelerations_mps2) {
   const PlanInput& input = question.input;
+  const PathCourse course{.line = input.line,
+                          .path = question.path,
+                          .vehicle = question.vehicle,
+                          .start_s_m = input.start.s_m,
+                          .start_t_s = input.start_t_s};
+  const double speed_mps = speed_now_mps(input);
+  const auto stop_at = [&](double deceleration_mps2) {
+    return stopping_drive(course, speed_mps, deceleration_mps2, question.until_s);
+  };
   for (const double clearance_m : {options.clearance_m, 0.0}) {
     // Touching is a clearance below the checker's tolerance.
     const CollisionChecker checker({.obstacles = input.obstacles,
@@ -122,14 +76,14 @@ ControlledStop choose_stop(const StopQuestion& question, const PlanOptions& opti
                                     .recovery_m = options.recovery_m,
                                     .horizon_s = options.horizon_s});
     for (const double deceleration_mps2 : decelerations_mps2) {
-      Trajectory drive = stopping_drive(question, deceleration_mps2);
+      Trajectory drive = stop_at(deceleration_mps2);
       if (checker.is_free(drive.points())) {
         return {deceleration_mps2, clearance_m, std::move(drive)};
       }
     }
   }
   const double hardest = decelerations_mps2.back();
-  return {hardest, std::nullopt, stopping_drive(question, hardest)};
+  return {hardest, std::nullopt, stop_at(hardest)};
 }
 
 LateralPath path_of(const PlanInput& input, const LateralPath& previous, double settle_m) {

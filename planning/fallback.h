@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/planning/path_drive.h"
 #include "roadbed/planning/plan.h"
 
 namespace roadbed::planning {
@@ -60,14 +61,12 @@ struct PlanOrStop {
   }
 };
 
-/// The path that is being driven: d, d′ and d″ at a station of the line; may be empty.
-using LateralPath = std::function<LateralState(double s_m)>;
-
 /// plan_path(), and when nothing is feasible: a wider grid, then past the corridor's edges, then a
 /// stop along the previous path. The gentlest stop that keeps the clearance is taken, then the
 /// gentlest one that touches nothing, then the hardest. Without a previous path d becomes what it
 /// is now over `min_l_m`. A stop is not held to the road or to lateral acceleration: it is what is
 /// left.
+/// @param previous  the path that is being driven; may be empty.
 /// @throws std::invalid_argument as plan_path(), and if a fallback option is not usable.
 PlanOrStop plan_or_stop(const PlanInput& input, const LateralPath& previous,
                         const geometry::VehicleShape& vehicle, const PlanOptions& options = {},

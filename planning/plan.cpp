@@ -10,6 +10,7 @@
 #include "roadbed/planning/collision.h"
 #include "roadbed/planning/road_border.h"
 #include "roadbed/planning/row.h"
+#include "roadbed/planning/way_on.h"
 
 namespace roadbed::planning {
 namespace {
@@ -29,6 +30,8 @@ void check(const LateralState& start, const PlanOptions& options) {
   demand(options.max_lateral_acceleration_mps2 > 0.0, "max_lateral_acceleration must be positive");
   demand(options.recovery_m > 0.0, "recovery_m must be positive");
   demand(options.horizon_s >= 0.0, "the horizon must not be negative");
+  demand(options.way_on_horizon_s >= 0.0, "way_on_horizon must not be negative");
+  demand(options.way_on_deceleration_mps2 > 0.0, "way_on_deceleration must be positive");
   demand(std::isfinite(options.border_margin_m), "the border margin must be finite");
   check_weights(options.weights);
 }
@@ -74,12 +77,12 @@ struct Cycle {
         grid(grid_of(options)),
         border(input.line, input.start.s_m - vehicle.length_m,
                input.start.s_m + grid.max_l_m() + vehicle.length_m, options.border_margin_m),
-        collision({.obstacles = input.obstacles,
-                   .field = input.static_field,
-                   .origin_in_source = input.origin_in_source,
-                   .start_t_s = input.start_t_s,
-                   .predicted = input.predicted},
-                  vehicle,
+        scene{.obstacles = input.obstacles,
+              .field = input.static_field,
+              .origin_in_source = input.origin_in_source,
+              .start_t_s = input.start_t_s,
+              .predicted = input.predicted},
+        collision(scene, vehicle,
                   {.circles = options.circles,
                    .clearance_m = options.clearance_m,
                    .recovery_m = options.recovery_m,
@@ -112,6 +115,7 @@ struct Cycle {
   const VehicleShape& vehicle;
   Grid grid;
   RoadBorder border;
+  CollisionScene scene;
   CollisionChecker collision;
   Course course;
   std::vector<std::vector<Station>> rows;  // stations, one list per l_e
@@ -123,6 +127,9 @@ CandidateSearch search_of(const Cycle& cycle, const PlanOptions& options) {
       .weights = options.weights,
       .frame = {},
       .limits = driving_limits(cycle.vehicle, options.max_lateral_acceleration_mps2)};
+  if (options.limit_steering_rate) {
+    question.limits.max_steering_rate_radps = cycle.vehicle.max_steering_rate_radps;
+  }
   std::vector<Row> rows;
   rows.reserve(cycle.rows.size());
   for (std::size_t row = 0; row < cycle.rows.size(); ++row) {
@@ -165,13 +172,23 @@ bool keeps_to_the_road(const Cycle& cycle, const CandidateDrive& drive) {
 // are much alike, so the last contacts are tried first.
 class CloserLook {
  public:
-  explicit CloserLook(const Cycle& cycle) : cycle_(cycle) {}
+  CloserLook(const Cycle& cycle, const PlanOptions& options)
+      : cycle_(cycle),
+        way_on_(cycle.course, cycle.scene, cycle.vehicle,
+                {.horizon_s = options.way_on_horizon_s,
+                 .deceleration_mps2 = options.way_on_deceleration_mps2,
+                 .clearance_m = options.clearance_m,
+                 .recovery_m = options.recovery_m,
+                 .circles = options.circles}) {}
 
   Rejection at(std::size_t index) {
     const CandidateDrive drive = drive_of(cycle_, index);
     if (!keeps_to_the_road(cycle_, drive)) return Rejection::off_road;
     const auto contact = cycle_.collision.first_contact(drive.points);
-    if (!contact) return Rejection::none;
+    if (!contact) {
+      const bool leads_on = way_on_.exists(cycle_.grid.end_d_m(index), cycle_.grid.end_l_m(index));
+      return leads_on ? Rejection::none : Rejection::collision;
+    }
     const std::size_t deeper = std::min(contact->leg + kDeeper, drive.points.size() - 1);
     remember({*contact, drive.stations[deeper].l_m});
     return Rejection::collision;
@@ -206,6 +223,7 @@ class CloserLook {
   }
 
   const Cycle& cycle_;
+  WayOn way_on_;
   std::vector<Place> contacts_;  // the last one first
 };
 
@@ -227,8 +245,9 @@ Candidate candidate_with_terms(const Cycle& cycle, const CandidateSearch& search
 
 // The first one, cheapest first, that keeps to the road and collides with nothing. Only if there
 // is none, it is told apart why each of them fails.
-std::optional<std::size_t> choose_lazily(const Cycle& cycle, CandidateSearch& search) {
-  CloserLook look(cycle);
+std::optional<std::size_t> choose_lazily(const Cycle& cycle, CandidateSearch& search,
+                                         const PlanOptions& options) {
+  CloserLook look(cycle, options);
   std::vector<std::size_t> failed;
   for (auto equals = search.pop_equals(); !equals.empty(); equals = search.pop_equals()) {
     std::ranges::sort(equals, [&](std::size_t a, std::size_t b) {
@@ -248,8 +267,9 @@ std::optional<std::size_t> choose_lazily(const Cycle& cycle, CandidateSearch& se
   return std::nullopt;
 }
 
-std::vector<Candidate> all_candidates(const Cycle& cycle, CandidateSearch& search) {
-  CloserLook look(cycle);
+std::vector<Candidate> all_candidates(const Cycle& cycle, CandidateSearch& search,
+                                      const PlanOptions& options) {
+  CloserLook look(cycle, options);
   std::vector<Candidate> candidates;
   candidates.reserve(cycle.grid.size());
   for (std::size_t index = 0; index < cycle.grid.size(); ++index) {
@@ -269,14 +289,29 @@ RejectionCounts count(const std::vector<Rejection>& rejections) {
   return counts;
 }
 
-std::string reason_for_none(std::size_t candidates, const RejectionCounts& rejected) {
+// What is wrong with the start, that none of the candidates can help.
+std::string fault_of_start(const Cycle& cycle) {
+  const Corridor room = cycle.input.line.corridor_at(cycle.input.start.s_m);
+  const double width_m = room.left_m + room.right_m;
+  if (cycle.vehicle.width_m > width_m) {
+    return fmt::format(
+        "the vehicle is {:.2f} m wide and the road {:.2f} m: ", cycle.vehicle.width_m, width_m);
+  }
+  if (cycle.course.start_excess_m > 0.0) {
+    return fmt::format("the start is {:.2f} m off the road: ", cycle.course.start_excess_m);
+  }
+  return {};
+}
+
+std::string reason_for_none(const Cycle& cycle, const RejectionCounts& rejected) {
   const auto of = [&](Rejection cause) { return rejected[static_cast<std::size_t>(cause)]; };
   return fmt::format(
-      "none of {} candidates can be driven: {} leave the road, {} are beyond the curvature that "
+      "{}none of {} candidates can be driven: {} leave the road, {} are beyond the curvature that "
       "can be steered, {} are beyond the lateral acceleration, {} are beyond the steering rate, {} "
       "collide",
-      candidates, of(Rejection::off_road), of(Rejection::beyond_curvature),
-      of(Rejection::lateral_acceleration), of(Rejection::steering_rate), of(Rejection::collision));
+      fault_of_start(cycle), cycle.grid.size(), of(Rejection::off_road),
+      of(Rejection::beyond_curvature), of(Rejection::lateral_acceleration),
+      of(Rejection::steering_rate), of(Rejection::collision));
 }
 
 }  // namespace
@@ -300,7 +335,7 @@ Plan plan_path(const PlanInput& input, const VehicleShape& vehicle, const PlanOp
   check(input.start, options);
   const Cycle cycle(input, vehicle, options);
   CandidateSearch search = search_of(cycle, options);
-  const std::optional<std::size_t> choice = choose_lazily(cycle, search);
+  const std::optional<std::size_t> choice = choose_lazily(cycle, search, options);
 
   Plan plan;
   plan.evaluated = search.evaluated();
@@ -310,9 +345,9 @@ Plan plan_path(const PlanInput& input, const VehicleShape& vehicle, const PlanOp
     plan.chosen = candidate_with_terms(cycle, search, *choice);
     plan.trajectory = geometry::Trajectory(drive_of(cycle, *choice).points);
   } else {
-    plan.reason = reason_for_none(cycle.grid.size(), plan.rejected);
+    plan.reason = reason_for_none(cycle, plan.rejected);
   }
-  if (options.keep_candidates) plan.candidates = all_candidates(cycle, search);
+  if (options.keep_candidates) plan.candidates = all_candidates(cycle, search, options);
   return plan;
 }
 

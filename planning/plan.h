@@ -32,6 +32,11 @@ struct PlanOptions {
   double border_margin_m = 0.0;  ///< to keep from the corridor's edges
   double recovery_m = 10.0;      ///< a start off the road or near an obstacle may mend over this
   double horizon_s = 5.0;        ///< moving obstacles are checked this far ahead
+  /// What is begun has to be ended within this, by a stop or by passing and returning (way_on.h);
+  /// 0: it is not asked.
+  double way_on_horizon_s = 10.0;
+  double way_on_deceleration_mps2 = 3.0;  ///< of that stop
+  bool limit_steering_rate = true;        ///< to what the vehicle's steering can do
   CostTerms weights = default_weights();
   bool keep_candidates = false;  ///< fill Plan::candidates, every one fully judged
   bool exhaustive = false;       ///< evaluate even what cannot be the cheapest; same answer

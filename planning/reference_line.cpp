@@ -24,7 +24,11 @@ geometry::FitOptions fit_options(const ReferenceLineOptions& options) {
 ReferenceLine ReferenceLine::through(const std::vector<Eigen::Vector2d>& way_points_in_map,
                                      double half_width_m, double speed_limit_mps,
                                      const ReferenceLineOptions& options) {
-  const WayPointPath path = path_through(way_points_in_map, 0.5 * options.step_m);
+  std::optional<CornerDriving> driving;
+  if (options.corner_vehicle) {
+    driving = {*options.corner_vehicle, options.corner_speed_mps, half_width_m};
+  }
+  WayPointPath path = path_through(way_points_in_map, 0.5 * options.step_m, driving);
   auto data = std::make_shared<Data>();
   data->curve = geometry::fit_curve(path.points, fit_options(options)).curve;
   data->goal_s_m = data->curve.length_m();
@@ -32,6 +36,7 @@ ReferenceLine ReferenceLine::through(const std::vector<Eigen::Vector2d>& way_poi
     const double move_m = std::abs(data->curve.project(point).d_m);
     data->largest_move_m = std::max(data->largest_move_m, move_m);
   }
+  data->notes = std::move(path.notes);
   data->corridor.assign(1, {half_width_m, half_width_m, speed_limit_mps});
   return ReferenceLine(std::move(data));
 }
@@ -41,6 +46,8 @@ double ReferenceLine::length_m() const { return data_->curve.length_m() - data_-
 double ReferenceLine::goal_s_m() const { return data_->goal_s_m; }
 
 double ReferenceLine::largest_move_m() const { return data_->largest_move_m; }
+
+const std::vector<std::string>& ReferenceLine::notes() const { return data_->notes; }
 
 ReferencePoint ReferenceLine::at(double s_m) const {
   const geometry::CurvePoint point = data_->curve.at(data_->start_m + s_m);

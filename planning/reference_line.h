@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "roadbed/geometry/polyline.h"
+#include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/road_map.h"
 #include "roadbed/planning/route.h"
 
@@ -40,6 +41,9 @@ struct ReferenceLineOptions {
   double lane_change_length_m = 40.0;  ///< a lane change takes, where there is room
   double default_speed_mps = 50.0 / 3.6;
   double extend_m = 30.0;  ///< how far the line goes on past the goal
+  /// Whose corners way-points have, at which speed; none: they are rounded by 14 m.
+  std::optional<geometry::VehicleShape> corner_vehicle = std::nullopt;
+  double corner_speed_mps = 0.0;
 };
 
 /// A smooth line to drive along: position, heading, κ, κ′, κ″, κ‴ and κ⁗ are continuous and exact
@@ -77,6 +81,9 @@ class ReferenceLine {
 
   /// Largest distance of a way-point that is no corner, or of the centreline, from the line [m].
   double largest_move_m() const;
+
+  /// Corners of way-points that cannot be driven as asked, a line of text for each.
+  const std::vector<std::string>& notes() const;
 
  private:
   struct Data;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "roadbed/geometry/fit_curve.h"
@@ -15,6 +16,7 @@ struct ReferenceLine::Data {
   double goal_s_m = 0.0;
   double largest_move_m = 0.0;
   double corridor_step_m = 1.0;
+  std::vector<std::string> notes;
   std::vector<Corridor> corridor;  ///< at stations 0, step, 2 · step, …; not empty
 };
 

@@ -7,9 +7,12 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "roadbed/geometry/quintic_bezier.h"
 #include "roadbed/geometry/spline_curve.h"
+#include "roadbed/planning/corner_gaps.h"
 
 namespace roadbed::planning {
 namespace {
@@ -20,6 +23,10 @@ constexpr double kSamePoint_m = 1e-6;
 constexpr double kCornerTurn_rad = std::numbers::pi / 6.0;
 constexpr double kLongLeg_m = 10.0;
 constexpr double kStraight_rad = 0.05;  // a leg goes on while it turns by less
+constexpr double kTurnsBack_rad = 170.0 / 180.0 * std::numbers::pi;
+constexpr double kLongestRounding_m = 40.0;
+constexpr double kBeyondLegs_m = 12.0;  // the road goes on, for the body at the legs' ends
+constexpr double kLeastCornerSpeed_mps = 0.1, kSpeedStep = 1.25;
 const double kMostRounding_m = geometry::kPaperGaps.total_m();
 
 bool same(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -58,11 +65,22 @@ bool is_corner(const Points& points, std::size_t i) {
   return alone(i - 1) && alone(i + 1);
 }
 
-// A corner, and how far its legs are straight.
+void refuse_turning_back(const Points& points) {
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const double turn_rad = turn_at(points, i);
+    if (turn_rad < kTurnsBack_rad) continue;
+    throw std::invalid_argument(
+        fmt::format("path_through: the path turns back by {:.0f}° at ({:.2f}, {:.2f})",
+                    turn_rad * 180.0 / std::numbers::pi, points[i].x(), points[i].y()));
+  }
+}
+
+// A corner, and how far its legs are straight; later: how much of them its curve takes.
 struct Corner {
   std::size_t at;
   Eigen::Vector2d back, ahead;  // unit vectors away from the corner
   double room_m;
+  geometry::CornerGaps gaps;
 };
 
 // Length of the straight leg from a corner, `step` +1 or −1; half of it if it ends at a corner.
@@ -78,25 +96,59 @@ double leg_m(const Points& points, const std::vector<bool>& corners, std::size_t
   return corners[i] ? 0.5 * length_m : length_m;
 }
 
-std::vector<Corner> corners_of(const Points& points) {
+std::vector<Corner> corners_of(const Points& points, double most_m) {
   std::vector<bool> is(points.size(), false);
   for (std::size_t i = 1; i + 1 < points.size(); ++i) is[i] = is_corner(points, i);
   std::vector<Corner> corners;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     if (!is[i]) continue;
     const double room_m = std::min(leg_m(points, is, i, -1), leg_m(points, is, i, +1));
-    corners.push_back({i, (points[i - 1] - points[i]).normalized(),
+    corners.push_back({i,
+                       (points[i - 1] - points[i]).normalized(),
                        (points[i + 1] - points[i]).normalized(),
-                       std::min(room_m, kMostRounding_m)});
+                       std::min(room_m, most_m),
+                       {}});
   }
   return corners;
+}
+
+// The road of both legs, half a width to each side.
+Points road_of(const Eigen::Vector2d& at, const Corner& corner, double half_width_m) {
+  const auto left_of = [](const Eigen::Vector2d& v) { return Eigen::Vector2d(-v.y(), v.x()); };
+  const Eigen::Vector2d n1 = half_width_m * left_of(-corner.back);
+  const Eigen::Vector2d n2 = half_width_m * left_of(corner.ahead);
+  const Eigen::Vector2d mitre = (n1 + n2) / (1.0 + n1.dot(n2) / (half_width_m * half_width_m));
+  const double reach_m = corner.room_m + kBeyondLegs_m;
+  const Eigen::Vector2d before = at + reach_m * corner.back, after = at + reach_m * corner.ahead;
+  return {before - n1, at - mitre, after - n2, after + n2, at + mitre, before + n1};
+}
+
+// Chooses a corner's gaps; what is not as asked is said.
+std::string round_for(const CornerDriving& driving, const Points& points, Corner& corner) {
+  const Eigen::Vector2d& at = points[corner.at];
+  CornerQuestion question{.before = at + corner.room_m * corner.back,
+                          .at = at,
+                          .after = at + corner.room_m * corner.ahead,
+                          .speed_mps = driving.speed_mps,
+                          .drivable = road_of(at, corner, driving.half_width_m)};
+  const CornerChoice as_asked = choose_corner_gaps(question, driving.vehicle);
+  CornerChoice choice = as_asked;
+  while (!choice.gaps && question.speed_mps > kLeastCornerSpeed_mps) {
+    question.speed_mps /= kSpeedStep;
+    choice = choose_corner_gaps(question, driving.vehicle);
+  }
+  const std::string place = fmt::format("corner at ({:.2f}, {:.2f})", at.x(), at.y());
+  if (!choice.gaps) return fmt::format("{}: {}", place, choice.reason);
+  corner.gaps = *choice.gaps;
+  corner.room_m = choice.gaps->total_m();
+  if (as_asked.gaps) return {};
+  return fmt::format("{}: rounded for {:.1f} m/s; {}", place, question.speed_mps, as_asked.reason);
 }
 
 geometry::QuinticBezier curve_at(const Points& points, const Corner& corner) {
   const Eigen::Vector2d& at = points[corner.at];
   return geometry::QuinticBezier::corner(at + corner.room_m * corner.back, at,
-                                         at + corner.room_m * corner.ahead,
-                                         geometry::scaled_to(geometry::kGentleGaps, corner.room_m));
+                                         at + corner.room_m * corner.ahead, corner.gaps);
 }
 
 void append(Points& path, const Points& piece) {
@@ -147,12 +199,19 @@ void append_piece(WayPointPath& path, const Points& points, const Corner* before
 
 }  // namespace
 
-WayPointPath path_through(std::span<const Eigen::Vector2d> way_points, double step_m) {
+WayPointPath path_through(std::span<const Eigen::Vector2d> way_points, double step_m,
+                          const std::optional<CornerDriving>& driving) {
   const Points points = distinct(way_points);
+  refuse_turning_back(points);
   WayPointPath path;
   const Corner* before = nullptr;
-  const std::vector<Corner> corners = corners_of(points);
-  for (const Corner& corner : corners) {
+  std::vector<Corner> corners = corners_of(points, driving ? kLongestRounding_m : kMostRounding_m);
+  for (Corner& corner : corners) {
+    corner.gaps = geometry::scaled_to(geometry::kGentleGaps, corner.room_m * (1.0 - 1e-12));
+    if (driving) {
+      std::string note = round_for(*driving, points, corner);
+      if (!note.empty()) path.notes.push_back(std::move(note));
+    }
     append_piece(path, points, before, &corner, step_m);
     append(path.points, sampled(curve_at(points, corner), step_m));
     before = &corner;

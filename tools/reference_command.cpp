@@ -14,6 +14,7 @@
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/route_question.h"
+#include "roadbed/tools/support/way_point_line.h"
 
 namespace roadbed::tools {
 namespace {
@@ -51,26 +52,53 @@ double peak_curvature_per_m(const planning::ReferenceLine& line) {
 class ReferenceCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Draw the smooth line to drive along a route");
-    arguments.add("MAP", map_file_, "Any readable map").required();
-    question_.declare(arguments);
+    arguments.description("Draw the smooth line to drive along a route, or through way-points");
+    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints");
+    question_.declare(arguments, true);
+    way_points_.declare(arguments);
     arguments.add("-o,--output", output_, "CSV file to write").required();
     arguments.add("--step", step_m_, "Distance between rows [m]")
         .within(1e-3, 100.0)
         .with_default();
     arguments
         .add("--max-move", options_.max_smoothing_m,
-             "Largest distance of the line from the centreline [m]")
+             "Largest distance of the line from the centreline or way-points [m]")
         .within(0.01, 2.0)
         .with_default();
     arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.require([this] { return fault(); });
     arguments.example(
-        ""
-        "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv");
+        "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv\n"
+        "  roadbed reference --waypoints points.csv --interpolate --ends periodic -o ring.csv");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     check_writable(output_, force_);
+    return way_points_.asked() ? through_way_points(streams, common) : along_route(streams, common);
+  }
+
+ private:
+  std::string fault() const {
+    if (way_points_.asked() == !map_file_.empty()) return "just one of MAP and --waypoints";
+    if (!way_points_.asked() && !question_.has_places()) return "--from and --to";
+    if (way_points_.asked() && question_.has_any_place()) return "MAP, not --waypoints, for a route";
+    return way_points_.fault();
+  }
+
+  Exit through_way_points(const Streams& streams, const CommonOptions& common) const {
+    const WayPointLine::Table table = way_points_.table(step_m_, options_.max_smoothing_m);
+    write_output(output_, table.csv);
+    if (!common.quiet) {
+      for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
+      fmt::print(streams.err,
+                 "{}: {:.1f} m, peak curvature {:.3f} 1/m, at most {:.2f} m off the way-points\n",
+                 output_.string(), table.length_m, table.peak_curvature_per_m,
+                 table.largest_move_m);
+    }
+    return Exit::ok;
+  }
+
+  Exit along_route(const Streams& streams, const CommonOptions& common) const {
     const map::RoadMap road_map = map::load_map(map_file_);
     const RouteQuestion::Asked asked = question_.on(road_map);
     const planning::RouteAnswer answer =
@@ -90,9 +118,9 @@ class ReferenceCommand : public Command {
     return Exit::ok;
   }
 
- private:
   std::filesystem::path map_file_, output_;
   RouteQuestion question_;
+  WayPointLine way_points_;
   planning::ReferenceLineOptions options_;
   double step_m_ = 0.5;
   bool force_ = false;

@@ -109,6 +109,7 @@ Scene random_scene(std::uint32_t seed) {
   scene.options.d_step_m = 0.5;
   scene.options.l_step_m = 3.0;
   scene.options.points = 17;
+  scene.options.way_on_horizon_s = 0.0;  // overtaking_test.cpp asks for it
   const int obstacles = static_cast<int>(random() % 5);
   for (int i = 0; i < obstacles; ++i)
     scene.obstacles.push_back(random_obstacle(random, scene.line));
@@ -206,6 +207,7 @@ Verdict judge_slowly(const Scene& scene, const LineView& line, const SlowCandida
   const double limits = std::min(
       {std::tan(vehicle.max_steering_rad) / vehicle.wheelbase_m - slow.worst_curvature_per_m,
        scene.options.max_lateral_acceleration_mps2 - slow.worst_lateral_mps2,
+       vehicle.max_steering_rate_radps - slow.worst_steering_radps,
        scene.line.left_m - slow.most_d_m - 0.5 * vehicle.width_m,
        scene.line.right_m + slow.least_d_m - 0.5 * vehicle.width_m});
   if (limits < -kRounding) return {.surely_rejected = true};

@@ -8,16 +8,35 @@
 
 #include "roadbed/geometry/rectangle.h"
 #include "roadbed/planning/fallback.h"
-#include "roadbed/tests/support/analytic_line.h"
 
 namespace roadbed::planning {
 namespace {
 
 using geometry::Rectangle;
 using geometry::VehicleShape;
-using tests::AnalyticLine;
 
 constexpr double kCycle_s = 0.1;
+
+// The own lane, 3.5 m wide, and one to its left, in a wide bend.
+class TwoLaneBend {
+ public:
+  ReferencePoint at(double s_m) const { return line_.at(s_m); }
+  LineView view() const {
+    return {[line = line_](double s_m) { return line.at(s_m); },
+            [](double) { return Corridor{.left_m = 5.25, .right_m = 1.75}; }};
+  }
+
+ private:
+  static std::vector<Eigen::Vector2d> bend() {
+    std::vector<Eigen::Vector2d> points;
+    for (int i = 0; i <= 20; ++i) {
+      const double angle = 0.03 * i;
+      points.push_back({500.0 * std::sin(angle), 500.0 - 500.0 * std::cos(angle)});
+    }
+    return points;
+  }
+  ReferenceLine line_ = ReferenceLine::through(bend(), 3.5, 15.0);
+};
 
 // Drives along a line at a constant offset, with or against its direction.
 struct Car {
@@ -26,18 +45,18 @@ struct Car {
   double s_m(double t_s) const { return from_s_m + speed_mps * t_s; }
 };
 
-geometry::Pose2 centre_of(const Car& car, const AnalyticLine& line, double t_s) {
+geometry::Pose2 centre_of(const Car& car, const TwoLaneBend& line, double t_s) {
   const ReferencePoint at = line.at(car.s_m(t_s));
   return {at.in_map.x() - car.d_m * std::sin(at.heading_rad),
           at.in_map.y() + car.d_m * std::cos(at.heading_rad),
           at.heading_rad + (car.speed_mps < 0.0 ? std::numbers::pi : 0.0)};
 }
 
-PredictedObstacle seen_at(const Car& car, const AnalyticLine& line, double t_s) {
+PredictedObstacle seen_at(const Car& car, const TwoLaneBend& line, double t_s) {
   const ObservedMotion seen{
       .t_s = t_s, .pose = centre_of(car, line, t_s), .speed_mps = std::abs(car.speed_mps)};
   return {.id = "car",
-          .prediction = Prediction::along_line(line.view(), {car.s_m(t_s), car.d_m}, seen, 6.0)};
+          .prediction = Prediction::along_line(line.view(), {car.s_m(t_s), car.d_m}, seen, 12.0)};
 }
 
 // What the drive was like.
@@ -50,7 +69,7 @@ struct Drive {
 };
 
 // The vehicle follows each plan exactly; it brakes as a stop says, else gathers speed again.
-Drive drive(const AnalyticLine& line, const std::vector<Car>& cars, double duration_s) {
+Drive drive(const TwoLaneBend& line, const std::vector<Car>& cars, double duration_s) {
   constexpr double kSpeed_mps = 12.0, kSpeedUp_mps2 = 1.0;
   const std::vector<Obstacle> none;
   Drive result;
@@ -100,23 +119,26 @@ Drive drive(const AnalyticLine& line, const std::vector<Car>& cars, double durat
   return result;
 }
 
-// The own lane, 3.5 m wide, and one to its left.
-AnalyticLine two_lanes() {
-  AnalyticLine line;
-  line.curvature = {0.002, 0.0, 0.0, 0.0, 0.0};
-  line.left_m = 5.25;
-  line.right_m = 1.75;
-  return line;
-}
-
 TEST(Overtaking, PassesASlowerCarAndComesBackToItsLane) {
   const Car slower{45.0, 0.0, 4.0};
-  const Drive result = drive(two_lanes(), {slower}, 15.0);
+  const Drive result = drive(TwoLaneBend{}, {slower}, 15.0);
   EXPECT_GT(result.least_distance_m, 0.25);
   EXPECT_GT(result.most_d_m, 1.9);
   EXPECT_GT(result.end_s_m, slower.s_m(15.0) + 20.0);
   EXPECT_NEAR(result.end_d_m, 0.0, 0.2);
   EXPECT_EQ(result.stops, 0);
+}
+
+TEST(Overtaking, WaitsForOncomingTrafficAndThenPasses) {
+  const Car slower{45.0, 0.0, 4.0}, oncoming{130.0, 3.5, -9.0};
+  const Drive free = drive(TwoLaneBend{}, {slower}, 22.0);
+  const Drive result = drive(TwoLaneBend{}, {slower, oncoming}, 22.0);
+  EXPECT_GT(result.least_distance_m, 0.05);
+  EXPECT_GT(result.stops, 0);
+  EXPECT_GT(result.out_from_s_m, free.out_from_s_m + 3.0);
+  EXPECT_GT(result.most_d_m, 1.9);
+  EXPECT_GT(result.end_s_m, slower.s_m(22.0) + 10.0);
+  EXPECT_NEAR(result.end_d_m, 0.0, 0.3);
 }
 
 }  // namespace

@@ -154,5 +154,63 @@ TEST(PlanPath, RefusesOptionsThatCannotBeUsed) {
   EXPECT_THROW(plan_on({}, {}, {}, -1.0), std::invalid_argument);
 }
 
+TEST(PlanPath, SaysThatTheStartIsOffTheRoad) {
+  AnalyticLine line;
+  line.left_m = line.right_m = 2.0;
+  const Plan plan = plan_on(line, {.d_m = 30.0}, {});
+  ASSERT_FALSE(plan.chosen);
+  // Half the width beyond the edge, too.
+  EXPECT_EQ(plan.reason.find("the start is 28.80 m off the road: none of"), 0u) << plan.reason;
+}
+
+TEST(PlanPath, SaysThatTheVehicleIsWiderThanTheRoad) {
+  AnalyticLine line;
+  line.left_m = line.right_m = 0.7;
+  const Plan plan = plan_on(line, {}, {});
+  ASSERT_FALSE(plan.chosen);
+  EXPECT_EQ(plan.reason.find("the vehicle is 1.61 m wide and the road 1.40 m: none of"), 0u)
+      << plan.reason;
+}
+
+// A sudden swerve at speed turns the wheels faster than they can.
+TEST(PlanPath, KeepsToTheSteeringRate) {
+  AnalyticLine line;
+  line.left_m = line.right_m = 6.0;
+  PlanOptions options;
+  options.min_l_m = options.max_l_m = 15.0;
+  options.max_lateral_acceleration_mps2 = 100.0;
+  options.keep_candidates = true;
+  const VehicleShape vehicle;
+  const Plan plan = plan_on(line, {}, {}, 14.0, options);
+  int beyond = 0;
+  for (const Candidate& candidate : plan.candidates) {
+    // By differences of the steering angle of the lane change beside a straight line.
+    const geometry::Quintic d({}, {.value = candidate.end_d_m}, candidate.end_l_m);
+    double rate_radps = 0.0;
+    for (double l_m = 0.0; l_m + 0.01 < candidate.end_l_m; l_m += 0.01) {
+      const auto steering = [&](double at_m) {
+        const auto p = d.at(at_m);
+        return std::atan(vehicle.wheelbase_m * p[2] / std::pow(1.0 + p[1] * p[1], 1.5));
+      };
+      const double way_m = 0.01 * std::hypot(1.0, d.at(l_m)[1]);
+      rate_radps =
+          std::max(rate_radps, std::abs(steering(l_m + 0.01) - steering(l_m)) / way_m * 14.0);
+    }
+    const bool is_beyond = candidate.rejection == Rejection::steering_rate;
+    if (is_beyond) {
+      EXPECT_GT(rate_radps, vehicle.max_steering_rate_radps - 0.01);
+    }
+    if (candidate.rejection == Rejection::none) {
+      EXPECT_LT(rate_radps, vehicle.max_steering_rate_radps + 0.03);  // 31 points see no peak
+    }
+    beyond += is_beyond ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 10);
+  options.limit_steering_rate = false;
+  for (const Candidate& candidate : plan_on(line, {}, {}, 14.0, options).candidates) {
+    EXPECT_NE(candidate.rejection, Rejection::steering_rate);
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::planning

@@ -18,14 +18,14 @@ namespace {
 using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 
-// A bending road as it is measured: every 3 to 14 m, each point up to 0.25 m off.
+// A bending road as it is measured: every 3 to 8 m, each point up to 0.5 m off along and across.
 Points measured_centreline() {
   std::mt19937 random(2);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
   Points points;
-  for (double x_m = 0.0; x_m <= 150.0; x_m += 3.0 + 11.0 * share()) {
-    const Vector2d noise(0.5 * share() - 0.25, 0.5 * share() - 0.25);
-    points.push_back(Vector2d(x_m, 8.0 * std::sin(x_m / 22.0)) + noise);
+  for (double x_m = 0.0; x_m <= 70.0; x_m += 3.0 + 5.0 * share()) {
+    const Vector2d noise(share() - 0.5, share() - 0.5);
+    points.push_back(Vector2d(x_m, 6.0 * std::sin(x_m / 12.0)) + noise);
   }
   return points;
 }
@@ -41,7 +41,7 @@ Points points_of(const planning::ReferenceLine& line, double step_m) {
 Figure path_model() {
   const Points way_points = measured_centreline();
   const auto line =
-      planning::ReferenceLine::through(way_points, 1.75, 14.0, {.max_smoothing_m = 0.5});
+      planning::ReferenceLine::through(way_points, 1.75, 14.0, {.max_smoothing_m = 0.8});
   return {"figure_2_path_model",
           {.title = "Fig. 2: path model",
            .x_label = "x [m]",
@@ -49,7 +49,7 @@ Figure path_model() {
            .series = {{"way-points of the centreline", Mark::circles, kBlack, way_points},
                       {"interpolated: cubic spline", Mark::dashed, kRed,
                        geometry::SplineCurve::through(way_points).resample(0.25)},
-                      {"smoothed within 0.5 m: reference line", Mark::line, kBlue,
+                      {"smoothed within 0.8 m: reference line", Mark::line, kBlue,
                        points_of(line, 0.25)}},
            .is_plan = true}};
 }
@@ -173,11 +173,14 @@ Figure second_derivative(const Corner& corner) {
 
 Figure curvature(const Corner& corner) {
   const auto of = [](const Corner::State& at) { return at.curvature_per_m; };
+  // Its legs are longer, so that its ends do not count; 0 is where the others begin.
   const auto line = planning::ReferenceLine::through(
-      {Corner::kBefore, {-10.0, 0.0}, Corner::kAt, {0.0, 10.0}, Corner::kAfter}, 1.75, 10.0);
+      {3.0 * Corner::kBefore, Corner::kBefore, Corner::kAt, Corner::kAfter, 3.0 * Corner::kAfter},
+      1.75, 10.0);
+  const double from_m = line.project(Corner::kBefore).s_m;
   Points planned;
-  for (double s_m = 0.0; s_m <= line.length_m(); s_m += 0.05) {
-    planned.push_back({s_m, line.at(s_m).curvature_per_m});
+  for (double l_m = 0.0; l_m <= line.project(Corner::kAfter).s_m - from_m; l_m += 0.05) {
+    planned.push_back({l_m, line.at(from_m + l_m).curvature_per_m});
   }
   return {
       "figure_7_curvature",

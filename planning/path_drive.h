@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/planning/candidates.h"
+#include "roadbed/planning/line_view.h"
+#include "roadbed/planning/planned_speed.h"
+
+namespace roadbed::planning {
+
+/// A path beside a line: d, d′ and d″ at a station of it; may be empty.
+using LateralPath = std::function<LateralState(double s_m)>;
+
+/// A path, and where and when it is driven from.
+struct PathCourse {
+  const LineView& line;
+  const LateralPath& path;
+  const geometry::VehicleShape& vehicle;
+  double start_s_m = 0.0, start_t_s = 0.0;
+};
+
+/// The drive along a path at a constant deceleration; from its stop it stands for `until_s` after
+/// the start, or longer. A row every 0.05 s.
+geometry::Trajectory stopping_drive(const PathCourse& course, double speed_mps,
+                                    double deceleration_mps2, double until_s);
+
+/// The drive along a path up to a station, at a planned speed by the length driven; at most
+/// `until_s` after the start. A row every metre or so of the line.
+geometry::Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed,
+                                   double end_s_m, double until_s);
+
+}  // namespace roadbed::planning
