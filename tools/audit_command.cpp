@@ -15,9 +15,12 @@
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit.h"
+#include "roadbed/planning/audit_certificate.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/audit_svg.h"
 #include "roadbed/tools/support/audit_json.h"
+#include "roadbed/tools/support/certificate_check.h"
+#include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 #include "roadbed/tools/support/vehicle_json.h"
@@ -71,12 +74,10 @@ class AuditCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Prove that a drive keeps clear of occupied space, or show where it does not");
-    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)").required();
-    arguments
-        .add("--trajectory", trajectory_,
-             "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
-             "the body is covered")
-        .required();
+    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)");
+    arguments.add("--trajectory", trajectory_,
+                  "Drive to audit (.csv), poses of the rear axle, linear between rows; every point "
+                  "of the body is covered");
     arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
     arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
     arguments.add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
@@ -99,12 +100,30 @@ class AuditCommand : public Command {
         .with_default();
     arguments.flag("--json", json_, "Print one JSON document");
     arguments.add("--svg", svg_, "Draw the audit as a picture (.svg)");
-    arguments.flag("--force", force_, "Replace the picture if it exists");
-    arguments.example("  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv");
+    arguments.add(
+        "--certificate", certificate_,
+        "Write the proof (.json): spans of time, what holds in them, witnesses, hashes of "
+        "the inputs");
+    arguments.add("--check", check_,
+                  "Verify a certificate by brute force instead; its inputs are the files that it "
+                  "names, or --occupancy and --trajectory");
+    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.require([this] { return missing(); });
+    arguments.example(
+        "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
+        "--certificate proof.json\n"
+        "  roadbed audit --check proof.json");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    if (!svg_.empty()) check_writable(svg_, force_);
+    if (!check_.empty()) {
+      const bool holds =
+          check_certificate_file(check_, occupancy_, trajectory_, json_, streams.out);
+      return holds ? Exit::ok : Exit::failed;
+    }
+    for (const auto& output : {svg_, certificate_}) {
+      if (!output.empty()) check_writable(output, force_);
+    }
     const geometry::Trajectory drive = read_trajectory_csv(trajectory_);
     const geometry::VehicleShape vehicle =
         vehicle_.empty() ? geometry::VehicleShape{} : read_vehicle_json(vehicle_);
@@ -119,11 +138,24 @@ class AuditCommand : public Command {
       write_output(svg_, audit_svg({drive, planning::inflated(vehicle, options_.inflate_m), report,
                                     occupied_boxes(occupancy, band), lanes}));
     }
+    if (!certificate_.empty()) {
+      const auto certificate = planning::certify(field, band, drive, vehicle, options_, report);
+      write_output(certificate_, write_certificate_json({.program = "roadbed " ROADBED_VERSION,
+                                                         .occupancy = certified_file(occupancy_),
+                                                         .trajectory = certified_file(trajectory_),
+                                                         .certificate = certificate}));
+    }
     print(streams.out, report);
     return report.verdict == planning::Verdict::clear ? Exit::ok : Exit::failed;
   }
 
  private:
+  std::string missing() const {
+    if (!check_.empty()) return {};
+    if (occupancy_.empty()) return "--occupancy";
+    return trajectory_.empty() ? "--trajectory" : "";
+  }
+
   map::HeightBand height_band(const geometry::VehicleShape& vehicle) const {
     if (from_height_m_ < vehicle.height_m) {
       return {ground_m_ + from_height_m_, ground_m_ + vehicle.height_m};
@@ -192,7 +224,7 @@ class AuditCommand : public Command {
     }
   }
 
-  std::filesystem::path occupancy_, trajectory_, vehicle_, map_, svg_;
+  std::filesystem::path occupancy_, trajectory_, vehicle_, map_, svg_, certificate_, check_;
   AuditOptions options_;
   double ground_m_ = 0.0, from_height_m_ = map::HeightBand{}.from_m;
   bool json_ = false, force_ = false;

@@ -94,6 +94,43 @@ TEST_F(OccupancyCommands, AuditNamesUnknownSpaceAndADriveOutsideIt) {
   EXPECT_THAT(unknown.err, HasSubstr("outside the measured space"));
 }
 
+TEST_F(OccupancyCommands, CheckVerifiesACertificateAndRefutesAChangedOne) {
+  const std::string proof = folder_ / "proof.json";
+  const ProgramRun made =
+      audit(straight_csv(2, 10, 0), {"--unknown", "free", "--certificate", proof});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const ProgramRun holds = run_roadbed({"audit", "--check", proof, "--json"});
+  EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
+  EXPECT_NEAR(Json::parse(holds.out).at("certified_clearance_m").get<double>(), 4.0 - 0.805, 0.05);
+
+  Json bold = Json::parse(bytes_of(proof));
+  for (Json& span : bold["from_occupied"]) span[3] = 3.3;
+  bold["certified_clearance_m"] = 3.3;
+  const ProgramRun refuted =
+      run_roadbed({"audit", "--check", folder_.write("bold.json", bold.dump())});
+  EXPECT_EQ(refuted.status, 1);
+  EXPECT_THAT(refuted.out, HasSubstr("certificate      does not hold"));
+  EXPECT_THAT(refuted.out, HasSubstr("that is no 3.300000 m"));
+
+  const std::string other = folder_.write("other.csv", straight_csv(2, 11, 0));
+  const ProgramRun mixed = run_roadbed({"audit", "--check", proof, "--trajectory", other});
+  EXPECT_EQ(mixed.status, 1);
+  EXPECT_THAT(mixed.out, HasSubstr("the certificate is about one with"));
+}
+
+TEST_F(OccupancyCommands, CheckRefusesWhatIsNoCertificate) {
+  Json document{{"format", "roadbed audit certificate 9"}};
+  const ProgramRun nine =
+      run_roadbed({"audit", "--check", folder_.write("nine.json", document.dump())});
+  EXPECT_EQ(nine.status, 1);
+  EXPECT_THAT(nine.err, HasSubstr("nine.json:/format: is \"roadbed audit certificate 9\""));
+  const ProgramRun cut =
+      run_roadbed({"audit", "--check", folder_.write("cut.json", "{\"format\":")});
+  EXPECT_EQ(cut.status, 1);
+  EXPECT_THAT(cut.err, HasSubstr("cut.json:byte"));
+  EXPECT_EQ(nine.out + cut.out, "");
+}
+
 TEST_F(OccupancyCommands, AuditDrawsAPictureAndKeepsAnOldOne) {
   const std::string picture = folder_ / "audit.svg";
   const std::vector<std::string> options{"--unknown", "free", "--svg", picture};

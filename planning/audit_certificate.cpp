@@ -1,0 +1,163 @@
+#include "roadbed/planning/audit_certificate.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "roadbed/planning/body_probe.h"
+
+namespace roadbed::planning {
+namespace {
+
+using map::ObstacleKind;
+
+constexpr double kMostCertified_m = 5.0;  // more room than this would only make more spans
+constexpr double kMostOver_m = 1.0;       // the same, of what a span promises over its goal
+constexpr double kLeastMotion_m = 1e-7;   // motion bound of a span that is not halved any more
+
+/// Proven spans, and the stretches that could not be proven.
+struct Cover {
+  std::vector<ProvenSpan> proven;
+  std::vector<Stretch> left;
+};
+
+class Prover {
+ public:
+  Prover(const BodyProbe& probe, double goal_m, const std::vector<Stretch>& left_out)
+      : probe_(probe), goal_m_(goal_m), left_out_(left_out) {}
+
+  Cover run() {
+    for (std::size_t segment = 0; segment < probe_.segments(); ++segment) {
+      std::vector<Span> to_come{{segment, 0.0, 1.0}};
+      while (!to_come.empty()) {
+        const Span span = to_come.back();
+        to_come.pop_back();
+        if (settle(span)) continue;
+        to_come.push_back(span.second_half());
+        to_come.push_back(span.first_half());
+      }
+    }
+    return std::move(cover_);
+  }
+
+ private:
+  Stretch time_of(const Span& span) const {
+    return {probe_.state_at(span.segment, span.from).t_s,
+            probe_.state_at(span.segment, span.to).t_s};
+  }
+
+  bool is_left_out(const Stretch& time) {
+    while (next_ < left_out_.size() && left_out_[next_].to_s < time.from_s) ++next_;
+    for (std::size_t i = next_; i < left_out_.size() && left_out_[i].from_s <= time.from_s; ++i) {
+      if (time.to_s <= left_out_[i].to_s) return true;
+    }
+    return false;
+  }
+
+  bool settle(const Span& span) {
+    const Stretch time = time_of(span);
+    if (is_left_out(time)) return true;
+    const geometry::TrajectoryPoint state = probe_.middle_of(span);
+    const double motion_m = probe_.motion_bound_m(span);
+    if (prove(span, probe_.lower_bound_m(state) - motion_m)) return true;
+    const double within_m = std::min(goal_m_ + 2.0 * motion_m, probe_.horizon_m());
+    const auto nearest = probe_.nearest(state, within_m);
+    if (prove(span, (nearest ? nearest->distance_m : within_m) - motion_m)) return true;
+    if (motion_m > kLeastMotion_m) return false;
+    cover_.left.push_back(time);
+    return true;
+  }
+
+  bool prove(const Span& span, double at_least_m) {
+    if (!(at_least_m > 0.0 && at_least_m >= goal_m_)) return false;
+    cover_.proven.push_back(
+        {span.segment, span.from, span.to, std::min(at_least_m, goal_m_ + kMostOver_m)});
+    return true;
+  }
+
+  const BodyProbe& probe_;
+  double goal_m_;
+  const std::vector<Stretch>& left_out_;  // in order of time
+  std::size_t next_ = 0;
+  Cover cover_;
+};
+
+std::vector<Stretch> in_order(std::vector<Stretch> stretches) {
+  std::sort(stretches.begin(), stretches.end(),
+            [](const Stretch& a, const Stretch& b) { return a.from_s < b.from_s; });
+  return stretches;
+}
+
+std::vector<Stretch> without_proof(const AuditReport& report) {
+  std::vector<Stretch> stretches = report.undecided;
+  for (const Conflict& conflict : report.conflicts) {
+    stretches.push_back({conflict.from_s, conflict.to_s});
+  }
+  return in_order(std::move(stretches));
+}
+
+double least_of(const std::vector<ProvenSpan>& spans) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const ProvenSpan& span : spans) least_m = std::min(least_m, span.at_least_m);
+  return least_m;
+}
+
+void add_to(std::vector<Stretch>& stretches, const std::vector<Stretch>& more) {
+  stretches.insert(stretches.end(), more.begin(), more.end());
+  stretches = in_order(std::move(stretches));
+}
+
+Verdict verdict_of(const AuditCertificate& certificate) {
+  if (!certificate.conflicts.empty()) return Verdict::conflict;
+  if (!certificate.unknown.empty()) return Verdict::unknown;
+  return certificate.undecided.empty() ? Verdict::clear : Verdict::undecided;
+}
+
+}  // namespace
+
+AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
+                         const geometry::Trajectory& drive_in_source,
+                         const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                         const AuditReport& report) {
+  const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
+  const auto cover = [&](ObstacleKind kind, double goal_m, const std::vector<Stretch>& left_out) {
+    const BodyProbe probe(field, drive_in_source, body, {kind});
+    return Prover(probe, goal_m, left_out).run();
+  };
+  AuditCertificate certificate{.vehicle = vehicle,
+                               .band = band,
+                               .clearance_m = options.clearance_m,
+                               .inflate_m = options.inflate_m,
+                               .unknown_policy = options.unknown,
+                               .from_occupied = {},
+                               .from_unknown = {},
+                               .conflicts = report.conflicts,
+                               .unknown = report.unknown,
+                               .undecided = report.undecided};
+  const std::vector<Stretch> left_out = without_proof(report);
+  const double goal_m =
+      std::max(options.clearance_m,
+               std::min(report.proven_clearance_m - options.tolerance_m, kMostCertified_m));
+
+  Cover from_occupied = cover(ObstacleKind::occupied, goal_m, left_out);
+  certificate.from_occupied = std::move(from_occupied.proven);
+  add_to(certificate.undecided, from_occupied.left);
+  double least_m = least_of(certificate.from_occupied);
+  if (options.unknown == UnknownPolicy::occupied) {
+    Cover from_unknown = cover(ObstacleKind::unknown, goal_m, left_out);
+    certificate.from_unknown = std::move(from_unknown.proven);
+    add_to(certificate.undecided, from_unknown.left);
+    least_m = std::min(least_m, least_of(certificate.from_unknown));
+  } else if (options.unknown == UnknownPolicy::report) {
+    Cover from_unknown = cover(ObstacleKind::unknown, options.clearance_m, report.unknown);
+    certificate.from_unknown = std::move(from_unknown.proven);
+    add_to(certificate.unknown, from_unknown.left);
+  }
+  certificate.verdict = verdict_of(certificate);
+  const bool is_whole = certificate.conflicts.empty() && certificate.undecided.empty();
+  certificate.certified_clearance_m = is_whole ? least_m : 0.0;
+  return certificate;
+}
+
+}  // namespace roadbed::planning

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/planning/audit.h"
+
+namespace roadbed::planning {
+
+/// A part of one segment of a drive, from row `segment` to the next, and what holds in all of it.
+struct ProvenSpan {
+  std::size_t segment = 0;
+  double from = 0.0, to = 1.0;  ///< shares of the segment's time
+  double at_least_m = 0.0;      ///< no time of the span is nearer to what the proof is about
+};
+
+/// Everything that another program needs to convince itself of an audit's verdict: at the middle of
+/// a proven span the distance is so large that the body cannot come nearer than `at_least_m` while
+/// it moves through the span. What the spans leave out is in the stretches.
+struct AuditCertificate {
+  geometry::VehicleShape vehicle;  ///< without the margin
+  map::HeightBand band;
+  double clearance_m = 0.0, inflate_m = 0.0;
+  UnknownPolicy unknown_policy = UnknownPolicy::report;
+
+  Verdict verdict = Verdict::undecided;
+  double certified_clearance_m = 0.0;  ///< least of the spans that keep away from obstacles
+
+  std::vector<ProvenSpan> from_occupied;  ///< in order of time; over `clearance_m`, and over 0
+  std::vector<ProvenSpan> from_unknown;   ///< empty where unknown space counts as free
+  std::vector<Conflict> conflicts;
+  std::vector<Stretch> unknown;
+  std::vector<Stretch> undecided;
+};
+
+/// The certificate of an audit's report. Spans reach up to 0.02 m below the least clearance, so
+/// that they are few.
+/// @pre `report` is what `audit` says of the same field, drive, vehicle and options.
+AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
+                         const geometry::Trajectory& drive_in_source,
+                         const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                         const AuditReport& report);
+
+}  // namespace roadbed::planning

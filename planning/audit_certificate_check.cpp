@@ -1,0 +1,228 @@
+#include "roadbed/planning/audit_certificate_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "roadbed/planning/brute_force_obstacles.h"
+
+namespace roadbed::planning {
+namespace {
+
+constexpr double kSlack_m = 1e-6;
+constexpr double kSameTime_s = 1e-9;
+constexpr std::size_t kMostFaults = 10;
+
+struct DriveRow {
+  double t_s, x_m, y_m, heading_rad;
+};
+
+class Check {
+ public:
+  Check(const AuditCertificate& certificate, const std::vector<map::OccupancyCell>& cells,
+        double resolution_m, const geometry::Trajectory& drive)
+      : certificate_(certificate) {
+    for (const auto& point : drive.points()) {
+      rows_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
+    }
+    if (rows_.size() == 1) rows_.push_back(rows_.front());
+    const BodyOutline body(certificate.vehicle, certificate.inflate_m);
+    reach_m_ = body.reach_m();
+    obstacles_.emplace(cells, resolution_m, certificate.band, body);
+  }
+
+  std::vector<std::string> run() {
+    check_verdict();
+    std::vector<Stretch> unproven = certificate_.undecided;
+    for (const Conflict& conflict : certificate_.conflicts) {
+      check_conflict(conflict);
+      unproven.push_back({conflict.from_s, conflict.to_s});
+    }
+    check_cover("from_occupied", certificate_.from_occupied, unproven);
+    check_distances("from_occupied", certificate_.from_occupied, false);
+    if (certificate_.unknown_policy != UnknownPolicy::free) {
+      const bool is_obstacle = certificate_.unknown_policy == UnknownPolicy::occupied;
+      check_cover("from_unknown", certificate_.from_unknown,
+                  is_obstacle ? unproven : certificate_.unknown);
+      mark_columns();
+      check_distances("from_unknown", certificate_.from_unknown, true);
+    }
+    check_certified();
+    return std::move(faults_);
+  }
+
+ private:
+  void fault(std::string text) {
+    if (faults_.size() < kMostFaults) faults_.push_back(std::move(text));
+  }
+
+  DriveRow at(std::size_t segment, double share) const {
+    const DriveRow &a = rows_[segment], &b = rows_[segment + 1];
+    const auto mix = [share](double from, double to) { return from + share * (to - from); };
+    return {mix(a.t_s, b.t_s), mix(a.x_m, b.x_m), mix(a.y_m, b.y_m),
+            mix(a.heading_rad, b.heading_rad)};
+  }
+
+  // No point of the body moves further from where it is at the span's middle.
+  double motion_m(const ProvenSpan& span) const {
+    const DriveRow &a = rows_[span.segment], &b = rows_[span.segment + 1];
+    const double whole_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) +
+                           reach_m_ * std::abs(b.heading_rad - a.heading_rad);
+    return 0.5 * (span.to - span.from) * whole_m;
+  }
+
+  void check_verdict() {
+    Verdict verdict = Verdict::clear;
+    if (!certificate_.undecided.empty()) verdict = Verdict::undecided;
+    if (!certificate_.unknown.empty()) verdict = Verdict::unknown;
+    if (!certificate_.conflicts.empty()) verdict = Verdict::conflict;
+    if (verdict != certificate_.verdict) {
+      fault(fmt::format("the verdict is \"{}\", its stretches say \"{}\"",
+                        name(certificate_.verdict), name(verdict)));
+    }
+  }
+
+  // A conflict is one if the body is too near at the state given; where that lies is the drive's.
+  void check_conflict(const Conflict& conflict) {
+    const double t_s = conflict.at.t_s;
+    const auto what = fmt::format("conflict at {:.3f} s", t_s);
+    if (!(conflict.from_s <= t_s && t_s <= conflict.to_s && rows_.front().t_s <= t_s &&
+          t_s <= rows_.back().t_s)) {
+      return fault(what + ": lies outside its own time or the drive's");
+    }
+    const auto after = std::upper_bound(rows_.begin() + 1, rows_.end() - 1, t_s,
+                                        [](double t, const DriveRow& row) { return t < row.t_s; });
+    const auto segment = static_cast<std::size_t>(after - rows_.begin()) - 1;
+    const double whole_s = rows_[segment + 1].t_s - rows_[segment].t_s;
+    const DriveRow row = at(segment, whole_s > 0.0 ? (t_s - rows_[segment].t_s) / whole_s : 0.0);
+    const double limit_m = std::max(certificate_.clearance_m, conflict.least_clearance_m) + 1.0;
+    double distance_m = obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
+    bool is_witness = obstacles_->is_occupied(conflict.witness);
+    if (certificate_.unknown_policy == UnknownPolicy::occupied) {
+      obstacles_->mark(row.x_m, row.y_m, limit_m);
+      obstacles_->measure();
+      distance_m =
+          std::min(distance_m, obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m));
+      is_witness = is_witness || obstacles_->is_unknown(conflict.witness);
+    }
+    const double witness_m =
+        obstacles_->to_box_m(row.x_m, row.y_m, row.heading_rad, conflict.witness);
+    if (!is_witness || std::abs(witness_m - distance_m) > kSlack_m) {
+      fault(what + ": the witness is not the nearest obstacle");
+    }
+    if (std::abs(distance_m - conflict.least_clearance_m) > kSlack_m) {
+      fault(what + fmt::format(": the clearance is {:.6f} m, not {:.6f} m", distance_m,
+                               conflict.least_clearance_m));
+    }
+    if (distance_m > 0.0 && distance_m >= certificate_.clearance_m + kSlack_m) {
+      fault(what + fmt::format(": {:.6f} m is enough", distance_m));
+    }
+  }
+
+  void check_cover(std::string_view list, const std::vector<ProvenSpan>& spans,
+                   const std::vector<Stretch>& unproven) {
+    std::size_t segment = 0;
+    double share = 0.0;
+    const auto check_gap = [&](std::size_t to_segment, double to_share) {
+      const double from_s = at(segment, share).t_s, to_s = at(to_segment, to_share).t_s;
+      if (!is_within(from_s, to_s, unproven)) {
+        fault(fmt::format("{}: nothing is said of {:.6f} s to {:.6f} s", list, from_s, to_s));
+      }
+    };
+    for (const ProvenSpan& span : spans) {
+      if (span.segment + 1 >= rows_.size() || span.segment < segment ||
+          (span.segment == segment && span.from < share)) {
+        return fault(fmt::format("{}: the spans are out of order, or outside the drive", list));
+      }
+      if (span.segment != segment || span.from != share) check_gap(span.segment, span.from);
+      segment = span.segment;
+      share = span.to;
+      if (share == 1.0 && segment + 2 < rows_.size()) ++segment, share = 0.0;
+    }
+    const bool is_whole = segment + 2 == rows_.size() && share == 1.0;
+    if (!is_whole) check_gap(rows_.size() - 2, 1.0);
+  }
+
+  // Whether stretches cover the time without a hole; their order is free.
+  static bool is_within(double from_s, double to_s, const std::vector<Stretch>& stretches) {
+    double reached_s = from_s;
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (const Stretch& stretch : stretches) {
+        if (stretch.from_s > reached_s + kSameTime_s) continue;
+        if (stretch.to_s >= to_s - kSameTime_s) return true;
+        if (stretch.to_s <= reached_s) continue;
+        reached_s = stretch.to_s;
+        grows = true;
+      }
+    }
+    return false;
+  }
+
+  void mark_columns() {
+    for (const ProvenSpan& span : certificate_.from_unknown) {
+      if (span.segment + 1 >= rows_.size()) continue;
+      const DriveRow row = at(span.segment, 0.5 * (span.from + span.to));
+      obstacles_->mark(row.x_m, row.y_m, span.at_least_m + motion_m(span) + kSlack_m);
+    }
+    obstacles_->measure();
+  }
+
+  void check_distances(std::string_view list, const std::vector<ProvenSpan>& spans,
+                       bool is_unknown) {
+    for (const ProvenSpan& span : spans) {
+      if (span.segment + 1 >= rows_.size()) continue;
+      const DriveRow row = at(span.segment, 0.5 * (span.from + span.to));
+      const double needed_m = span.at_least_m + motion_m(span);
+      const double limit_m = needed_m + kSlack_m;
+      const double distance_m =
+          is_unknown ? obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m)
+                     : obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
+      const bool is_promised = span.at_least_m > 0.0 && span.at_least_m >= certificate_.clearance_m;
+      if (is_promised && distance_m >= needed_m - kSlack_m) continue;
+      fault(
+          fmt::format("{}: at {:.6f} s the distance is {:.6f} m, and the body may move {:.6f} m: "
+                      "that is no {:.6f} m",
+                      list, row.t_s, distance_m, motion_m(span), span.at_least_m));
+    }
+  }
+
+  void check_certified() {
+    if (!certificate_.conflicts.empty() || !certificate_.undecided.empty()) return;
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const ProvenSpan& span : certificate_.from_occupied) {
+      least_m = std::min(least_m, span.at_least_m);
+    }
+    if (certificate_.unknown_policy == UnknownPolicy::occupied) {
+      for (const ProvenSpan& span : certificate_.from_unknown) {
+        least_m = std::min(least_m, span.at_least_m);
+      }
+    }
+    if (certificate_.certified_clearance_m <= least_m) return;
+    fault(fmt::format("the spans certify {:.6f} m, not {:.6f} m", least_m,
+                      certificate_.certified_clearance_m));
+  }
+
+  const AuditCertificate& certificate_;
+  std::vector<DriveRow> rows_;
+  double reach_m_ = 0.0;
+  std::optional<BruteForceObstacles> obstacles_;
+  std::vector<std::string> faults_;
+};
+
+}  // namespace
+
+std::vector<std::string> check_certificate(const AuditCertificate& certificate,
+                                           const std::vector<map::OccupancyCell>& cells,
+                                           double resolution_m,
+                                           const geometry::Trajectory& drive_in_source) {
+  return Check(certificate, cells, resolution_m, drive_in_source).run();
+}
+
+}  // namespace roadbed::planning

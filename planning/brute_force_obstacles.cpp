@@ -1,0 +1,221 @@
+#include "roadbed/planning/brute_force_obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace roadbed::planning {
+namespace {
+
+using Corners = BodyOutline::Corners;
+
+constexpr double kTouch_m = 1e-6;  // heights that overlap by less only touch
+constexpr std::int64_t kTileSide = 64;
+constexpr double kMostColumns = 1e9;
+constexpr auto kTooMuch = "the drive's surroundings have too many columns to be checked";
+constexpr std::size_t kMostTiles = 50'000;  // 800 MB of columns
+
+double point_to_edge_m(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                       const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double share = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - share * along).norm();
+}
+
+// Whether an edge of `a` has all of `b` strictly on its outer side; both are counter-clockwise.
+bool parts(const Corners& a, const Corners& b) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d along = a[(i + 1) % 4] - a[i];
+    const auto is_outside = [&](const Eigen::Vector2d& p) {
+      return along.x() * (p.y() - a[i].y()) - along.y() * (p.x() - a[i].x()) < 0.0;
+    };
+    if (std::all_of(b.begin(), b.end(), is_outside)) return true;
+  }
+  return false;
+}
+
+double distance_m(const Corners& a, const Corners& b) {
+  if (!parts(a, b) && !parts(b, a)) return 0.0;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      least_m = std::min({least_m, point_to_edge_m(a[i], b[k], b[(k + 1) % 4]),
+                          point_to_edge_m(b[i], a[k], a[(k + 1) % 4])});
+    }
+  }
+  return least_m;
+}
+
+Corners square(double x_m, double y_m, double half_m) {
+  return {{{x_m - half_m, y_m - half_m},
+           {x_m + half_m, y_m - half_m},
+           {x_m + half_m, y_m + half_m},
+           {x_m - half_m, y_m + half_m}}};
+}
+
+double overlap_m(const map::OccupancyCell& cell, const map::HeightBand& band) {
+  const double z_m = cell.centre_in_source.z(), half_m = 0.5 * cell.size_m;
+  return std::min(z_m + half_m, band.to_m) - std::max(z_m - half_m, band.from_m);
+}
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
+std::int64_t tile_key(std::int64_t tile_x, std::int64_t tile_y) {
+  return tile_x * (std::int64_t{1} << 32) + tile_y;
+}
+
+std::size_t place_in_tile(std::int64_t x, std::int64_t y) {
+  return static_cast<std::size_t>((y - floor_div(y, kTileSide) * kTileSide) * kTileSide +
+                                  (x - floor_div(x, kTileSide) * kTileSide));
+}
+
+}  // namespace
+
+BodyOutline::BodyOutline(const geometry::VehicleShape& vehicle, double margin_m)
+    : rear_m_(-vehicle.rear_overhang_m - margin_m),
+      front_m_(vehicle.length_m - vehicle.rear_overhang_m + margin_m),
+      side_m_(0.5 * vehicle.width_m + margin_m) {}
+
+Corners BodyOutline::at(double x_m, double y_m, double heading_rad) const {
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  const auto corner = [&](double forward_m, double left_m) {
+    return Eigen::Vector2d(x_m + c * forward_m - s * left_m, y_m + s * forward_m + c * left_m);
+  };
+  return {corner(rear_m_, -side_m_), corner(front_m_, -side_m_), corner(front_m_, side_m_),
+          corner(rear_m_, side_m_)};
+}
+
+double BodyOutline::reach_m() const {
+  return std::hypot(std::max(std::abs(rear_m_), std::abs(front_m_)), side_m_);
+}
+
+BruteForceObstacles::BruteForceObstacles(const std::vector<map::OccupancyCell>& cells,
+                                         double resolution_m, const map::HeightBand& band,
+                                         const BodyOutline& body)
+    : cells_(cells), resolution_m_(resolution_m), band_(band), body_(body) {
+  if (!cells.empty()) {
+    corner_ = cells.front().centre_in_source.head<2>().array() - 0.5 * cells.front().size_m;
+  }
+  for (const map::OccupancyCell& cell : cells) {
+    if (cell.state != map::CellState::occupied || overlap_m(cell, band) <= kTouch_m) continue;
+    x_m_.push_back(cell.centre_in_source.x());
+    y_m_.push_back(cell.centre_in_source.y());
+    half_m_.push_back(0.5 * cell.size_m);
+  }
+}
+
+double BruteForceObstacles::occupied_m(double x_m, double y_m, double heading_rad,
+                                       double limit_m) const {
+  const Corners corners = body_.at(x_m, y_m, heading_rad);
+  double least_m = limit_m;
+  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+    const double near_m = least_m + body_.reach_m() + std::sqrt(2.0) * half_m_[i];
+    const double dx_m = x_m_[i] - x_m, dy_m = y_m_[i] - y_m;
+    if (dx_m * dx_m + dy_m * dy_m > near_m * near_m) continue;
+    least_m = std::min(least_m, distance_m(corners, square(x_m_[i], y_m_[i], half_m_[i])));
+  }
+  return least_m;
+}
+
+double BruteForceObstacles::to_box_m(double x_m, double y_m, double heading_rad,
+                                     const map::Box2& box) const {
+  const Eigen::Vector2d &a = box.min_in_source, &b = box.max_in_source;
+  return distance_m(body_.at(x_m, y_m, heading_rad), {{a, {b.x(), a.y()}, b, {a.x(), b.y()}}});
+}
+
+bool BruteForceObstacles::is_occupied(const map::Box2& box) const {
+  const Eigen::Vector2d middle = 0.5 * (box.min_in_source + box.max_in_source);
+  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+    const double away_m = std::max(std::abs(x_m_[i] - middle.x()), std::abs(y_m_[i] - middle.y()));
+    if (away_m < half_m_[i]) return true;
+  }
+  return false;
+}
+
+bool BruteForceObstacles::is_unknown(const map::Box2& box) const {
+  const Eigen::Vector2d middle = 0.5 * (box.min_in_source + box.max_in_source);
+  const Window at = window(middle.x(), middle.y(), -body_.reach_m() - resolution_m_);
+  return is_unknown_column(at.from_x, at.from_y);
+}
+
+BruteForceObstacles::Window BruteForceObstacles::window(double x_m, double y_m,
+                                                        double limit_m) const {
+  const double around_m = limit_m + body_.reach_m() + resolution_m_;
+  const auto column = [this](double at_m, double corner_m) {
+    return static_cast<Column>(std::floor((at_m - corner_m) / resolution_m_));
+  };
+  return {column(x_m - around_m, corner_.x()), column(y_m - around_m, corner_.y()),
+          column(x_m + around_m, corner_.x()) + 1, column(y_m + around_m, corner_.y()) + 1};
+}
+
+void BruteForceObstacles::mark(double x_m, double y_m, double limit_m) {
+  const Window marked = window(x_m, y_m, limit_m);
+  marked_columns_ += static_cast<double>(marked.to_x - marked.from_x) *
+                     static_cast<double>(marked.to_y - marked.from_y);
+  if (marked_columns_ > kMostColumns) throw std::length_error(kTooMuch);
+  for (Column y = floor_div(marked.from_y, kTileSide); y * kTileSide < marked.to_y; ++y) {
+    for (Column x = floor_div(marked.from_x, kTileSide); x * kTileSide < marked.to_x; ++x) {
+      auto& tile = measured_m_[tile_key(x, y)];
+      if (tile.empty()) tile.resize(kTileSide * kTileSide);
+      if (measured_m_.size() > kMostTiles) {
+        throw std::length_error(kTooMuch);
+      }
+    }
+  }
+}
+
+void BruteForceObstacles::measure() {
+  for (auto& [key, tile] : measured_m_) std::fill(tile.begin(), tile.end(), 0.0f);
+  for (const map::OccupancyCell& cell : cells_) {
+    if (cell.state != map::CellState::unknown && overlap_m(cell, band_) > kTouch_m) measure(cell);
+  }
+}
+
+// A measured hit makes its column known.
+void BruteForceObstacles::measure(const map::OccupancyCell& cell) {
+  const bool is_hit = cell.state == map::CellState::occupied;
+  const auto height_m =
+      static_cast<float>(is_hit ? band_.to_m - band_.from_m : overlap_m(cell, band_));
+  const Eigen::Array2d least = cell.centre_in_source.head<2>().array() - 0.5 * cell.size_m;
+  const Eigen::Array2d from = (least - corner_.array()) / resolution_m_;
+  const auto from_x = static_cast<Column>(std::llround(from.x()));
+  const auto from_y = static_cast<Column>(std::llround(from.y()));
+  const auto side = static_cast<Column>(std::llround(cell.size_m / resolution_m_));
+  for (Column y = from_y; y < from_y + side; ++y) {
+    for (Column x = from_x; x < from_x + side; ++x) {
+      const auto tile =
+          measured_m_.find(tile_key(floor_div(x, kTileSide), floor_div(y, kTileSide)));
+      if (tile != measured_m_.end()) tile->second[place_in_tile(x, y)] += height_m;
+    }
+  }
+}
+
+bool BruteForceObstacles::is_unknown_column(Column x, Column y) const {
+  const auto tile = measured_m_.find(tile_key(floor_div(x, kTileSide), floor_div(y, kTileSide)));
+  if (tile == measured_m_.end()) return true;
+  constexpr float rounding_m = 1e-4f;  // of some dozens of heights added up
+  const auto whole_m = static_cast<float>(band_.to_m - band_.from_m);
+  return tile->second[place_in_tile(x, y)] < whole_m - rounding_m;
+}
+
+double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad,
+                                      double limit_m) const {
+  const Corners corners = body_.at(x_m, y_m, heading_rad);
+  const Window around = window(x_m, y_m, limit_m);
+  const double half_m = 0.5 * resolution_m_;
+  double least_m = limit_m;
+  for (Column y = around.from_y; y < around.to_y; ++y) {
+    for (Column x = around.from_x; x < around.to_x; ++x) {
+      if (!is_unknown_column(x, y)) continue;
+      const double cx_m = corner_.x() + (static_cast<double>(x) + 0.5) * resolution_m_;
+      const double cy_m = corner_.y() + (static_cast<double>(y) + 0.5) * resolution_m_;
+      least_m = std::min(least_m, distance_m(corners, square(cx_m, cy_m, half_m)));
+    }
+  }
+  return least_m;
+}
+
+}  // namespace roadbed::planning

@@ -1,0 +1,26 @@
+// certificate.json in, certificate or InputError out; what can be read is checked against a small
+// occupancy, and must end in a list of faults.
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/tools/support/certificate_json.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace roadbed;
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  const geometry::Trajectory drive({{.t_s = 0}, {.t_s = 1, .x_m = 8}, {.t_s = 2, .x_m = 9}});
+  const std::vector<map::OccupancyCell> cells{{{5, 3, 1}, 0.4, map::CellState::occupied},
+                                              {{5, 0, 1}, 1.6, map::CellState::free}};
+  try {
+    const auto file = tools::parse_certificate_json(bytes, "fuzz.json");
+    planning::check_certificate(file.certificate, cells, 0.4, drive);
+  } catch (const map::InputError&) {
+  } catch (const std::length_error&) {
+  }
+  return 0;
+}

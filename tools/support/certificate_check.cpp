@@ -1,0 +1,83 @@
+#include "roadbed/tools/support/certificate_check.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/trajectory_csv.h"
+
+namespace roadbed::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file that is not the one of the certificate proves nothing of it.
+void compare(const CertifiedFile& claimed, const fs::path& file, std::vector<std::string>& faults) {
+  const CertifiedFile found = certified_file(file);
+  if (found.xxhash == claimed.xxhash) return;
+  faults.push_back(fmt::format("{} has the hash {}, the certificate is about one with {}",
+                               file.string(), found.xxhash, claimed.xxhash));
+}
+
+std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
+                                   const fs::path& trajectory_file, const fs::path& name) {
+  std::vector<std::string> faults;
+  compare(file.occupancy, occupancy_file, faults);
+  compare(file.trajectory, trajectory_file, faults);
+  if (!faults.empty()) return faults;
+  const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
+  const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_file);
+  try {
+    return planning::check_certificate(file.certificate, occupancy.cells(),
+                                       occupancy.resolution_m(), drive);
+  } catch (const std::length_error& too_long) {
+    throw map::InputError({.file = name.string(),
+                           .place = {},
+                           .element = {},
+                           .found = too_long.what(),
+                           .needed = {},
+                           .remedy = "audit the drive in parts"});
+  }
+}
+
+void print(std::ostream& out, const CertificateFile& file, const std::vector<std::string>& faults) {
+  const planning::AuditCertificate& audit = file.certificate;
+  out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
+  out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(audit.verdict), file.program);
+  out << fmt::format("{:<17}{} from occupied space, {} from unknown space\n", "proven spans",
+                     audit.from_occupied.size(), audit.from_unknown.size());
+  if (audit.conflicts.empty() && audit.undecided.empty()) {
+    out << fmt::format("{:<17}{:.3f} m\n", "certified", audit.certified_clearance_m);
+  }
+  for (const std::string& fault : faults) out << fmt::format("{:<17}{}\n", "fault", fault);
+}
+
+}  // namespace
+
+bool check_certificate_file(const fs::path& certificate, const fs::path& occupancy,
+                            const fs::path& trajectory, bool json, std::ostream& out) {
+  const CertificateFile file = read_certificate_json(certificate);
+  const std::vector<std::string> faults =
+      faults_of(file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy,
+                trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, certificate);
+  if (json) {
+    out << nlohmann::ordered_json{{"holds", faults.empty()},
+                                  {"verdict", name(file.certificate.verdict)},
+                                  {"certified_clearance_m", file.certificate.certified_clearance_m},
+                                  {"faults", faults}}
+               .dump(2)
+        << '\n';
+  } else {
+    print(out, file, faults);
+  }
+  return faults.empty();
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "roadbed/planning/audit_certificate.h"
+
+namespace roadbed::tools {
+
+/// A file that a certificate speaks of. The hash finds mix-ups and changes, not forgeries.
+struct CertifiedFile {
+  std::string name;    ///< as it was given on the command line
+  std::string xxhash;  ///< XXH3 (64 bits) of its bytes, hexadecimal
+};
+
+CertifiedFile certified_file(const std::filesystem::path& file);
+
+/// A certificate with its inputs, as it stands in a file.
+struct CertificateFile {
+  std::string program;  ///< name and version of what wrote it
+  CertifiedFile occupancy, trajectory;
+  planning::AuditCertificate certificate;
+};
+
+/// The JSON of a certificate; reading it gives the same numbers, bit for bit. A span is written as
+/// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`.
+std::string write_certificate_json(const CertificateFile& file);
+
+/// @throws InputError naming the place of what is wrong.
+CertificateFile read_certificate_json(const std::filesystem::path& file);
+
+/// The same from bytes; `name` stands for the file in messages.
+CertificateFile parse_certificate_json(std::string_view bytes, const std::string& name);
+
+}  // namespace roadbed::tools
