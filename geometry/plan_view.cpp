@@ -178,6 +178,22 @@ double arc_length_m(const ParamPoly3Curve& curve) {
   return length_m;
 }
 
+PlanPoint plan_point(const PlanPiece& piece, double s_m) {
+  PlanPoint point = std::visit(
+      [&](const auto& curve) { return evaluate(curve, s_m - piece.s_m, piece.length_m); },
+      piece.curve);
+  point.pose = piece.start * point.pose;
+  return point;
+}
+
+PlanBounds plan_bounds(const PlanPiece& piece, double from_s_m, double to_s_m) {
+  return std::visit(
+      [&](const auto& curve) {
+        return bounds_of(curve, from_s_m - piece.s_m, to_s_m - piece.s_m, piece.length_m);
+      },
+      piece.curve);
+}
+
 PlanView::PlanView(std::vector<PlanPiece> pieces) : pieces_(std::move(pieces)) {
   if (pieces_.empty()) throw std::invalid_argument("PlanView: needs at least 1 piece, got 0");
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -201,21 +217,11 @@ const PlanPiece& PlanView::piece_at(double s_m) const {
 }
 
 PlanPoint PlanView::at(double s_m, double piece_s_m) const {
-  const PlanPiece& piece = piece_at(piece_s_m);
-  PlanPoint point = std::visit(
-      [&](const auto& curve) { return evaluate(curve, s_m - piece.s_m, piece.length_m); },
-      piece.curve);
-  point.pose = piece.start * point.pose;
-  return point;
+  return plan_point(piece_at(piece_s_m), s_m);
 }
 
 PlanBounds PlanView::bounds(double from_s_m, double to_s_m) const {
-  const PlanPiece& piece = piece_at(0.5 * (from_s_m + to_s_m));
-  return std::visit(
-      [&](const auto& curve) {
-        return bounds_of(curve, from_s_m - piece.s_m, to_s_m - piece.s_m, piece.length_m);
-      },
-      piece.curve);
+  return plan_bounds(piece_at(0.5 * (from_s_m + to_s_m)), from_s_m, to_s_m);
 }
 
 }  // namespace roadbed::geometry

@@ -66,6 +66,12 @@ struct PlanBounds {
   std::optional<Range> curvature;
 };
 
+/// One piece at a station of the road.
+PlanPoint plan_point(const PlanPiece& piece, double s_m);
+
+/// Bounds over a stretch of one piece, between stations of the road.
+PlanBounds plan_bounds(const PlanPiece& piece, double from_s_m, double to_s_m);
+
 /// A road's reference line in plan view: pieces one after another.
 class PlanView {
  public:
@@ -86,8 +92,10 @@ class PlanView {
   /// Bounds over a stretch that lies inside one piece (the one of its middle).
   PlanBounds bounds(double from_s_m, double to_s_m) const;
 
- private:
+  /// The piece that holds at a station. O(log N).
   const PlanPiece& piece_at(double s_m) const;
+
+ private:
   std::vector<PlanPiece> pieces_;
 };
 

@@ -11,17 +11,17 @@ namespace {
 
 constexpr std::size_t kPointsPerCell = 16;  // of ring and centreline together: 8, 8, 8
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Box kNothing{kInfinity, kInfinity, -kInfinity, -kInfinity};
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr Box kNothing{kNowhere, kNowhere, -kNowhere, -kNowhere};
 
 float below(double value) {
   const auto rounded = static_cast<float>(value);
-  return rounded > value ? std::nextafter(rounded, -kInfinity) : rounded;
+  return rounded > value ? std::nextafter(rounded, -kNowhere) : rounded;
 }
 
 float above(double value) {
   const auto rounded = static_cast<float>(value);
-  return rounded < value ? std::nextafter(rounded, kInfinity) : rounded;
+  return rounded < value ? std::nextafter(rounded, kNowhere) : rounded;
 }
 
 // Box around points [first, last].

@@ -38,6 +38,9 @@ std::optional<RoadMapParts> read_lanelet2(const std::string& bytes, const std::s
 RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions& options) {
   if (is_compiled_map(bytes)) return read_compiled_map(std::move(bytes), name);
   if (geojson::is_geojson(bytes)) return RoadMap(geojson::read(bytes, name));
+  if (!looks_like_xml(bytes) && is_other_encoding(bytes)) {  // UTF-16
+    if (std::string converted = to_utf8(bytes); !converted.empty()) bytes = std::move(converted);
+  }
   if (!looks_like_xml(bytes)) {
     throw InputError(
         {.file = name,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 namespace roadbed::map::lane_index {
@@ -77,12 +79,16 @@ class FloatPoint {
     return squared(box.low_x, box.low_y, box.high_x, box.high_y);
   }
 
-  std::array<float, Node::kWidth> squared_to(const Node& node) const {
-    std::array<float, Node::kWidth> made;
-    for (std::size_t i = 0; i < Node::kWidth; ++i) {
-      made[i] = squared(node.low_x[i], node.low_y[i], node.high_x[i], node.high_y[i]);
-    }
-    return made;
+  /// Of all boxes of a node at once.
+  using Squares = Eigen::Array<float, Node::kWidth, 1>;
+  Squares squared_to(const Node& node) const {
+    const auto beyond = [](const auto& lows, const auto& highs, float low, float high) {
+      const Eigen::Map<const Squares> box_low(std::data(lows)), box_high(std::data(highs));
+      return Squares((box_low - high).max(low - box_high).max(0.0F));
+    };
+    const Squares x = beyond(node.low_x, node.high_x, low_x_, high_x_);
+    const Squares y = beyond(node.low_y, node.high_y, low_y_, high_y_);
+    return x * x + y * y;
   }
 
  private:
@@ -144,6 +150,13 @@ class Search {
     return data_.nodes[levels_[visit.level - 1] + visit.at];
   }
 
+  // A bit for each box of a node that is not farther than the bound.
+  unsigned near_boxes(const FloatPoint::Squares& squared) const {
+    unsigned near = 0;
+    for (int i = 0; i < squared.size(); ++i) near |= (squared[i] <= bound_ ? 1U : 0U) << i;
+    return near;
+  }
+
   // Finds out which lanes the point is inside of; keeps what is only near for visit_beside().
   void visit_around() {
     if (data_.cells.size() == 0) return;
@@ -159,10 +172,11 @@ class Search {
         toggle_inside(cell);
         continue;
       }
-      const auto squared = box_.squared_to(node_at(next));
-      for (std::size_t i = 0; i < Node::kWidth; ++i) {
-        if (!(squared[i] <= bound_)) continue;
-        const Visit child{squared[i], next.level - 1, next.at * Node::kWidth + i};
+      const FloatPoint::Squares squared = box_.squared_to(node_at(next));
+      for (unsigned near = near_boxes(squared); near != 0; near &= near - 1) {
+        const int i = std::countr_zero(near);
+        const Visit child{squared[i], next.level - 1,
+                          next.at * Node::kWidth + static_cast<unsigned>(i)};
         if (squared[i] <= 0.0F) {
           stack[size++] = child;
         } else {
@@ -203,11 +217,12 @@ class Search {
 
   std::size_t push_children(const Visit& parent, std::array<Visit, kDeepest>& stack,
                             std::size_t size) const {
-    const auto squared = box_.squared_to(node_at(parent));
+    const FloatPoint::Squares squared = box_.squared_to(node_at(parent));
     const std::size_t first = size;
-    for (std::size_t i = 0; i < Node::kWidth; ++i) {
-      if (!(squared[i] <= bound_)) continue;
-      const Visit child{squared[i], parent.level - 1, parent.at * Node::kWidth + i};
+    for (unsigned near = near_boxes(squared); near != 0; near &= near - 1) {
+      const int i = std::countr_zero(near);
+      const Visit child{squared[i], parent.level - 1,
+                        parent.at * Node::kWidth + static_cast<unsigned>(i)};
       std::size_t place = size++;  // farthest first: the stack gives back the nearest
       for (; place > first && stack[place - 1].squared_m2 < child.squared_m2; --place) {
         stack[place] = stack[place - 1];

@@ -23,13 +23,18 @@ SectionSide section_side(const RoadRecord& road, std::size_t section, int sign);
 /// Index of the next section that says something of that side, or the number of sections.
 std::size_t next_section(const RoadRecord& road, std::size_t section, int sign);
 
-/// All borders of a side at one station: border 0 is the lane offset, border i the outer one of
-/// lane i. Of a lane with <height> records its own borders stand higher than the road's.
-struct CrossSection {
-  double s_m = 0.0;
-  std::vector<Eigen::Vector2d> border_in_map;
+/// A border along a side: its points, and their heights.
+struct BorderLine {
+  std::vector<Eigen::Vector2d> points;
   std::vector<double> z_m;
-  std::vector<LaneHeight> raised;  ///< one per lane, or empty where no lane is raised
+};
+
+/// All borders of a side, at the same stations: border 0 is the lane offset, border i the outer one
+/// of lane i. Of a lane with <height> records its own borders stand higher than the road's.
+struct SideLines {
+  std::vector<double> s_m;
+  std::vector<BorderLine> borders;
+  std::vector<std::vector<LaneHeight>> raised;  ///< by station and lane, or empty: none is
 };
 
 /// Borders along a whole side, at stations dense enough that a straight line between neighbouring
@@ -42,8 +47,8 @@ struct CrossSection {
 /// level="true" goes on flat from its inner border.
 /// @param road_index  of the road, for faults.
 /// @throws RoadFault if a border goes where no road can be, or the budget is spent.
-std::vector<CrossSection> sample_side(const RoadRecord& road, std::size_t road_index,
-                                      const geometry::PlanView& plan_view, const SectionSide& side,
-                                      double max_error_m, PointBudget& budget);
+SideLines sample_side(const RoadRecord& road, std::size_t road_index,
+                      const geometry::PlanView& plan_view, const SectionSide& side,
+                      double max_error_m, PointBudget& budget);
 
 }  // namespace roadbed::map::open_drive

@@ -14,30 +14,12 @@
 namespace roadbed::map::open_drive {
 namespace {
 
-// What a cross-section says of one of its borders.
-struct BorderLine {
-  std::vector<Eigen::Vector2d> points;
-  std::vector<double> z_m;
-};
-
-BorderLine border_line(const std::vector<CrossSection>& rows, std::size_t border) {
-  BorderLine line;
-  line.points.reserve(rows.size());
-  line.z_m.reserve(rows.size());
-  for (const CrossSection& row : rows) {
-    line.points.push_back(row.border_in_map[border]);
-    line.z_m.push_back(row.z_m[border]);
-  }
-  return line;
-}
-
 // A lane's own borders where <height> records raise it above the road.
-void raise(BorderLine& inner, BorderLine& outer, const std::vector<CrossSection>& rows,
-           std::size_t lane) {
-  if (rows.front().raised.empty()) return;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    inner.z_m[i] += rows[i].raised[lane].inner_m;
-    outer.z_m[i] += rows[i].raised[lane].outer_m;
+void raise(BorderLine& inner, BorderLine& outer, const SideLines& lines, std::size_t lane) {
+  for (std::size_t i = 0; i < lines.raised.size(); ++i) {
+    if (lines.raised[i].empty()) continue;
+    inner.z_m[i] += lines.raised[i][lane].inner_m;
+    outer.z_m[i] += lines.raised[i][lane].outer_m;
   }
 }
 
@@ -79,13 +61,13 @@ class LaneBuilder {
     for (const int sign : {1, -1}) {
       const RoadRecord& road = document_.roads[road_index];
       const SectionSide side = section_side(road, section_index, sign);
-      const auto rows = sample_side(road, road_index, plan_view, side, max_error_m_, budget_);
-      keep_stations(rows);
+      const SideLines lines = sample_side(road, road_index, plan_view, side, max_error_m_, budget_);
+      if (lines.s_m.size() >= 2) built_.side_stations_m.push_back(lines.s_m);
       for (std::size_t i = 0; i < side.lanes.size(); ++i) {
-        if (rows.size() < 2) {
+        if (lines.s_m.size() < 2) {
           remark_empty(road, *side.lanes[i]);
         } else {
-          add_lane(road_index, section_index, side, rows, i);
+          add_lane(road_index, section_index, side, lines, i);
         }
       }
     }
@@ -94,13 +76,6 @@ class LaneBuilder {
   BuiltLanes take() { return std::move(built_); }
 
  private:
-  void keep_stations(const std::vector<CrossSection>& rows) {
-    if (rows.size() < 2) return;
-    std::vector<double>& stations_m = built_.side_stations_m.emplace_back();
-    stations_m.reserve(rows.size());
-    for (const CrossSection& row : rows) stations_m.push_back(row.s_m);
-  }
-
   void remark_empty(const RoadRecord& road, const LaneRecord& lane) {
     remarks_.push_back({"import.empty-section", true,
                         fmt::format("road {}, lane {}", road.id, lane.id), lane.line,
@@ -108,7 +83,7 @@ class LaneBuilder {
   }
 
   void add_lane(std::size_t road_index, std::size_t section_index, const SectionSide& side,
-                const std::vector<CrossSection>& rows, std::size_t index) {
+                const SideLines& lines, std::size_t index) {
     const RoadRecord& road = document_.roads[road_index];
     const LaneRecord& record = *side.lanes[index];
     const bool forward = drives_forward(road, record);
@@ -127,7 +102,7 @@ class LaneBuilder {
     lane.participants = participants_along(record);
     lane.attributes = record.attributes;
     if (!record.accesses.empty()) lane.attributes.emplace_back("access", access_in_words(record));
-    set_lines(side, rows, index, forward, lane);
+    set_lines(side, lines, index, forward, lane);
     built_.ids[{road_index, section_index, record.id}] = lane.id;
     built_.forward.push_back(forward);
     built_.side_of_lane.push_back(static_cast<std::uint32_t>(built_.side_stations_m.size() - 1));
@@ -135,10 +110,10 @@ class LaneBuilder {
     set_rules(road, document_.roads[road_index].sections[section_index], side, index);
   }
 
-  static void set_lines(const SectionSide& side, const std::vector<CrossSection>& rows,
-                        std::size_t index, bool forward, Lane& lane) {
-    BorderLine inner = border_line(rows, index), outer = border_line(rows, index + 1);
-    raise(inner, outer, rows, index);
+  static void set_lines(const SectionSide& side, const SideLines& lines, std::size_t index,
+                        bool forward, Lane& lane) {
+    BorderLine inner = lines.borders[index], outer = lines.borders[index + 1];
+    raise(inner, outer, lines, index);
     BorderLine centre = middle_of(inner, outer);
     // Inner and outer by increasing s become left and right by driving direction.
     BorderLine& left = (side.sign > 0) == forward ? outer : inner;

@@ -32,20 +32,57 @@ class LaneReader {
     lane.direction = node.attribute("direction").value();
     lane.level = is_true(node.attribute("level").value());
     lane.line = xml_.line_of(node);
-    lane.predecessors = ids(node.child("link"), "predecessor");
-    lane.successors = ids(node.child("link"), "successor");
-    lane.width = read_cubics(xml_, node, "width", "sOffset", section_s_m_);
-    if (lane.width.empty())
-      lane.border = read_cubics(xml_, node, "border", "sOffset", section_s_m_);
-    read_marks(node, lane);
-    read_speeds(node, lane);
-    read_heights(node, lane);
-    read_accesses(node, lane);
-    keep_words(node, lane);
+    // What the model has no words for.
+    keep_attributes(node, {"advisory", "dynamicLaneDirection", "dynamicLaneType", "roadWorks"},
+                    lane.attributes);
+    widths_.clear();
+    borders_.clear();
+    rules_.clear();
+    for (const auto child : node.children()) read_child(child, lane);
+    lane.attributes.insert(lane.attributes.end(), rules_.begin(), rules_.end());
+    lane.width = geometry::PiecewiseCubic(sorted(widths_));
+    if (lane.width.empty()) lane.border = read_borders();
+    sort_by_station(lane.marks);
+    sort_by_station(lane.speeds);
+    sort_by_station(lane.heights);
+    sort_by_station(lane.accesses);
     return lane;
   }
 
  private:
+  void read_child(pugi::xml_node child, LaneRecord& lane) {
+    const std::string_view name = child.name();
+    if (name == "width") {
+      widths_.push_back(read_cubic(xml_, child, "sOffset", section_s_m_));
+    } else if (name == "border") {
+      borders_.push_back(child);
+    } else if (name == "roadMark") {
+      lane.marks.push_back(read_mark(xml_, child, lane.id, station(child)));
+    } else if (name == "link") {
+      if (lane.predecessors.empty()) lane.predecessors = ids(child, "predecessor");
+      if (lane.successors.empty()) lane.successors = ids(child, "successor");
+    } else if (name == "speed") {
+      lane.speeds.push_back({station(child), read_speed(xml_, child, remarks_)});
+    } else if (name == "height") {
+      lane.heights.push_back({station(child), xml_.number_or(child, "inner", 0.0),
+                              xml_.number_or(child, "outer", 0.0)});
+    } else if (name == "access") {
+      read_access(child, lane);
+    } else if (name == "material") {
+      lane.attributes.emplace_back("material", described(child));
+    } else if (name == "rule") {
+      rules_.emplace_back("rule", described(child));
+    }
+  }
+
+  geometry::PiecewiseCubic read_borders() const {
+    std::vector<geometry::CubicRecord> records;
+    for (const auto node : borders_) {
+      records.push_back(read_cubic(xml_, node, "sOffset", section_s_m_));
+    }
+    return geometry::PiecewiseCubic(sorted(std::move(records)));
+  }
+
   double station(pugi::xml_node record) const {
     return section_s_m_ + xml_.number_or(record, "sOffset", 0.0);
   }
@@ -56,58 +93,25 @@ class LaneReader {
     return ids;
   }
 
-  void read_marks(pugi::xml_node node, LaneRecord& lane) const {
-    for (const auto mark : node.children("roadMark")) {
-      lane.marks.push_back(read_mark(xml_, mark, lane.id, station(mark)));
-    }
-    sort_by_station(lane.marks);
-  }
-
-  void read_speeds(pugi::xml_node node, LaneRecord& lane) {
-    for (const auto speed : node.children("speed")) {
-      lane.speeds.push_back({station(speed), read_speed(xml_, speed, remarks_)});
-    }
-    sort_by_station(lane.speeds);
-  }
-
-  void read_heights(pugi::xml_node node, LaneRecord& lane) const {
-    for (const auto height : node.children("height")) {
-      lane.heights.push_back({station(height), xml_.number_or(height, "inner", 0.0),
-                              xml_.number_or(height, "outer", 0.0)});
-    }
-    sort_by_station(lane.heights);
-  }
-
   // Up to 1.7 the restriction is an attribute, from 1.8 on child elements.
-  void read_accesses(pugi::xml_node node, LaneRecord& lane) const {
-    for (const auto access : node.children("access")) {
-      const bool allow = std::string_view(access.attribute("rule").value()) == "allow";
-      const double s_m = station(access);
-      if (const auto word = access.attribute("restriction")) {
-        lane.accesses.push_back({s_m, allow, word.value()});
-      }
-      for (const auto restriction : access.children("restriction")) {
-        lane.accesses.push_back({s_m, allow, restriction.attribute("type").value()});
-      }
+  void read_access(pugi::xml_node access, LaneRecord& lane) const {
+    const bool allow = std::string_view(access.attribute("rule").value()) == "allow";
+    const double s_m = station(access);
+    if (const auto word = access.attribute("restriction")) {
+      lane.accesses.push_back({s_m, allow, word.value()});
     }
-    sort_by_station(lane.accesses);
-  }
-
-  // What the model has no words for.
-  void keep_words(pugi::xml_node node, LaneRecord& lane) const {
-    keep_attributes(node, {"advisory", "dynamicLaneDirection", "dynamicLaneType", "roadWorks"},
-                    lane.attributes);
-    for (const auto child : node.children("material")) {
-      lane.attributes.emplace_back("material", described(child));
-    }
-    for (const auto child : node.children("rule")) {
-      lane.attributes.emplace_back("rule", described(child));
+    for (const auto restriction : access.children("restriction")) {
+      lane.accesses.push_back({s_m, allow, restriction.attribute("type").value()});
     }
   }
 
   const XmlDocument& xml_;
   double section_s_m_;
   std::vector<ImportRemark>& remarks_;
+  // Of the lane that is being read.
+  std::vector<geometry::CubicRecord> widths_;
+  std::vector<pugi::xml_node> borders_;
+  Attributes rules_;
 };
 
 LaneSection read_section(const XmlDocument& xml, pugi::xml_node node, Document& document) {

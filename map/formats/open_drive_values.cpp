@@ -12,9 +12,10 @@ namespace roadbed::map::open_drive {
 
 geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
                                  const char* s_attribute, double s_add_m) {
-  const geometry::CubicRecord record{s_add_m + xml.number(node, s_attribute), xml.number(node, "a"),
-                                     xml.number(node, "b"), xml.number(node, "c"),
-                                     xml.number(node, "d")};
+  pugi::xml_attribute next;
+  const geometry::CubicRecord record{s_add_m + xml.number(node, s_attribute, next),
+                                     xml.number(node, "a", next), xml.number(node, "b", next),
+                                     xml.number(node, "c", next), xml.number(node, "d", next)};
   constexpr double largest = 1e200;  // so that sums of them stay finite
   for (const double value : {record.s_m, record.a, record.b, record.c, record.d}) {
     if (std::abs(value) > largest) {
@@ -26,8 +27,10 @@ geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
 }
 
 std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
-  std::stable_sort(records.begin(), records.end(),
-                   [](const auto& a, const auto& b) { return a.s_m < b.s_m; });
+  const auto earlier = [](const auto& a, const auto& b) { return a.s_m < b.s_m; };
+  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
+    std::stable_sort(records.begin(), records.end(), earlier);
+  }
   return records;
 }
 

@@ -36,10 +36,12 @@ void check_size(const std::string& bytes, const std::string& name) {
                     .remedy = "check whether it is the right file"});
 }
 
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
 std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::optional<double> parse_finite(std::string_view text) {
@@ -101,7 +103,13 @@ void XmlDocument::refuse(pugi::xml_node node, const std::string& found, const st
 }
 
 double XmlDocument::number(pugi::xml_node node, const char* attribute) const {
-  const pugi::xml_attribute found = node.attribute(attribute);
+  pugi::xml_attribute first;
+  return number(node, attribute, first);
+}
+
+double XmlDocument::number(pugi::xml_node node, const char* attribute,
+                           pugi::xml_attribute& next) const {
+  const pugi::xml_attribute found = node.attribute(attribute, next);
   if (!found) {
     refuse(node, fmt::format("attribute {} is missing", attribute), "a finite number", "add it");
   }
@@ -114,13 +122,14 @@ double XmlDocument::number(pugi::xml_node node, const char* attribute) const {
 }
 
 double XmlDocument::number_or(pugi::xml_node node, const char* attribute, double fallback) const {
-  return node.attribute(attribute) ? number(node, attribute) : fallback;
+  pugi::xml_attribute found = node.attribute(attribute);
+  return found ? number(node, attribute, found) : fallback;
 }
 
 std::optional<double> XmlDocument::optional_number(pugi::xml_node node,
                                                    const char* attribute) const {
-  if (!node.attribute(attribute)) return {};
-  return parse_finite(node.attribute(attribute).value());
+  const pugi::xml_attribute found = node.attribute(attribute);
+  return found ? parse_finite(found.value()) : std::nullopt;
 }
 
 int XmlDocument::integer(pugi::xml_node node, const char* attribute) const {

@@ -55,6 +55,12 @@ TEST(OpenDriveHeader, CommentsMayStandBeforeTheDeclaration) {
   }
 }
 
+TEST(OpenDriveHeader, TheFileMayBeInUtf16) {
+  std::string wide = "\xff\xfe";
+  for (const char c : tests::made_document(made_road({}))) wide += {c, '\0'};
+  EXPECT_EQ(parse_map(wide, "made.xodr").lanes().size(), 2u);
+}
+
 TEST(OpenDriveHeader, WhatIsNotUsedIsCountedByItsPlace) {
   tests::MadeRoad road;
   road.rest = R"(<railroad><switch id="1"/><switch id="2"/></railroad><surface><CRG/></surface>
