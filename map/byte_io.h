@@ -21,9 +21,11 @@
 namespace roadbed::map {
 
 /// Appends values to bytes that outlive it: numbers little-endian, counts as u64.
-class ByteWriter {
+/// @tparam Bytes  has `append(const char*, std::size_t)`.
+template <typename Bytes>
+class BasicByteWriter {
  public:
-  explicit ByteWriter(std::string& bytes) : bytes_(bytes) {}
+  explicit BasicByteWriter(Bytes& bytes) : bytes_(bytes) {}
 
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
@@ -34,7 +36,7 @@ class ByteWriter {
   }
   void operator()(const std::string& text) {
     (*this)(std::uint64_t{text.size()});
-    bytes_ += text;
+    raw(text.data(), text.size());
   }
   template <typename T, typename Each>
   void list(const std::vector<T>& items, const Each& each) {
@@ -65,7 +67,15 @@ class ByteWriter {
     raw(values.data(), values.size() * sizeof(T));
   }
 
-  std::string& bytes_;
+  Bytes& bytes_;
+};
+
+using ByteWriter = BasicByteWriter<std::string>;
+
+/// Counts bytes where a writer would put them.
+struct ByteCount {
+  void append(const char*, std::size_t more) { size += more; }
+  std::uint64_t size = 0;
 };
 
 /// How many there are of what ids name.

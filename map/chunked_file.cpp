@@ -46,7 +46,7 @@ std::string_view text(const std::array<char, 16>& name) {
 }
 
 template <typename T>
-void append(std::string& bytes, std::span<const T> items) {
+void append_items(std::string& bytes, std::span<const T> items) {
   bytes.append(reinterpret_cast<const char*>(items.data()), items.size_bytes());
 }
 
@@ -215,42 +215,73 @@ void ChunkedFile::refuse_range(const Section& section) const {
   refuse(std::string(text(section.name)), "a place beyond the section's end");
 }
 
-void ChunkedFileWriter::begin(std::string_view name) {
-  ChunkedFile::Section section;
-  if (name.size() > section.name.size()) {
-    throw std::invalid_argument(fmt::format("ChunkedFileWriter: \"{}\" is too long", name));
+ChunkedFileWriter::ChunkedFileWriter(ByteSink& sink, std::span<const Part> parts) : sink_(sink) {
+  for (const Part& part : parts) {
+    ChunkedFile::Section& section = sections_.emplace_back();
+    if (part.name.size() > section.name.size()) {
+      throw std::invalid_argument(fmt::format("ChunkedFileWriter: \"{}\" is too long", part.name));
+    }
+    std::copy(part.name.begin(), part.name.end(), section.name.begin());
+    section.offset = body_size_ + (kAlignment - body_size_ % kAlignment) % kAlignment;
+    section.size = part.size;
+    body_size_ = section.offset + section.size;
   }
-  std::copy(name.begin(), name.end(), section.name.begin());
-  body_.append((kAlignment - body_.size() % kAlignment) % kAlignment, '\0');
-  section.offset = body_.size();
-  sections_.push_back(section);
+  body_offset_ = sizeof(Header) + sections_.size() * sizeof(ChunkedFile::Section) +
+                 chunk_count(body_size_) * sizeof(std::uint64_t);
+  sink_.expect(body_offset_ + body_size_);
 }
 
-void ChunkedFileWriter::add(std::string_view name, std::string_view bytes) {
-  begin(name);
-  body_ += bytes;
-  sections_.back().size = bytes.size();
+void ChunkedFileWriter::begin_next() {
+  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + pending_.size();
+  pending_.append(sections_.at(begun_++).offset - written, '\0');
 }
 
-std::string ChunkedFileWriter::finish() && {
-  std::vector<std::uint64_t> hashes;
-  for (std::size_t from = 0; from < body_.size(); from += ChunkedFile::kChunkSize) {
-    const std::size_t size = std::min(ChunkedFile::kChunkSize, body_.size() - from);
-    hashes.push_back(XXH3_64bits(body_.data() + from, size));
+void ChunkedFileWriter::append(std::string_view bytes) {
+  if (!pending_.empty()) {
+    const std::size_t missing = ChunkedFile::kChunkSize - pending_.size() % ChunkedFile::kChunkSize;
+    pending_ += bytes.substr(0, missing);
+    bytes.remove_prefix(std::min(missing, bytes.size()));
+    hand_on();
   }
+  for (; bytes.size() >= ChunkedFile::kChunkSize; bytes.remove_prefix(ChunkedFile::kChunkSize)) {
+    hand_on_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
+  }
+  pending_ += bytes;
+}
+
+void ChunkedFileWriter::hand_on() {
+  std::string_view bytes = pending_;
+  for (; bytes.size() >= ChunkedFile::kChunkSize; bytes.remove_prefix(ChunkedFile::kChunkSize)) {
+    hand_on_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
+  }
+  if (bytes.size() < pending_.size()) pending_.erase(0, pending_.size() - bytes.size());
+}
+
+void ChunkedFileWriter::hand_on_chunk(std::string_view bytes) {
+  sink_.write(body_offset_ + hashes_.size() * ChunkedFile::kChunkSize, bytes);
+  hashes_.push_back(XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+void ChunkedFileWriter::finish() {
+  hand_on();
+  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + pending_.size();
+  if (begun_ != sections_.size() || written != body_size_) {
+    throw std::logic_error(fmt::format("ChunkedFileWriter: {} sections of {} with {} bytes of {}",
+                                       begun_, sections_.size(), written, body_size_));
+  }
+  if (!pending_.empty()) hand_on_chunk(pending_);
   Header header;
   std::copy(ChunkedFile::kMagic.begin(), ChunkedFile::kMagic.end(), header.magic.begin());
   header.sections = sections_.size();
-  header.body_size = body_.size();
-  header.body_offset =
-      sizeof header + sections_.size() * sizeof(ChunkedFile::Section) + hashes.size() * 8;
+  header.body_size = body_size_;
+  header.body_offset = body_offset_;
   std::string bytes;
-  append(bytes, std::span<const Header>(&header, 1));
-  append(bytes, std::span<const ChunkedFile::Section>(sections_));
-  append(bytes, std::span<const std::uint64_t>(hashes));
+  append_items(bytes, std::span<const Header>(&header, 1));
+  append_items(bytes, std::span<const ChunkedFile::Section>(sections_));
+  append_items(bytes, std::span<const std::uint64_t>(hashes_));
   const std::uint64_t hash = XXH3_64bits(bytes.data() + kHashedFrom, bytes.size() - kHashedFrom);
   std::memcpy(bytes.data() + sizeof header.magic, &hash, sizeof hash);
-  return std::move(body_.insert(0, bytes));  // into spare capacity, as a rule
+  sink_.write(0, bytes);
 }
 
 }  // namespace roadbed::map

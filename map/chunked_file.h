@@ -88,32 +88,53 @@ class ChunkedFile {
   std::unique_ptr<std::atomic<bool>[]> checked_;
 };
 
-/// Puts together the bytes of such a file.
+/// Where the bytes of a file go, in any order.
+class ByteSink {
+ public:
+  ByteSink() = default;
+  ByteSink(const ByteSink&) = delete;
+  ByteSink& operator=(const ByteSink&) = delete;
+  virtual ~ByteSink() = default;
+
+  /// Says how many bytes there will be, before the first are written.
+  virtual void expect(std::uint64_t /*size*/) {}
+  virtual void write(std::uint64_t offset, std::string_view bytes) = 0;
+};
+
+/// Puts such a file together chunk by chunk, so that it never stands in memory as a whole.
 class ChunkedFileWriter {
  public:
-  /// Sets memory aside, which costs nothing until it is written to; without it the bytes are
-  /// copied whenever they have doubled, and stand twice in memory meanwhile.
-  void reserve(std::size_t size) { body_.reserve(size); }
+  struct Part {
+    std::string_view name;  ///< at most 16 letters, unlike all others
+    std::uint64_t size = 0;
+  };
 
-  /// @param name  at most 16 letters, unlike all others.
-  void add(std::string_view name, std::string_view bytes);
+  /// @param parts  the file's sections, in order.
+  ChunkedFileWriter(ByteSink& sink, std::span<const Part> parts);
 
-  /// The same with bytes that `append` puts behind those that are there: `append(bytes)`.
-  template <typename Append>
-  void add(std::string_view name, const Append& append) {
-    begin(name);
-    append(body_);
-    sections_.back().size = body_.size() - sections_.back().offset;
-  }
+  /// Goes on to the next section.
+  void begin_next();
 
-  /// Leaves the writer empty.
-  std::string finish() &&;
+  /// Puts bytes into the section that was begun last.
+  void append(std::string_view bytes);
+
+  /// The same in two steps: put bytes behind those that are there, then let them go on.
+  std::string& pending() { return pending_; }
+  void hand_on();
+
+  /// Ends the file, with what stands before its sections.
+  /// @throws std::logic_error if the sections have other sizes than said.
+  void finish();
 
  private:
-  void begin(std::string_view name);
+  void hand_on_chunk(std::string_view bytes);
 
+  ByteSink& sink_;
   std::vector<ChunkedFile::Section> sections_;
-  std::string body_;
+  std::size_t begun_ = 0;
+  std::uint64_t body_size_ = 0, body_offset_ = 0;
+  std::vector<std::uint64_t> hashes_;  // of the chunks that were handed on
+  std::string pending_;                // what comes after them
 };
 
 }  // namespace roadbed::map

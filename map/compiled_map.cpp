@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -25,20 +26,66 @@ std::string places(std::string_view list) { return fmt::format("{}.at", list); }
 template <typename List>
 using ItemOf = typename std::remove_cvref_t<List>::value_type;
 
+// A section that is to be written.
+struct Output {
+  std::string name;
+  std::uint64_t size = 0;
+  std::function<void(ChunkedFileWriter&)> write;
+};
+
+Output output_of(std::string name, std::string_view bytes) {
+  return {std::move(name), bytes.size(), [bytes](ChunkedFileWriter& file) { file.append(bytes); }};
+}
+
+// The sections of a list: its records, and where they begin.
 template <typename Fields, typename List>
-void write_list(ChunkedFileWriter& file, std::string_view name, const Fields& fields,
-                const List& list) {
+void add_list(std::string_view name, const Fields& fields, const List& list,
+              std::vector<Output>& outputs) {
+  ByteCount count;
+  BasicByteWriter<ByteCount> counter(count);
   std::vector<std::uint64_t> at{0};
-  file.add(name, [&](std::string& bytes) {
-    const std::size_t begin = bytes.size();
-    ByteWriter records(bytes);
+  at.reserve(list.size() + 1);
+  for (const auto& item : list) {
+    fields(counter, item);
+    at.push_back(count.size);
+  }
+  const auto write = [&list, &fields](ChunkedFileWriter& file) {
+    ByteWriter records(file.pending());
     for (const auto& item : list) {
       fields(records, item);
-      at.push_back(bytes.size() - begin);
+      file.hand_on();
     }
-  });
-  file.add(places(name), FlatArray<std::uint64_t>(std::move(at)).bytes());
+  };
+  outputs.push_back({std::string(name), count.size, write});
+  const auto places_array = std::make_shared<const FlatArray<std::uint64_t>>(std::move(at));
+  outputs.push_back(
+      {places(name), places_array->bytes().size(),
+       [places_array](ChunkedFileWriter& file) { file.append(places_array->bytes()); }});
 }
+
+void write_outputs(const std::vector<Output>& outputs, ByteSink& sink) {
+  std::vector<ChunkedFileWriter::Part> parts;
+  for (const Output& output : outputs) parts.push_back({output.name, output.size});
+  ChunkedFileWriter file(sink, parts);
+  for (const Output& output : outputs) {
+    file.begin_next();
+    output.write(file);
+  }
+  file.finish();
+}
+
+// Bytes in memory as a place to write to.
+class StringSink : public ByteSink {
+ public:
+  void expect(std::uint64_t size) override { bytes_.resize(size); }
+  void write(std::uint64_t offset, std::string_view bytes) override {
+    bytes_.replace(offset, bytes.size(), bytes);
+  }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
 
 // Where a list's records begin, and the records.
 struct ListSections {
@@ -149,14 +196,6 @@ VerifiedMap verify(const File& file) {
   return verified;
 }
 
-// More than the bytes of maps seen so far, of which the index is about a third.
-std::size_t likely_size(const lane_index::Data& index) {
-  std::size_t size = 0;
-  const auto add = [&size](const char*, const auto& array) { size += array.bytes().size(); };
-  lane_index::visit(add, index);
-  return 5 * size + ChunkedFile::kChunkSize;
-}
-
 }  // namespace
 
 std::string write_compiled_map(const RoadMap& road_map) {
@@ -164,23 +203,27 @@ std::string write_compiled_map(const RoadMap& road_map) {
 }
 
 std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix) {
-  ChunkedFileWriter file;
-  file.reserve(likely_size(road_map.index().lanes.data()));
-  file.add("head", [&](std::string& bytes) {
-    ByteWriter head(bytes);
-    fields::head(head, road_map.content());
-  });
-  const auto write_array = [&](std::string_view name, const auto& array) {
-    file.add(name, array.bytes());
+  StringSink sink;
+  write_compiled_map(road_map, appendix, sink);
+  return sink.take();
+}
+
+void write_compiled_map(const RoadMap& road_map, std::string_view appendix, ByteSink& sink) {
+  std::string head;
+  ByteWriter head_writer(head);
+  fields::head(head_writer, road_map.content());
+  std::vector<Output> outputs{output_of("head", head)};
+  const auto add_array = [&](std::string_view name, const auto& array) {
+    outputs.push_back(output_of(std::string(name), array.bytes()));
   };
-  lane_index::visit(write_array, road_map.index().lanes.data());
-  write_array(kNames, road_map.index().by_name);
-  const auto write = [&](std::string_view name, const auto& fields, const auto& list) {
-    write_list(file, name, fields, list);
+  lane_index::visit(add_array, road_map.index().lanes.data());
+  add_array(kNames, road_map.index().by_name);
+  const auto add = [&](std::string_view name, const auto& fields, const auto& list) {
+    add_list(name, fields, list, outputs);
   };
-  fields::lists(write, road_map.content());
-  if (!appendix.empty()) file.add(kAppendix, appendix);
-  return std::move(file).finish();
+  fields::lists(add, road_map.content());
+  if (!appendix.empty()) outputs.push_back(output_of(std::string(kAppendix), appendix));
+  write_outputs(outputs, sink);
 }
 
 bool is_compiled_map(std::string_view bytes) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/chunked_file.h"
 #include "roadbed/map/road_map.h"
 
 namespace roadbed::map {
@@ -14,6 +15,9 @@ namespace roadbed::map {
 /// map's own, see RoadMapIndex.
 std::string write_compiled_map(const RoadMap& road_map);
 std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix);
+
+/// The same into a sink, piece by piece: the file never stands in memory.
+void write_compiled_map(const RoadMap& road_map, std::string_view appendix, ByteSink& sink);
 
 /// Whether the bytes begin as a compiled map does.
 bool is_compiled_map(std::string_view bytes);

@@ -9,6 +9,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/stored_network.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/heap.h"
 #include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
@@ -26,7 +27,9 @@ class ImportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Read a digital road map and write it as a compiled map");
-    arguments.add("IN", input_, "Map file: OpenDRIVE (.xodr), or a compiled one").required();
+    arguments
+        .add("IN", input_, "Map file: OpenDRIVE, Lanelet2, CommonRoad, GeoJSON, or a compiled one")
+        .required();
     arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required();
     arguments.add("--crs", crs_,
                   "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
@@ -42,10 +45,13 @@ class ImportCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     check_writable(output_, force_);
+    keep_heap_in_huge_pages(input_);
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
-    write_output(output_, map::write_compiled_map(road_map, network));
+    OutputFile output(output_);
+    map::write_compiled_map(road_map, network, output);
+    output.commit();
     if (!common.quiet) report(streams.err, road_map);
     return Exit::ok;
   }

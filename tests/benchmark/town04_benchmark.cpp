@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "roadbed/map/compiled_map.h"
+#include "roadbed/map/conflicts.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/map/road_map_index.h"
+#include "roadbed/map/surface.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 
@@ -92,6 +94,26 @@ void town04_open_and_locate_first(benchmark::State& state) {
   }
 }
 BENCHMARK(town04_open_and_locate_first)->Unit(benchmark::kMillisecond);
+
+void town04_surfaces(benchmark::State& state) {
+  if (!there(state)) return;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(drivable_surface(town()));
+    for (const Road& road : town().roads()) {
+      benchmark::DoNotOptimize(road_surface(town(), road.id));
+    }
+    for (const Junction& junction : town().junctions()) {
+      benchmark::DoNotOptimize(junction_surface(town(), junction.id));
+    }
+  }
+}
+BENCHMARK(town04_surfaces)->Unit(benchmark::kMillisecond);
+
+void town04_conflicts(benchmark::State& state) {
+  if (!there(state)) return;
+  for (auto _ : state) benchmark::DoNotOptimize(find_conflicts(town()));
+}
+BENCHMARK(town04_conflicts)->Unit(benchmark::kMillisecond);
 
 void town04_locate_one_by_one(benchmark::State& state) {
   if (!there(state)) return;

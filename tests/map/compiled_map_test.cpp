@@ -47,6 +47,27 @@ TEST(CompiledMap, ReadsBackToTheSameBytes) {
   EXPECT_EQ(write_compiled_map(read_compiled_map(bytes, "made.rbm")), bytes);
 }
 
+// Puts together what is written to it.
+class Pieces : public ByteSink {
+ public:
+  void write(std::uint64_t offset, std::string_view piece) override {
+    longest = std::max(longest, piece.size());
+    if (offset + piece.size() > bytes.size()) bytes.resize(offset + piece.size());
+    piece.copy(bytes.data() + offset, piece.size());
+  }
+  std::string bytes;
+  std::size_t longest = 0;
+};
+
+TEST(CompiledMap, IsWrittenInPiecesOfAChunkThatMakeTheSameBytes) {
+  const RoadMap made = long_lanes();
+  Pieces pieces;
+  write_compiled_map(made, "an appendix", pieces);
+  EXPECT_EQ(pieces.bytes, write_compiled_map(made, "an appendix"));
+  EXPECT_GT(pieces.bytes.size(), 10 * ChunkedFile::kChunkSize);
+  EXPECT_EQ(pieces.longest, ChunkedFile::kChunkSize);
+}
+
 TEST(CompiledMap, KeepsEveryPointOfTheBorders) {
   const RoadMap made = tests::curved_two_lane_road();
   const RoadMap read = read_compiled_map(write_compiled_map(made), "made.rbm");

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "roadbed/map/input_error.h"
 
@@ -24,17 +25,13 @@ namespace {
                          .remedy = remedy});
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+[[noreturn]] void refuse_write(const std::filesystem::path& file) {
+  refuse(file, std::string("cannot be written: ") + std::strerror(errno),
+         "free some space or choose another folder");
 }
 
-void write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw std::system_error(errno, std::generic_category());
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
 void sync_folder(const std::filesystem::path& folder) {
@@ -80,31 +77,47 @@ void make_output_folder(const std::filesystem::path& folder, bool force) {
   }
 }
 
-void write_output(const std::filesystem::path& file, std::string_view bytes) {
-  std::string temporary = (folder_of(file) / ("." + file.filename().string() + ".XXXXXX")).string();
-  const int descriptor = ::mkostemp(temporary.data(), O_CLOEXEC);
-  if (descriptor < 0) {
-    refuse(file, std::string("cannot be written: ") + std::strerror(errno),
+OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+  temporary_ = (folder_of(file_) / ("." + file_.filename().string() + ".XXXXXX")).string();
+  descriptor_ = ::mkostemp(temporary_.data(), O_CLOEXEC);
+  if (descriptor_ < 0) {
+    temporary_.clear();
+    refuse(file_, std::string("cannot be written: ") + std::strerror(errno),
            "choose a folder that you may write to");
   }
-  try {
-    write_all(descriptor, bytes);
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    if (::fchmod(descriptor, 0666 & ~mask) != 0 || ::fsync(descriptor) != 0) {
-      throw std::system_error(errno, std::generic_category());
-    }
-    if (::rename(temporary.c_str(), file.c_str()) != 0) {
-      throw std::system_error(errno, std::generic_category());
-    }
-  } catch (const std::system_error& error) {
-    ::close(descriptor);
-    ::unlink(temporary.c_str());
-    refuse(file, std::string("cannot be written: ") + error.code().message(),
-           "free some space or choose another folder");
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) refuse_write(file_);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
   }
-  ::close(descriptor);
-  sync_folder(folder_of(file));
+}
+
+void OutputFile::commit() {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  if (::fchmod(descriptor_, 0666 & ~mask) != 0 || ::fsync(descriptor_) != 0 ||
+      ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+    refuse_write(file_);
+  }
+  temporary_.clear();
+  sync_folder(folder_of(file_));
+}
+
+void write_output(const std::filesystem::path& file, std::string_view bytes) {
+  OutputFile output(file);
+  output.write(0, bytes);
+  output.commit();
 }
 
 }  // namespace roadbed::tools

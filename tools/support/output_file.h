@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
+
+#include "roadbed/map/chunked_file.h"
 
 namespace roadbed::tools {
 
@@ -14,8 +18,29 @@ void check_writable(const std::filesystem::path& file, bool force);
 /// @throws InputError if it cannot be made, or holds something and `force` is not set.
 void make_output_folder(const std::filesystem::path& folder, bool force);
 
-/// Writes the bytes to a temporary file beside `file`, syncs it and renames it: at every moment
-/// there is the old file, or the new one, whole.
+/// A file that is written piece by piece: to a temporary file beside it, which is synced and
+/// renamed in the end. At every moment there is the old file, or the new one, whole; without
+/// `commit` nothing is left behind.
+class OutputFile : public map::ByteSink {
+ public:
+  /// @throws InputError if it cannot be written.
+  explicit OutputFile(std::filesystem::path file);
+  ~OutputFile() override;
+
+  /// @throws InputError if it cannot be written.
+  void write(std::uint64_t offset, std::string_view bytes) override;
+
+  /// Puts the new file in place.
+  /// @throws InputError if it cannot be written.
+  void commit();
+
+ private:
+  std::filesystem::path file_;
+  std::string temporary_;  // empty: it has got its name
+  int descriptor_ = -1;
+};
+
+/// Writes a whole file in that way.
 /// @throws InputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 

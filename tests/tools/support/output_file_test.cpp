@@ -36,5 +36,24 @@ TEST(OutputFile, IsTheOldOneOrTheNewOneWheneverTheWriterIsKilled) {
   }
 }
 
+TEST(OutputFile, ThatIsNotCommittedLeavesTheFolderAsItWas) {
+  const tests::TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("map.rbm", "old");
+  { OutputFile(file).write(0, "new"); }
+  EXPECT_EQ(tests::bytes_of(file), "old");
+  const auto files = std::filesystem::directory_iterator(file.parent_path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(OutputFile, MayBeWrittenInAnyOrder) {
+  const tests::TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("map.rbm", "old");
+  OutputFile output(file);
+  output.write(4, "body");
+  output.write(0, "head");
+  output.commit();
+  EXPECT_EQ(tests::bytes_of(file), "headbody");
+}
+
 }  // namespace
 }  // namespace roadbed::tools

@@ -1,0 +1,36 @@
+#include "roadbed/tools/support/heap.h"
+
+#include <malloc.h>
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <system_error>
+
+namespace roadbed::tools {
+namespace {
+
+constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
+constexpr std::uintptr_t kMapPerFile = 8;  // of memory, a file's size of bytes
+// Huge pages that the system has to find first cost more than they save.
+constexpr std::uintptr_t kMost = std::uintptr_t{1} << 27;
+
+}  // namespace
+
+void keep_heap_in_huge_pages(const std::filesystem::path& input) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(input, error);
+  if (error || size > kMost / kMapPerFile) return;
+  // One heap that grows and is not given back; blocks of its own would be new memory each time.
+  ::mallopt(M_MMAP_MAX, 0);
+  ::mallopt(M_TRIM_THRESHOLD, -1);
+  const std::uintptr_t wanted = kMapPerFile * size + kHugePage;
+  void* block = std::malloc(wanted);
+  if (block == nullptr) return;
+  const auto from = (reinterpret_cast<std::uintptr_t>(block) + kHugePage - 1) & ~(kHugePage - 1);
+  const auto to = (reinterpret_cast<std::uintptr_t>(block) + wanted) & ~(kHugePage - 1);
+  if (to > from) ::madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
+  std::free(block);
+}
+
+}  // namespace roadbed::tools
