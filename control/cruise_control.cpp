@@ -15,28 +15,50 @@ CruiseControl::CruiseControl(const CruiseOptions& options)
 
 double CruiseControl::update(double speed_mps, double acceleration_mps2, const SetSpeed& set,
                              const std::optional<LeadMeasurement>& lead) {
-  const Eigen::Vector2d speed_error{set.speed_mps - speed_mps,
-                                    acceleration_mps2 - set.acceleration_mps2};
-  double command = set.acceleration_mps2 - design_.K_speed.dot(speed_error);
   restarted_ = false;
+  blind_s_ = 0.0;
   if (lead) {
     const double desired_gap_m = options_.headway_s * speed_mps + options_.standstill_gap_m;
     filter({desired_gap_m - lead->gap_m, lead->relative_speed_mps, acceleration_mps2});
-    command = std::min(command, -design_.K.dot(*estimate_));
   } else {
     estimate_.reset();
   }
-  last_command_mps2_ = std::clamp(command, -options_.max_command_mps2, options_.max_command_mps2);
+  return command(speed_mps, acceleration_mps2, set);
+}
+
+double CruiseControl::update_blind(double speed_mps, double acceleration_mps2,
+                                   const SetSpeed& set) {
+  restarted_ = false;
+  blind_s_ += options_.step_s;
+  if (estimate_ && blind_s_ <= options_.bridged_s) {
+    estimate_ = predicted();
+  } else {
+    estimate_.reset();
+  }
+  return command(speed_mps, acceleration_mps2, set);
+}
+
+double CruiseControl::command(double speed_mps, double acceleration_mps2, const SetSpeed& set) {
+  const Eigen::Vector2d speed_error{set.speed_mps - speed_mps,
+                                    acceleration_mps2 - set.acceleration_mps2};
+  double wanted = set.acceleration_mps2 - design_.K_speed.dot(speed_error);
+  if (estimate_) wanted = std::min(wanted, -design_.K.dot(*estimate_));
+  const double change = options_.max_jerk_mps3 * options_.actuator_lag_s;
+  wanted = std::clamp(wanted, (acceleration_mps2 - change) / options_.actuator_gain,
+                      (acceleration_mps2 + change) / options_.actuator_gain);
+  last_command_mps2_ = std::clamp(wanted, -options_.max_command_mps2, options_.max_command_mps2);
   return last_command_mps2_;
+}
+
+Eigen::Vector3d CruiseControl::predicted() const {
+  return design_.model.A * *estimate_ + design_.model.B * last_command_mps2_;
 }
 
 void CruiseControl::filter(const Eigen::Vector3d& measured) {
   if (estimate_) {
-    const Eigen::Vector3d predicted =
-        design_.model.A * *estimate_ + design_.model.B * last_command_mps2_;
-    const Eigen::Vector3d innovation = measured - predicted;
+    const Eigen::Vector3d innovation = measured - predicted();
     if (innovation.dot(innovation_weight_ * innovation) <= kMostInnovation) {
-      estimate_ = predicted + design_.L * innovation;
+      estimate_ = predicted() + design_.L * innovation;
       return;
     }
   }

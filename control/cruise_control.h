@@ -26,12 +26,17 @@ class CruiseControl {
   /// @throws std::invalid_argument as design_cruise does.
   explicit CruiseControl(const CruiseOptions& options);
 
-  /// Desired acceleration [m/s²] within ±max_command.
+  /// Desired acceleration [m/s²] within ±max_command, and no further from the acceleration than
+  /// the actuator's lag turns into max_jerk.
   /// @param lead  none: no vehicle ahead is seen, and the filter forgets the last one. A
   ///              measurement that cannot be of the vehicle followed so far (its innovation is
   ///              beyond the χ² bound for one in a million) starts the filter anew.
   double update(double speed_mps, double acceleration_mps2, const SetSpeed& set,
                 const std::optional<LeadMeasurement>& lead);
+
+  /// The same where the lead's measurement dropped out: the filter predicts on, for bridged_s at
+  /// most; then, or if no lead was followed, as without a lead.
+  double update_blind(double speed_mps, double acceleration_mps2, const SetSpeed& set);
 
   const CruiseDesign& design() const { return design_; }
 
@@ -43,12 +48,15 @@ class CruiseControl {
 
  private:
   void filter(const Eigen::Vector3d& measured);
+  Eigen::Vector3d predicted() const;
+  double command(double speed_mps, double acceleration_mps2, const SetSpeed& set);
 
   CruiseOptions options_;
   CruiseDesign design_;
   Eigen::Matrix3d innovation_weight_;  ///< S⁻¹
   std::optional<Eigen::Vector3d> estimate_;
   bool restarted_ = false;
+  double blind_s_ = 0.0;  ///< since the lead was last measured
   double last_command_mps2_ = 0.0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/control/cruise_design.h"
@@ -32,7 +33,13 @@ ordered_json pairs(const std::vector<std::complex<double>>& poles) {
   return result;
 }
 
-ordered_json to_json(const control::CruiseDesign& design, const control::StringGain& string) {
+/// Gains from a lead to its follower: of the bare loop, and of the one that is run.
+struct StringGains {
+  control::StringGain bare, whole;
+  double delay_s;
+};
+
+ordered_json to_json(const control::CruiseDesign& design, const StringGains& string) {
   return {{"A", rows(design.model.A)},
           {"B", rows(design.model.B)},
           {"G", rows(design.model.G)},
@@ -44,8 +51,11 @@ ordered_json to_json(const control::CruiseDesign& design, const control::StringG
           {"filter_poles", pairs(design.filter_poles)},
           {"riccati_residual", design.riccati_residual},
           {"kalman_residual", design.kalman_residual},
-          {"string_gain", string.gain},
-          {"string_gain_at_radps", string.at_radps}};
+          {"string_gain", string.bare.gain},
+          {"string_gain_at_radps", string.bare.at_radps},
+          {"delay_s", string.delay_s},
+          {"loop_string_gain", string.whole.gain},
+          {"loop_string_gain_at_radps", string.whole.at_radps}};
 }
 
 void print_poles(std::ostream& out, const char* name,
@@ -56,8 +66,12 @@ void print_poles(std::ostream& out, const char* name,
   }
 }
 
-void print_text(std::ostream& out, const control::CruiseDesign& design,
-                const control::StringGain& string) {
+void print_gain(std::ostream& out, std::string_view of, const control::StringGain& string) {
+  fmt::print(out, "largest gain from lead to follower, of {}: {:.6f} at {:.4f} rad/s{}\n", of,
+             string.gain, string.at_radps, string.gain > 1.0 + 1e-6 ? " (string unstable)" : "");
+}
+
+void print_text(std::ostream& out, const control::CruiseDesign& design, const StringGains& string) {
   fmt::print(out, "gain K on [d_desire − d, v_p − v_f, a_f]\n  {:.10f} {:.10f} {:.10f}\n",
              design.K[0], design.K[1], design.K[2]);
   fmt::print(out, "gain of the set speed on [v_set − v, a_f]\n  {:.10f} {:.10f}\n",
@@ -70,8 +84,10 @@ void print_text(std::ostream& out, const control::CruiseDesign& design,
   print_poles(out, "poles of A (I − L)", design.filter_poles);
   fmt::print(out, "residual of the Riccati equation {:.1e}, of the filter's {:.1e}\n",
              design.riccati_residual, design.kalman_residual);
-  fmt::print(out, "largest gain from lead to follower {:.6f} at {:.4f} rad/s{}\n", string.gain,
-             string.at_radps, string.gain > 1.0 + 1e-6 ? " (string unstable)" : "");
+  print_gain(out, "acceleration, without filter and delay", string.bare);
+  print_gain(out,
+             fmt::format("speed, 0.01 to 1 Hz, with filter and {:g} s of delay", string.delay_s),
+             string.whole);
 }
 
 class ControlCommand : public Command {
@@ -89,6 +105,7 @@ class ControlCommand : public Command {
         .values(3)
         .with_default();
     design.add("--input-weight", options_.input_weight, "Weight of the command").with_default();
+    design.add("--delay", delay_steps_, "Sampling times by which a command is late").with_default();
     design.flag("--json", json_, "Print one JSON document");
     design.example("  roadbed control design --weights 1 2 0.5 --input-weight 5");
     arguments.example("  roadbed control design --json");
@@ -96,7 +113,10 @@ class ControlCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& /*common*/) override {
     const control::CruiseDesign design = design_or_refuse();
-    const control::StringGain string = control::string_gain(design, options_.step_s);
+    const StringGains string{
+        .bare = control::string_gain(design, options_.step_s),
+        .whole = control::loop_string_gain(design, options_.step_s, delay_steps_),
+        .delay_s = options_.step_s * delay_steps_};
     if (json_) {
       streams.out << to_json(design, string).dump(2) << '\n';
     } else {
@@ -107,6 +127,14 @@ class ControlCommand : public Command {
 
  private:
   control::CruiseDesign design_or_refuse() {
+    if (delay_steps_ < 0 || delay_steps_ > 50) {
+      throw map::InputError({.file = "control design",
+                             .place = {},
+                             .element = {},
+                             .found = fmt::format("a delay of {} sampling times", delay_steps_),
+                             .needed = "0 to 50",
+                             .remedy = "change --delay"});
+    }
     options_.state_weights = {weights_[0], weights_[1], weights_[2]};
     try {
       return control::design_cruise(options_);
@@ -121,6 +149,7 @@ class ControlCommand : public Command {
   }
 
   control::CruiseOptions options_;
+  int delay_steps_ = 2;
   std::vector<double> weights_{1.0, 1.0, 0.0};
   bool json_ = false;
 };
