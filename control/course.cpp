@@ -34,9 +34,10 @@ geometry::Pose2 Course::at(double s_m) const {
 
 double Course::nearest_s_m(const Eigen::Vector2d& point, double near_s_m, double window_m) const {
   double nearest_m = std::numeric_limits<double>::infinity(), found_s_m = near_s_m;
-  for (std::size_t i = 1; i < poses_.size(); ++i) {
-    if (stations_m_[i] < near_s_m - window_m && i + 1 < poses_.size()) continue;
-    if (stations_m_[i - 1] > near_s_m + window_m && i > 1) break;
+  const auto first =
+      std::lower_bound(stations_m_.begin() + 1, stations_m_.end() - 1, near_s_m - window_m);
+  for (auto i = static_cast<std::size_t>(first - stations_m_.begin()); i < poses_.size(); ++i) {
+    if (stations_m_[i - 1] > near_s_m + window_m && std::isfinite(nearest_m)) break;
     const Eigen::Vector2d from = poses_[i - 1].position();
     const double length_m = stations_m_[i] - stations_m_[i - 1];
     const Eigen::Vector2d along = (poses_[i].position() - from) / length_m;
