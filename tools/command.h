@@ -51,5 +51,6 @@ std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_occupancy_command();
 std::unique_ptr<Command> make_audit_command();
 std::unique_ptr<Command> make_figures_command();
+std::unique_ptr<Command> make_report_command();
 
 }  // namespace roadbed::tools

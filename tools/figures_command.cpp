@@ -16,13 +16,14 @@ namespace {
 std::vector<Figure> all_figures() {
   std::vector<Figure> figures = reference_line_figures();
   std::ranges::move(lateral_planner_figures(), std::back_inserter(figures));
+  std::ranges::move(tracking_figures(), std::back_inserter(figures));
   return figures;
 }
 
 class FiguresCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Compute the paper's figures 2 to 9, each as SVG and CSV");
+    arguments.description("Compute the paper's figures 2 to 10 and 12 to 14, each as SVG and CSV");
     arguments.add("-o,--output", folder_, "Folder for the figures").required();
     arguments.flag("--force", force_, "Replace files in the folder");
     arguments.example("  roadbed figures -o /tmp/figures");

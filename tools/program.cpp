@@ -38,6 +38,7 @@ constexpr Entry kCommands[] = {
     {"occupancy", make_occupancy_command},
     {"audit", make_audit_command},
     {"figures", make_figures_command},
+    {"report", make_report_command},
 };
 // clang-format on
 

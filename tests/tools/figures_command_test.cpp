@@ -53,10 +53,22 @@ TEST_F(FiguresCommand, WritesAPictureAndATableOfEach) {
   std::vector<std::string> names;
   for (const char* figure : {"figure_2_path_model", "figure_3_cubic_spline", "figure_4_corner",
                              "figure_5_first_derivative", "figure_6_second_derivative",
-                             "figure_7_curvature", "figure_8_overtaking", "figure_9_candidates"}) {
+                             "figure_7_curvature", "figure_8_overtaking", "figure_9_candidates",
+                             "figure_10_lqg", "figure_12_look_forward_distance", "figure_13_gain",
+                             "figure_14_right_turn_course", "figure_14_zig_zag_course"}) {
     names.push_back(std::string(figure) + ".csv");
     names.push_back(std::string(figure) + ".svg");
   }
+  for (const char* test : {"right_turn", "zig_zag"}) {
+    for (const char* of : {"", "largest_"}) {
+      for (const char* quantity : {"cross_track", "heading", "steering_rate", "lateral_jerk"}) {
+        const std::string name = std::string("figure_14_") + test + "_" + of + quantity;
+        names.push_back(name + ".csv");
+        names.push_back(name + ".svg");
+      }
+    }
+  }
+  std::ranges::sort(names);
   EXPECT_EQ(files_below(*folder_ / "figures"), names);
   const ProgramRun again = run_roadbed({"figures", "-o", (*folder_ / "figures").string()});
   EXPECT_EQ(again.status, 1) << "an existing folder is not replaced";
@@ -113,6 +125,39 @@ TEST_F(FiguresCommand, CandidatesAreThePapers1596) {
   const auto& chosen = candidates.at("optimal, free of collision");
   EXPECT_NEAR(chosen.front().y, 0.0, 1e-12);
   EXPECT_GE(chosen.back().y, 2.0 - 1e-9);
+}
+
+TEST_F(FiguresCommand, FilterIsNearerToTheTruthThanWhatItIsFed) {
+  const FigureTable figure = table("figure_10_lqg");
+  const auto &truth = figure.at("true"), &measured = figure.at("measured y"),
+             &estimated = figure.at("estimated by the Kalman filter");
+  double squares_measured = 0.0, squares_estimated = 0.0;
+  for (std::size_t i = 50; i < truth.size(); ++i) {
+    squares_measured += std::pow(measured[i].y - truth[i].y, 2);
+    squares_estimated += std::pow(estimated[i].y - truth[i].y, 2);
+  }
+  EXPECT_LT(squares_estimated, 0.5 * squares_measured);
+}
+
+TEST_F(FiguresCommand, TracksThePapersTestsFromFiveToThirtyMetresPerSecond) {
+  for (const std::string test : {"right_turn", "zig_zag"}) {
+    for (const auto& [law, bound_m] : std::map<std::string, double>{
+             {"modified Stanley, eq. 32", 0.012}, {"pure pursuit", 0.40}}) {
+      const auto rows = table("figure_14_" + test + "_largest_cross_track").at(law);
+      ASSERT_EQ(rows.size(), 6u);
+      for (const FigureRow& row : rows) EXPECT_LT(row.y, bound_m) << test << " " << row.x << " m/s";
+    }
+    // The curve over time reaches the largest value, up to what lies between its points.
+    const FigureTable curves = table("figure_14_" + test + "_lateral_jerk");
+    const auto largest = table("figure_14_" + test + "_largest_lateral_jerk");
+    for (const FigureRow& row : largest.at("modified Stanley, eq. 32")) {
+      double found = 0.0;
+      for (const FigureRow& at : curves.at(std::to_string(static_cast<int>(row.x)) + " m/s")) {
+        found = std::max(found, std::abs(at.y));
+      }
+      EXPECT_NEAR(found, row.y, 0.02 * row.y) << test << " " << row.x << " m/s";
+    }
+  }
 }
 
 }  // namespace

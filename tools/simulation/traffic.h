@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "roadbed/tools/simulation/world.h"
+
+namespace roadbed::tools {
+
+/// Obstacles as a pilot foresees them: where each will be, and from when to when it is there.
+struct Traffic {
+  std::span<const planning::Obstacle> obstacles;
+  std::span<const Presence> presence;  ///< one per obstacle; empty: always there
+
+  bool is_there(std::size_t obstacle, double t_s) const {
+    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
+  }
+};
+
+/// The true future, as peers of CommonRoad problems are measured.
+Traffic true_traffic(const World& world);
+
+/// What could be foreseen at one time by looking at the past only: what is there then keeps the
+/// speed and the turn rate of its last 0.3 s, and stays; what is not there yet is not known of.
+class ForeseenTraffic {
+ public:
+  ForeseenTraffic(const Traffic& truth, double now_s);
+
+  Traffic traffic() const { return {obstacles_, presence_}; }
+  const std::vector<planning::Obstacle>& obstacles() const { return obstacles_; }
+
+ private:
+  std::vector<planning::Obstacle> obstacles_;  ///< in the truth's order
+  std::vector<Presence> presence_;
+};
+
+}  // namespace roadbed::tools
