@@ -123,6 +123,25 @@ TEST_F(SimulateCommand, FolderDrivesEveryScenarioAndABadOneIsARow) {
   EXPECT_FALSE(std::filesystem::exists(out("same")));
 }
 
+TEST_F(SimulateCommand, FolderMayHoldCommonRoadFilesAndOtherXml) {
+  const TemporaryFolder scenarios;
+  scenarios.write("junction.xml", bytes_of(data_folder() / "junction.xml"));
+  scenarios.write("other.xml", "<OpenDRIVE/>");
+  for (const std::string out_folder : {"one", "two"}) {
+    const ProgramRun run =
+        run_roadbed({"simulate", scenarios.path().string(), "-o", out(out_folder), "--predict"});
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("goal reached"));
+    EXPECT_THAT(run.out, HasSubstr("no <commonRoad> element"));
+    EXPECT_THAT(run.out, HasSubstr("\n1 of 2 reach their goal\n"));
+    EXPECT_TRUE(std::filesystem::exists(out(out_folder) / "junction" / "solution.xml"));
+    EXPECT_FALSE(std::filesystem::exists(out(out_folder) / "other"));
+  }
+  for (const std::string& file : files_below(out("one"))) {
+    EXPECT_EQ(bytes_of(out("one") / file), bytes_of(out("two") / file)) << file;
+  }
+}
+
 TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
   const ProgramRun run = run_roadbed({"control", "design", "--json"});
   EXPECT_EQ(run.status, 0);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
@@ -43,17 +44,19 @@ struct Driven {
   Drive drive;
 };
 
-Driven drive_and_describe(const Scenario& scenario, const World& world) {
+Driven drive_and_describe(const Scenario& scenario, const World& world, bool predicts) {
   Driven driven;
   DrivenScenario& result = driven.result;
   driven.drive =
-      drive(scenario, world, {.on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
+      drive(scenario, world,
+            {.predicts = predicts, .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
   result.name = scenario.name;
   result.verdict = driven.drive.verdict;
   result.audit = audit_of(scenario, world, driven.drive);
   const ReportInput report = report_of(
       scenario, world, driven.drive,
-      {.command = fmt::format("roadbed simulate {} -o DIR", scenario.file.filename().string()),
+      {.command = fmt::format("roadbed simulate {}{} -o DIR", scenario.file.filename().string(),
+                              predicts ? " --predict" : ""),
        .version = "roadbed " ROADBED_VERSION,
        .sources = sources_of(scenario),
        .audit = result.audit});
@@ -65,18 +68,30 @@ Driven drive_and_describe(const Scenario& scenario, const World& world) {
   return driven;
 }
 
+/// An .xml that is no CommonRoad scenario is not meant to be JSON.
+void refuse_other_xml(const fs::path& file) {
+  if (file.extension() != ".xml" || !fs::exists(file)) return;
+  throw map::InputError({.file = file.string(),
+                         .place = {},
+                         .element = {},
+                         .found = "no <commonRoad> element",
+                         .needed = "a CommonRoad scenario",
+                         .remedy = "give another file; roadbed's own scenarios end in .json"});
+}
+
 }  // namespace
 
-DrivenScenario drive_scenario(const fs::path& file) {
+DrivenScenario drive_scenario(const fs::path& file, bool predicts) {
   if (is_common_road(file)) {
     const CommonRoadDrive problem = read_common_road_drive(file);
-    Driven driven = drive_and_describe(problem.scenario, problem.world);
+    Driven driven = drive_and_describe(problem.scenario, problem.world, predicts);
     driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
     return std::move(driven.result);
   }
+  refuse_other_xml(file);
   const Scenario scenario = read_scenario(file);
   const World world = make_world(scenario);
-  return drive_and_describe(scenario, world).result;
+  return drive_and_describe(scenario, world, predicts).result;
 }
 
 }  // namespace roadbed::tools

@@ -23,6 +23,7 @@ struct DrivenScenario {
 /// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:
 /// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml.
 /// @throws InputError if the scenario is unusable.
-DrivenScenario drive_scenario(const std::filesystem::path& file);
+/// @param predicts  pilots know of other vehicles only what could be known at the time.
+DrivenScenario drive_scenario(const std::filesystem::path& file, bool predicts = false);
 
 }  // namespace roadbed::tools

@@ -15,6 +15,8 @@ struct LoopOptions {
   double max_tracking_error_m = 0.3;
   double max_heading_error_rad = 0.15;
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
+  /// Pilots know of other vehicles only what could be known at the time, not their true future.
+  bool predicts = false;
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
 };
 

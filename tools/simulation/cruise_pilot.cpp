@@ -8,6 +8,7 @@
 #include "roadbed/tools/simulation/decision.h"
 #include "roadbed/tools/simulation/pilot.h"
 #include "roadbed/tools/simulation/safety.h"
+#include "roadbed/tools/simulation/traffic.h"
 
 namespace roadbed::tools {
 namespace {
@@ -32,6 +33,7 @@ class CruisePilot : public Pilot {
   CruisePilot(const Scenario& scenario, const World& world, const LoopOptions& options)
       : scenario_(scenario),
         world_(world),
+        predicts_(options.predicts),
         ceiling_(ceiling_of(scenario, world)),
         cruise_(cruise_options_),
         keeper_(scenario, world,
@@ -46,12 +48,13 @@ class CruisePilot : public Pilot {
   /// Set speed, cruise control and safety layer.
   PilotCommand decide(const PilotView& view) override {
     const double speed = view.measured.motion.speed_mps;
+    if (predicts_) foreseen_.emplace(true_traffic(world_), view.t_s);
     keeper_.plan({.t_s = view.t_s,
                   .measured = view.measured,
                   .speed = {.speed_mps = speed,
                             .acceleration_mps2 = view.measured.acceleration_mps2,
                             .target_mps = set_speed_mps_},
-                  .obstacles = world_.obstacles});
+                  .obstacles = foreseen_ ? foreseen_->obstacles() : world_.obstacles});
     const std::optional<Lead> lead = lead_ahead(view);
     const SpeedAnswer answer = choose_speed(question(view.measured, lead), decision_options_);
     std::optional<control::LeadMeasurement> seen;
@@ -129,6 +132,8 @@ class CruisePilot : public Pilot {
 
   const Scenario& scenario_;
   const World& world_;
+  bool predicts_;
+  std::optional<ForeseenTraffic> foreseen_;  ///< none: the true future is known
   DecisionOptions decision_options_;
   control::CruiseOptions cruise_options_;
   planning::SpeedCeiling ceiling_;

@@ -10,6 +10,7 @@
 #include "roadbed/tools/simulation/driven_way.h"
 #include "roadbed/tools/simulation/pilot.h"
 #include "roadbed/tools/simulation/speed_search.h"
+#include "roadbed/tools/simulation/traffic.h"
 #include "roadbed/tools/simulation/way_occupancy.h"
 
 namespace roadbed::tools {
@@ -64,11 +65,14 @@ bool is_good(const Attempt& attempt) {
          !attempt.answer.misses_goal;
 }
 
-/// Free before not free; then by cost, or by how long it is free.
+/// Free before not free; then by cost, or by how long it is free and how slow it is by then.
 bool is_better(const Attempt& a, const Attempt& b) {
   if (a.answer.is_free != b.answer.is_free) return a.answer.is_free;
   if (a.answer.is_free) return a.cost < b.cost;
-  return a.answer.free_until_s > b.answer.free_until_s;
+  if (a.answer.free_until_s != b.answer.free_until_s) {
+    return a.answer.free_until_s > b.answer.free_until_s;
+  }
+  return a.answer.plan.back().speed_mps < b.answer.plan.back().speed_mps;
 }
 
 class TimedPilot : public Pilot {
@@ -76,6 +80,8 @@ class TimedPilot : public Pilot {
   TimedPilot(const Scenario& scenario, const World& world, const LoopOptions& options)
       : scenario_(scenario),
         world_(world),
+        predicts_(options.predicts),
+        traffic_(true_traffic(world)),
         ceiling_(ceiling_of(scenario, world)),
         stretches_(goal_stretches(*world.goal, world.road_map, world.line, scenario.vehicle)),
         keeper_(scenario, world,
@@ -87,6 +93,7 @@ class TimedPilot : public Pilot {
   const PathKeeper& keeper() const override { return keeper_; }
 
   PilotCommand decide(const PilotView& view) override {
+    look_around(view.t_s);
     const std::vector<planning::Obstacle> standing = standing_at(view.t_s);
     keeper_.locate(view.measured);
     const PathKeeper::Question question{.t_s = view.t_s,
@@ -104,6 +111,12 @@ class TimedPilot : public Pilot {
   }
 
  private:
+  void look_around(double t_s) {
+    if (!predicts_) return;
+    foreseen_.emplace(true_traffic(world_), t_s);
+    traffic_ = foreseen_->traffic();
+  }
+
   /// The planner's own choice first, then paths beside it, and all of them with more daring.
   Attempt best_attempt(const PilotView& view, const PathKeeper::Question& question) {
     Attempt best = attempt_on(view, first_proposal(question));
@@ -162,7 +175,7 @@ class TimedPilot : public Pilot {
   }
 
   void search(const PilotView& view, const Daring& daring, Attempt& attempt) const {
-    const WayOccupancy occupancy(attempt.way, world_, view.t_s, steps(view.t_s), daring.margin_m);
+    const WayOccupancy occupancy(attempt.way, traffic_, view.t_s, steps(view.t_s), daring.margin_m);
     attempt.answer = search_speed(
         question_of(view, attempt.way, occupancy, attempt.proposal.has_value()), daring.speed);
     attempt.daring = &daring;
@@ -193,9 +206,9 @@ class TimedPilot : public Pilot {
   /// What stands for a while, as something that stands for ever.
   std::vector<planning::Obstacle> standing_at(double t_s) const {
     std::vector<planning::Obstacle> standing;
-    for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
-      if (!world_.is_there(i, t_s)) continue;
-      const planning::Obstacle& obstacle = world_.obstacles[i];
+    for (std::size_t i = 0; i < traffic_.obstacles.size(); ++i) {
+      if (!traffic_.is_there(i, t_s)) continue;
+      const planning::Obstacle& obstacle = traffic_.obstacles[i];
       const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
       const geometry::TrajectoryPoint later = obstacle.motion.at(t_s + kStillFor_s);
       if ((later.pose().position() - now.pose().position()).norm() > kStill_m) continue;
@@ -277,7 +290,7 @@ class TimedPilot : public Pilot {
       if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
     }
     if (!nearest) return std::nullopt;
-    const planning::Obstacle& obstacle = world_.obstacles[nearest->obstacle];
+    const planning::Obstacle& obstacle = traffic_.obstacles[nearest->obstacle];
     const double speed = obstacle.is_static() ? 0.0 : obstacle.motion.at(view.t_s).speed_mps;
     return DriveLead{obstacle.id, nearest->from_m, speed};
   }
@@ -313,6 +326,9 @@ class TimedPilot : public Pilot {
 
   const Scenario& scenario_;
   const World& world_;
+  bool predicts_;
+  std::optional<ForeseenTraffic> foreseen_;
+  Traffic traffic_;  ///< what is planned against; of the world, or of what is foreseen
   planning::SpeedCeiling ceiling_;
   std::vector<GoalStretch> stretches_;
   PathKeeper keeper_;

@@ -42,14 +42,14 @@ std::optional<Blocked> blocked_part(const DrivenWay& way, const Rectangle& obsta
 
 }  // namespace
 
-WayOccupancy::WayOccupancy(const DrivenWay& way, const World& world, double start_s, int steps,
+WayOccupancy::WayOccupancy(const DrivenWay& way, const Traffic& traffic, double start_s, int steps,
                            double margin_m)
     : blocked_(static_cast<std::size_t>(steps) + 1) {
-  for (std::size_t o = 0; o < world.obstacles.size(); ++o) {
+  for (std::size_t o = 0; o < traffic.obstacles.size(); ++o) {
     for (std::size_t k = 0; k < blocked_.size(); ++k) {
       const double t_s = start_s + kStep_s * static_cast<double>(k);
-      if (!world.is_there(o, t_s)) continue;
-      auto part = blocked_part(way, rectangle_at(world.obstacles[o], t_s), margin_m);
+      if (!traffic.is_there(o, t_s)) continue;
+      auto part = blocked_part(way, rectangle_at(traffic.obstacles[o], t_s), margin_m);
       if (!part) continue;
       part->obstacle = o;
       blocked_[k].push_back(*part);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "roadbed/tools/simulation/driven_way.h"
-#include "roadbed/tools/simulation/world.h"
+#include "roadbed/tools/simulation/traffic.h"
 
 namespace roadbed::tools {
 
@@ -22,7 +22,7 @@ class WayOccupancy {
 
   /// @param steps     of 0.1 s from `start_s` on; obstacles move as the world knows.
   /// @param margin_m  an obstacle this near to the body counts as touched.
-  WayOccupancy(const DrivenWay& way, const World& world, double start_s, int steps,
+  WayOccupancy(const DrivenWay& way, const Traffic& traffic, double start_s, int steps,
                double margin_m);
 
   /// At `step` · 0.1 s after the start, clamped to the last one.

@@ -65,7 +65,7 @@ struct Case {
 SpeedSearchAnswer answer(const Case& asked) {
   const World world = world_with(asked.obstacles);
   const DrivenWay way = straight_way();
-  const WayOccupancy occupancy(way, world, 0.0, 120, 0.3);
+  const WayOccupancy occupancy(way, true_traffic(world), 0.0, 120, 0.3);
   return search_speed({.way = way,
                        .occupancy = occupancy,
                        .speed_mps = asked.speed_mps,
