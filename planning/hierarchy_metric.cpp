@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <queue>
-#include <tuple>
 
 #include "roadbed/planning/hierarchy_kernel.h"
 
@@ -11,19 +10,22 @@ namespace {
 
 constexpr auto kFar = static_cast<std::int32_t>(kNever);
 
-// Visits the ranks that lead up to both: the arcs to the first and to the second. Stops at true.
-// The shorter list is walked and looked up in the other one.
-template <typename Visit>
+// Visits the ranks that lead up to both, the last ones first: the arcs to the first and to the
+// second. Stops at true. The shorter list is walked and looked up in the other one, if the arc to
+// the rank whose list it is may be `of_use`.
+template <typename OfUse, typename Visit>
 void for_each_below(const Hierarchy& hierarchy, std::uint32_t one, std::uint32_t other,
-                    const Visit& visit) {
+                    const OfUse& of_use, const Visit& visit) {
   const bool one_is_shorter = hierarchy.below.of(one).size() <= hierarchy.below.of(other).size();
   const std::uint32_t walked = one_is_shorter ? one : other,
                       looked_up = one_is_shorter ? other : one;
-  for (const std::uint32_t rank : hierarchy.below.of(walked)) {
-    const std::uint32_t far = hierarchy.arc_between(rank, looked_up);
+  const auto ranks = hierarchy.below.of(walked);
+  for (auto rank = ranks.rbegin(); rank != ranks.rend(); ++rank) {
+    const std::uint32_t near = hierarchy.arc_between(*rank, walked);
+    if (!of_use(near, one_is_shorter)) continue;
+    const std::uint32_t far = hierarchy.arc_between(*rank, looked_up);
     if (far == kNoNode) continue;
-    const std::uint32_t near = hierarchy.arc_between(rank, walked);
-    if (visit(rank, one_is_shorter ? near : far, one_is_shorter ? far : near)) return;
+    if (visit(*rank, one_is_shorter ? near : far, one_is_shorter ? far : near)) return;
   }
 }
 
@@ -35,14 +37,6 @@ void for_each_arc(const RouteGraph& graph, std::uint32_t from, std::uint32_t to,
     if (graph.head[arc] == to && visit(arc)) return;
   }
 }
-
-// An arc of the hierarchy that has to be computed again; lower ones first.
-struct Touched {
-  std::uint32_t low, high, arc;
-  bool operator>(const Touched& other) const {
-    return std::tie(low, high) > std::tie(other.low, other.high);
-  }
-};
 
 }  // namespace
 
@@ -96,30 +90,69 @@ std::int32_t HierarchyMetric::own_weight(std::uint32_t from, std::uint32_t to) c
   return least;
 }
 
-HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t low, std::uint32_t high) const {
+// The least weights that an arc can have, knowing that they are not below `least`.
+HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t low, std::uint32_t high,
+                                               const Both& least) const {
   Both both{own_weight(low, high), own_weight(high, low)};
-  for_each_below(hierarchy_, low, high,
+  const auto may_help = [&](std::uint32_t arc, bool to_low) {
+    return (to_low ? down_[arc] : up_[arc]) < both.up ||
+           (to_low ? up_[arc] : down_[arc]) < both.down;
+  };
+  if (both == least) return both;
+  for_each_below(hierarchy_, low, high, may_help,
                  [&](std::uint32_t, std::uint32_t to_low, std::uint32_t to_high) {
                    both.up = std::min(both.up, down_[to_low] + up_[to_high]);
                    both.down = std::min(both.down, down_[to_high] + up_[to_low]);
-                   return false;
+                   return both == least;
                  });
   return {std::min(both.up, kFar), std::min(both.down, kFar)};
+}
+
+template <typename Visit>
+void HierarchyMetric::for_each_beside(const Touched& arc, const Both& old, const Both& now,
+                                      const Visit& visit) const {
+  const bool down_changed = old.down != now.down, up_changed = old.up != now.up;
+  auto target = hierarchy_.above.of(arc.high).begin();
+  for (const RankRun& run : hierarchy_.above.of(arc.low)) {
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+      const std::uint32_t other = run.first + i, beside = run.first_arc + i;
+      const bool out = down_changed && up_[beside] < kFar;
+      const bool in = up_changed && down_[beside] < kFar;
+      if (other == arc.high || (!out && !in)) continue;
+      if (other < arc.high) {
+        visit(Touched{other, arc.high, hierarchy_.arc_between(other, arc.high)}, beside, out, in);
+        continue;
+      }
+      while (target->first + target->count <= other) ++target;
+      visit(Touched{arc.high, other, target->first_arc + (other - target->first)}, beside, out, in);
+    }
+  }
 }
 
 std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
                                     std::span<const Ticks> weights) {
   ++version_;
-  std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
+  std::vector<std::uint32_t> dearer, cheaper;
   for (std::size_t i = 0; i < graph_arcs.size(); ++i) {
-    const std::uint32_t arc = graph_arcs[i], at = hierarchy_.arc_of[arc];
+    const std::uint32_t arc = graph_arcs[i];
     if (weights_[arc] == weights[i]) continue;
+    const bool rises = weights[i] > weights_[arc];
     weights_[arc] = weights[i];
-    if (at == kNoNode) continue;
-    const auto [low, high] = std::minmax(hierarchy_.rank_of_node[graph_.tail[arc]],
-                                         hierarchy_.rank_of_node[graph_.head[arc]]);
-    touched.push({low, high, at});
+    if (hierarchy_.arc_of[arc] != kNoNode) (rises ? dearer : cheaper).push_back(arc);
   }
+  return raise(dearer) + lower(cheaper);
+}
+
+HierarchyMetric::Touched HierarchyMetric::place_of(std::uint32_t graph_arc) const {
+  const auto [low, high] = std::minmax(hierarchy_.rank_of_node[graph_.tail[graph_arc]],
+                                       hierarchy_.rank_of_node[graph_.head[graph_arc]]);
+  return {low, high, hierarchy_.arc_of[graph_arc]};
+}
+
+// Arcs above are affected where they rested on the old weight.
+std::size_t HierarchyMetric::raise(std::span<const std::uint32_t> graph_arcs) {
+  std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
+  for (const std::uint32_t arc : graph_arcs) touched.push(place_of(arc));
   std::size_t computed = 0;
   std::uint32_t done = kNoNode;
   while (!touched.empty()) {
@@ -129,33 +162,56 @@ std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
     done = next.arc;
     ++computed;
     const Both old{up_[next.arc], down_[next.arc]};
-    const Both now = compute(next.low, next.high);
+    const Both now = compute(next.low, next.high, old);
     if (now == old) continue;
-    // Arcs above are affected where they rested on the old weight, or the new one is less.
-    const bool down_changed = old.down != now.down, up_changed = old.up != now.up;
-    for (const RankRun& run : hierarchy_.above.of(next.low)) {
-      for (std::uint32_t i = 0; i < run.count; ++i) {
-        const std::uint32_t other = run.first + i, beside = run.first_arc + i;
-        const bool out = down_changed && up_[beside] < kFar;
-        const bool in = up_changed && down_[beside] < kFar;
-        if (other == next.high || (!out && !in)) continue;
-        const std::uint32_t low = std::min(other, next.high), high = std::max(other, next.high);
-        const std::uint32_t arc = hierarchy_.arc_between(low, high);
-        // next → other and other → next, over their common low rank.
-        const bool next_is_low = next.high < other;
-        const std::int32_t from_next = next_is_low ? up_[arc] : down_[arc];
-        const std::int32_t to_next = next_is_low ? down_[arc] : up_[arc];
-        const bool touches_out =
-            out && (old.down + up_[beside] <= from_next || now.down + up_[beside] < from_next);
-        const bool touches_in =
-            in && (old.up + down_[beside] <= to_next || now.up + down_[beside] < to_next);
-        if (touches_out || touches_in) touched.push({low, high, arc});
-      }
-    }
+    for_each_beside(
+        next, old, now, [&](const Touched& other, std::uint32_t beside, bool out, bool in) {
+          const bool next_is_low = other.low == next.high;
+          const std::int32_t from_next = next_is_low ? up_[other.arc] : down_[other.arc];
+          const std::int32_t to_next = next_is_low ? down_[other.arc] : up_[other.arc];
+          if ((out && old.down + up_[beside] <= from_next) ||
+              (in && old.up + down_[beside] <= to_next)) {
+            touched.push(other);
+          }
+        });
     up_[next.arc] = now.up;
     down_[next.arc] = now.down;
   }
   return computed;
+}
+
+// What has become cheaper is put into the arcs above where it is less.
+std::size_t HierarchyMetric::lower(std::span<const std::uint32_t> graph_arcs) {
+  std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
+  const auto put = [&](const Touched& at, std::int32_t& weight, std::int32_t now) {
+    if (now >= weight) return;
+    weight = now;
+    touched.push(at);
+  };
+  for (const std::uint32_t arc : graph_arcs) {
+    const Touched at = place_of(arc);
+    const bool upwards = hierarchy_.rank_of_node[graph_.tail[arc]] == at.low;
+    put(at, upwards ? up_[at.arc] : down_[at.arc], static_cast<std::int32_t>(weights_[arc]));
+  }
+  std::size_t lowered = 0;
+  std::uint32_t done = kNoNode;
+  while (!touched.empty()) {
+    const Touched next = touched.top();
+    touched.pop();
+    if (next.arc == done) continue;
+    done = next.arc;
+    ++lowered;
+    const Both now{up_[next.arc], down_[next.arc]};
+    for_each_beside(next, {kFar, kFar}, now,
+                    [&](const Touched& other, std::uint32_t beside, bool out, bool in) {
+                      const bool next_is_low = other.low == next.high;
+                      std::int32_t& from_next = next_is_low ? up_[other.arc] : down_[other.arc];
+                      std::int32_t& to_next = next_is_low ? down_[other.arc] : up_[other.arc];
+                      if (out) put(other, from_next, now.down + up_[beside]);
+                      if (in) put(other, to_next, now.up + down_[beside]);
+                    });
+  }
+  return lowered;
 }
 
 HierarchyMetric::Meaning HierarchyMetric::meaning(std::uint32_t low, std::uint32_t high,
@@ -170,7 +226,10 @@ HierarchyMetric::Meaning HierarchyMetric::meaning(std::uint32_t low, std::uint32
                  return true;
                });
   if (found.is_arc) return found;
-  for_each_below(hierarchy_, low, high,
+  const auto may_be = [&](std::uint32_t over, bool to_low) {
+    return (to_low == upwards ? down_[over] : up_[over]) <= weight;
+  };
+  for_each_below(hierarchy_, low, high, may_be,
                  [&](std::uint32_t rank, std::uint32_t to_low, std::uint32_t to_high) {
                    const std::int32_t way =
                        upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];

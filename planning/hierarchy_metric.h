@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "roadbed/planning/hierarchy.h"
@@ -42,9 +43,24 @@ class HierarchyMetric {
     std::int32_t up, down;
     bool operator==(const Both&) const = default;
   };
+  /// An arc of the hierarchy whose weights may change; lower ones come first.
+  struct Touched {
+    std::uint32_t low, high, arc;
+    bool operator>(const Touched& other) const {
+      return std::tie(low, high) > std::tie(other.low, other.high);
+    }
+  };
   void customise(std::uint32_t rank);
   std::int32_t own_weight(std::uint32_t from, std::uint32_t to) const;
-  Both compute(std::uint32_t low, std::uint32_t high) const;
+  Both compute(std::uint32_t low, std::uint32_t high, const Both& least) const;
+  Touched place_of(std::uint32_t graph_arc) const;
+  /// Arcs that the arc is part of a triangle with, over its lower rank: (target, third arc, whether
+  /// the way down it and the way up it may matter there).
+  template <typename Visit>
+  void for_each_beside(const Touched& arc, const Both& old, const Both& now,
+                       const Visit& visit) const;
+  std::size_t raise(std::span<const std::uint32_t> graph_arcs);
+  std::size_t lower(std::span<const std::uint32_t> graph_arcs);
 
   const RouteGraph& graph_;
   const Hierarchy& hierarchy_;

@@ -53,14 +53,11 @@ void HierarchySearch::step(Side& side, std::uint32_t rank) const {
 template <bool kTraced>
 void HierarchySearch::relax(Side& side, const std::vector<std::int32_t>& weights,
                             std::uint32_t rank) const {
-  const std::int32_t cost = side.cost[rank];
-  for (const RankRun& run : metric_.hierarchy().above.of(rank)) {
-    if constexpr (kTraced) {
-      relax_run(run.count, cost, &weights[run.first_arc], &side.cost[run.first],
-                &side.parent[run.first], rank);
-    } else {
-      lower_run(run.count, cost, &weights[run.first_arc], &side.cost[run.first]);
-    }
+  const auto runs = metric_.hierarchy().above.of(rank);
+  if constexpr (kTraced) {
+    relax_row(runs, side.cost[rank], weights.data(), side.cost.data(), side.parent.data(), rank);
+  } else {
+    lower_row(runs, side.cost[rank], weights.data(), side.cost.data());
   }
 }
 
