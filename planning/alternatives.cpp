@@ -1,6 +1,7 @@
 #include "roadbed/planning/alternatives.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "roadbed/planning/route_solver.h"
 
@@ -10,9 +11,10 @@ namespace {
 constexpr double kPenalty = 1.4;
 constexpr int kSearches = 20;
 
-void make_dearer(const RouteGraph& graph, const Route& route, std::vector<Ticks>& weights) {
+void make_dearer(const RouteSolver& solver, const Route& route, std::vector<Ticks>& weights) {
+  const RouteGraph& graph = solver.graph();
   for (const RouteLeg& leg : route.legs) {
-    const std::uint32_t node = graph.exit_of_lane[leg.lane.index];
+    const std::uint32_t node = graph.exit_of_lane[solver.network().lane_of(leg.lane, leg.reversed)];
     for (std::uint32_t arc = graph.first_out[node]; arc < graph.first_out[node + 1]; ++arc) {
       if (weights[arc] == kNever) continue;
       const double dearer = kPenalty * static_cast<double>(weights[arc]);
@@ -30,20 +32,21 @@ double cost_of(const Route& route, RouteCost measure) {
 double shared_length(const Route& route, const Route& other) {
   double shared_m = 0.0;
   for (const RouteLeg& leg : route.legs) {
-    const double leg_m = leg.to_s_m - leg.from_s_m;
+    const double leg_m = std::abs(leg.to_s_m - leg.from_s_m);
     double common_m = 0.0;
     for (const RouteLeg& beside : other.legs) {
-      if (beside.lane != leg.lane) continue;
-      common_m += std::max(
-          0.0, std::min(leg.to_s_m, beside.to_s_m) - std::max(leg.from_s_m, beside.from_s_m));
+      if (beside.lane != leg.lane || beside.reversed != leg.reversed) continue;
+      const auto [leg_from, leg_to] = std::minmax(leg.from_s_m, leg.to_s_m);
+      const auto [beside_from, beside_to] = std::minmax(beside.from_s_m, beside.to_s_m);
+      common_m += std::max(0.0, std::min(leg_to, beside_to) - std::max(leg_from, beside_from));
     }
     if (leg_m > 0.0) shared_m += leg.length_m * std::min(1.0, common_m / leg_m);
   }
   return route.length_m > 0.0 ? shared_m / route.length_m : 1.0;
 }
 
-std::vector<Alternative> find_alternatives(Router& router, const map::LanePlace& from,
-                                           const map::LanePlace& to,
+std::vector<Alternative> find_alternatives(Router& router, const RoutePlace& from,
+                                           const RoutePlace& to,
                                            const AlternativeOptions& options) {
   RouteSolver& solver = router.solver();
   std::vector<Alternative> found;
@@ -53,7 +56,7 @@ std::vector<Alternative> find_alternatives(Router& router, const map::LanePlace&
     const auto way = solver.solve_with(weights, from, to);
     if (!way) break;
     Alternative next{router.route_along(*way), 0.0};
-    make_dearer(solver.graph(), next.route, weights);
+    make_dearer(solver, next.route, weights);
     for (const Alternative& before : found) {
       next.shared = std::max(next.shared, shared_length(next.route, before.route));
     }

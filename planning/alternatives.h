@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "roadbed/planning/route.h"
+#include "roadbed/planning/route_place.h"
 
 namespace roadbed::planning {
 
@@ -20,8 +21,8 @@ struct Alternative {
 /// The cheapest route, then others that differ from each one before: found by making the lanes of
 /// routes found dearer by 40 % a time, until enough are found or 20 searches have been made. None
 /// if there is no route. It may be that there is another one that this does not find.
-std::vector<Alternative> find_alternatives(Router& router, const map::LanePlace& from,
-                                           const map::LanePlace& to,
+std::vector<Alternative> find_alternatives(Router& router, const RoutePlace& from,
+                                           const RoutePlace& to,
                                            const AlternativeOptions& options = {});
 
 /// Share of a route's length that lies on stretches of another one.

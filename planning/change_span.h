@@ -8,8 +8,9 @@
 
 namespace roadbed::planning {
 
-/// A lane change that is longer than one passage: it begins in one and ends in a following one,
-/// while both lanes stay neighbours across the section ends between.
+/// Lane changes, one or more to the same side, that take more than one passage: they begin in one
+/// and end in a following one, while the lanes stay neighbours across the section ends between.
+/// Each has an equal share of the length.
 ///
 ///     from  ────────┬──╮────┬──────
 ///     to    ────────┴──╰────┴──────
@@ -18,46 +19,60 @@ struct ChangeSpan {
   struct Beside {
     std::uint32_t from = 0, to = 0;
   };
+  std::size_t changes = 1;
   std::vector<Beside> lanes;  ///< of each passage in turn, at least two
   double start_s_m = 0.0;     ///< of the first lane that is left: where the change may begin
   double end_s_m = 0.0;       ///< of the last one: where it has to have ended
 };
 
-/// Length that the change has, along the lanes that are left [m].
+/// Length that all its changes have, along the first lanes [m].
 double room_m(const RouteNetwork& network, const ChangeSpan& span);
 
-/// Whether no shorter change behind the first passage has as much room as helps.
+/// Whether what is behind the first passage has less room than helps, and, of several changes, none
+/// has as much in the first passage or the last one alone.
 bool needs_first(const RouteNetwork& network, const ChangeSpan& span, double enough_m);
 
-/// Changes that begin in a lane behind a station and end in a following passage, for which no
-/// change that ends a passage earlier has as much room as helps. At most 64.
+/// Changes that begin in a lane behind a station and end in a following passage, for which no such
+/// that end a passage earlier have as much room as helps. Up to three of them at once, at most 64.
 std::vector<ChangeSpan> spans_from(const RouteNetwork& network, std::uint32_t lane, double from_s_m,
                                    double enough_m);
 
-/// The window of a lane towards the one beside it that reaches to its end, or from its start.
-std::optional<map::StationRange> window_at_end(const RouteNetwork& network, std::uint32_t lane,
-                                               std::uint32_t beside);
-std::optional<map::StationRange> window_at_start(const RouteNetwork& network, std::uint32_t lane,
-                                                 std::uint32_t beside);
+/// Lanes beside each other, from one that is left to one that is changed to.
+using LaneChain = std::vector<std::uint32_t>;
 
-/// Whether there is a link from a lane to another one.
-bool leads_to(const RouteNetwork& network, std::uint32_t lane, std::uint32_t next);
+/// What the windows of all changes along a chain have in common that reaches to the end of the
+/// lanes, or from their start, by stations of the first.
+std::optional<map::StationRange> window_at_end(const RouteNetwork& network, const LaneChain& chain);
+std::optional<map::StationRange> window_at_start(const RouteNetwork& network,
+                                                 const LaneChain& chain);
 
-/// The passage in which the middle of a change lies, and the change as a plan of that passage.
+/// Whether each lane has a link to the one behind it.
+bool lead_to(const RouteNetwork& network, const LaneChain& lanes, const LaneChain& next);
+
+/// So many lanes to a side of one; empty if there are fewer.
+LaneChain lanes_beside(const RouteNetwork& network, std::uint32_t lane,
+                       std::uint32_t NetworkLane::*side, std::size_t count);
+
+/// The most changes that are laid over section ends together.
+inline constexpr std::size_t kMostTogether = 3;
+
+/// How the changes lie in the passages.
 struct SpanPlan {
-  std::size_t passage = 0;
-  ChangePlan changes;
+  std::vector<std::size_t> made;  ///< changes whose middle lies before the end of each passage
+  std::vector<double> begin_m;    ///< length of the changes before each passage
+  double room_m = 0.0;            ///< that each of them has
 };
 
 /// None if there is less room than the rules ask for, or a lane may not be entered.
 std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& span);
 
-/// Cost of the way from a share of the first passage to a share of the last one: up to the passage
-/// of the change along the lanes that are left, from there on along the others.
+/// Cost of the way from a share of the first passage to a share of the last one: a passage costs
+/// what the lane does on which it is left.
 double cost_of(const TravelRules& rules, const ChangeSpan& span, const SpanPlan& plan,
                ShareRange ends);
 
 /// The same way, passage by passage.
-std::vector<Passage> passages_of(const ChangeSpan& span, const SpanPlan& plan, ShareRange ends);
+std::vector<Passage> passages_of(const RouteNetwork& network, const ChangeSpan& span,
+                                 const SpanPlan& plan, ShareRange ends);
 
 }  // namespace roadbed::planning

@@ -53,9 +53,12 @@ double distance_m(const Edge& edge, double share, Side side, const geometry::Cur
 }  // namespace
 
 Corridor room_beside(const map::RoadMap& road_map, LaneId lane, double share,
-                     const geometry::CurvePoint& point, double default_speed_mps) {
+                     const geometry::CurvePoint& point, double default_speed_mps, bool reversed) {
   const auto room_m = [&](Side side) {
-    return distance_m(outermost(road_map, lane, side), share, side, point);
+    const bool is_left = (side == Side::left) != reversed;
+    Edge edge = outermost(road_map, lane, is_left ? Side::left : Side::right);
+    edge.same_direction = edge.same_direction != reversed;
+    return distance_m(edge, share, side, point);
   };
   const auto limit_mps = road_map.lane(lane).least_speed_limit_mps();
   return {room_m(Side::left), room_m(Side::right),

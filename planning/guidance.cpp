@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace roadbed::planning {
 namespace {
@@ -34,8 +35,13 @@ std::string onto(const map::RoadMap& road_map, const Route& route, std::size_t l
 std::string change_words(const RouteLeg& leg) {
   const char* side = leg.exit == LegExit::change_left ? "left" : "right";
   const double room_m =
-      leg.change_window ? leg.change_window->to_s_m - leg.change_window->from_s_m : 0.0;
+      leg.change_window ? std::abs(leg.change_window->to_s_m - leg.change_window->from_s_m) : 0.0;
   return fmt::format("change one lane to the {} within {:.0f} m", side, room_m);
+}
+
+// From where the leg begins to a station of its lane.
+double driven_m(const RouteLeg& leg, double s_m) {
+  return leg.reversed ? leg.from_s_m - s_m : s_m - leg.from_s_m;
 }
 
 void name_distances(std::vector<Instruction>& instructions) {
@@ -61,11 +67,11 @@ std::vector<Instruction> instructions_for(const map::RoadMap& road_map, const Ro
     if (!turn.empty() && i > 0) made.push_back({at_m, i, turn + onto(road_map, route, i)});
     if (leg.change_window) {
       // A change may begin beside a leg before.
-      const double to_window_m = leg.change_window->from_s_m - leg.from_s_m;
+      const double to_window_m = driven_m(leg, leg.change_window->from_s_m);
       made.push_back({std::max(0.0, at_m + to_window_m), i, change_words(leg)});
     }
     for (; stop < route.stops.size() && route.stops[stop].leg == i; ++stop) {
-      const double to_stop_m = std::clamp(route.stops[stop].s_m - leg.from_s_m, 0.0, leg.length_m);
+      const double to_stop_m = std::clamp(driven_m(leg, route.stops[stop].s_m), 0.0, leg.length_m);
       made.push_back({at_m + to_stop_m, i, fmt::format("pass via point {}", stop + 1)});
     }
     at_m += leg.length_m;

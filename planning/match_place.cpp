@@ -19,8 +19,15 @@ constexpr std::size_t kNearest = 3;
 PlaceCandidate judge(const map::RoadMap& road_map, const map::LaneMatch& match,
                      std::optional<double> heading_rad, const MatchOptions& options) {
   PlaceCandidate made{match.place, match.distance_m, match.heading_rad};
-  const double turn_rad =
+  double turn_rad =
       heading_rad ? std::abs(geometry::wrap_angle(match.heading_rad - *heading_rad)) : 0.0;
+  if (heading_rad && may_reverse(road_map.lane(match.place.lane), options.participant)) {
+    made.sense = turn_rad > 0.5 * std::numbers::pi ? Sense::against : Sense::along;
+  }
+  if (made.sense == Sense::against) {
+    turn_rad = std::numbers::pi - turn_rad;
+    made.heading_rad = geometry::wrap_angle(made.heading_rad + std::numbers::pi);
+  }
   made.misfit_m = match.distance_m + options.metres_per_radian * turn_rad +
                   options.offset_weight * std::abs(match.place.d_m);
   if (!may_use(road_map.lane(match.place.lane), options.participant)) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/road_map.h"
+#include "roadbed/planning/route_place.h"
 
 namespace roadbed::planning {
 
@@ -15,9 +16,10 @@ std::string_view name(MatchVerdict verdict);
 
 struct PlaceCandidate {
   map::LanePlace place;
-  double distance_m = 0.0;   ///< to the lane; 0 on it
-  double heading_rad = 0.0;  ///< of the lane
-  double misfit_m = 0.0;     ///< the lane with the least is chosen
+  double distance_m = 0.0;      ///< to the lane; 0 on it
+  double heading_rad = 0.0;     ///< of the lane, as it is driven
+  Sense sense = Sense::either;  ///< which way, where a heading is given and it may be both
+  double misfit_m = 0.0;        ///< the lane with the least is chosen
   MatchVerdict verdict = MatchVerdict::possible;
 };
 
@@ -35,7 +37,9 @@ struct MatchOptions {
 ///
 ///     misfit = distance to the lane + 2 m/rad · |turn| + 0.1 · |offset from the centreline|
 ///
-/// Where no lane is within reach the three nearest ones that may be used are given as `too_far`.
+/// A lane of both directions is taken the way that fits the heading better; without a heading it
+/// may be driven either way. Where no lane is within reach the three nearest ones that may be used
+/// are given as `too_far`.
 std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
                                         std::optional<double> heading_rad,
                                         const MatchOptions& options = {});

@@ -4,10 +4,11 @@
 
 #include "roadbed/planning/route.h"
 #include "roadbed/planning/route_area.h"
+#include "roadbed/planning/route_place.h"
 
 namespace roadbed::planning {
 
-/// Part of a lane that can be reached.
+/// Part of a lane that can be reached. Stations fall where it is driven against its direction.
 struct ReachedLane {
   LanePart part;
   double cost = 0.0;  ///< at its first station, in the unit of the router's cost
@@ -19,6 +20,6 @@ struct ReachedLane {
 /// changed to counts from where its passage begins.
 /// @throws std::invalid_argument as Router::find does, or if the limit is not positive or more than
 ///         a route may cost.
-std::vector<ReachedLane> reach(Router& router, const map::LanePlace& from, double limit);
+std::vector<ReachedLane> reach(Router& router, const RoutePlace& from, double limit);
 
 }  // namespace roadbed::planning

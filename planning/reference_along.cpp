@@ -43,7 +43,8 @@ std::vector<Corridor> corridor_along(const map::RoadMap& road_map, const RoutePa
       ++i;
     }
     const RoutePathPoint& beside = path.points[i];
-    corridor.push_back(room_beside(road_map, beside.lane, beside.share, point, default_speed_mps));
+    corridor.push_back(room_beside(road_map, beside.lane, beside.share, point, default_speed_mps,
+                                   beside.reversed));
   }
   return corridor;
 }

@@ -33,6 +33,11 @@ bool knows_limit(const RouteNetwork& network, std::uint32_t lane) {
                      [](const SpeedPiece& piece) { return piece.limit_mps > 0.0; });
 }
 
+// Of what a change has of the passage itself.
+double middle_inside(const ShareRange& range) {
+  return std::midpoint(std::max(0.0, range.from), std::min(1.0, range.to));
+}
+
 /// Lays passages behind one another as legs, priced by both measures.
 class Assembly {
  public:
@@ -45,11 +50,9 @@ class Assembly {
     double from = passage.range.from;
     for (std::size_t i = 0; i < passage.chain.size(); ++i) {
       const bool changes = i + 1 < passage.chain.size();
-      const double to =
-          changes ? std::midpoint(passage.changes.ranges[i].from, passage.changes.ranges[i].to)
-                  : passage.range.to;
+      const double to = changes ? middle_inside(passage.changes.ranges[i]) : passage.range.to;
       route_.legs.push_back(leg(passage, i, {from, to}));
-      if (i == 0 && !is_first) enter(route_.legs.back());
+      if (i == 0 && !is_first) enter(passage.chain.front(), route_.legs.back());
       from = to;
     }
     route_.lane_changes += static_cast<int>(passage.chain.size()) - 1;
@@ -70,9 +73,10 @@ class Assembly {
   RouteLeg leg(const Passage& passage, std::size_t i, ShareRange part) const {
     const std::uint32_t lane = passage.chain[i], last = passage.chain.back();
     const double lane_m = network_.lanes[lane].length_m, last_m = network_.lanes[last].length_m;
-    RouteLeg leg{.lane = {lane},
-                 .from_s_m = part.from * lane_m,
-                 .to_s_m = part.to * lane_m,
+    RouteLeg leg{.lane = network_.on_map(lane),
+                 .reversed = network_.is_reversed(lane),
+                 .from_s_m = network_.mirrored_m(lane, part.from * lane_m),
+                 .to_s_m = network_.mirrored_m(lane, part.to * lane_m),
                  .exit = LegExit::successor,
                  .turn = network_.lanes[lane].turn,
                  .change_window = {},
@@ -82,8 +86,8 @@ class Assembly {
                  .limit_known = knows_limit(network_, lane)};
     if (i + 1 < passage.chain.size()) {
       const ShareRange& window = passage.changes.ranges[i];
-      leg.change_window = {window.from * lane_m - passage.changes.before_m,
-                           window.to * lane_m + passage.changes.behind_m};
+      leg.change_window = {network_.mirrored_m(lane, window.from * lane_m),
+                           network_.mirrored_m(lane, window.to * lane_m)};
       leg.exit = network_.lanes[lane].left == passage.chain[i + 1] ? LegExit::change_left
                                                                    : LegExit::change_right;
       leg.cost_s += time_.change_cost(1, passage.changes.room_m);
@@ -92,9 +96,9 @@ class Assembly {
     return leg;
   }
 
-  void enter(RouteLeg& leg) const {
-    leg.cost_s += time_.turn_cost(leg.lane.index);
-    leg.cost_m += distance_.turn_cost(leg.lane.index);
+  void enter(std::uint32_t lane, RouteLeg& leg) const {
+    leg.cost_s += time_.turn_cost(lane);
+    leg.cost_m += distance_.turn_cost(lane);
   }
 
   const RouteNetwork& network_;
@@ -119,6 +123,33 @@ void append(Route& route, const Route& next) {
   route.length_m += next.length_m;
   route.lane_changes += next.lane_changes;
   route.legs_of_unknown_speed += next.legs_of_unknown_speed - (first.limit_known ? 0 : 1);
+}
+
+/// The cheapest ways over the first places to the last of them, driven through in one direction.
+struct Partial {
+  RoutePlace at;
+  std::vector<Way> ways;
+  std::uint64_t cost = 0;
+};
+
+std::optional<Partial> cheapest(RouteSolver& solver, const std::vector<Partial>& partials,
+                                const RoutePlace& to) {
+  std::optional<Partial> best;
+  for (const Partial& before : partials) {
+    auto way = solver.solve(before.at, to);
+    if (!way || (best && before.cost + way->cost >= best->cost)) continue;
+    best = Partial{to, before.ways, before.cost + way->cost};
+    best->ways.push_back(std::move(*way));
+  }
+  return best;
+}
+
+// A place that is passed, as it may be driven through: the way goes on as it came.
+std::vector<RoutePlace> as_driven(const RouteNetwork& network, const RoutePlace& place) {
+  if (network.lanes[place.lane.index].twin == kNoLane || place.sense != Sense::either) {
+    return {place};
+  }
+  return {{place, Sense::along}, {place, Sense::against}};
 }
 
 std::string place_name(std::size_t index, std::size_t count) {
@@ -187,12 +218,12 @@ Route Router::route_along(const Way& way) const {
   return std::move(assembly).take();
 }
 
-RouteAnswer Router::find(const map::LanePlace& from, const map::LanePlace& to) {
-  const map::LanePlace places[] = {from, to};
+RouteAnswer Router::find(const RoutePlace& from, const RoutePlace& to) {
+  const RoutePlace places[] = {from, to};
   return find(places);
 }
 
-RouteAnswer Router::find(std::span<const map::LanePlace> places) {
+RouteAnswer Router::find(std::span<const RoutePlace> places) {
   if (places.size() < 2) throw std::invalid_argument("Router: a route needs two places");
   for (std::size_t i = 0; i < places.size(); ++i) {
     check(*road_map_, places[i]);
@@ -200,26 +231,36 @@ RouteAnswer Router::find(std::span<const map::LanePlace> places) {
     std::string fault = unfit(places[i], place_name(i, places.size()));
     return {{}, std::move(fault), {}, i == 0 ? 0 : i - 1};
   }
-  RouteAnswer answer;
+  std::vector<Partial> partials(1, {places.front(), {}, 0});
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    const auto way = solver_->solve(places[i], places[i + 1]);
-    if (!way) {
-      if (!obstacles_) obstacles_ = std::make_unique<ObstacleFinder>(*road_map_, *solver_);
-      const RouteObstacle obstacle = obstacles_->find(places[i], places[i + 1]);
-      return {{}, describe(*road_map_, places[i], places[i + 1], obstacle), obstacle, i};
+    std::vector<Partial> longer;
+    const bool is_last = i + 2 == places.size();
+    for (const RoutePlace& to :
+         is_last ? std::vector{places[i + 1]} : as_driven(solver_->network(), places[i + 1])) {
+      if (auto best = cheapest(*solver_, partials, to)) longer.push_back(std::move(*best));
     }
-    Route part = route_along(*way);
-    if (answer.route) {
-      append(*answer.route, part);
-    } else {
-      answer.route = std::move(part);
-    }
+    if (longer.empty()) return refusal(places, partials.front().at, i);
+    partials = std::move(longer);
   }
-  return answer;
+  return {lay_out(partials.front().ways), {}, {}, 0};
 }
 
-RouteAnswer find_route(const map::RoadMap& road_map, const map::LanePlace& from,
-                       const map::LanePlace& to, const RouteOptions& options) {
+RouteAnswer Router::refusal(std::span<const RoutePlace> places, const RoutePlace& from,
+                            std::size_t part) {
+  if (!obstacles_) obstacles_ = std::make_unique<ObstacleFinder>(*road_map_, *solver_);
+  const RoutePlace& to = places[part + 1];
+  const RouteObstacle obstacle = obstacles_->find(from, to);
+  return {{}, describe(*road_map_, from, to, obstacle), obstacle, part};
+}
+
+Route Router::lay_out(const std::vector<Way>& ways) const {
+  Route route = route_along(ways.front());
+  for (std::size_t i = 1; i < ways.size(); ++i) append(route, route_along(ways[i]));
+  return route;
+}
+
+RouteAnswer find_route(const map::RoadMap& road_map, const RoutePlace& from, const RoutePlace& to,
+                       const RouteOptions& options) {
   return Router(road_map, options).find(from, to);
 }
 

@@ -9,6 +9,7 @@
 #include "roadbed/map/road_map.h"
 #include "roadbed/planning/route_network.h"
 #include "roadbed/planning/route_options.h"
+#include "roadbed/planning/route_place.h"
 
 namespace roadbed::planning {
 
@@ -20,9 +21,11 @@ struct Way;
 enum class LegExit { goal, successor, change_left, change_right };
 
 /// A stretch of one lane. Where it is left to a neighbour, `to_s_m` is the middle of what the
-/// change has of this lane.
+/// change has of this lane. A lane of both directions may be driven against its own: then stations
+/// fall, those of the window, too.
 struct RouteLeg {
   map::LaneId lane;
+  bool reversed = false;
   double from_s_m = 0.0;
   double to_s_m = 0.0;
   LegExit exit = LegExit::goal;
@@ -106,12 +109,12 @@ class Router {
   void prepare();
 
   /// @throws std::invalid_argument if a lane is not in the map or a station not on its lane.
-  RouteAnswer find(const map::LanePlace& from, const map::LanePlace& to);
+  RouteAnswer find(const RoutePlace& from, const RoutePlace& to);
 
   /// From the first place over all others in their order to the last one. Loops are allowed; a
-  /// place that is passed twice counts in its turn.
+  /// place that is passed twice counts in its turn. No vehicle turns round at a place.
   /// @throws std::invalid_argument also if there are fewer than two places.
-  RouteAnswer find(std::span<const map::LanePlace> places);
+  RouteAnswer find(std::span<const RoutePlace> places);
 
   /// A route of a way that was found elsewhere for the same options.
   Route route_along(const Way& way) const;
@@ -128,6 +131,8 @@ class Router {
 
  private:
   struct Measures;
+  RouteAnswer refusal(std::span<const RoutePlace> places, const RoutePlace& from, std::size_t part);
+  Route lay_out(const std::vector<Way>& ways) const;
 
   const map::RoadMap* road_map_;
   RouteOptions options_;
@@ -137,7 +142,7 @@ class Router {
 };
 
 /// One question to a router that nobody needs again.
-RouteAnswer find_route(const map::RoadMap& road_map, const map::LanePlace& from,
-                       const map::LanePlace& to, const RouteOptions& options = {});
+RouteAnswer find_route(const map::RoadMap& road_map, const RoutePlace& from, const RoutePlace& to,
+                       const RouteOptions& options = {});
 
 }  // namespace roadbed::planning

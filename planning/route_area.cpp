@@ -1,6 +1,7 @@
 #include "roadbed/planning/route_area.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "roadbed/planning/route_changes.h"
 
@@ -20,7 +21,8 @@ void add_border(const map::LaneLine& line, const LanePart& part, geometry::Ring&
   ring.push_back(map::Lane::point_at(line, part.to_s_m));
 }
 
-std::vector<geometry::Polygon> pieces_of(const map::Lane& lane, const LanePart& part) {
+std::vector<geometry::Polygon> pieces_of(const map::Lane& lane, LanePart part) {
+  if (part.from_s_m > part.to_s_m) std::swap(part.from_s_m, part.to_s_m);
   const bool whole = part.from_s_m <= kWhole_m && part.to_s_m >= lane.length_m() - kWhole_m;
   if (whole && lane.polygon.size() >= 3) return {{lane.polygon, {}}};
   if (part.to_s_m - part.from_s_m <= kWhole_m) return {};
@@ -49,15 +51,17 @@ std::vector<LanePart> corridor_of(const map::RoadMap& road_map, const Route& rou
   for (const RouteLeg& leg : route.legs) parts.push_back({leg.lane, leg.from_s_m, leg.to_s_m});
   for (std::size_t i = 0; i < route.legs.size(); ++i) {
     for (const ChangePart& change : parts_of_change(road_map, route, i)) {
-      const double length_m = std::max(1e-3, road_map.lane(change.from).length_m());
+      const map::StationRange window = driven_window(road_map, route.legs[i]);
+      const double length_m = std::max(1e-3, road_map.lane(change.from.lane).length_m());
       const auto share_at = [&](double s_m) {
         return std::clamp((s_m - change.offset_m) / length_m, 0.0, 1.0);
       };
-      const double from = share_at(route.legs[i].change_window->from_s_m);
-      const double to = share_at(route.legs[i].change_window->to_s_m);
-      for (const map::LaneId lane : {change.from, change.to}) {
-        const double lane_m = road_map.lane(lane).length_m();
-        parts.push_back({lane, from * lane_m, to * lane_m});
+      const double from = share_at(window.from_s_m);
+      const double to = share_at(window.to_s_m);
+      for (const DrivenLane& lane : {change.from, change.to}) {
+        const double lane_m = road_map.lane(lane.lane).length_m();
+        parts.push_back({lane.lane, mirrored_m(road_map, lane, from * lane_m),
+                         mirrored_m(road_map, lane, to * lane_m)});
       }
     }
   }

@@ -7,7 +7,7 @@
 
 namespace roadbed::planning {
 
-/// Part of a lane.
+/// Part of a lane. Which of its stations is the lower one says nothing.
 struct LanePart {
   map::LaneId lane;
   double from_s_m = 0.0, to_s_m = 0.0;

@@ -9,8 +9,8 @@ constexpr double kSectionEnd_m = 1e-6;
 constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth ending in it
 constexpr std::size_t kMostSpans = 64;
 
-double share_of(const RouteNetwork& network, const map::LanePlace& place) {
-  const double length_m = network.lanes[place.lane.index].length_m;
+double share_of(const RouteNetwork& network, const NetworkPlace& place) {
+  const double length_m = network.lanes[place.lane].length_m;
   return length_m > 0.0 ? std::clamp(place.s_m / length_m, 0.0, 1.0) : 0.0;
 }
 
@@ -59,36 +59,37 @@ class SpansInto {
 
   std::vector<ChangeSpan> find(std::uint32_t lane, double share) {
     for (const auto& chain : chains_to(graph_, network_, lane)) {
-      if (chain.size() != 2) continue;
+      if (chain.size() < 2 || chain.size() > kMostTogether + 1) continue;
       const NetworkLane& from = network_.lanes[chain.front()];
-      const auto window = window_at_start(network_, chain.front(), lane);
+      const auto window = window_at_start(network_, chain);
       if (!window) continue;
       last_m_ = std::min(window->to_s_m, share * from.length_m);
-      if (last_m_ < kLeastPart_m) continue;
-      side_ = from.left == lane ? &NetworkLane::left : &NetworkLane::right;
-      extend({{{chain.front(), lane}}, 0.0, last_m_}, last_m_);
+      if (last_m_ < kLeastPart_m || (chain.size() > 2 && last_m_ >= enough_m_)) continue;
+      side_ = from.left == chain[1] ? &NetworkLane::left : &NetworkLane::right;
+      extend({chain.size() - 1, {{chain.front(), lane}}, 0.0, last_m_}, chain, last_m_);
     }
     return std::move(found_);
   }
 
  private:
-  void extend(const ChangeSpan& open, double room_m) {
-    for (const std::uint32_t before : predecessors_of(graph_, open.lanes.front().from)) {
-      const std::uint32_t beside = network_.lanes[before].*side_;
-      if (beside == kNoLane || !leads_to(network_, beside, open.lanes.front().to)) continue;
-      const auto window = window_at_end(network_, before, beside);
+  void extend(const ChangeSpan& open, const LaneChain& chain, double room_m) {
+    const double all_m = enough_m_ * static_cast<double>(open.changes);
+    for (const std::uint32_t before : predecessors_of(graph_, chain.front())) {
+      const LaneChain behind = lanes_beside(network_, before, side_, open.changes);
+      if (behind.empty() || !lead_to(network_, behind, chain)) continue;
+      const auto window = window_at_end(network_, behind);
       const double length_m = network_.lanes[before].length_m;
       if (!window || length_m - window->from_s_m < kLeastPart_m) continue;
       const double longer_m = room_m + length_m - window->from_s_m;
-      // Else a change that ends in the passage before has all the room that helps.
-      if (longer_m - last_m_ >= enough_m_) continue;
+      // Else changes that end in the passage before have all the room that helps.
+      if (longer_m - last_m_ >= all_m) continue;
       if (found_.size() >= kMostSpans) continue;
       ChangeSpan longer = open;
-      longer.lanes.insert(longer.lanes.begin(), {before, beside});
+      longer.lanes.insert(longer.lanes.begin(), {before, behind.back()});
       longer.start_s_m = window->from_s_m;
-      found_.push_back(longer);
-      if (window->from_s_m > kSectionEnd_m || longer_m >= enough_m_) continue;
-      extend(longer, longer_m);
+      if (open.changes == 1 || length_m - window->from_s_m < enough_m_) found_.push_back(longer);
+      if (window->from_s_m > kSectionEnd_m || longer_m >= all_m) continue;
+      extend(longer, behind, longer_m);
     }
   }
 
@@ -99,10 +100,10 @@ class SpansInto {
   std::vector<ChangeSpan> found_;
 };
 
-std::optional<DirectWay> way_in_passage(const TravelRules& rules, const map::LanePlace& from,
-                                        const map::LanePlace& to) {
+std::optional<DirectWay> way_in_passage(const TravelRules& rules, const NetworkPlace& from,
+                                        const NetworkPlace& to) {
   const RouteNetwork& network = rules.network();
-  Passage passage{chain_between(network, from.lane.index, to.lane.index),
+  Passage passage{chain_between(network, from.lane, to.lane),
                   {share_of(network, from), share_of(network, to)},
                   {}};
   if (passage.chain.empty() || passage.range.from > passage.range.to) return {};
@@ -111,15 +112,13 @@ std::optional<DirectWay> way_in_passage(const TravelRules& rules, const map::Lan
   return DirectWay{{std::move(passage)}, to_ticks(*cost, rules.options().cost)};
 }
 
-}  // namespace
-
-RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules,
-                    const map::LanePlace& place) {
-  RouteEnd end;
+void leave(const RouteGraph& graph, const TravelRules& rules, const NetworkPlace& place,
+           RouteEnd& end) {
   const RouteNetwork& network = rules.network();
   const RouteCost measure = rules.options().cost;
   const double share = share_of(network, place);
-  for (const auto& chain : chains_from(network, place.lane.index)) {
+  if (!rules.may_enter(place.lane)) return;
+  for (const auto& chain : chains_from(network, place.lane)) {
     Passage passage{chain, {share, 1.0}, {}};
     const auto cost = price(rules, passage);
     if (!cost) continue;
@@ -131,22 +130,21 @@ RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules,
     }
   }
   const double enough_m = rules.enough_room_m();
-  for (const ChangeSpan& span : spans_from(network, place.lane.index, place.s_m, enough_m)) {
+  for (const ChangeSpan& span : spans_from(network, place.lane, place.s_m, enough_m)) {
     const auto plan = plan_span(rules, span);
     if (!plan || !needs_first(network, span, enough_m)) continue;
     end.seeds.push_back({graph.exit_of_lane[span.lanes.back().to],
                          to_ticks(cost_of(rules, span, *plan, {share, 0.0}), measure)});
-    end.ways.push_back(passages_of(span, *plan, {share, 1.0}));
+    end.ways.push_back(passages_of(network, span, *plan, {share, 1.0}));
   }
-  return end;
 }
 
-RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place) {
-  RouteEnd end;
+void arrive(const RouteGraph& graph, const TravelRules& rules, const NetworkPlace& place,
+            RouteEnd& end) {
   const RouteNetwork& network = rules.network();
   const RouteCost measure = rules.options().cost;
   const double share = share_of(network, place);
-  for (const auto& chain : chains_to(graph, network, place.lane.index)) {
+  for (const auto& chain : chains_to(graph, network, place.lane)) {
     Passage passage{chain, {0.0, share}, {}};
     if (!rules.may_enter(chain.front())) continue;
     const auto cost = price(rules, passage);
@@ -155,29 +153,60 @@ RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map:
     end.ways.emplace_back().push_back(std::move(passage));
   }
   SpansInto spans(graph, network, rules.enough_room_m());
-  for (const ChangeSpan& span : spans.find(place.lane.index, share)) {
+  for (const ChangeSpan& span : spans.find(place.lane, share)) {
     const auto plan = plan_span(rules, span);
     if (!plan) continue;
     end.seeds.push_back({graph.entry_of_lane[span.lanes.front().from],
                          to_ticks(cost_of(rules, span, *plan, {0.0, share}), measure)});
-    end.ways.push_back(passages_of(span, *plan, {0.0, share}));
+    end.ways.push_back(passages_of(network, span, *plan, {0.0, share}));
   }
-  return end;
 }
 
-std::optional<DirectWay> direct_way(const TravelRules& rules, const map::LanePlace& from,
-                                    const map::LanePlace& to) {
+std::optional<DirectWay> way_between(const TravelRules& rules, const NetworkPlace& from,
+                                     const NetworkPlace& to) {
+  if (!rules.may_enter(from.lane) || !rules.may_enter(to.lane)) return {};
   std::optional<DirectWay> best = way_in_passage(rules, from, to);
   const ShareRange ends{share_of(rules.network(), from), share_of(rules.network(), to)};
-  for (ChangeSpan& span :
-       spans_from(rules.network(), from.lane.index, from.s_m, rules.enough_room_m())) {
+  for (ChangeSpan& span : spans_from(rules.network(), from.lane, from.s_m, rules.enough_room_m())) {
     const auto [last, beside] = span.lanes.back();
-    if (beside != to.lane.index) continue;
+    if (beside != to.lane) continue;
     span.end_s_m = std::min(span.end_s_m, ends.to * rules.network().lanes[last].length_m);
     const auto plan = plan_span(rules, span);
     if (!plan || !needs_first(rules.network(), span, rules.enough_room_m())) continue;
     const Ticks cost = to_ticks(cost_of(rules, span, *plan, ends), rules.options().cost);
-    if (!best || cost < best->cost) best = DirectWay{passages_of(span, *plan, ends), cost};
+    if (!best || cost < best->cost) {
+      best = DirectWay{passages_of(rules.network(), span, *plan, ends), cost};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place) {
+  RouteEnd end;
+  for (const NetworkPlace& way : ways_through(rules.network(), place)) {
+    leave(graph, rules, way, end);
+  }
+  return end;
+}
+
+RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place) {
+  RouteEnd end;
+  for (const NetworkPlace& way : ways_through(rules.network(), place)) {
+    arrive(graph, rules, way, end);
+  }
+  return end;
+}
+
+std::optional<DirectWay> direct_way(const TravelRules& rules, const RoutePlace& from,
+                                    const RoutePlace& to) {
+  std::optional<DirectWay> best;
+  for (const NetworkPlace& start : ways_through(rules.network(), from)) {
+    for (const NetworkPlace& goal : ways_through(rules.network(), to)) {
+      auto way = way_between(rules, start, goal);
+      if (way && (!best || way->cost < best->cost)) best = std::move(way);
+    }
   }
   return best;
 }

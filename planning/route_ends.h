@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadbed/planning/graph_search.h"
+#include "roadbed/planning/route_place.h"
 #include "roadbed/planning/travel_rules.h"
 
 namespace roadbed::planning {
@@ -19,18 +20,18 @@ struct RouteEnd {
 
 /// From a place to the entries of the passages behind its own; where a way is a change over several
 /// passages, to the exit of its last one, the cost of which is not counted yet.
-RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place);
+RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place);
 
 /// From the entry of its passage to a place, or from that of the first one of a change that ends
 /// there.
-RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const map::LanePlace& place);
+RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place);
 
 /// A way within one passage, or over those of one change.
 struct DirectWay {
   std::vector<Passage> passages;
   Ticks cost = 0;
 };
-std::optional<DirectWay> direct_way(const TravelRules& rules, const map::LanePlace& from,
-                                    const map::LanePlace& to);
+std::optional<DirectWay> direct_way(const TravelRules& rules, const RoutePlace& from,
+                                    const RoutePlace& to);
 
 }  // namespace roadbed::planning

@@ -41,8 +41,9 @@ void add_spans(const RouteNetwork& network, std::uint32_t node, double enough_m,
     if (!needs_first(network, span, enough_m)) continue;
     const auto arc = static_cast<std::uint32_t>(graph.arcs());
     for (const auto [from, to] : span.lanes) {
-      graph.spans_over.push_back({from, arc});
-      graph.spans_over.push_back({to, arc});
+      for (const std::uint32_t lane : chain_between(network, from, to)) {
+        graph.spans_over.push_back({lane, arc});
+      }
     }
     add_arc(graph, node, graph.exit_of_lane[span.lanes.back().to]);
     graph.span_arcs.push_back(arc);

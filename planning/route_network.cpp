@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/planning/reversed_lanes.h"
 
 namespace roadbed::planning {
 namespace {
@@ -81,8 +82,9 @@ bool has_choice(const map::RoadMap& road_map, const Lane& lane) {
                      [&](LaneId from) { return road_map.graph().of(from).successors.size() > 1; });
 }
 
-Turn turn_of(const map::RoadMap& road_map, const Lane& lane) {
-  if (!has_choice(road_map, lane)) return Turn::none;
+}  // namespace
+
+Turn bend_of(const Lane& lane) {
   const auto& line = lane.centre.in_map;
   const double chord_m = std::min(kLeastChord_m, 0.5 * line.length_m());
   const double angle_rad =
@@ -91,6 +93,12 @@ Turn turn_of(const map::RoadMap& road_map, const Lane& lane) {
   if (std::abs(angle_rad) > kUTurn_rad) return Turn::u_turn;
   if (std::abs(angle_rad) < kTurn_rad) return Turn::straight;
   return angle_rad > 0.0 ? Turn::left : Turn::right;
+}
+
+namespace {
+
+Turn turn_of(const map::RoadMap& road_map, const Lane& lane) {
+  return has_choice(road_map, lane) ? bend_of(lane) : Turn::none;
 }
 
 map::Participants users_of(const Lane& lane) {
@@ -154,6 +162,13 @@ bool may_use(const Lane& lane, map::Participant kind) {
          lane.type == map::LaneType::taxi;
 }
 
+bool may_reverse(const Lane& lane, map::Participant kind) {
+  // OpenDRIVE gives sidewalks a side of their road, no direction.
+  const bool is_pavement = lane.road && lane.type == map::LaneType::sidewalk;
+  return may_use(lane, kind) &&
+         (!lane.one_way || (is_pavement && kind == map::Participant::pedestrian));
+}
+
 RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptions& options) {
   RouteNetwork network;
   network.lanes.reserve(road_map.lanes().size());
@@ -173,6 +188,7 @@ RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptio
     network.lanes.push_back(made);
   }
   add_signals(road_map, network.lanes);
+  add_reversed_lanes(road_map, options, network);
   return network;
 }
 

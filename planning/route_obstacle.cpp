@@ -33,24 +33,32 @@ void find_gap(const RouteNetwork& network, const std::vector<std::uint32_t>& fro
     const auto nearest = index.nearest(network.lanes[lane].end_in_map);
     if (!nearest || nearest->distance_m >= obstacle.gap_m) continue;
     obstacle.gap_m = nearest->distance_m;
-    obstacle.gap_from = LaneId{lane};
-    obstacle.gap_to = LaneId{to_goal[nearest->index]};
+    obstacle.gap_from = network.on_map(lane);
+    obstacle.gap_to = network.on_map(to_goal[nearest->index]);
   }
 }
 
 // The last lane of the way that can be reached with all rules, and the one behind it.
-void find_block(const Way& way, const std::vector<std::uint32_t>& from_start,
-                RouteObstacle& obstacle) {
+void find_block(const RouteNetwork& network, const Way& way,
+                const std::vector<std::uint32_t>& from_start, RouteObstacle& obstacle) {
   std::optional<LaneId> before;
   for (const Passage& passage : way.passages) {
     for (const std::uint32_t lane : passage.chain) {
       const bool reached = std::binary_search(from_start.begin(), from_start.end(), lane);
-      if (reached) before = LaneId{lane};
+      if (reached) before = network.on_map(lane);
       if (reached || obstacle.blocked_to) continue;
       obstacle.blocked_from = before;
-      obstacle.blocked_to = LaneId{lane};
+      obstacle.blocked_to = network.on_map(lane);
     }
   }
+}
+
+// Lanes of the map: driven both ways they count once.
+std::size_t count_on_map(const RouteNetwork& network, const std::vector<std::uint32_t>& lanes) {
+  std::vector<LaneId> on_map;
+  for (const std::uint32_t lane : lanes) on_map.push_back(network.on_map(lane));
+  std::sort(on_map.begin(), on_map.end());
+  return static_cast<std::size_t>(std::unique(on_map.begin(), on_map.end()) - on_map.begin());
 }
 
 std::string words(Barrier barrier) {
@@ -117,8 +125,8 @@ struct ObstacleFinder::Solvers {
   Solvers(const map::RoadMap& of, const RouteSolver& solver)
       : road_map(of), strict(solver, solver.options()) {}
 
-  std::optional<Way> way_without(const std::vector<Barrier>& rules, const map::LanePlace& from,
-                                 const map::LanePlace& to) {
+  std::optional<Way> way_without(const std::vector<Barrier>& rules, const RoutePlace& from,
+                                 const RoutePlace& to) {
     std::unique_ptr<RouteSolver>& solver = lenient[rules];
     if (!solver) solver = make(rules);
     return solver->solve(from, to);
@@ -148,12 +156,12 @@ ObstacleFinder::ObstacleFinder(const map::RoadMap& road_map, const RouteSolver& 
 ObstacleFinder::~ObstacleFinder() = default;
 ObstacleFinder::ObstacleFinder(ObstacleFinder&&) noexcept = default;
 
-RouteObstacle ObstacleFinder::find(const map::LanePlace& from, const map::LanePlace& to) {
+RouteObstacle ObstacleFinder::find(const RoutePlace& from, const RoutePlace& to) {
   RouteObstacle obstacle;
   RouteSolver& strict = solvers_->strict;
   const auto from_start = strict.lanes_from(from), to_goal = strict.lanes_to(to);
-  obstacle.lanes_from_start = from_start.size();
-  obstacle.lanes_to_goal = to_goal.size();
+  obstacle.lanes_from_start = count_on_map(strict.network(), from_start);
+  obstacle.lanes_to_goal = count_on_map(strict.network(), to_goal);
   find_gap(strict.network(), from_start, to_goal, obstacle);
   std::vector<Barrier> left_out(kRules.begin(), kRules.end());
   std::optional<Way> way = solvers_->way_without(left_out, from, to);
@@ -170,7 +178,7 @@ RouteObstacle ObstacleFinder::find(const map::LanePlace& from, const map::LanePl
     way = std::move(other);
   }
   obstacle.barriers = left_out;
-  find_block(*way, from_start, obstacle);
+  find_block(strict.network(), *way, from_start, obstacle);
   return obstacle;
 }
 

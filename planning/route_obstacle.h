@@ -19,7 +19,7 @@ class ObstacleFinder {
   ~ObstacleFinder();
   ObstacleFinder(ObstacleFinder&&) noexcept;
 
-  RouteObstacle find(const map::LanePlace& from, const map::LanePlace& to);
+  RouteObstacle find(const RoutePlace& from, const RoutePlace& to);
 
  private:
   struct Solvers;

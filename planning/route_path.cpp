@@ -7,12 +7,11 @@
 #include <stdexcept>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/planning/driven_lane.h"
 #include "roadbed/planning/route_changes.h"
 
 namespace roadbed::planning {
 namespace {
-
-using map::LaneId;
 
 constexpr double kLeastPath_m = 1.0;
 constexpr double kChord_m = 0.2;
@@ -33,7 +32,7 @@ struct Crossing {
 
 // Lanes beside each other, and how the path changes between them.
 struct Stretch {
-  std::vector<LaneId> lanes;
+  std::vector<DrivenLane> lanes;
   std::vector<Crossing> changes;
   double from = 0.0, to = 1.0;
 };
@@ -46,12 +45,15 @@ class Stretches {
   std::vector<Stretch> build() && {
     bool joins = false;
     for (const RouteLeg& leg : route_.legs) {
-      const double length_m = length_of(leg.lane);
-      if (!joins) made_.push_back({{}, {}, leg.from_s_m / length_m, 1.0});
+      const double length_m = length_of(driven_lane(leg));
+      const DrivenLane lane = driven_lane(leg);
+      if (!joins) {
+        made_.push_back({{}, {}, mirrored_m(road_map_, lane, leg.from_s_m) / length_m, 1.0});
+      }
       Stretch& stretch = made_.back();
       stretch_of_leg_.push_back(made_.size() - 1);
-      stretch.lanes.push_back(leg.lane);
-      stretch.to = leg.to_s_m / length_m;
+      stretch.lanes.push_back(lane);
+      stretch.to = mirrored_m(road_map_, lane, leg.to_s_m) / length_m;
       joins = leg.exit == LegExit::change_left || leg.exit == LegExit::change_right;
       if (joins) stretch.changes.push_back({stretch.to, 0.0});
     }
@@ -61,7 +63,9 @@ class Stretches {
   }
 
  private:
-  double length_of(LaneId lane) const { return std::max(1e-3, road_map_.lane(lane).length_m()); }
+  double length_of(const DrivenLane& lane) const {
+    return std::max(1e-3, road_map_.lane(lane.lane).length_m());
+  }
 
   // As long as wanted, clear of the neighbours.
   void fit(Stretch& stretch) const {
@@ -79,19 +83,30 @@ class Stretches {
   // A change that takes several stretches goes over all of them about its own middle.
   void spread(std::size_t leg) {
     const std::vector<ChangePart> parts = parts_of_change(road_map_, route_, leg);
-    const auto is_plain = [&](const ChangePart& part) {
-      const Stretch& stretch = made_[stretch_of_leg_[part.leg]];
-      return stretch.lanes.size() == (&part == &parts.front() ? 2U : 1U);
-    };
-    if (parts.size() < 2 || !std::all_of(parts.begin(), parts.end(), is_plain)) return;
-    const map::StationRange window = *route_.legs[leg].change_window;
+    if (parts.size() < 2) return;
+    const map::StationRange window = driven_window(road_map_, route_.legs[leg]);
     const double middle_m = 0.5 * (window.from_s_m + window.to_s_m);
     const double half_m = 0.5 * std::min(wanted_m_, window.to_s_m - window.from_s_m);
     for (const ChangePart& part : parts) {
       const double length_m = length_of(part.from);
-      Stretch& stretch = made_[stretch_of_leg_[part.leg]];
-      stretch.lanes = {part.from, part.to};
-      stretch.changes = {{(middle_m - part.offset_m) / length_m, half_m / length_m}};
+      place(made_[stretch_of_leg_[part.leg]], part,
+            {(middle_m - part.offset_m) / length_m, half_m / length_m});
+    }
+  }
+
+  // Puts a crossing where its lanes stand, or beside the lanes of the stretch.
+  static void place(Stretch& stretch, const ChangePart& part, const Crossing& crossing) {
+    auto& lanes = stretch.lanes;
+    const auto at = std::find(lanes.begin(), lanes.end(), part.from);
+    if (at != lanes.end() && at + 1 != lanes.end()) {
+      if (*(at + 1) == part.to)
+        stretch.changes[static_cast<std::size_t>(at - lanes.begin())] = crossing;
+    } else if (at != lanes.end()) {
+      lanes.push_back(part.to);
+      stretch.changes.push_back(crossing);
+    } else if (lanes.front() == part.to) {
+      lanes.insert(lanes.begin(), part.from);
+      stretch.changes.insert(stretch.changes.begin(), crossing);
     }
   }
 
@@ -102,27 +117,32 @@ class Stretches {
   std::vector<std::size_t> stretch_of_leg_;
 };
 
+Eigen::Vector2d centre_at(const map::RoadMap& road_map, const DrivenLane& lane, double s_m) {
+  return road_map.lane(lane.lane).centre.in_map.at(mirrored_m(road_map, lane, s_m));
+}
+
 // Of a chord, since single segments of real centrelines may point anywhere.
-Eigen::Vector2d direction_of(const map::Lane& lane, double share) {
-  const double s_m = share * lane.length_m();
+Eigen::Vector2d direction_of(const map::RoadMap& road_map, const DrivenLane& lane, double share) {
+  const double s_m = share * road_map.lane(lane.lane).length_m();
   const Eigen::Vector2d chord =
-      lane.centre.in_map.at(s_m + kChord_m) - lane.centre.in_map.at(s_m - kChord_m);
+      centre_at(road_map, lane, s_m + kChord_m) - centre_at(road_map, lane, s_m - kChord_m);
   return chord.norm() > 0.0 ? Eigen::Vector2d(chord.normalized()) : Eigen::Vector2d(1.0, 0.0);
 }
 
-std::optional<LaneId> straightest_successor(const map::RoadMap& road_map, LaneId lane) {
-  const auto heading_at = [&](LaneId id, double share) {
-    const Eigen::Vector2d along = direction_of(road_map.lane(id), share);
+std::optional<DrivenLane> straightest_successor(const map::RoadMap& road_map,
+                                                const DrivenLane& lane) {
+  const auto heading_at_end = [&](const DrivenLane& of) {
+    const Eigen::Vector2d along = direction_of(road_map, of, 1.0);
     return std::atan2(along.y(), along.x());
   };
-  std::optional<LaneId> best;
+  std::optional<DrivenLane> best;
   double least_turn = std::numeric_limits<double>::infinity();
-  for (const LaneId next : road_map.graph().of(lane).successors) {
-    const map::Lane& candidate = road_map.lane(next);
+  for (const DrivenLane& next : following(road_map, lane)) {
+    const map::Lane& candidate = road_map.lane(next.lane);
     if (!is_drivable(candidate.type) || candidate.length_m() <= 0.0) continue;
-    const double turn =
-        std::abs(geometry::wrap_angle(heading_at(next, 1.0) - heading_at(lane, 1.0)));
-    if (turn < least_turn || (turn == least_turn && next < *best)) {
+    if (next.reversed && candidate.one_way) continue;
+    const double turn = std::abs(geometry::wrap_angle(heading_at_end(next) - heading_at_end(lane)));
+    if (turn < least_turn || (turn == least_turn && next.lane < best->lane)) {
       least_turn = turn;
       best = next;
     }
@@ -167,26 +187,30 @@ class Builder {
   RoutePath take() && { return std::move(path_); }
 
  private:
-  double length_m(LaneId lane) const { return std::max(1e-3, road_map_.lane(lane).length_m()); }
-
-  Eigen::Vector2d centre(LaneId lane, double share) const {
-    const auto& line = road_map_.lane(lane).centre.in_map;
-    return line.at(share * line.length_m());
+  double length_m(const DrivenLane& lane) const {
+    return std::max(1e-3, road_map_.lane(lane.lane).length_m());
   }
 
-  Eigen::Vector2d direction(LaneId lane, double share) const {
-    return direction_of(road_map_.lane(lane), share);
+  Eigen::Vector2d centre(const DrivenLane& lane, double share) const {
+    return centre_at(road_map_, lane, share * road_map_.lane(lane.lane).length_m());
+  }
+
+  Eigen::Vector2d direction(const DrivenLane& lane, double share) const {
+    return direction_of(road_map_, lane, share);
   }
 
   RoutePathPoint place(const Stretch& stretch, double share) const {
-    RoutePathPoint point{centre(stretch.lanes[0], share), stretch.lanes[0], share};
+    RoutePathPoint point{centre(stretch.lanes[0], share), {}, share};
+    DrivenLane lane = stretch.lanes[0];
     for (std::size_t i = 0; i < stretch.changes.size(); ++i) {
       const auto [middle, half] = stretch.changes[i];
       const double weight = smooth_step((share - middle + half) / (2.0 * half));
       point.in_map +=
           weight * (centre(stretch.lanes[i + 1], share) - centre(stretch.lanes[i], share));
-      if (weight > 0.5) point.lane = stretch.lanes[i + 1];
+      if (weight > 0.5) lane = stretch.lanes[i + 1];
     }
+    point.lane = lane.lane;
+    point.reversed = lane.reversed;
     return point;
   }
 
@@ -194,7 +218,7 @@ class Builder {
   void take_out_step(const Stretch& stretch) {
     step_ = Eigen::Vector2d(0.0, 0.0);
     if (path_.points.empty() || stretch.from > 0.0) return;
-    const LaneId lane = stretch.lanes.front();
+    const DrivenLane lane = stretch.lanes.front();
     const Eigen::Vector2d along = direction(lane, 0.0), left(-along.y(), along.x());
     const double step_m = (path_.points.back().in_map - place(stretch, 0.0).in_map).dot(left);
     if (std::abs(step_m) < kStep_m || std::abs(step_m) > kMostStep_m) return;
@@ -210,7 +234,7 @@ class Builder {
       const double share = std::lerp(from, to, static_cast<double>(i) / count);
       RoutePathPoint point = place(stretch, share);
       point.in_map += (1.0 - smooth_step(share / step_share_)) * step_;
-      add(point, direction(point.lane, share));
+      add(point, direction({point.lane, point.reversed}, share));
     }
   }
 
@@ -227,7 +251,7 @@ class Builder {
   void go_straight(double rest_m) {
     if (rest_m < options_.step_m || path_.points.empty()) return;
     RoutePathPoint point = path_.points.back();
-    const Eigen::Vector2d along = direction(point.lane, point.share);
+    const Eigen::Vector2d along = direction({point.lane, point.reversed}, point.share);
     const int count = static_cast<int>(std::ceil(rest_m / options_.step_m));
     for (int i = 0; i < count; ++i) {
       point.in_map += rest_m / count * along;

@@ -27,7 +27,7 @@ RouteSolver::RouteSolver(const RouteSolver& other, const RouteOptions& options, 
       guide_(make_guide(*graph_, *network_, weights_)),
       search_(*graph_) {}
 
-std::optional<Way> RouteSolver::solve(const map::LanePlace& from, const map::LanePlace& to) {
+std::optional<Way> RouteSolver::solve(const RoutePlace& from, const RoutePlace& to) {
   if (tree_ == nullptr) return solve_with(weights_, from, to);
   RouteTask asked = task(from, to);
   const GraphPath path = tree_->search.find(asked.start.seeds, asked.goal.seeds);
@@ -41,14 +41,14 @@ RouteSolver::Tree::Tree(const RouteGraph& graph, const Guide& guide, std::span<c
 
 void RouteSolver::prepare() { tree_ = std::make_unique<Tree>(*graph_, guide_, weights_); }
 
-std::optional<Way> RouteSolver::solve_with(std::span<const Ticks> weights,
-                                           const map::LanePlace& from, const map::LanePlace& to) {
+std::optional<Way> RouteSolver::solve_with(std::span<const Ticks> weights, const RoutePlace& from,
+                                           const RoutePlace& to) {
   RouteTask asked = task(from, to);
   const GraphPath path = search_.find(weights, guide_, asked.start.seeds, asked.goal.seeds);
   return answer(std::move(asked), path);
 }
 
-RouteTask RouteSolver::task(const map::LanePlace& from, const map::LanePlace& to) const {
+RouteTask RouteSolver::task(const RoutePlace& from, const RoutePlace& to) const {
   return {leave_from(*graph_, rules_, from), arrive_at(*graph_, rules_, to),
           direct_way(rules_, from, to)};
 }
@@ -94,16 +94,19 @@ Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
 std::vector<Passage> RouteSolver::passages_of_change(std::uint32_t from, std::uint32_t arc) const {
   if (const ChangeSpan* span = graph_->span_of(arc)) {
     const auto plan = plan_span(rules_, *span);
-    return passages_of(*span, plan.value_or(SpanPlan{}), {});
+    return passages_of(*network_, *span, plan.value(), {});
   }
   Passage passage{chain_between(*network_, from, graph_->lane_of_node[graph_->head[arc]]), {}, {}};
   passage.changes = rules_.plan_changes(passage.chain, {}).value_or(ChangePlan{});
   return {std::move(passage)};
 }
 
-std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, std::uint32_t own,
+std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, const RoutePlace& own,
                                                  bool backward) {
-  std::vector<std::uint32_t> lanes{own};
+  std::vector<std::uint32_t> lanes;
+  for (const NetworkPlace& way : ways_through(*network_, own)) {
+    if (rules_.may_enter(way.lane)) lanes.push_back(way.lane);
+  }
   for (const std::vector<Passage>& way : end.ways) {
     lanes.push_back(backward ? way.front().chain.front() : way.back().chain.back());
   }
@@ -115,16 +118,16 @@ std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, std::uint3
   return lanes;
 }
 
-std::vector<Settled> RouteSolver::nodes_within(const map::LanePlace& from, Ticks limit) {
+std::vector<Settled> RouteSolver::nodes_within(const RoutePlace& from, Ticks limit) {
   return search_.reach(weights_, leave_from(*graph_, rules_, from).seeds, limit);
 }
 
-std::vector<std::uint32_t> RouteSolver::lanes_from(const map::LanePlace& place) {
-  return lanes_of(leave_from(*graph_, rules_, place), place.lane.index, false);
+std::vector<std::uint32_t> RouteSolver::lanes_from(const RoutePlace& place) {
+  return lanes_of(leave_from(*graph_, rules_, place), place, false);
 }
 
-std::vector<std::uint32_t> RouteSolver::lanes_to(const map::LanePlace& place) {
-  return lanes_of(arrive_at(*graph_, rules_, place), place.lane.index, true);
+std::vector<std::uint32_t> RouteSolver::lanes_to(const RoutePlace& place) {
+  return lanes_of(arrive_at(*graph_, rules_, place), place, true);
 }
 
 }  // namespace roadbed::planning

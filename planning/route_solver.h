@@ -8,6 +8,7 @@
 #include "roadbed/planning/graph_search.h"
 #include "roadbed/planning/hierarchy_search.h"
 #include "roadbed/planning/route_ends.h"
+#include "roadbed/planning/route_place.h"
 
 namespace roadbed::planning {
 
@@ -47,28 +48,29 @@ class RouteSolver {
   /// For searches of other threads. @pre is_prepared()
   const HierarchyMetric& metric() const { return tree_->metric; }
 
-  std::optional<Way> solve(const map::LanePlace& from, const map::LanePlace& to);
+  std::optional<Way> solve(const RoutePlace& from, const RoutePlace& to);
 
   /// The same with other weights, none of them less than the solver's own. The cost is by them.
-  std::optional<Way> solve_with(std::span<const Ticks> weights, const map::LanePlace& from,
-                                const map::LanePlace& to);
+  std::optional<Way> solve_with(std::span<const Ticks> weights, const RoutePlace& from,
+                                const RoutePlace& to);
 
   /// The same in two steps, for searches that are not the solver's own: between them comes a path
   /// from the task's first seeds to its last.
-  RouteTask task(const map::LanePlace& from, const map::LanePlace& to) const;
+  RouteTask task(const RoutePlace& from, const RoutePlace& to) const;
   std::optional<Way> answer(RouteTask task, const GraphPath& path) const;
 
   /// Nodes that can be reached from a place at no more than that cost, cheapest first.
-  std::vector<Settled> nodes_within(const map::LanePlace& from, Ticks limit);
+  std::vector<Settled> nodes_within(const RoutePlace& from, Ticks limit);
 
-  /// Lanes that can be reached from a place, or from which it can be; in order, with its own.
-  std::vector<std::uint32_t> lanes_from(const map::LanePlace& place);
-  std::vector<std::uint32_t> lanes_to(const map::LanePlace& place);
+  /// Lanes of the network that can be reached from a place, or from which it can be; in order, with
+  /// its own.
+  std::vector<std::uint32_t> lanes_from(const RoutePlace& place);
+  std::vector<std::uint32_t> lanes_to(const RoutePlace& place);
 
  private:
   Way way_along(const RouteEnd& start, const RouteEnd& goal, const GraphPath& path) const;
   std::vector<Passage> passages_of_change(std::uint32_t from, std::uint32_t arc) const;
-  std::vector<std::uint32_t> lanes_of(const RouteEnd& end, std::uint32_t own, bool backward);
+  std::vector<std::uint32_t> lanes_of(const RouteEnd& end, const RoutePlace& own, bool backward);
 
   RouteOptions options_;
   std::shared_ptr<const RouteNetwork> network_;

@@ -12,7 +12,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr auto kLastTurn = static_cast<std::uint8_t>(Turn::u_turn);
 
 // What a network is made of, said once for writing and reading, as in map/map_fields.h.
@@ -44,6 +44,7 @@ constexpr auto network_lane = []<typename Io, typename Lane>(Io& io, Lane& lane)
   io(lane.signal_s_m);
   io(lane.left);
   io(lane.right);
+  io(lane.twin);
   io.check(lane.length_m >= 0.0 && std::isfinite(lane.length_m) && turn <= kLastTurn &&
            std::isfinite(lane.signal_s_m));
   if constexpr (!std::is_const_v<Lane>) {
@@ -82,6 +83,19 @@ bool names_only_its_lanes(const RouteNetwork& network) {
          std::all_of(network.successors.items.begin(), network.successors.items.end(), names_one);
 }
 
+// The map's lanes first, then twins of some of them.
+bool has_sound_twins(const RouteNetwork& network, std::size_t on_map) {
+  const std::size_t lanes = network.lanes.size();
+  if (lanes < on_map) return false;
+  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+    const std::uint32_t twin = network.lanes[lane].twin;
+    if (twin == kNoLane && lane < on_map) continue;
+    if (twin >= lanes || network.lanes[twin].twin != lane) return false;
+    if ((twin < on_map) == (lane < on_map)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string write_route_network(const RouteNetwork& network) {
@@ -101,7 +115,7 @@ std::optional<RouteNetwork> read_route_network(std::string_view bytes, std::size
     io(version);
     if (version != kVersion) return {};
     whole_network(io, network);
-    io.check(io.at_end() && network.lanes.size() == lanes && names_only_its_lanes(network));
+    io.check(io.at_end() && names_only_its_lanes(network) && has_sound_twins(network, lanes));
   } catch (const map::ByteReader::Damaged&) {
     throw std::invalid_argument("read_route_network: its content is damaged");
   }

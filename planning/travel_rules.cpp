@@ -34,7 +34,11 @@ TravelRules::TravelRules(const RouteNetwork& network, const RouteOptions& option
     whole_cost_.push_back(sum_of_pieces(lane, 0.0, network.lanes[lane].length_m));
   }
   if (leniency.closed_lanes) return;
-  for (const map::LaneId lane : options.avoid) closed_.at(lane.index) = true;
+  for (const map::LaneId lane : options.avoid) {
+    closed_.at(lane.index) = true;
+    const std::uint32_t twin = network.lanes[lane.index].twin;
+    if (twin != kNoLane) closed_[twin] = true;
+  }
 }
 
 double TravelRules::speed_mps(std::uint32_t lane, const SpeedPiece& piece) const {

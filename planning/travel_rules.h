@@ -21,11 +21,11 @@ struct ShareRange {
   double from = 0.0, to = 1.0;
 };
 
-/// Where the changes of a passage are made: one range a change, in order and apart, as shares.
+/// Where the changes of a passage are made: one range a change, in order and apart, as shares. One
+/// that takes several passages, see ChangeSpan, reaches below 0 or above 1.
 struct ChangePlan {
   std::vector<ShareRange> ranges;
-  double room_m = 0.0;                    ///< that each of them has
-  double before_m = 0.0, behind_m = 0.0;  ///< of that, outside the passage: see ChangeSpan
+  double room_m = 0.0;  ///< that each of them has
 };
 
 /// The lanes that one passage uses, in turn, the part of it that is driven, and its changes.

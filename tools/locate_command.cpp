@@ -54,6 +54,7 @@ Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
   json["section"] = lane.origin.section;
   json["lane_id"] = lane.origin.source_id;
   json["type"] = name(lane.type);
+  json["one_way"] = lane.one_way;
   json["s_m"] = match.place.s_m;
   json["d_m"] = match.place.d_m;
   json["distance_m"] = match.distance_m;

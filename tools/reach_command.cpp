@@ -2,6 +2,7 @@
 #include <fmt/ostream.h>
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -78,7 +79,7 @@ class ReachCommand : public Command {
       fmt::print(streams.err, "roadbed: nothing can be reached: {}\n", fault);
       return Exit::failed;
     }
-    const auto reached = planning::reach(router, from.on_lane, limit.value);
+    const auto reached = planning::reach(router, from.for_route(), limit.value);
     const char* unit = limit.measure == planning::RouteCost::time ? "s" : "m";
     if (!output_.empty()) write(road_map, reached, unit);
     print(streams, road_map, reached, unit);
@@ -102,7 +103,7 @@ class ReachCommand : public Command {
     double length_m = 0.0;
     Json lanes = Json::array();
     for (const planning::ReachedLane& lane : reached) {
-      length_m += lane.part.to_s_m - lane.part.from_s_m;
+      length_m += std::abs(lane.part.to_s_m - lane.part.from_s_m);
       lanes.push_back({{"lane", road_map.lane(lane.part.lane).name},
                        {"from_s_m", lane.part.from_s_m},
                        {"to_s_m", lane.part.to_s_m},

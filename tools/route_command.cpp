@@ -72,8 +72,8 @@ class RouteCommand : public Command {
     Routes routes{*answer.route};
     std::vector<double> shared{0.0};
     if (alternatives_ > 1) {
-      auto others = planning::find_alternatives(router, asked.from.on_lane, asked.to.on_lane,
-                                                {.count = alternatives_});
+      auto others = planning::find_alternatives(router, asked.from.for_route(),
+                                                asked.to.for_route(), {.count = alternatives_});
       for (std::size_t i = 1; i < others.size(); ++i) {  // the first one is the answer itself
         shared.push_back(others[i].shared);
         routes.push_back(std::move(others[i].route));

@@ -79,27 +79,85 @@ TEST(ChangeSpan, EndsWhereTheLanesPart) {
   EXPECT_EQ(answer.obstacle->barriers, std::vector{Barrier::length});
 }
 
-TEST(ChangeSpan, OfTwoChangesTakesEachItsOwnSections) {
+// Sections of three lanes eastwards, one behind the other.
+struct ThreeLanes {
   tests::MadeMap made;
-  std::vector<std::vector<LaneId>> lanes(3);
-  for (int i = 0; i < 4; ++i) {
-    const auto road = made.add_road(std::to_string(i));
-    const double from = 6.0 * i, to = from + 6.0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double y = -4.0 * static_cast<double>(j);
-      lanes[j].push_back(made.add_lane(road, std::to_string(-1 - static_cast<int>(j)),
-                                       {{from, y}, {to, y}}, {{from, y - 4}, {to, y - 4}}));
-      if (j > 0) made.put_beside(lanes[j - 1].back(), lanes[j].back());
-      if (i > 0) made.link(lanes[j][lanes[j].size() - 2], lanes[j].back());
+  std::vector<std::vector<LaneId>> lanes{3};
+
+  explicit ThreeLanes(const std::vector<double>& lengths_m) {
+    double from = 0.0;
+    for (std::size_t i = 0; i < lengths_m.size(); ++i) {
+      const auto road = made.add_road(std::to_string(i));
+      const double to = from + lengths_m[i];
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double y = -4.0 * static_cast<double>(j);
+        lanes[j].push_back(made.add_lane(road, std::to_string(-1 - static_cast<int>(j)),
+                                         {{from, y}, {to, y}}, {{from, y - 4}, {to, y - 4}}));
+        if (j > 0) made.put_beside(lanes[j - 1].back(), lanes[j].back());
+        if (i > 0) made.link(lanes[j][i - 1], lanes[j][i]);
+      }
+      from = to;
     }
   }
-  const auto road_map = made.build();
-  const RouteAnswer answer = find_route(road_map, {lanes[0][0], 0, 0}, {lanes[2][3], 6, 0});
-  ASSERT_TRUE(answer.route);
+
+  RouteAnswer across(const map::RoadMap& road_map) const {
+    const LaneId last = lanes[2].back();
+    return find_route(road_map, {lanes[0].front(), 0, 0},
+                      {last, road_map.lane(last).length_m(), 0});
+  }
+};
+
+TEST(ChangeSpan, HoldsTwoChangesThatShareASection) {
+  const ThreeLanes road({7.0, 7.0, 7.0});
+  const auto road_map = road.made.build();
+  const RouteAnswer answer = road.across(road_map);
+  ASSERT_TRUE(answer.route) << "21 m are 10.5 m for each";
   EXPECT_EQ(answer.route->lane_changes, 2);
-  EXPECT_NEAR(answer.route->cost_s, 24.0 / kLimit_mps + 2 * 5.0 * 40.0 / 12.0, 1e-9);
-  EXPECT_FALSE(find_route(road_map, {lanes[0][0], 0, 0}, {lanes[2][2], 6, 0}).route)
-      << "three sections do not hold two changes of two sections each";
+  EXPECT_NEAR(answer.route->cost_s, 21.0 / kLimit_mps + 2 * 5.0 * 40.0 / 10.5, 1e-9);
+  const auto& legs = answer.route->legs;
+  ASSERT_EQ(legs.size(), 5U);
+  EXPECT_EQ(legs[0].exit, LegExit::change_right);
+  EXPECT_NEAR(legs[0].change_window->from_s_m, 0.0, 1e-9);
+  EXPECT_NEAR(legs[0].change_window->to_s_m, 10.5, 1e-9);
+  EXPECT_EQ(legs[2].lane, road.lanes[1][1]) << "the middle lane in the middle section";
+  EXPECT_EQ(legs[3].exit, LegExit::change_right);
+  EXPECT_NEAR(legs[3].change_window->from_s_m, 10.5 - 14.0, 1e-9);
+  EXPECT_NEAR(legs[3].change_window->to_s_m, 7.0, 1e-9);
+  RouteOptions options;
+  options.avoid = {road.lanes[1][1]};
+  EXPECT_FALSE(
+      find_route(road_map, {road.lanes[0][0], 0, 0}, {road.lanes[2][2], 7, 0}, options).route);
+}
+
+TEST(ChangeSpan, HoldsTwoChangesOverOneSectionEnd) {
+  const ThreeLanes road({15.0, 7.0});
+  const auto road_map = road.made.build();
+  const RouteAnswer answer = road.across(road_map);
+  ASSERT_TRUE(answer.route) << "22 m are 11 m for each";
+  EXPECT_NEAR(answer.route->cost_s, 22.0 / kLimit_mps + 2 * 5.0 * 40.0 / 11.0, 1e-9);
+}
+
+TEST(ChangeSpan, OfTwoChangesNeedsTheLeastLengthTwice) {
+  const ThreeLanes road({6.0, 6.0, 7.0});
+  EXPECT_FALSE(road.across(road.made.build()).route) << "19 m are 9.5 m for each";
+}
+
+TEST(ChangeSpan, OfTwoChangesIsOneSmoothPath) {
+  const ThreeLanes road(std::vector<double>(16, 5.0));
+  const auto road_map = road.made.build();
+  const RouteAnswer answer = road.across(road_map);
+  ASSERT_TRUE(answer.route);
+  EXPECT_NEAR(answer.route->cost_s, 80.0 / kLimit_mps + 10.0, 1e-9);
+  const RoutePath path = path_along(road_map, *answer.route, {.lead_m = 0.0, .extend_m = 0.0});
+  double steepest = 0.0;
+  for (std::size_t i = 1; i < path.points.size(); ++i) {
+    const Eigen::Vector2d step = path.points[i].in_map - path.points[i - 1].in_map;
+    EXPECT_LE(step.y(), 1e-9) << "never back to the left";
+    steepest = std::max(steepest, -step.y() / step.x());
+  }
+  EXPECT_NEAR(path.points.front().in_map.y(), -2.0, 1e-6);
+  EXPECT_NEAR(path.points.back().in_map.y(), -10.0, 1e-6);
+  EXPECT_NEAR(steepest, 1.875 * 4.0 / 40.0, 2e-3) << "10t³ − 15t⁴ + 6t⁵ over 40 m each";
 }
 
 TEST(ChangeSpan, IsOneSmoothPathWhoseCorridorHoldsBothLanes) {

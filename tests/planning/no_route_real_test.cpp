@@ -6,42 +6,80 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/route.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/two_way_oracle.h"
 
 namespace roadbed::planning {
 namespace {
 
 using map::LaneId;
 
-// Whether links and neighbours of any kind lead from one lane to another, by flooding the map.
-bool connected(const map::RoadMap& road_map, LaneId from, LaneId to, bool both_ways, bool all_lanes,
-               bool all_markings) {
-  std::vector<bool> seen(road_map.lanes().size(), false);
-  std::vector<LaneId> open{from};
-  seen[from.index] = true;
-  const auto visit = [&](LaneId lane) {
-    if (seen[lane.index]) return;
-    if (!all_lanes && !may_use(road_map.lane(lane), map::Participant::car)) return;
-    seen[lane.index] = true;
-    open.push_back(lane);
-  };
-  while (!open.empty()) {
-    const map::LaneLinks& links = road_map.graph().of(open.back());
-    open.pop_back();
-    for (const LaneId next : links.successors) visit(next);
+// Whether links and neighbours of any kind lead from one lane to another, by flooding the map: each
+// lane in its direction, and against it where that is allowed, or everywhere if `both_ways`.
+class Flood {
+ public:
+  Flood(const map::RoadMap& road_map, bool both_ways, bool all_lanes, bool all_markings)
+      : road_map_(road_map),
+        both_ways_(both_ways),
+        all_lanes_(all_lanes),
+        all_markings_(all_markings),
+        seen_(2 * road_map.lanes().size(), false) {}
+
+  bool connects(LaneId from, LaneId to) {
+    visit(from, false);
+    visit(from, true);
+    while (!open_.empty()) {
+      const auto [lane, against] = open_.back();
+      open_.pop_back();
+      leave(lane, against);
+    }
+    return seen_[2 * to.index] || seen_[2 * to.index + 1];
+  }
+
+ private:
+  void visit(LaneId lane, bool against) {
+    const map::Lane& entered = road_map_.lane(lane);
+    if (seen_[2 * lane.index + (against ? 1 : 0)]) return;
+    if (!all_lanes_ && !may_use(entered, map::Participant::car)) return;
+    if (against && !both_ways_ && entered.one_way) return;
+    seen_[2 * lane.index + (against ? 1 : 0)] = true;
+    open_.push_back({lane, against});
+  }
+
+  void leave(LaneId lane, bool against) {
+    for (const map::Lane& next : road_map_.lanes()) {
+      for (const bool next_against : {false, true}) {
+        if (tests::leads_to(road_map_, lane, against, next.id, next_against)) {
+          visit(next.id, next_against);
+        }
+      }
+    }
+    const map::LaneLinks& links = road_map_.graph().of(lane);
     for (const auto& beside : {links.left, links.right}) {
       if (!beside) continue;
-      if (beside->same_direction && (all_markings || beside->change_allowed())) visit(beside->lane);
-      if (!beside->same_direction && both_ways) visit(beside->lane);
+      if (all_markings_ || beside->change_allowed()) {
+        visit(beside->lane, beside->same_direction == against);
+      }
+      if (both_ways_ && !beside->same_direction) visit(beside->lane, against);
     }
-    if (!both_ways) continue;
-    for (const LaneId before : links.predecessors) visit(before);
+    if (!both_ways_) return;
+    visit(lane, !against);
   }
-  return seen[to.index];
+
+  const map::RoadMap& road_map_;
+  bool both_ways_, all_lanes_, all_markings_;
+  std::vector<bool> seen_;
+  std::vector<std::pair<LaneId, bool>> open_;
+};
+
+bool connected(const map::RoadMap& road_map, LaneId from, LaneId to, bool both_ways, bool all_lanes,
+               bool all_markings) {
+  return Flood(road_map, both_ways, all_lanes, all_markings).connects(from, to);
 }
 
 TEST(RouteObstacle, OnARealMapHoldsAgainstFloodingIt) {

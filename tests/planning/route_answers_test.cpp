@@ -32,7 +32,7 @@ LanePlace place(const char* lane, double s_m) { return {*town().find_lane(lane),
 TEST(Via, CostsAddUpAndTheStopIsKept) {
   Router router(town());
   const LanePlace a = place("1/0/-1", 10.0), b = place("7/0/1", 55.0), c = place("1/0/-1", 14.0);
-  const LanePlace places[] = {a, b, c};
+  const RoutePlace places[] = {a, b, c};
   const RouteAnswer whole = router.find(places);
   ASSERT_TRUE(whole.route) << whole.reason;
   const RouteAnswer first = router.find(a, b), second = router.find(b, c);
@@ -51,7 +51,7 @@ TEST(Via, CostsAddUpAndTheStopIsKept) {
 TEST(Via, ALoopOverTheGoalIsDrivenTwice) {
   Router router(town());
   const LanePlace goal = place("1/0/-1", 14.0);
-  const LanePlace places[] = {place("1/0/-1", 10.0), goal, goal, place("1/0/-1", 11.0)};
+  const RoutePlace places[] = {place("1/0/-1", 10.0), goal, goal, place("1/0/-1", 11.0)};
   const RouteAnswer answer = router.find(places);
   ASSERT_TRUE(answer.route) << answer.reason;
   EXPECT_EQ(answer.route->stops.size(), 2U);

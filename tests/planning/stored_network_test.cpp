@@ -20,7 +20,10 @@ TEST(StoredNetwork, IsReadAsItWasWritten) {
   const auto town = map::load_map(tests::data_folder() / "town.xodr");
   for (const RouteNetwork& network : {tests::lane_grid(3, 2), make_route_network(town)}) {
     const std::string bytes = write_route_network(network);
-    const auto read = read_route_network(bytes, network.lanes.size());
+    std::size_t on_map = 0;
+    for (std::uint32_t i = 0; i < network.lanes.size(); ++i)
+      on_map += network.is_reversed(i) ? 0 : 1;
+    const auto read = read_route_network(bytes, on_map);
     ASSERT_TRUE(read);
     EXPECT_EQ(write_route_network(*read), bytes);
     EXPECT_EQ(read->successors.items, network.successors.items);

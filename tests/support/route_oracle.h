@@ -45,7 +45,7 @@ class RouteOracle {
         if (at_start && lane.id != from.lane) continue;
         const std::size_t node = at_start ? start : lane.id.index;
         for_each_span(lane.id, [&](const Span& span) {
-          const map::LaneId last = span.to.back();
+          const map::LaneId last = span.back().back();
           if (const auto price = price_of(span, at_start ? begin : 0.0, 1.0)) {
             add_edge(node, lanes + last.index, *price - travel(last, 0, 1), graph);
           }
@@ -102,30 +102,42 @@ class RouteOracle {
     return time_s;
   }
 
-  // One change beside several passages.
-  struct Span {
-    std::vector<map::LaneId> from, to;
-  };
+  // Changes beside several passages: of each passage the lanes from the one that is left on.
+  using Span = std::vector<std::vector<map::LaneId>>;
 
   template <typename Visit>
   void for_each_span(map::LaneId lane, const Visit& visit) const {
     for (const bool leftwards : {true, false}) {
-      if (const auto beside = changed_to(lane, leftwards)) {
-        lengthen({{lane}, {*beside}}, leftwards, visit);
+      for (std::size_t count = 1; count <= 3; ++count) {
+        const auto lanes = beside(lane, leftwards, count);
+        if (!lanes.empty()) lengthen({lanes}, leftwards, visit);
       }
     }
   }
 
+  std::vector<map::LaneId> beside(map::LaneId lane, bool leftwards, std::size_t count) const {
+    std::vector<map::LaneId> lanes{lane};
+    while (lanes.size() <= count) {
+      const auto next = changed_to(lanes.back(), leftwards);
+      if (!next) return {};
+      lanes.push_back(*next);
+    }
+    return lanes;
+  }
+
   template <typename Visit>
   void lengthen(const Span& span, bool leftwards, const Visit& visit) const {
-    if (span.from.size() > 6) return;
-    for (const map::LaneId next : road_map_.graph().of(span.from.back()).successors) {
-      const auto beside = changed_to(next, leftwards);
-      const auto& ahead = road_map_.graph().of(span.to.back()).successors;
-      if (!beside || std::count(ahead.begin(), ahead.end(), *beside) == 0) continue;
+    if (span.size() > 18) return;
+    for (const map::LaneId next : road_map_.graph().of(span.back().front()).successors) {
+      const auto lanes = beside(next, leftwards, span.front().size() - 1);
+      bool follows = !lanes.empty();
+      for (std::size_t i = 0; i < lanes.size(); ++i) {
+        const auto& ahead = road_map_.graph().of(span.back()[i]).successors;
+        follows = follows && std::count(ahead.begin(), ahead.end(), lanes[i]) > 0;
+      }
+      if (!follows) continue;
       Span longer = span;
-      longer.from.push_back(next);
-      longer.to.push_back(*beside);
+      longer.push_back(lanes);
       visit(longer);
       lengthen(longer, leftwards, visit);
     }
@@ -138,30 +150,39 @@ class RouteOracle {
     return may ? std::optional(next->lane) : std::nullopt;
   }
 
-  // The way from a share of the first passage to one of the last, and the change on it; none if
-  // there is too little room, or one passage fewer has enough of it.
+  // The way from a share of the first passage to one of the last, and the changes on it; none if
+  // there is too little room, or one passage fewer has enough of it; several only where neither the
+  // first nor the last passage has enough for one.
   std::optional<double> price_of(const Span& span, double begin, double end) const {
     std::vector<double> parts_m;
-    double room_m = 0.0;
-    for (std::size_t i = 0; i < span.from.size(); ++i) {
-      if (!usable(span.from[i]) || !usable(span.to[i])) return {};
-      const double share = (i + 1 == span.from.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
-      parts_m.push_back(share * road_map_.lane(span.from[i]).length_m());
-      room_m += parts_m.back();
+    double all_m = 0.0;
+    for (std::size_t i = 0; i < span.size(); ++i) {
+      for (const map::LaneId lane : span[i]) {
+        if (!usable(lane)) return {};
+      }
+      const double share = (i + 1 == span.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
+      parts_m.push_back(share * road_map_.lane(span[i].front()).length_m());
+      all_m += parts_m.back();
     }
-    const double enough_m =
+    const std::size_t changes = span.front().size() - 1;
+    const double count = static_cast<double>(changes), room_m = all_m / count;
+    const double alone_m =
         std::max(options_.comfortable_lane_change_m, options_.least_lane_change_m);
+    if (changes > 1 && (parts_m.front() >= alone_m || parts_m.back() >= alone_m)) return {};
+    const double enough_m = count * alone_m;
     if (parts_m.front() < 0.1 || parts_m.back() < 0.1) return {};
     if (room_m < options_.least_lane_change_m) return {};
-    if (room_m - parts_m.front() >= enough_m || room_m - parts_m.back() >= enough_m) return {};
+    if (all_m - parts_m.front() >= enough_m || all_m - parts_m.back() >= enough_m) return {};
     const double price = options_.cost == planning::RouteCost::distance
                              ? options_.prices_m.lane_change
                              : options_.prices_s.lane_change;
-    double cost = price * std::max(1.0, options_.comfortable_lane_change_m / room_m), done_m = 0.0;
-    for (std::size_t i = 0; i < span.from.size(); ++i) {
+    double cost = count * price * std::max(1.0, options_.comfortable_lane_change_m / room_m);
+    double done_m = 0.0;
+    for (std::size_t i = 0; i < span.size(); ++i) {
       done_m += parts_m[i];
-      cost += travel(done_m < 0.5 * room_m ? span.from[i] : span.to[i], i == 0 ? begin : 0.0,
-                     i + 1 == span.from.size() ? end : 1.0);
+      std::size_t made = 0;
+      while (made < changes && (static_cast<double>(made) + 0.5) * room_m <= done_m + 1e-9) ++made;
+      cost += travel(span[i][made], i == 0 ? begin : 0.0, i + 1 == span.size() ? end : 1.0);
     }
     return cost;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace roadbed::tools {
 namespace {
@@ -12,8 +13,9 @@ LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyli
   return line;
 }
 
-// The stretch of a line between two stations, with both its ends.
+// The stretch of a line between two stations, with both its ends, from the lower one on.
 geometry::Polyline stretch(const geometry::Polyline& line, double from_s_m, double to_s_m) {
+  if (from_s_m > to_s_m) std::swap(from_s_m, to_s_m);
   std::vector<Eigen::Vector2d> points{line.at(from_s_m)};
   for (std::size_t i = 0; i < line.points().size(); ++i) {
     const double s_m = line.stations_m()[i];

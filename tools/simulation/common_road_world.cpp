@@ -27,6 +27,7 @@ using map::common_road::ObstacleRole;
 using map::common_road::PlanningProblem;
 using map::common_road::State;
 using planning::Route;
+using planning::Sense;
 
 constexpr double kDefaultSpeed_mps = 50.0 / 3.6;
 constexpr double kStopping_s = 10.0;      // to come to rest after the goal is missed
@@ -115,13 +116,14 @@ std::vector<LanePlace> start_places(const Source& source, const Pose2& start,
         match.verdict != planning::MatchVerdict::possible) {
       continue;
     }
+    if (match.sense == planning::Sense::against) continue;
     LanePlace place = match.place;
     place.s_m = std::max(0.0, place.s_m - ahead_m);
     places.push_back(place);
   }
   if (places.empty()) {
-    source.refuse("a start off the road", "a lane that a car may use there",
-                  "correct the initial state");
+    source.refuse("a start off the road, or against a lane's direction",
+                  "a lane that a car may use there", "correct the initial state");
   }
   return places;
 }
@@ -197,11 +199,12 @@ std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>
   std::optional<Route> best;
   for (const LanePlace& goal : goal_places(source, state)) {
     for (const LanePlace& start : starts) {
-      auto answer = planning::find_route(source.road_map, start, goal);
+      auto answer = planning::find_route(source.road_map, {start, Sense::along}, goal);
       if (!answer.route) continue;
       if (!state.lanes.empty()) {
         const LanePlace near = within_reach(source.road_map, *answer.route, goal, reach);
-        if (auto nearer = planning::find_route(source.road_map, start, near); nearer.route) {
+        if (auto nearer = planning::find_route(source.road_map, {start, Sense::along}, near);
+            nearer.route) {
           answer = std::move(nearer);
         }
       }
@@ -228,7 +231,7 @@ Route route_of(const Source& source, const std::vector<LanePlace>& starts, const
                   "correct the goal, or the lanelets' links");
   }
   const LanePlace end = straight_ahead(source.road_map, starts.front(), reach + kRoadAhead_m);
-  auto answer = planning::find_route(source.road_map, starts.front(), end);
+  auto answer = planning::find_route(source.road_map, {starts.front(), Sense::along}, end);
   if (!answer.route) source.refuse("no lane ahead: " + answer.reason, "a lane", "correct the map");
   return *std::move(answer.route);
 }
@@ -311,7 +314,9 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
       {.default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m});
   const planning::RouteLeg& last = route.legs.back();
   const double beyond_m =
-      road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
+      last.reversed
+          ? std::min(last.to_s_m, kBeyondGoal_m)
+          : road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
   const double road_end_s_m = line.goal_s_m() + beyond_m;
   World world{.road_map = std::move(road_map),
               .occupancy = {},

@@ -41,9 +41,9 @@ Place find(const Scenario& scenario, const map::RoadMap& road_map, const Scenari
 }
 
 Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
-                      const map::LanePlace& from, const ScenarioPlace& to) {
+                      const planning::RoutePlace& from, const ScenarioPlace& to) {
   planning::RouteAnswer answer =
-      planning::find_route(road_map, from, find(scenario, road_map, to).on_lane);
+      planning::find_route(road_map, from, find(scenario, road_map, to).for_route());
   if (!answer.route) {
     refuse(scenario, to.pointer, "no route leads there: " + answer.reason,
            "choose another start or goal");
@@ -107,7 +107,8 @@ class ObstacleMaker {
 
   geometry::Trajectory along_route(const TrafficObstacle& traffic,
                                    const map::LanePlace& start) const {
-    const Route route = route_or_refuse(scenario_, road_map_, start, *traffic.to);
+    const Route route =
+        route_or_refuse(scenario_, road_map_, {start, planning::Sense::along}, *traffic.to);
     const ReferenceLine line = ReferenceLine::along(road_map_, route);
     const auto pose_at = [&](double s_m) {
       const planning::ReferencePoint point = line.at(s_m);
@@ -144,7 +145,11 @@ std::vector<Obstacle> World::obstacles_at(double t_s) const {
 World make_world(const Scenario& scenario) {
   map::RoadMap road_map = map::load_map(scenario.map_file);
   const Place start = find(scenario, road_map, scenario.start);
-  Route route = route_or_refuse(scenario, road_map, start.on_lane, scenario.goal);
+  // Without a heading the vehicle stands as its lane runs.
+  const bool against = start.sense == planning::Sense::against;
+  Route route = route_or_refuse(
+      scenario, road_map,
+      {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
   ReferenceLine line = ReferenceLine::along(road_map, route);
   const ObstacleMaker maker(scenario, road_map);
   std::vector<Obstacle> obstacles;

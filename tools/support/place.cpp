@@ -78,7 +78,7 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
     refuse(text, fmt::format("station {} m", s_m),
            fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
   }
-  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false, {}};
+  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false, planning::Sense::either, {}};
 }
 
 [[noreturn]] void refuse_far(const map::RoadMap& road_map, const std::string& text,
@@ -120,6 +120,7 @@ Place at_point(const map::RoadMap& road_map, const std::string& text,
   Place place{chosen.place,
               {in_map.x(), in_map.y(), heading_rad.value_or(chosen.heading_rad)},
               heading_rad.has_value(),
+              chosen.sense,
               {}};
   place.candidates = std::move(candidates);
   return place;

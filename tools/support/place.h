@@ -21,7 +21,10 @@ struct Place {
   map::LanePlace on_lane;
   geometry::Pose2 map_from_vehicle;  ///< as given; heading of the lane where none is given
   bool has_heading = false;          ///< given, not the lane's
+  planning::Sense sense = planning::Sense::either;   ///< which way, on a lane of both directions
   std::vector<planning::PlaceCandidate> candidates;  ///< of a point; the chosen one first
+
+  planning::RoutePlace for_route() const { return {on_lane, sense}; }
 };
 
 /// What is wrong with the writing of a place, empty if nothing is. Needs no map.

@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Row : OdRow {
-  std::optional<map::LanePlace> from_place, to_place;
+  std::optional<planning::RoutePlace> from_place, to_place;
 };
 
 struct Cell {
@@ -32,8 +32,8 @@ struct Cell {
 void place_row(const map::RoadMap& road_map, const planning::Router& router,
                map::Participant participant, Row& row) {
   try {
-    row.from_place = find_place(road_map, row.from, participant).on_lane;
-    row.to_place = find_place(road_map, row.to, participant).on_lane;
+    row.from_place = find_place(road_map, row.from, participant).for_route();
+    row.to_place = find_place(road_map, row.to, participant).for_route();
   } catch (const map::InputError& error) {
     row.fault = error.what();
     return;
@@ -156,7 +156,7 @@ class Batch {
 
   // The table says that there is none, the document why.
   Cell no_route(Own& own, const Row& row) const {
-    const map::LanePlace from = *row.from_place, to = *row.to_place;
+    const planning::RoutePlace from = *row.from_place, to = *row.to_place;
     Cell cell =
         none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
                               road_map_.lane(from.lane).name, road_map_.lane(to.lane).name));

@@ -45,10 +45,23 @@ const char* word(planning::Turn turn) {
   return "";
 }
 
+const char* word(planning::Sense sense) {
+  switch (sense) {
+    case planning::Sense::either:
+      return "either";
+    case planning::Sense::along:
+      return "along";
+    case planning::Sense::against:
+      return "against";
+  }
+  return "";
+}
+
 Json leg_json(const map::RoadMap& road_map, const planning::RouteLeg& leg) {
   Json json = {{"lane", road_map.lane(leg.lane).name},
                {"from_s_m", leg.from_s_m},
                {"to_s_m", leg.to_s_m},
+               {"reversed", leg.reversed},
                {"exit", word(leg.exit)},
                {"turn", word(leg.turn)},
                {"length_m", leg.length_m},
@@ -184,6 +197,7 @@ Json place_json(const map::RoadMap& road_map, const Place& place) {
                           {"d_m", candidate.place.d_m},
                           {"distance_m", candidate.distance_m},
                           {"heading_rad", candidate.heading_rad},
+                          {"sense", word(candidate.sense)},
                           {"misfit_m", candidate.misfit_m},
                           {"verdict", planning::name(candidate.verdict)}});
   }
@@ -221,7 +235,7 @@ std::string area_geojson(const map::RoadMap& road_map, const std::vector<geometr
 std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::Route>& routes) {
   std::string text =
       "route,leg,lane,from_s_m,to_s_m,exit,turn,change_from_s_m,change_to_s_m,length_m,cost_s,"
-      "cost_m,speed_limit_known\n";
+      "cost_m,speed_limit_known,reversed\n";
   for (std::size_t i = 0; i < routes.size(); ++i) {
     for (std::size_t j = 0; j < routes[i].legs.size(); ++j) {
       const planning::RouteLeg& leg = routes[i].legs[j];
@@ -229,10 +243,10 @@ std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::
           leg.change_window
               ? fmt::format("{:.3f},{:.3f}", leg.change_window->from_s_m, leg.change_window->to_s_m)
               : ",";
-      text += fmt::format("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{:.4f},{:.4f},{}\n", i, j,
+      text += fmt::format("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{:.4f},{:.4f},{},{}\n", i, j,
                           road_map.lane(leg.lane).name, leg.from_s_m, leg.to_s_m, word(leg.exit),
                           word(leg.turn), window, leg.length_m, leg.cost_s, leg.cost_m,
-                          leg.limit_known ? 1 : 0);
+                          leg.limit_known ? 1 : 0, leg.reversed ? 1 : 0);
     }
   }
   return text;

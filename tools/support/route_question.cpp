@@ -155,10 +155,10 @@ void RouteQuestion::declare(Arguments& arguments, bool with_batch) {
   rules_.declare(arguments);
 }
 
-std::vector<map::LanePlace> RouteQuestion::Asked::places() const {
-  std::vector<map::LanePlace> places{from.on_lane};
-  for (const Place& place : via) places.push_back(place.on_lane);
-  places.push_back(to.on_lane);
+std::vector<planning::RoutePlace> RouteQuestion::Asked::places() const {
+  std::vector<planning::RoutePlace> places{from.for_route()};
+  for (const Place& place : via) places.push_back(place.for_route());
+  places.push_back(to.for_route());
   return places;
 }
 

@@ -47,7 +47,7 @@ class RouteQuestion {
     planning::RouteOptions options;
 
     /// Start, places between, goal.
-    std::vector<map::LanePlace> places() const;
+    std::vector<planning::RoutePlace> places() const;
   };
 
   /// @throws InputError for a place or lane that is not on the map.
