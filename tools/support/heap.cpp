@@ -13,14 +13,14 @@ namespace {
 constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
 constexpr std::uintptr_t kMapPerFile = 8;  // of memory, a file's size of bytes
 // Huge pages that the system has to find first cost more than they save.
-constexpr std::uintptr_t kMost = std::uintptr_t{1} << 27;
+constexpr std::uintptr_t kMostHugeBytes = std::uintptr_t{1} << 27;
 
 }  // namespace
 
 void keep_heap_in_huge_pages(const std::filesystem::path& input) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(input, error);
-  if (error || size > kMost / kMapPerFile) return;
+  if (error || size > kMostHugeBytes / kMapPerFile) return;
   // One heap that grows and is not given back; blocks of its own would be new memory each time.
   ::mallopt(M_MMAP_MAX, 0);
   ::mallopt(M_TRIM_THRESHOLD, -1);
