@@ -13,8 +13,10 @@ bool CandidateSearch::is_later(const Entry& a, const Entry& b) {
   return a.cost != b.cost ? a.cost > b.cost : !a.is_block && b.is_block;
 }
 
-CandidateSearch::CandidateSearch(std::vector<Row> rows, std::size_t lanes, bool evaluate_all)
-    : rows_(std::move(rows)),
+CandidateSearch::CandidateSearch(std::vector<Row> rows, std::vector<KernelPoint> points,
+                                 std::size_t lanes, bool evaluate_all)
+    : points_(std::move(points)),
+      rows_(std::move(rows)),
       lanes_(lanes),
       cost_(rows_.size() * lanes),
       rejection_(rows_.size() * lanes, Rejection::none) {

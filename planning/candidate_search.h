@@ -17,8 +17,10 @@ inline constexpr double kEqualCost = 1e-12;
 class CandidateSearch {
  public:
   /// @param rows      one per length of the grid, with equal lanes.
+  /// @param points    what the rows refer to.
   /// @param evaluate_all  from the start.
-  CandidateSearch(std::vector<Row> rows, std::size_t lanes, bool evaluate_all);
+  CandidateSearch(std::vector<Row> rows, std::vector<KernelPoint> points, std::size_t lanes,
+                  bool evaluate_all);
 
   /// Takes out the cheapest candidate and all that cost the same, by index with d_e fastest, in no
   /// particular order. Empty: there is none left.
@@ -46,6 +48,7 @@ class CandidateSearch {
   void reject_block(std::size_t row, std::size_t block);
   Entry pop();
 
+  std::vector<KernelPoint> points_;
   std::vector<Row> rows_;
   std::size_t lanes_;
   std::vector<double> cost_;

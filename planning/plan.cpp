@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "roadbed/planning/candidate_search.h"
 #include "roadbed/planning/collision.h"
@@ -130,14 +133,20 @@ CandidateSearch search_of(const Cycle& cycle, const PlanOptions& options) {
   if (options.limit_steering_rate) {
     question.limits.max_steering_rate_radps = cycle.vehicle.max_steering_rate_radps;
   }
+  // One block for all rows: the allocator keeps it from cycle to cycle, where it would give many
+  // small ones back, and have their pages cleared again.
+  const std::size_t count = cycle.rows.front().size();
+  std::vector<KernelPoint> points(cycle.rows.size() * count);
   std::vector<Row> rows;
   rows.reserve(cycle.rows.size());
   for (std::size_t row = 0; row < cycle.rows.size(); ++row) {
     question.frame = cycle.frame(cycle.grid.end_l_m()[row]);
     const QuinticFamily family(cycle.input.start, question.frame.end_l_m);
-    rows.emplace_back(cycle.rows[row], family, question);
+    rows.emplace_back(cycle.rows[row], family, question,
+                      std::span(points).subspan(row * count, count));
   }
-  return {std::move(rows), cycle.grid.lanes(), options.exhaustive || options.keep_candidates};
+  return {std::move(rows), std::move(points), cycle.grid.lanes(),
+          options.exhaustive || options.keep_candidates};
 }
 
 // A candidate, and on at d_e up to the length of the longest one.

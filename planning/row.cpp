@@ -22,7 +22,7 @@ struct LeastDuration {
 };
 
 LeastDuration least_duration(const std::vector<RowStation>& row,
-                             const std::vector<KernelPoint>& points) {
+                             std::span<const KernelPoint> points) {
   LeastDuration least;
   for (std::size_t i = 0; i < row.size(); ++i) {
     const double curvature = row[i].station.line.curvature_per_m;
@@ -43,11 +43,10 @@ double rounded_down(const Quartic& c, double e) {
 }  // namespace
 
 Row::Row(const std::vector<Station>& stations, const QuinticFamily& family,
-         const RowQuestion& question)
-    : question_(question) {
+         const RowQuestion& question, std::span<KernelPoint> points)
+    : question_(question), points_(points) {
   const std::vector<RowStation> row = row_stations(stations, family);
-  points_.reserve(row.size());
-  for (const RowStation& at : row) points_.push_back(kernel_point(at, question));
+  for (std::size_t i = 0; i < row.size(); ++i) points[i] = kernel_point(row[i], question);
   closed_form_ = closed_form_cost(row, question);
   on_road_ = lanes_on_road(row);
   unfolded_ = lanes_unfolded(row);
@@ -110,7 +109,8 @@ void Row::evaluate(std::size_t block, std::span<double> cost,
 
 RowResult evaluate_row(const std::vector<Station>& stations, const QuinticFamily& family,
                        const RowQuestion& question) {
-  const Row row(stations, family, question);
+  std::vector<KernelPoint> points(stations.size());
+  const Row row(stations, family, question, points);
   RowResult result{std::vector<double>(question.end_d_m.size()),
                    std::vector<Rejection>(question.end_d_m.size())};
   for (std::size_t block = 0; block < row.blocks(); ++block) {

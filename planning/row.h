@@ -14,8 +14,9 @@ namespace roadbed::planning {
 /// what a block costs at least is known before it is evaluated.
 class Row {
  public:
+  /// @param points  one per station; the row fills them, and needs them as long as it is asked.
   Row(const std::vector<Station>& stations, const QuinticFamily& family,
-      const RowQuestion& question);
+      const RowQuestion& question, std::span<KernelPoint> points);
 
   std::size_t blocks() const { return bounds_.size(); }
   std::size_t first_lane(std::size_t block) const { return block * kLanesPerBlock; }
@@ -39,7 +40,7 @@ class Row {
   void set_bounds(const std::vector<RowStation>& row);
 
   RowQuestion question_;
-  std::vector<KernelPoint> points_;
+  std::span<const KernelPoint> points_;
   RowQuadratic closed_form_;
   LaneInterval on_road_, unfolded_;
   std::vector<double> bounds_;  // one per block
