@@ -20,9 +20,7 @@ World street(double goal_m, std::vector<planning::Obstacle> others) {
   const map::LaneId lane =
       made.add_lane(made.add_road("1"), "-1", {{0, 2}, {460, 2}}, {{0, -2}, {460, -2}});
   map::RoadMap road_map = made.build();
-  planning::Route route = *planning::find_route(road_map, {.lane = lane, .s_m = 10.0, .d_m = 0.0},
-                                                {.lane = lane, .s_m = goal_m, .d_m = 0.0})
-                               .route;
+  planning::Route route = *planning::find_route(road_map, {lane, 10.0}, {lane, goal_m}).route;
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
   return {.road_map = std::move(road_map),
           .occupancy = {},

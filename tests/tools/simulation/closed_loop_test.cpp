@@ -28,9 +28,7 @@ World road_of_width(double width_m, std::vector<Obstacle> obstacles) {
   const map::LaneId lane =
       made.add_lane(made.add_road("1"), "-1", {{0, y}, {260, y}}, {{0, -y}, {260, -y}});
   map::RoadMap road_map = made.build();
-  planning::Route route = *planning::find_route(road_map, {.lane = lane, .s_m = 10.0, .d_m = 0.0},
-                                                {.lane = lane, .s_m = kGoal_m, .d_m = 0.0})
-                               .route;
+  planning::Route route = *planning::find_route(road_map, {lane, 10.0}, {lane, kGoal_m}).route;
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
   return {.road_map = std::move(road_map),
           .occupancy = {},

@@ -35,9 +35,7 @@ World world_with(std::vector<planning::Obstacle> obstacles) {
   const map::LaneId lane =
       made.add_lane(made.add_road("1"), "-1", {{-50, 5}, {200, 5}}, {{-50, -5}, {200, -5}});
   map::RoadMap road_map = made.build();
-  planning::Route route =
-      *planning::find_route(road_map, {.lane = lane, .s_m = 50.0}, {.lane = lane, .s_m = 240.0})
-           .route;
+  planning::Route route = *planning::find_route(road_map, {lane, 50.0}, {lane, 240.0}).route;
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
   return {.road_map = std::move(road_map),
           .occupancy = {},
