@@ -95,6 +95,11 @@ Verdict judge(const AuditReport& report) {
 
 }  // namespace
 
+std::string_view name(UnknownPolicy policy) {
+  constexpr std::array<std::string_view, 3> names{"free", "occupied", "report"};
+  return names[static_cast<std::size_t>(policy)];
+}
+
 std::string_view name(Verdict verdict) {
   constexpr std::array<std::string_view, 4> names{"clear", "conflict", "unknown", "undecided"};
   return names[static_cast<std::size_t>(verdict)];

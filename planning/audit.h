@@ -14,6 +14,7 @@ namespace roadbed::planning {
 /// What space that was never measured counts as. `report`: it is no obstacle, but a drive near it
 /// is not clear.
 enum class UnknownPolicy { free, occupied, report };
+std::string_view name(UnknownPolicy policy);
 
 enum class Verdict { clear, conflict, unknown, undecided };
 std::string_view name(Verdict verdict);

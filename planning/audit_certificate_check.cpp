@@ -38,7 +38,11 @@ class Check {
   }
 
   std::vector<std::string> run() {
+    mark_columns();
     check_verdict();
+    for (const auto* stretches : {&certificate_.unknown, &certificate_.undecided}) {
+      for (const Stretch& stretch : *stretches) check_time(stretch);
+    }
     std::vector<Stretch> unproven = certificate_.undecided;
     for (const Conflict& conflict : certificate_.conflicts) {
       check_conflict(conflict);
@@ -50,7 +54,6 @@ class Check {
       const bool is_obstacle = certificate_.unknown_policy == UnknownPolicy::occupied;
       check_cover("from_unknown", certificate_.from_unknown,
                   is_obstacle ? unproven : certificate_.unknown);
-      mark_columns();
       check_distances("from_unknown", certificate_.from_unknown, true);
     }
     check_certified();
@@ -67,6 +70,27 @@ class Check {
     const auto mix = [share](double from, double to) { return from + share * (to - from); };
     return {mix(a.t_s, b.t_s), mix(a.x_m, b.x_m), mix(a.y_m, b.y_m),
             mix(a.heading_rad, b.heading_rad)};
+  }
+
+  DriveRow at_time(double t_s) const {
+    const auto after = std::upper_bound(rows_.begin() + 1, rows_.end() - 1, t_s,
+                                        [](double t, const DriveRow& row) { return t < row.t_s; });
+    const auto segment = static_cast<std::size_t>(after - rows_.begin()) - 1;
+    const double whole_s = rows_[segment + 1].t_s - rows_[segment].t_s;
+    return at(segment, whole_s > 0.0 ? (t_s - rows_[segment].t_s) / whole_s : 0.0);
+  }
+
+  double limit_of(const Conflict& conflict) const {
+    return std::max(certificate_.clearance_m, conflict.least_clearance_m) + 1.0;
+  }
+
+  bool is_in_drive(double t_s) const {
+    return rows_.front().t_s - kSameTime_s <= t_s && t_s <= rows_.back().t_s + kSameTime_s;
+  }
+
+  void check_time(const Stretch& stretch) {
+    if (is_in_drive(stretch.from_s) && is_in_drive(stretch.to_s)) return;
+    fault(fmt::format("{:.3f} s to {:.3f} s is not in the drive", stretch.from_s, stretch.to_s));
   }
 
   // No point of the body moves further from where it is at the span's middle.
@@ -92,21 +116,15 @@ class Check {
   void check_conflict(const Conflict& conflict) {
     const double t_s = conflict.at.t_s;
     const auto what = fmt::format("conflict at {:.3f} s", t_s);
-    if (!(conflict.from_s <= t_s && t_s <= conflict.to_s && rows_.front().t_s <= t_s &&
-          t_s <= rows_.back().t_s)) {
-      return fault(what + ": lies outside its own time or the drive's");
+    if (!(conflict.from_s <= t_s && t_s <= conflict.to_s)) {
+      return fault(what + ": lies outside its own time");
     }
-    const auto after = std::upper_bound(rows_.begin() + 1, rows_.end() - 1, t_s,
-                                        [](double t, const DriveRow& row) { return t < row.t_s; });
-    const auto segment = static_cast<std::size_t>(after - rows_.begin()) - 1;
-    const double whole_s = rows_[segment + 1].t_s - rows_[segment].t_s;
-    const DriveRow row = at(segment, whole_s > 0.0 ? (t_s - rows_[segment].t_s) / whole_s : 0.0);
-    const double limit_m = std::max(certificate_.clearance_m, conflict.least_clearance_m) + 1.0;
+    check_time({conflict.from_s, conflict.to_s});
+    const DriveRow row = at_time(t_s);
+    const double limit_m = limit_of(conflict);
     double distance_m = obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
     bool is_witness = obstacles_->is_occupied(conflict.witness);
     if (certificate_.unknown_policy == UnknownPolicy::occupied) {
-      obstacles_->mark(row.x_m, row.y_m, limit_m);
-      obstacles_->measure();
       distance_m =
           std::min(distance_m, obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m));
       is_witness = is_witness || obstacles_->is_unknown(conflict.witness);
@@ -166,6 +184,11 @@ class Check {
   }
 
   void mark_columns() {
+    if (certificate_.unknown_policy == UnknownPolicy::free) return;
+    for (const Conflict& conflict : certificate_.conflicts) {
+      const DriveRow row = at_time(conflict.at.t_s);
+      obstacles_->mark(row.x_m, row.y_m, limit_of(conflict));
+    }
     for (const ProvenSpan& span : certificate_.from_unknown) {
       if (span.segment + 1 >= rows_.size()) continue;
       const DriveRow row = at(span.segment, 0.5 * (span.from + span.to));
@@ -194,8 +217,8 @@ class Check {
   }
 
   void check_certified() {
-    if (!certificate_.conflicts.empty() || !certificate_.undecided.empty()) return;
-    double least_m = std::numeric_limits<double>::infinity();
+    const bool is_whole = certificate_.conflicts.empty() && certificate_.undecided.empty();
+    double least_m = is_whole ? std::numeric_limits<double>::infinity() : 0.0;
     for (const ProvenSpan& span : certificate_.from_occupied) {
       least_m = std::min(least_m, span.at_least_m);
     }

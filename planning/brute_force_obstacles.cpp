@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace roadbed::planning {
 namespace {
@@ -65,6 +66,11 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 
 std::int64_t tile_key(std::int64_t tile_x, std::int64_t tile_y) {
   return tile_x * (std::int64_t{1} << 32) + tile_y;
+}
+
+std::pair<std::int64_t, std::int64_t> tile_of(std::int64_t key) {
+  const auto tile_y = static_cast<std::int32_t>(key);  // its lower half, with its sign
+  return {(key - tile_y) / (std::int64_t{1} << 32), tile_y};
 }
 
 std::size_t place_in_tile(std::int64_t x, std::int64_t y) {
@@ -184,11 +190,33 @@ void BruteForceObstacles::measure(const map::OccupancyCell& cell) {
   const auto from_x = static_cast<Column>(std::llround(from.x()));
   const auto from_y = static_cast<Column>(std::llround(from.y()));
   const auto side = static_cast<Column>(std::llround(cell.size_m / resolution_m_));
-  for (Column y = from_y; y < from_y + side; ++y) {
-    for (Column x = from_x; x < from_x + side; ++x) {
-      const auto tile =
-          measured_m_.find(tile_key(floor_div(x, kTileSide), floor_div(y, kTileSide)));
-      if (tile != measured_m_.end()) tile->second[place_in_tile(x, y)] += height_m;
+  const Window columns{from_x, from_y, from_x + side, from_y + side};
+  const Column tile_from_x = floor_div(from_x, kTileSide),
+               tile_from_y = floor_div(from_y, kTileSide);
+  const Column tile_to_x = floor_div(columns.to_x - 1, kTileSide) + 1;
+  const Column tile_to_y = floor_div(columns.to_y - 1, kTileSide) + 1;
+  const auto tiles =
+      static_cast<std::uint64_t>((tile_to_x - tile_from_x) * (tile_to_y - tile_from_y));
+  if (tiles > measured_m_.size()) {
+    for (auto& [key, tile] : measured_m_) add(tile, tile_of(key), columns, height_m);
+    return;
+  }
+  for (Column y = tile_from_y; y < tile_to_y; ++y) {
+    for (Column x = tile_from_x; x < tile_to_x; ++x) {
+      const auto tile = measured_m_.find(tile_key(x, y));
+      if (tile != measured_m_.end()) add(tile->second, {x, y}, columns, height_m);
+    }
+  }
+}
+
+void BruteForceObstacles::add(std::vector<float>& tile, const std::pair<Column, Column>& at,
+                              const Window& columns, float height_m) {
+  const Column first_x = at.first * kTileSide, first_y = at.second * kTileSide;
+  const Column to_x = std::min(columns.to_x, first_x + kTileSide);
+  const Column to_y = std::min(columns.to_y, first_y + kTileSide);
+  for (Column y = std::max(columns.from_y, first_y); y < to_y; ++y) {
+    for (Column x = std::max(columns.from_x, first_x); x < to_x; ++x) {
+      tile[place_in_tile(x, y)] += height_m;
     }
   }
 }

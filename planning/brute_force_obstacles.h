@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "roadbed/geometry/vehicle_shape.h"
@@ -64,6 +65,8 @@ class BruteForceObstacles {
 
   Window window(double x_m, double y_m, double limit_m) const;
   void measure(const map::OccupancyCell& cell);
+  static void add(std::vector<float>& tile, const std::pair<Column, Column>& at,
+                  const Window& columns, float height_m);
   bool is_unknown_column(Column x, Column y) const;
 
   const std::vector<map::OccupancyCell>& cells_;

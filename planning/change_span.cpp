@@ -154,6 +154,8 @@ std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& sp
   const RouteNetwork& network = rules.network();
   for (const ChangeSpan::Beside& lanes : span.lanes) {
     const LaneChain chain = chain_of(network, lanes);
+    // Neighbours that go round in a ring have a shorter chain the other way.
+    if (chain.size() != span.changes + 1) return {};
     if (!std::all_of(chain.begin(), chain.end(),
                      [&](std::uint32_t lane) { return rules.may_enter(lane); })) {
       return {};

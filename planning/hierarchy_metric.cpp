@@ -132,15 +132,19 @@ void HierarchyMetric::for_each_beside(const Touched& arc, const Both& old, const
 std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
                                     std::span<const Ticks> weights) {
   ++version_;
-  std::vector<std::uint32_t> dearer, cheaper;
-  for (std::size_t i = 0; i < graph_arcs.size(); ++i) {
-    const std::uint32_t arc = graph_arcs[i];
-    if (weights_[arc] == weights[i]) continue;
-    const bool rises = weights[i] > weights_[arc];
-    weights_[arc] = weights[i];
-    if (hierarchy_.arc_of[arc] != kNoNode) (rises ? dearer : cheaper).push_back(arc);
-  }
-  return raise(dearer) + lower(cheaper);
+  // What gets cheaper waits: `lower` has to see it fall.
+  const auto set = [&](bool rising) {
+    std::vector<std::uint32_t> changed;
+    for (std::size_t i = 0; i < graph_arcs.size(); ++i) {
+      const std::uint32_t arc = graph_arcs[i];
+      if (rising ? weights[i] <= weights_[arc] : weights[i] >= weights_[arc]) continue;
+      weights_[arc] = weights[i];
+      if (hierarchy_.arc_of[arc] != kNoNode) changed.push_back(arc);
+    }
+    return changed;
+  };
+  const std::size_t raised = raise(set(true));
+  return raised + lower(set(false));
 }
 
 HierarchyMetric::Touched HierarchyMetric::place_of(std::uint32_t graph_arc) const {

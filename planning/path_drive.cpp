@@ -71,7 +71,11 @@ Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed, do
                          double until_s) {
   std::vector<TrajectoryPoint> points;
   double driven_m = 0.0, t_s = 0.0;
-  for (double s_m = course.start_s_m; s_m < end_s_m && t_s <= until_s; s_m += kPassStep_m) {
+  // The row behind `until_s` ends the leg that leads past it: without it a vehicle that stands
+  // would have no leg, and touch nothing.
+  bool is_over = false;
+  for (double s_m = course.start_s_m; s_m < end_s_m && !is_over; s_m += kPassStep_m) {
+    is_over = t_s > until_s;
     PlaceOnPath place = place_on(course, s_m);
     const PlannedSpeed::State state = speed.at(driven_m);
     place.point.t_s = course.start_t_s + t_s;

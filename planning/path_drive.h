@@ -26,8 +26,8 @@ struct PathCourse {
 geometry::Trajectory stopping_drive(const PathCourse& course, double speed_mps,
                                     double deceleration_mps2, double until_s);
 
-/// The drive along a path up to a station, at a planned speed by the length driven; at most
-/// `until_s` after the start. A row every metre or so of the line.
+/// The drive along a path up to a station, at a planned speed by the length driven; its last row is
+/// the first one over `until_s` after the start. A row every metre or so of the line.
 geometry::Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed,
                                    double end_s_m, double until_s);
 

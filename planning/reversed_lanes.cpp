@@ -1,6 +1,7 @@
 #include "roadbed/planning/reversed_lanes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace roadbed::planning {
@@ -13,7 +14,11 @@ struct Gate {
   Eigen::Vector2d left{0, 0}, right{0, 0};
   std::uint32_t lane = 0;
 
-  bool operator<(const Gate& other) const { return left.x() < other.left.x(); }
+  // By strips of 1 m, and along each of them.
+  bool operator<(const Gate& other) const {
+    return std::pair(strip(left.x()), left.y()) < std::pair(strip(other.left.x()), other.left.y());
+  }
+  static double strip(double x_m) { return std::floor(x_m); }
   bool meets(const Gate& other) const {
     return (left - other.left).norm() <= kCorner_m && (right - other.right).norm() <= kCorner_m;
   }
@@ -124,18 +129,29 @@ class Reversal {
     for (std::uint32_t lane = 0; lane < network_.lanes.size(); ++lane) {
       const Gate exit = gate(lane, true);
       if (!exit.is_open()) continue;
-      Gate first = exit;
-      first.left.x() -= kCorner_m;
-      for (auto at = std::lower_bound(entries.begin(), entries.end(), first);
-           at != entries.end() && at->left.x() <= exit.left.x() + kCorner_m; ++at) {
-        const bool turns_over = network_.is_reversed(lane) != network_.is_reversed(at->lane);
-        if (!turns_over || network_.on_map(lane) == network_.on_map(at->lane)) continue;
-        if (!exit.meets(*at) || !shared_users(network_.lanes[lane], network_.lanes[at->lane])) {
-          continue;
-        }
-        next_[lane].push_back(at->lane);
+      const double from_strip = Gate::strip(exit.left.x() - kCorner_m);
+      const double to_strip = Gate::strip(exit.left.x() + kCorner_m);
+      for (double strip = from_strip; strip <= to_strip; strip += 1.0) {
+        join_in_strip(entries, exit, strip);
       }
     }
+  }
+
+  void join_in_strip(const std::vector<Gate>& entries, const Gate& exit, double strip) {
+    Gate first = exit;
+    first.left = {strip, exit.left.y() - kCorner_m};
+    for (auto at = std::lower_bound(entries.begin(), entries.end(), first);
+         at != entries.end() && Gate::strip(at->left.x()) == strip &&
+         at->left.y() <= exit.left.y() + kCorner_m;
+         ++at) {
+      if (may_join(exit, *at)) next_[exit.lane].push_back(at->lane);
+    }
+  }
+
+  bool may_join(const Gate& exit, const Gate& entry) const {
+    return network_.is_reversed(exit.lane) != network_.is_reversed(entry.lane) &&
+           network_.on_map(exit.lane) != network_.on_map(entry.lane) && exit.meets(entry) &&
+           shared_users(network_.lanes[exit.lane], network_.lanes[entry.lane]);
   }
 
   // Where everything may be driven both ways, so may these.

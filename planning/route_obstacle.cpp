@@ -189,7 +189,10 @@ std::string describe(const map::RoadMap& road_map, const map::LanePlace& from,
       "goal from {}",
       road_map.lane(from.lane).name, road_map.lane(to.lane).name, obstacle.lanes_from_start,
       obstacle.lanes_to_goal);
-  if (obstacle.gap_from && obstacle.gap_to) {
+  if (obstacle.gap_from && obstacle.gap_from == obstacle.gap_to) {
+    text += fmt::format("; lane {} is reached one way and leads on the other way",
+                        road_map.lane(*obstacle.gap_from).name);
+  } else if (obstacle.gap_from && obstacle.gap_to) {
     text += fmt::format("; they come nearest where lane {} ends {:.2f} m from the start of lane {}",
                         road_map.lane(*obstacle.gap_from).name, obstacle.gap_m,
                         road_map.lane(*obstacle.gap_to).name);

@@ -75,6 +75,16 @@ void refuse_turning_back(const Points& points) {
   }
 }
 
+void refuse_too_long(const Points& points, double step_m) {
+  constexpr double most_points = 1e7;
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length_m += (points[i] - points[i - 1]).norm();
+  if (length_m <= most_points * step_m) return;
+  throw std::invalid_argument(
+      fmt::format("path_through: {:.0f} m in steps of {} m are over {:.0f} points", length_m,
+                  step_m, most_points));
+}
+
 // A corner, and how far its legs are straight; later: how much of them its curve takes.
 struct Corner {
   std::size_t at;
@@ -138,7 +148,11 @@ std::string round_for(const CornerDriving& driving, const Points& points, Corner
     choice = choose_corner_gaps(question, driving.vehicle);
   }
   const std::string place = fmt::format("corner at ({:.2f}, {:.2f})", at.x(), at.y());
-  if (!choice.gaps) return fmt::format("{}: {}", place, choice.reason);
+  if (!choice.gaps) {
+    corner.room_m = std::min(corner.room_m, kMostRounding_m);
+    corner.gaps = geometry::scaled_to(geometry::kGentleGaps, corner.room_m * (1.0 - 1e-12));
+    return fmt::format("{}: rounded as without a vehicle; {}", place, choice.reason);
+  }
   corner.gaps = *choice.gaps;
   corner.room_m = choice.gaps->total_m();
   if (as_asked.gaps) return {};
@@ -203,6 +217,7 @@ WayPointPath path_through(std::span<const Eigen::Vector2d> way_points, double st
                           const std::optional<CornerDriving>& driving) {
   const Points points = distinct(way_points);
   refuse_turning_back(points);
+  refuse_too_long(points, step_m);
   WayPointPath path;
   const Corner* before = nullptr;
   std::vector<Corner> corners = corners_of(points, driving ? kLongestRounding_m : kMostRounding_m);

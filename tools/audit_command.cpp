@@ -78,8 +78,10 @@ class AuditCommand : public Command {
     arguments.add("--trajectory", trajectory_,
                   "Drive to audit (.csv), poses of the rear axle, linear between rows; every point "
                   "of the body is covered");
-    arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
-    arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
+    const Argument vehicle =
+        arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
+    const Argument map = arguments.add(
+        "--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
     arguments.add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
         .within(0.0, 100.0)
         .with_default();
@@ -99,14 +101,19 @@ class AuditCommand : public Command {
              "The vehicle's underside above the ground [m]; its top is the vehicle's height")
         .with_default();
     arguments.flag("--json", json_, "Print one JSON document");
-    arguments.add("--svg", svg_, "Draw the audit as a picture (.svg)");
-    arguments.add(
+    const Argument svg = arguments.add("--svg", svg_, "Draw the audit as a picture (.svg)");
+    const Argument certificate = arguments.add(
         "--certificate", certificate_,
         "Write the proof (.json): spans of time, what holds in them, witnesses, hashes of "
         "the inputs");
-    arguments.add("--check", check_,
-                  "Verify a certificate by brute force instead; its inputs are the files that it "
-                  "names, or --occupancy and --trajectory");
+    arguments
+        .add("--check", check_,
+             "Verify a certificate by brute force instead; its inputs are the files that it names, "
+             "or --occupancy and --trajectory")
+        .excludes(certificate)
+        .excludes(svg)
+        .excludes(vehicle)
+        .excludes(map);
     arguments.flag("--force", force_, "Replace outputs that exist");
     arguments.require([this] { return missing(); });
     arguments.example(

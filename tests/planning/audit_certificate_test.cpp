@@ -205,5 +205,22 @@ TEST(AuditCertificate, ClaimsNoMoreThanItsSpans) {
   EXPECT_THAT(made.faults(made.certificate), Contains(HasSubstr("the spans certify")));
 }
 
+TEST(AuditCertificate, CertifiesNoClearanceWhereATimeIsLeftOutNorSpeaksOfOtherTimes) {
+  std::mt19937 random(31);
+  Audited made = audited(random, 3, {.unknown = UnknownPolicy::free});
+  while (made.report.verdict != Verdict::clear) {
+    made = audited(random, 3, {.unknown = UnknownPolicy::free});
+  }
+  AuditCertificate& bold = made.certificate;
+  bold.undecided.push_back({made.drive.start_s(), made.drive.end_s()});
+  bold.verdict = Verdict::undecided;
+  bold.certified_clearance_m = 199.0;
+  EXPECT_THAT(made.faults(bold), Contains(HasSubstr("the spans certify 0.000000 m")));
+  bold.certified_clearance_m = 0.0;
+  EXPECT_THAT(made.faults(bold), IsEmpty());
+  bold.undecided.push_back({made.drive.end_s() + 10.0, made.drive.end_s() + 11.0});
+  EXPECT_THAT(made.faults(bold), Contains(HasSubstr("is not in the drive")));
+}
+
 }  // namespace
 }  // namespace roadbed::planning

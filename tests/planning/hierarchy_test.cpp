@@ -183,6 +183,24 @@ TEST(Hierarchy, AClosureLeavesWhatCustomisingAfreshGives) {
   }
 }
 
+TEST(Hierarchy, ArcsThatGetDearerAndCheaperAtOnceLeaveWhatCustomisingAfreshGives) {
+  Prepared prepared(tests::lane_grid(6, 6));
+  std::mt19937 random(20261122);
+  for (int round = 0; round < 60; ++round) {
+    std::vector<std::uint32_t> arcs;
+    std::vector<Ticks> now;
+    for (std::uint32_t arc = 0; arc < prepared.weights.size(); ++arc) {
+      if (random() % 8 != 0) continue;
+      arcs.push_back(arc);
+      now.push_back(prepared.weights[arc] = 1 + static_cast<Ticks>(random() % 400'000));
+    }
+    prepared.metric.change(arcs, now);
+    const HierarchyMetric afresh(prepared.graph, prepared.hierarchy, prepared.weights);
+    ASSERT_EQ(prepared.metric.up(), afresh.up());
+    ASSERT_EQ(prepared.metric.down(), afresh.down());
+  }
+}
+
 TEST(Hierarchy, OfSeveralSeedsTakesTheCheapestPair) {
   const Prepared prepared(tests::lane_grid(5, 4));
   HierarchySearch search(prepared.metric);

@@ -47,10 +47,20 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
   }
 }
 
+// What the verdict is about: a certificate of another question proves nothing of one's own.
+std::string question_of(const planning::AuditCertificate& audit) {
+  return fmt::format(
+      "body {} m by {} m, {} m of it behind the rear axle, grown by {} m; heights {} m to {} m; "
+      "clearance {} m; unknown space counts as {}",
+      audit.vehicle.length_m, audit.vehicle.width_m, audit.vehicle.rear_overhang_m, audit.inflate_m,
+      audit.band.from_m, audit.band.to_m, audit.clearance_m, planning::name(audit.unknown_policy));
+}
+
 void print(std::ostream& out, const CertificateFile& file, const std::vector<std::string>& faults) {
   const planning::AuditCertificate& audit = file.certificate;
   out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
   out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(audit.verdict), file.program);
+  out << fmt::format("{:<17}{}\n", "question", question_of(audit));
   out << fmt::format("{:<17}{} from occupied space, {} from unknown space\n", "proven spans",
                      audit.from_occupied.size(), audit.from_unknown.size());
   if (audit.conflicts.empty() && audit.undecided.empty()) {
@@ -69,10 +79,11 @@ bool check_certificate_file(const fs::path& certificate, const fs::path& occupan
                 trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, certificate);
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},
+                                  {"question", question_of(file.certificate)},
                                   {"verdict", name(file.certificate.verdict)},
                                   {"certified_clearance_m", file.certificate.certified_clearance_m},
                                   {"faults", faults}}
-               .dump(2)
+               .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
         << '\n';
   } else {
     print(out, file, faults);

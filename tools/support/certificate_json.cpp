@@ -30,18 +30,6 @@ constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPol
 constexpr std::array<Verdict, 4> kVerdicts{Verdict::clear, Verdict::conflict, Verdict::unknown,
                                            Verdict::undecided};
 
-std::string_view policy_name(UnknownPolicy policy) {
-  switch (policy) {
-    case UnknownPolicy::free:
-      return "free";
-    case UnknownPolicy::occupied:
-      return "occupied";
-    case UnknownPolicy::report:
-      break;
-  }
-  return "report";
-}
-
 Ordered file_json(const CertifiedFile& file) {
   return {{"file", file.name}, {"xxhash", file.xxhash}};
 }
@@ -81,12 +69,17 @@ Ordered conflicts_json(const std::vector<Conflict>& conflicts) {
   return json;
 }
 
+// File names may hold bytes that are no UTF-8.
+std::string dumped(const Ordered& value) {
+  return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
+}
+
 // One value per line of the long lists would make files of a hundred thousand lines.
 std::string text_of(const Ordered& document) {
   std::string text = "{\n";
   for (auto member = document.begin(); member != document.end(); ++member) {
-    text += fmt::format("{}{}: {}", member == document.begin() ? "" : ",\n",
-                        Ordered(member.key()).dump(), member.value().dump());
+    text += fmt::format("{}{}: {}", member == document.begin() ? "" : ",\n", dumped(member.key()),
+                        dumped(member.value()));
   }
   return text + "\n}\n";
 }
@@ -100,11 +93,11 @@ std::vector<JsonNode> numbers(const JsonNode& node, std::size_t count) {
   return elements;
 }
 
-template <class Value, std::size_t N, class Name>
-Value one_of(const JsonNode& node, const std::array<Value, N>& values, Name name_of) {
+template <class Value, std::size_t N>
+Value one_of(const JsonNode& node, const std::array<Value, N>& values) {
   const std::string text = node.text();
   for (const Value value : values) {
-    if (name_of(value) == text) return value;
+    if (planning::name(value) == text) return value;
   }
   node.refuse(fmt::format("is \"{}\"", text), "a word that roadbed writes",
               "write the certificate anew");
@@ -199,7 +192,7 @@ std::string write_certificate_json(const CertificateFile& file) {
   json["heights_m"] = {audit.band.from_m, audit.band.to_m};
   json["clearance_m"] = audit.clearance_m;
   json["inflate_m"] = audit.inflate_m;
-  json["unknown_counts_as"] = policy_name(audit.unknown_policy);
+  json["unknown_counts_as"] = planning::name(audit.unknown_policy);
   json["verdict"] = planning::name(audit.verdict);
   json["certified_clearance_m"] = audit.certified_clearance_m;
   json["conflicts"] = conflicts_json(audit.conflicts);
@@ -230,8 +223,8 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   audit.band = read_band(node.at("heights_m"));
   audit.clearance_m = node.at("clearance_m").number(kLength_m);
   audit.inflate_m = node.at("inflate_m").number(kLength_m);
-  audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies, policy_name);
-  audit.verdict = one_of(node.at("verdict"), kVerdicts, planning::name);
+  audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
+  audit.verdict = one_of(node.at("verdict"), kVerdicts);
   audit.certified_clearance_m = node.at("certified_clearance_m").number(kLength_m);
   audit.conflicts = read_conflicts(node.at("conflicts"));
   audit.unknown = read_stretches(node.at("unknown"));

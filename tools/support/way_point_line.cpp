@@ -20,6 +20,14 @@ using planning::ReferencePoint;
 
 constexpr double kRateStep_m = 1e-3;  // to both sides, for the rate of a spline's curvature
 
+int count_of_steps(double length_m, double step_m) {
+  constexpr double most_rows = 3e6;  // half a gigabyte of text
+  const double steps = std::ceil(length_m / step_m - 1e-6);
+  if (steps <= most_rows) return static_cast<int>(steps);
+  throw std::invalid_argument(
+      fmt::format("{:.0f} m in steps of {} m are over {:.0f} rows", length_m, step_m, most_rows));
+}
+
 Eigen::Vector2d unit_vector(double heading_deg) {
   const double heading_rad = heading_deg * std::numbers::pi / 180.0;
   return {std::cos(heading_rad), std::sin(heading_rad)};
@@ -71,8 +79,7 @@ void WayPointLine::declare(Arguments& arguments) {
 
 std::string WayPointLine::fault() const {
   const bool is_clamped = ends_ == Ends::clamped;
-  if (!asked() && (interpolate_ || ends_ != Ends::natural))
-    return "--waypoints, for --interpolate";
+  if (!asked() && (interpolate_ || ends_ != Ends::natural)) return "--waypoints, for --interpolate";
   if (!vehicle_file_.empty() && (!asked() || interpolate_))
     return "--waypoints without --interpolate, for --vehicle";
   if (ends_ != Ends::natural && !interpolate_) return "--interpolate, for --ends";
@@ -110,7 +117,7 @@ WayPointLine::Table WayPointLine::table(double step_m, double max_move_m) const 
                            .needed =
                                "two distinct points (three for a closed line), and a way that "
                                "does not turn back on itself",
-                           .remedy = "add points, or remove repeated ones and spikes"});
+                           .remedy = "mend the points, or take longer steps"});
   }
 }
 
@@ -123,7 +130,7 @@ WayPointLine::Table WayPointLine::rows_of(const Line& made, double step_m) const
   fmt::format_to(std::back_inserter(text),
                  "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
                  "speed_limit_mps\n");
-  const int steps = static_cast<int>(std::ceil(made.length_m / step_m - 1e-6));
+  const int steps = count_of_steps(made.length_m, step_m);
   double heading_rad = made.at(0.0).heading_rad;
   for (int i = 0; i <= steps; ++i) {
     const double s_m = std::min(made.length_m, i * step_m);
