@@ -144,7 +144,7 @@ class ReportCommand : public Command {
                  text_of(change));
     });
     for (const Bound& bound : exceeded) {
-      fmt::print(out, "B exceeds {} = {:g}\n", bound.metric, bound.most);
+      fmt::print(out, "B does not keep {} at {:g} or less\n", bound.metric, bound.most);
     }
   }
 

@@ -48,7 +48,7 @@ TEST_F(ReportCommand, StatusIsOneWhereTheSecondRunExceedsABound) {
   EXPECT_EQ(compare({"--max", "driven_m=38", "--max", "comfort.jerk=4.13"}).status, 1);
   const ProgramRun run = compare({"--max", "collision=0"});
   EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(run.out, HasSubstr("B exceeds collision = 0\n"));
+  EXPECT_THAT(run.out, HasSubstr("B does not keep collision at 0 or less\n"));
   // A metric that has no value is not within a bound.
   EXPECT_EQ(run_roadbed({"report", "compare", b_, a_, "--max", "least_headway_s=9"}).status, 1);
 }
