@@ -14,6 +14,7 @@ using Corners = BodyOutline::Corners;
 constexpr double kTouch_m = 1e-6;  // heights that overlap by less only touch
 constexpr std::int64_t kTileSide = 64;
 constexpr double kMostColumns = 1e9;
+constexpr double kFarthest_m = 1e9;
 constexpr auto kTooMuch = "the drive's surroundings have too many columns to be checked";
 constexpr std::size_t kMostTiles = 50'000;  // 800 MB of columns
 
@@ -64,13 +65,14 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
 
+// Unsigned, as a witness may be said to stand anywhere.
 std::int64_t tile_key(std::int64_t tile_x, std::int64_t tile_y) {
-  return tile_x * (std::int64_t{1} << 32) + tile_y;
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(tile_x) << 32 |
+                                   static_cast<std::uint32_t>(tile_y));
 }
 
 std::pair<std::int64_t, std::int64_t> tile_of(std::int64_t key) {
-  const auto tile_y = static_cast<std::int32_t>(key);  // its lower half, with its sign
-  return {(key - tile_y) / (std::int64_t{1} << 32), tile_y};
+  return {key >> 32, static_cast<std::int32_t>(key)};
 }
 
 std::size_t place_in_tile(std::int64_t x, std::int64_t y) {
@@ -158,6 +160,7 @@ BruteForceObstacles::Window BruteForceObstacles::window(double x_m, double y_m,
 }
 
 void BruteForceObstacles::mark(double x_m, double y_m, double limit_m) {
+  if (std::max(std::abs(x_m), std::abs(y_m)) > kFarthest_m) throw std::length_error(kTooMuch);
   const Window marked = window(x_m, y_m, limit_m);
   marked_columns_ += static_cast<double>(marked.to_x - marked.from_x) *
                      static_cast<double>(marked.to_y - marked.from_y);

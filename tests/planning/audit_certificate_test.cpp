@@ -205,6 +205,29 @@ TEST(AuditCertificate, ClaimsNoMoreThanItsSpans) {
   EXPECT_THAT(made.faults(made.certificate), Contains(HasSubstr("the spans certify")));
 }
 
+TEST(AuditCertificate, HoldsInLargeFreeSpaceToo) {
+  // One leaf of 409.6 m on each side of the origin: far more columns than the drive comes near.
+  std::vector<map::OccupancyCell> cells;
+  for (const double x_m : {-204.8, 204.8}) {
+    for (const double y_m : {-204.8, 204.8}) {
+      cells.push_back({{x_m, y_m, 0.0}, 409.6, map::CellState::free});
+    }
+  }
+  const Trajectory drive({{.t_s = 0, .x_m = -20, .y_m = -30}, {.t_s = 9, .x_m = 20, .y_m = 30}});
+  AuditCertificate certificate{.vehicle = {},
+                               .band = kLowBand,
+                               .verdict = Verdict::clear,
+                               .from_occupied = {{0, 0.0, 1.0, 5.0}},
+                               .from_unknown = {{0, 0.0, 1.0, 5.0}},
+                               .conflicts = {},
+                               .unknown = {},
+                               .undecided = {}};
+  EXPECT_THAT(check_certificate(certificate, cells, kSide_m, drive), IsEmpty());
+  cells.pop_back();
+  EXPECT_THAT(check_certificate(certificate, cells, kSide_m, drive),
+              Contains(HasSubstr("from_unknown: at")));
+}
+
 TEST(AuditCertificate, CertifiesNoClearanceWhereATimeIsLeftOutNorSpeaksOfOtherTimes) {
   std::mt19937 random(31);
   Audited made = audited(random, 3, {.unknown = UnknownPolicy::free});
