@@ -81,7 +81,8 @@ class ReferenceCommand : public Command {
   std::string fault() const {
     if (way_points_.asked() == !map_file_.empty()) return "just one of MAP and --waypoints";
     if (!way_points_.asked() && !question_.has_places()) return "--from and --to";
-    if (way_points_.asked() && question_.has_any_place()) return "MAP, not --waypoints, for a route";
+    if (way_points_.asked() && question_.has_any_place())
+      return "MAP, not --waypoints, for a route";
     return way_points_.fault();
   }
 

@@ -62,8 +62,8 @@ struct TwoWayOracle::Impl {
   Impl(const map::RoadMap& of, map::Participant user)
       : road_map(of), graph(2 * of.lanes().size()), open(2 * of.lanes().size(), false) {
     for (const map::Lane& lane : of.lanes()) {
-      const bool walks = user == map::Participant::pedestrian && lane.road &&
-                         lane.type == map::LaneType::sidewalk;
+      const bool walks =
+          user == map::Participant::pedestrian && lane.road && lane.type == map::LaneType::sidewalk;
       const bool both = !lane.one_way || walks;
       open[2 * lane.id.index] = is_user(lane, user);
       open[2 * lane.id.index + 1] = is_user(lane, user) && both;
