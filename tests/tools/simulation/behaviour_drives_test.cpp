@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
@@ -15,20 +15,7 @@ namespace {
 
 /// A straight one-way road of 4 m along the x axis; the ego starts at x = 10 m, the goal is given.
 World street(double goal_m, std::vector<planning::Obstacle> others) {
-  tests::MadeMap made;
-  made.parts.format = "made";
-  const map::LaneId lane =
-      made.add_lane(made.add_road("1"), "-1", {{0, 2}, {460, 2}}, {{0, -2}, {460, -2}});
-  map::RoadMap road_map = made.build();
-  planning::Route route = *planning::find_route(road_map, {lane, 10.0}, {lane, goal_m}).route;
-  planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
-  return {.road_map = std::move(road_map),
-          .occupancy = {},
-          .field = {},
-          .start = {10.0, 0.0, 0.0},
-          .route = std::move(route),
-          .line = std::move(line),
-          .obstacles = std::move(others)};
+  return tests::straight_world({.to_x_m = 460.0, .goal_x_m = goal_m}, std::move(others));
 }
 
 planning::Obstacle scripted(std::string kind, double length_m, double width_m,

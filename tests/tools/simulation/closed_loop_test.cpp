@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/metrics.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/support/trajectory_csv.h"
@@ -22,21 +22,7 @@ constexpr double kGoal_m = 200.0;
 
 /// A straight one-way road along the x axis, 260 m long, with the ego at x = 10 m.
 World road_of_width(double width_m, std::vector<Obstacle> obstacles) {
-  tests::MadeMap made;
-  made.parts.format = "made";
-  const double y = 0.5 * width_m;
-  const map::LaneId lane =
-      made.add_lane(made.add_road("1"), "-1", {{0, y}, {260, y}}, {{0, -y}, {260, -y}});
-  map::RoadMap road_map = made.build();
-  planning::Route route = *planning::find_route(road_map, {lane, 10.0}, {lane, kGoal_m}).route;
-  planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
-  return {.road_map = std::move(road_map),
-          .occupancy = {},
-          .field = {},
-          .start = {10.0, 0.0, 0.0},
-          .route = std::move(route),
-          .line = std::move(line),
-          .obstacles = std::move(obstacles)};
+  return tests::straight_world({.width_m = width_m, .goal_x_m = kGoal_m}, std::move(obstacles));
 }
 
 Obstacle parked(double x_m, double y_m) {

@@ -7,7 +7,7 @@
 
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/geometry/rectangle.h"
-#include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {
@@ -30,20 +30,9 @@ DrivenWay straight_way() {
 }
 
 World world_with(std::vector<planning::Obstacle> obstacles) {
-  tests::MadeMap made;
-  made.parts.format = "made";
-  const map::LaneId lane =
-      made.add_lane(made.add_road("1"), "-1", {{-50, 5}, {200, 5}}, {{-50, -5}, {200, -5}});
-  map::RoadMap road_map = made.build();
-  planning::Route route = *planning::find_route(road_map, {lane, 50.0}, {lane, 240.0}).route;
-  planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
-  return {.road_map = std::move(road_map),
-          .occupancy = {},
-          .field = {},
-          .start = {},
-          .route = std::move(route),
-          .line = std::move(line),
-          .obstacles = std::move(obstacles)};
+  return tests::straight_world(
+      {.from_x_m = -50.0, .to_x_m = 200.0, .width_m = 10.0, .start_x_m = 0.0, .goal_x_m = 190.0},
+      std::move(obstacles));
 }
 
 planning::Obstacle driving(double x_m, double speed_mps) {
