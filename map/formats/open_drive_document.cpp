@@ -30,10 +30,7 @@ void move_to_local_origin(Document& document) {
 
 }  // namespace
 
-bool is_open_drive(const std::string& root_element) {
-  const auto colon = root_element.find(':');
-  return root_element.substr(colon == std::string::npos ? 0 : colon + 1) == "OpenDRIVE";
-}
+bool is_open_drive(const std::string& root_element) { return root_element == "OpenDRIVE"; }
 
 Document read_document(const XmlDocument& xml) {
   Document document;

@@ -109,11 +109,14 @@ std::optional<RoadLink> read_road_link(const XmlDocument& xml, pugi::xml_node no
 void read_roads(const XmlDocument& xml, Document& document) {
   std::set<std::string> seen;
   for (const auto node : xml.root().children("road")) {
-    RoadRecord road = read_road(xml, node, document);
-    if (!seen.insert(road.id).second) {
-      xml.refuse(node, fmt::format("a second road with id {}", road.id), "unique road ids",
-                 "give one of them another id");
+    if (!seen.insert(xml.text(node, "id")).second) {
+      document.remarks.push_back({"import.duplicate-road", true, XmlDocument::place_of(node),
+                                  xml.line_of(node),
+                                  "has the id of a road before it and is left out, as links could "
+                                  "mean either; give it another id"});
+      continue;
     }
+    RoadRecord road = read_road(xml, node, document);
     if (road.plan_pieces.empty() || !(road.length_m > 0.0)) {
       document.remarks.push_back({"import.no-geometry", true, "road " + road.id, road.line,
                                   "has no plan view of positive length and is left out"});

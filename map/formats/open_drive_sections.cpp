@@ -129,8 +129,10 @@ LaneSection read_section(const XmlDocument& xml, pugi::xml_node node, Document& 
       LaneRecord lane = reader.read(child);
       const int id = lane.id;
       if (!section.lanes.emplace(id, std::move(lane)).second) {
-        xml.refuse(child, fmt::format("a second lane {} in one lane section", id),
-                   "unique lane ids within a section", "give one of them another id");
+        document.remarks.push_back({"import.duplicate-lane", true, XmlDocument::place_of(child),
+                                    xml.line_of(child),
+                                    "has the id of a lane before it in its section and is left "
+                                    "out; give it another id"});
       }
     }
   }

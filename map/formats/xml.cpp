@@ -53,6 +53,29 @@ std::optional<double> parse_finite(std::string_view text) {
   return value;
 }
 
+// Takes the root's prefix off all names that have it: <o:OpenDRIVE> and what it holds are read as
+// if the namespace were the default one. Names only become shorter, in place.
+void drop_prefix(pugi::xml_node root) {
+  const std::string_view name = root.name();
+  const auto colon = name.find(':');
+  if (colon == name.npos) return;
+  const std::string prefix(name.substr(0, colon + 1));
+  const auto shorten = [&](pugi::xml_node node) {
+    const std::string_view full = node.name();
+    if (full.starts_with(prefix)) node.set_name(std::string(full.substr(prefix.size())).c_str());
+  };
+  pugi::xml_node node = root;
+  while (node) {
+    shorten(node);
+    if (node.first_child()) {
+      node = node.first_child();
+      continue;
+    }
+    while (node && node != root && !node.next_sibling()) node = node.parent();
+    node = node == root ? pugi::xml_node() : node.next_sibling();
+  }
+}
+
 }  // namespace
 
 XmlDocument::XmlDocument(std::string bytes, std::string name)
@@ -73,6 +96,7 @@ XmlDocument::XmlDocument(std::string bytes, std::string name)
          .needed = "a whole XML document",
          .remedy = "check whether the file was cut off or is of another kind"});
   }
+  drop_prefix(document_.document_element());
 }
 
 long XmlDocument::line_of(pugi::xml_node node) const {

@@ -11,7 +11,8 @@
 namespace roadbed::map {
 
 /// An XML document that knows the line of each element, and reads attributes strictly.
-/// External entities are never fetched and entity definitions never expanded.
+/// External entities are never fetched and entity definitions never expanded. A namespace prefix of
+/// the root is taken off the names of all elements.
 class XmlDocument {
  public:
   /// @param name  stands for the file in messages.

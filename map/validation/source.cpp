@@ -79,9 +79,8 @@ ElementLines element_lines(const XmlDocument& xml) {
 
 bool names_known_format(const std::string& bytes) {
   const std::string_view start = std::string_view(bytes).substr(0, 100'000);
-  return start.find("<OpenDRIVE") != std::string_view::npos ||
-         start.find("<commonRoad") != std::string_view::npos ||
-         start.find("<osm") != std::string_view::npos;
+  const auto names = [&](std::string_view text) { return start.find(text) != start.npos; };
+  return names("<OpenDRIVE") || names(":OpenDRIVE") || names("<commonRoad") || names("<osm");
 }
 
 Finding not_well_formed(const std::string& name, const std::string& message) {

@@ -188,7 +188,6 @@ TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
   EXPECT_THAT(refusal(replaced("length=\"100\" junction", "length=\"1e999\" junction")),
               HasSubstr("made.xodr:2: <road> of road A: length=\"1e999\""));
   EXPECT_THAT(refusal(replaced("<line/>", "<circle/>")), HasSubstr("no known curve"));
-  EXPECT_THAT(refusal(replaced("id=\"-2\"", "id=\"-1\"")), HasSubstr("a second lane -1"));
   EXPECT_THAT(refusal(replaced("x=\"0\"", "x=\"1e308\"")), HasSubstr("beyond that of any road"));
   EXPECT_THAT(refusal(replaced("<line/>", "<arc curvature=\"1e3\"/>")),
               HasSubstr("beyond that of any road"));
@@ -199,6 +198,58 @@ TEST(OpenDrive, UnusableFilesAreRefusedOnOneLineWithTheirPlace) {
   EXPECT_THAT(refusal("<kml/>"), HasSubstr("root element <kml>"));
   EXPECT_THAT(refusal("what?"), HasSubstr("neither XML nor a compiled map"));
   EXPECT_THAT(refusal("<OpenDRIVE/>"), HasSubstr("no road with a geometry"));
+}
+
+// The same file with another name space for the root, or for all.
+std::string prefixed(std::string text, bool all) {
+  for (const std::string_view open : {"</", "<"}) {
+    for (std::size_t at = text.find(open); at != text.npos; at = text.find(open, at + 1)) {
+      const std::size_t name = at + open.size();
+      const bool is_root = text.compare(name, 9, "OpenDRIVE") == 0;
+      if (text[name] != '/' && text[name] != 'o' && (all || is_root)) text.insert(name, "o:");
+    }
+  }
+  return text.insert(text.find("o:OpenDRIVE") + 11, " xmlns:o=\"opendrive_schema\"");
+}
+
+TEST(OpenDrive, PrefixesOfTheNamespaceChangeNothing) {
+  const std::string good = "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>" +
+                           straight_road("A", 0, "") + "</OpenDRIVE>";
+  const RoadMap expected = parse_map(good, "made.xodr");
+  for (const bool all : {false, true}) {
+    const RoadMap road_map = parse_map(prefixed(good, all), "made.xodr");
+    EXPECT_EQ(road_map.lanes().size(), 4u);
+    EXPECT_EQ(road_map.format(), "OpenDRIVE 1.6");
+    EXPECT_EQ(lane(road_map, "A/0/-3").left.in_map.points(),
+              lane(expected, "A/0/-3").left.in_map.points());
+  }
+  EXPECT_THAT(refusal(prefixed("<OpenDRIVE>\n<road id=\"1\" length=\"x\"/></OpenDRIVE>", true)),
+              HasSubstr("made.xodr:2: <road> of road 1: length=\"x\""));
+}
+
+std::vector<std::string> remarked(const RoadMap& road_map) {
+  std::vector<std::string> rules;
+  for (const ImportRemark& remark : road_map.remarks()) {
+    if (remark.is_fault) rules.push_back(remark.rule);
+  }
+  return rules;
+}
+
+TEST(OpenDrive, OfTwoRoadsWithOneIdTheFirstIsTaken) {
+  const RoadMap road_map =
+      parse(straight_road("A", 0, "") + straight_road("A", 500, "") + straight_road("B", 900, ""));
+  EXPECT_EQ(road_map.roads().size(), 2u);
+  EXPECT_NEAR(lane(road_map, "A/0/-1").centre.in_map.points().front().x(), 0.0, 1e-12);
+  EXPECT_THAT(remarked(road_map), ElementsAre("import.duplicate-road"));
+}
+
+TEST(OpenDrive, OfTwoLanesWithOneIdTheFirstIsTaken) {
+  std::string twice = straight_road("A", 0, "");
+  twice.replace(twice.find("id=\"-3\""), 7, "id=\"-2\"");
+  const RoadMap road_map = parse(twice);
+  EXPECT_EQ(road_map.lanes().size(), 3u);
+  EXPECT_EQ(lane(road_map, "A/0/-2").type, LaneType::driving);
+  EXPECT_THAT(remarked(road_map), ElementsAre("import.duplicate-lane"));
 }
 
 TEST(OpenDrive, EntitiesAreNotExpanded) {
