@@ -104,12 +104,12 @@ PlanPoint evaluate(const ParamPoly3Curve& curve, double ds, double length_m) {
 }
 
 PlanBounds bounds_of(const LineCurve&, double, double, double) {
-  return {0.0, 0.0, 0.0, PlanBounds::Range{}};
+  return {0.0, 0.0, 0.0, 0.0, 1.0, PlanBounds::Range{}};
 }
 
 PlanBounds bounds_of(const ArcCurve& arc, double, double, double) {
   const double k = std::abs(arc.curvature_per_m);
-  return {k, k, 0.0, PlanBounds::Range{arc.curvature_per_m, arc.curvature_per_m}};
+  return {k, k, 0.0, k, 1.0, PlanBounds::Range{arc.curvature_per_m, arc.curvature_per_m}};
 }
 
 PlanBounds bounds_of(const SpiralCurve& spiral, double from, double to, double length_m) {
@@ -117,19 +117,26 @@ PlanBounds bounds_of(const SpiralCurve& spiral, double from, double to, double l
   const double rate = (spiral.end_curvature_per_m - k0) / length_m;
   const auto [low, high] = std::minmax({k0 + rate * from, k0 + rate * to});
   const double k = std::max(std::abs(low), std::abs(high));
-  return {k, k, std::abs(rate), PlanBounds::Range{low, high}};
+  return {k, k, std::abs(rate), k, 1.0, PlanBounds::Range{low, high}};
 }
 
 // A planar curve given by u and v with Taylor coefficients about the middle of a stretch.
 PlanBounds parametric_bounds(const PolynomialValue& u, const PolynomialValue& v, double half) {
-  const auto hypot = [](double a, double b) { return std::hypot(a, b); };
-  const double third = hypot(u.d3, v.d3);
-  const double second = hypot(u.d2, v.d2) + half * third;
+  const auto cross = [](double au, double av, double bu, double bv) {
+    return std::abs(au * bv - av * bu);
+  };
+  const double third = std::hypot(u.d3, v.d3);
+  const double second = std::hypot(u.d2, v.d2) + half * third;
   // Speed cannot fall faster than the second derivative allows.
-  const double slowest = std::max(1e-9, hypot(u.d1, v.d1) - half * second);
-  const double heading_d1 = second / slowest;
-  const double heading_d2 = third / slowest + 2.0 * second * second / (slowest * slowest);
-  return {second, heading_d1, heading_d2, std::nullopt};
+  const double slowest = std::max(1e-9, std::hypot(u.d1, v.d1) - half * second);
+  // heading′ = p′×p″ / |p′|², and p′×p″ is a quadratic with the derivatives p′×p‴ and p″×p‴.
+  const double turn_d2 = cross(u.d2, v.d2, u.d3, v.d3);
+  const double turn_d1 = cross(u.d1, v.d1, u.d3, v.d3);
+  const double turn = cross(u.d1, v.d1, u.d2, v.d2) + half * (turn_d1 + 0.5 * half * turn_d2);
+  const double squared = slowest * slowest;
+  const double heading_d2 =
+      (turn_d1 + half * turn_d2) / squared + 2.0 * turn * second / (squared * slowest);
+  return {second, turn / squared, heading_d2, turn / slowest, slowest, std::nullopt};
 }
 
 PlanBounds bounds_of(const Poly3Curve& curve, double from, double to, double length_m) {
@@ -139,7 +146,8 @@ PlanBounds bounds_of(const Poly3Curve& curve, double from, double to, double len
   const double middle = 0.5 * (u0 + u1), half = 0.5 * std::abs(u1 - u0);
   const double second =
       std::abs(2.0 * curve.c + 6.0 * curve.d * middle) + half * 6.0 * std::abs(curve.d);
-  return {second, second, 6.0 * std::abs(curve.d) + 3.0 * second * second, std::nullopt};
+  return {second, second, 6.0 * std::abs(curve.d) + 3.0 * second * second,
+          second, 1.0,    std::nullopt};
 }
 
 PlanBounds bounds_of(const ParamPoly3Curve& curve, double from, double to, double length_m) {

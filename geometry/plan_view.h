@@ -53,11 +53,13 @@ struct PlanPoint {
 };
 
 /// Proven upper bounds over a stretch, derivatives by the road's s:
-/// of |position″|, |heading′| and |heading″|.
+/// of |position″|, |heading′|, |heading″|, and of position″ across the curve.
 struct PlanBounds {
   double second_derivative_per_m = 0.0;
   double heading_d1_per_m = 0.0;
   double heading_d2_per_m2 = 0.0;
+  double across_per_m = 0.0;  ///< of position″ · normal
+  double slowest = 1.0;       ///< lower bound of |position′|: 1 where s is the arc length
 
   /// Where s is the arc length: the signed curvature's range.
   struct Range {

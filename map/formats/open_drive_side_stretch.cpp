@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace roadbed::map::open_drive {
 namespace {
@@ -47,6 +48,27 @@ double bound_by_curvature(const geometry::PlanBounds& plan, const CubicValue& si
   }
   const double along = plan.heading_d2_per_m2 * side.value + 2.0 * plan.heading_d1_per_m * side.d1;
   return std::hypot(across + side.d2, along);
+}
+
+// Where s runs unevenly along the road, by as much as a tenth of what lies across counts: a chord
+// is off the curve by its part across, and only places along it, which nobody sees, by the rest.
+// All of the latter that is not along the chord counts in full: the chord's direction is one that
+// the border has somewhere, so it is at most the road's turn and the border's slant from any
+// normal's. A slope along the border tells in the height.
+double bound_by_parts(const geometry::PlanBounds& plan, const CubicValue& side, double length_m,
+                      std::optional<double> slope, double height_d2) {
+  constexpr double kUnseenShare = 0.1;
+  const double turn = plan.heading_d1_per_m;
+  const double across = plan.across_per_m + side.d2 + side.value * turn * turn;
+  const double along =
+      plan.second_derivative_per_m + 2.0 * side.d1 * turn + side.value * plan.heading_d2_per_m2;
+  const double forward = plan.slowest - side.value * turn;
+  const double whole = std::hypot(across, along, height_d2);
+  const double slant = length_m * turn + std::atan2(side.d1, forward);
+  if (!slope || forward <= 0.0 || slant > 1.0) return whole;
+  const double seen =
+      std::hypot(across + along * std::sin(slant), height_d2 + along * *slope / forward);
+  return std::min(whole, std::max(seen, kUnseenShare * along));
 }
 
 }  // namespace
@@ -96,15 +118,21 @@ double SideStretch::second_derivative_bound(double from_s_m, double to_s_m) cons
                         rolled_t.d2 + rolled_h.d2};
   const double height = bounds(elevation_, from_s_m, to_s_m).d2 + rolled_t.d2 - t.d2 +
                         share * t.d2 + rolled_h.d2 + fall_d2(t, from_s_m, to_s_m);
-  double in_plan = 0.0;
+  const double kink = 2.0 * shape.kinks / (to_s_m - from_s_m);
   if (plan.curvature) {
     const Range range = sideways_range(from_s_m, to_s_m, t, share, shape.height.value);
-    in_plan = bound_by_curvature(plan, side, range.low_m, range.high_m);
-  } else {
-    in_plan = plan.second_derivative_per_m + side.d2 + 2.0 * side.d1 * plan.heading_d1_per_m +
-              side.value * (plan.heading_d2_per_m2 + plan.heading_d1_per_m * plan.heading_d1_per_m);
+    return std::hypot(bound_by_curvature(plan, side, range.low_m, range.high_m), height) + kink;
   }
-  return std::hypot(in_plan, height) + 2.0 * shape.kinks / (to_s_m - from_s_m);
+  return bound_by_parts(plan, side, to_s_m - from_s_m, slope(t, from_s_m, to_s_m), height) + kink;
+}
+
+// Of the height along s; none where the cross-section leans, or falls off changingly.
+std::optional<double> SideStretch::slope(const CubicValue& t, double from_s_m,
+                                         double to_s_m) const {
+  const bool leans = roll_ != nullptr || !road_.shape.empty();
+  if (leans || bounds(fall_, from_s_m, to_s_m).d1 != 0.0) return {};
+  const double fall = std::abs(std::tan(value_at(fall_, from_s_m)));
+  return bounds(elevation_, from_s_m, to_s_m).d1 + t.d1 * fall;
 }
 
 // Least and greatest τ of any border along the stretch.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/plan_view.h"
@@ -48,6 +49,7 @@ class SideStretch {
   Range sideways_range(double from_s_m, double to_s_m, const geometry::CubicValue& t,
                        double roll_share, double height_m) const;
   double fall_d2(const geometry::CubicValue& t, double from_s_m, double to_s_m) const;
+  std::optional<double> slope(const geometry::CubicValue& t, double from_s_m, double to_s_m) const;
   LateralShape::Bounds shape_bounds(double from_s_m, double to_s_m) const;
   geometry::CubicValue offset_bounds(double from_s_m, double to_s_m) const;
   void enter_raised(double s_m);

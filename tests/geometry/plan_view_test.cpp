@@ -102,7 +102,11 @@ TEST(PlanView, BoundsHoldEverywhere) {
         const double d1 = (at(s + h).heading_rad - at(s - h).heading_rad) / (2 * h);
         const double d2 =
             (at(s + h).heading_rad - 2 * at(s).heading_rad + at(s - h).heading_rad) / (h * h);
+        const Eigen::Vector2d first = (at(s + h).position() - at(s - h).position()) / (2 * h);
+        const double across = (first.x() * second.y() - first.y() * second.x()) / first.norm();
         EXPECT_LE(second.norm(), bounds.second_derivative_per_m + 1e-6);
+        EXPECT_LE(std::abs(across), bounds.across_per_m + 1e-6);
+        EXPECT_GE(first.norm(), bounds.slowest - 1e-6);
         EXPECT_LE(std::abs(d1), bounds.heading_d1_per_m + 1e-6);
         EXPECT_LE(std::abs(d2), bounds.heading_d2_per_m2 + 1e-6);
       }

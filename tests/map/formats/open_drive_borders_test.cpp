@@ -91,6 +91,35 @@ TEST(OpenDriveBorders, OnShapedLeaningRoadsAreWithinAMillimetreInSpace) {
   EXPECT_LT(worst_border_m(tests::made_document(tests::made_road(road))), 1e-3);
 }
 
+// As netconvert writes gentle curves: s runs along them at 0.75 to 1.1 of the speed it should, so
+// that |position″| is twenty times what lies across the curve.
+std::string uneven_road_xml() {
+  tests::MadeRoad road;
+  road.length_m = 40;
+  road.plan_view.clear();
+  double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    constexpr double kU = 2.0, kV = -0.0272653;
+    road.plan_view += fmt::format(
+        R"(<geometry s="{}" x="{}" y="{}" hdg="{}" length="2"><paramPoly3 aU="0" bU="1.5" cU="1.5" )"
+        R"(dU="-1" aV="0" bV="0" cV="-0.0344296" dV="0.0071643" pRange="normalized"/></geometry>)",
+        2 * i, x_m, y_m, heading_rad);
+    x_m += kU * std::cos(heading_rad) - kV * std::sin(heading_rad);
+    y_m += kU * std::sin(heading_rad) + kV * std::cos(heading_rad);
+    heading_rad += std::atan2(-2 * 0.0344296 + 3 * 0.0071643, 1.5);
+  }
+  road.elevation = R"(<elevation s="0" a="3" b="0.04" c="0.0005" d="0"/>)";
+  road.lateral = R"(<crossfall side="both" s="0" a="0.03" b="0" c="0" d="0"/>)";
+  road.lanes = tests::made_section(
+      0, R"(<lane id="1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>)",
+      R"(<lane id="-1" type="driving"><width sOffset="0" a="3" b="0.02" c="0" d="0"/></lane>)");
+  return tests::made_document(tests::made_road(road));
+}
+
+TEST(OpenDriveBorders, OfUnevenlyParametrisedCurvesAreWithinAMillimetreInSpace) {
+  EXPECT_LT(worst_border_m(uneven_road_xml()), 1e-3);
+}
+
 // The fewest rows of vertices that keep both borders of a lane within the error, each row as far
 // from the last one as it can be. Dense lines stand for the curves.
 std::size_t fewest_rows(const Lane& dense, double max_error_m) {
@@ -130,6 +159,10 @@ double row_share(const std::string& bytes) {
 
 TEST(OpenDriveBorders, TakeFewMoreVerticesThanTheyMust) {
   EXPECT_LT(row_share(tests::curved_road_xml()), 1.5);
+}
+
+TEST(OpenDriveBorders, OfUnevenlyParametrisedCurvesTakeNoVerticesForTheUnevenness) {
+  EXPECT_LT(row_share(uneven_road_xml()), 3.0);
 }
 
 }  // namespace
