@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 
 namespace roadbed::map::rules {
@@ -149,6 +150,7 @@ void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& repo
 void reversals(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for_each_link(road_map, [&](const Lane& from, const Lane& to) {
     if (std::abs(kink_between(from, to)) <= kReversed) return;
+    if (is_folded(from) || is_folded(to)) return;  // which has a finding of its own
     report
         .add("lane " + from.name, from.centre.in_map.points().back(),
              fmt::format("lane {} goes on in the opposite direction; correct the link, or the "

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 
 namespace roadbed::map::rules {
@@ -85,6 +86,7 @@ void neighbours_against(const RoadMap& road_map, const ValidateOptions&, Report&
                             at.longer->pose_at(at.longer_s_m).heading_rad;
     const double along = std::cos(turn_rad);
     if (std::abs(along) < 0.5 || (along > 0.0) == neighbour.same_direction) return;
+    if (is_folded(lane) || is_folded(other)) return;  // which has a finding of its own
     report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
                fmt::format("its {} neighbour, lane {}, runs in {} direction, but is said to run in "
                            "{}; correct it",

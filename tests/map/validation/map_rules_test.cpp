@@ -231,6 +231,32 @@ TEST(MapRules, CheckLinksOfLanesThatNoCarDrivesOnToo) {
   EXPECT_THAT(findings[0].message, ::testing::HasSubstr("other ends of the two meet"));
 }
 
+// A bend of 4 m to the right whose outer lane is 3 m wide and whose inner one lies beyond its
+// centre: the inner lane runs backwards, which is no fault of what it is linked to or lies beside.
+TEST(MapRules, TellOfAFoldOnce) {
+  MadeMap made;
+  Points rows[3];
+  for (int i = 0; i <= 40; ++i) {
+    const Eigen::Vector2d outwards(-std::sin(-0.03 * i), std::cos(-0.03 * i));
+    for (int row = 0; row < 3; ++row) rows[row].push_back((4.0 - 4.5 * row) * outwards);
+  }
+  const RoadId road = made.add_road("1");
+  const LaneId outer = made.add_lane(road, "-1", rows[0], rows[1]);
+  const LaneId inner = made.add_lane(road, "-2", rows[1], rows[2]);
+  const Eigen::Vector2d along(std::cos(-1.2), std::sin(-1.2));
+  Points left, right;
+  for (const double s_m : {0.0, 50.0}) {
+    left.push_back(rows[1].back() + s_m * along);
+    right.push_back(rows[2].back() + s_m * along);
+  }
+  const LaneId after = made.add_lane(made.add_road("2"), "-2", left, right);
+  made.put_beside(outer, inner);
+  made.link(inner, after);
+  EXPECT_FALSE(of_rule(made, "geometry.negative-width").empty());
+  EXPECT_TRUE(of_rule(made, "link.reversed").empty());
+  EXPECT_TRUE(of_rule(made, "neighbour.direction").empty());
+}
+
 TEST(MapRules, TakeNoBridgeForAnOverlap) {
   MadeMap made = faultless();
   const LaneId bridge =
