@@ -52,7 +52,8 @@ double eccentricity() {
 // Σ cⱼ sin 2jζ for complex ζ, by Clenshaw's summation.
 std::complex<double> sine_series(const Series& coefficients, std::complex<double> zeta) {
   const double c = std::cos(2.0 * zeta.real()), s = std::sin(2.0 * zeta.real());
-  const double ch = std::cosh(2.0 * zeta.imag()), sh = std::sinh(2.0 * zeta.imag());
+  const double grown = std::exp(2.0 * zeta.imag()), shrunk = 1.0 / grown;
+  const double ch = 0.5 * (grown + shrunk), sh = 0.5 * (grown - shrunk);
   const double twice_re = 2.0 * c * ch, twice_im = -2.0 * s * sh;  // 2 cos 2ζ
   double re = 0.0, im = 0.0, last_re = 0.0, last_im = 0.0;
   for (std::size_t j = coefficients.size(); j-- > 0;) {
@@ -69,9 +70,9 @@ std::complex<double> sine_series(const Series& coefficients, std::complex<double
 
 // Tangent of the conformal latitude from that of the latitude, eqs. 7–9.
 double conformal_tangent(double tau) {
-  const double root = std::hypot(1.0, tau);
+  const double root = std::sqrt(1.0 + tau * tau);
   const double sigma = std::sinh(eccentricity() * std::atanh(eccentricity() * tau / root));
-  return tau * std::hypot(1.0, sigma) - sigma * root;
+  return tau * std::sqrt(1.0 + sigma * sigma) - sigma * root;
 }
 
 // Its inverse by Newton's method, eqs. 19–21.
@@ -106,8 +107,9 @@ Eigen::Vector2d TransverseMercator::forward(const GeographicPoint& point) const 
   const double tangent = conformal_tangent(std::tan(point.latitude_rad));
   const double cosine = std::cos(lambda);
   // The spherical transverse Mercator of the conformal latitude, eq. 10, then the series, eq. 11.
-  std::complex<double> zeta(std::atan2(tangent, cosine),
-                            std::asinh(std::sin(lambda) / std::hypot(tangent, cosine)));
+  std::complex<double> zeta(
+      std::atan2(tangent, cosine),
+      std::asinh(std::sin(lambda) / std::sqrt(tangent * tangent + cosine * cosine)));
   zeta += sine_series(kAlpha, zeta);
   const double radius_m = scale * kRectifyingRadius_m;
   return {false_easting_m + radius_m * zeta.imag(),

@@ -44,9 +44,9 @@ class AreaBuilder {
     if (!outer || !inner) return;
     Area area;
     area.source_id = std::to_string(relation.id);
-    area.attributes = document_.tags_of(relation.at);
+    area.attributes = attributes_of(relation.tags);
     area.type = relation.subtype;
-    area.participants = participants(area.attributes);
+    area.participants = participants(relation.tags);
     area.is_road = area.participants.has(Participant::car);
     for (const geometry::Ring& ring : *outer) area.in_map.push_back({ring, {}});
     if (area.in_map.empty()) {
@@ -84,7 +84,8 @@ class AreaBuilder {
         return open_ring(relation, "its borders repeat more points than the file has");
       }
       points_left_ -= points;
-      ways.push_back(document_.ways[*way].nodes);
+      const auto& nodes = document_.ways[*way].nodes;
+      ways.emplace_back(nodes.begin(), nodes.end());
     }
     const auto closed = close_rings(std::move(ways));
     if (!closed) return open_ring(relation, fmt::format("its {} border does not close", role));
@@ -133,8 +134,8 @@ void add_objects(Document& document, RoadMapParts& parts) {
     MapObject object;
     object.source_id = std::to_string(way.id);
     object.type = way.type;
-    object.attributes = way.tags;
-    object.name = value_of(object.attributes, "name");
+    object.attributes = attributes_of(way.tags);
+    object.name = value_of(way.tags, "name");
     geometry::Ring ring;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& point : document.points(way)) {

@@ -284,8 +284,10 @@ bool is_left_of(const Line3& line, const Eigen::Vector3d& point) {
   return left;
 }
 
-Eigen::Vector3d middle_vertex(const Line3& line) {
-  if (line.size() > 2) return line[line.size() / 2];
+// Of a border of even length it depends on its direction.
+Eigen::Vector3d middle_vertex(const Line3& line, bool reversed = false) {
+  const std::size_t n = line.size();
+  if (n > 2) return line[reversed ? n - 1 - n / 2 : n / 2];
   return 0.5 * (line.front() + line.back());
 }
 
@@ -349,10 +351,7 @@ Centreline centreline_along(Line3 centre, const Line3& left, const Line3& right)
 Alignment align(const Line3& left, const Line3& right) {
   Alignment alignment;
   alignment.left_reversed = is_left_of(left, middle_vertex(right));
-  // Of a border of even length the middle vertex depends on its direction.
-  const Line3 turned(left.rbegin(), left.rend());
-  alignment.right_reversed =
-      !is_left_of(right, middle_vertex(alignment.left_reversed ? turned : left));
+  alignment.right_reversed = !is_left_of(right, middle_vertex(left, alignment.left_reversed));
   return alignment;
 }
 

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "roadbed/map/formats/lanelet2_frame.h"
@@ -30,12 +31,23 @@ std::optional<std::int64_t> id_in(std::string_view text) {
   return id;
 }
 
+// Whether a text is a literal; its length is known to the compiler, unlike that of a view.
+template <std::size_t kSize>
+bool equals(std::string_view text, const char (&literal)[kSize]) {
+  return text.size() == kSize - 1 && std::memcmp(text.data(), literal, kSize - 1) == 0;
+}
+
 std::optional<MemberKind> member_kind(std::string_view name) {
-  if (name == "node") return MemberKind::node;
-  if (name == "way") return MemberKind::way;
-  if (name == "relation") return MemberKind::relation;
+  if (equals(name, "node")) return MemberKind::node;
+  if (equals(name, "way")) return MemberKind::way;
+  if (equals(name, "relation")) return MemberKind::relation;
   return {};
 }
+
+// Places in a list: the first one, and that behind the last.
+struct Range {
+  std::size_t from, to;
+};
 
 // A node before its place in the map is known.
 struct RawNode {
@@ -59,7 +71,11 @@ class DocumentReader {
     scanner_.expect_end();
     place_nodes();
     document_.node_index = index_of(document_.nodes, "node");
+    document_.way_nodes.reserve(refs_.size());
     for (std::size_t i = 0; i < document_.ways.size(); ++i) add_way_nodes(i);
+    hand_out(document_.ways, way_tags_);
+    hand_out(document_.relations, relation_tags_);
+    hand_out_members();
     document_.way_index = index_of(document_.ways, "way");
     document_.relation_index = index_of(document_.relations, "relation");
     return std::move(document_);
@@ -132,13 +148,13 @@ class DocumentReader {
 
   void read_node_tag(RawNode& raw) {
     const std::string_view key = scanner_.value("k"), value = scanner_.value("v");
-    if (key == "local_x") {
+    if (equals(key, "local_x")) {
       raw.place.local_x_m = number_in(value);
-    } else if (key == "local_y") {
+    } else if (equals(key, "local_y")) {
       raw.place.local_y_m = number_in(value);
-    } else if (key == "ele") {
+    } else if (equals(key, "ele")) {
       raw.elevation_m = number_in(value);
-    } else if (key == "mgrs_code" && mgrs_code_.empty()) {
+    } else if (equals(key, "mgrs_code") && mgrs_code_.empty()) {
       mgrs_code_ = value;
     }
   }
@@ -148,41 +164,44 @@ class DocumentReader {
     way.id = id;
     way.at = scanner_.offset();
     refs_begin_.push_back(refs_.size());
+    const std::size_t tags_begin = document_.tags.size();
     each_child([&] {
-      if (scanner_.name() == "nd") {
+      if (equals(scanner_.name(), "nd")) {
         refs_.push_back(id_in(scanner_.value("ref")).value_or(kNoId));
-      } else if (scanner_.name() == "tag") {
-        spend(Cost::child);
-        read_kind(way);
-        way.tags.emplace_back(scanner_.value("k"), scanner_.value("v"));
+      } else if (equals(scanner_.name(), "tag")) {
+        add_tag(way);
       }
     });
-    document_.ways.push_back(std::move(way));
+    way_tags_.push_back({tags_begin, document_.tags.size()});
+    document_.ways.push_back(way);
   }
 
-  // Keeps the first `type` and `subtype` among the tags.
+  // Keeps it, and the first `type` and `subtype` once more.
   template <typename Element>
-  void read_kind(Element& element) {
-    const std::string_view key = scanner_.value("k");
-    if (key == "type" && element.type.data() == nullptr) element.type = scanner_.value("v");
-    if (key == "subtype" && element.subtype.data() == nullptr) {
-      element.subtype = scanner_.value("v");
-    }
+  void add_tag(Element& element) {
+    spend(Cost::child);
+    const std::string_view key = scanner_.value("k"), value = scanner_.value("v");
+    if (equals(key, "type") && element.type.data() == nullptr) element.type = value;
+    if (equals(key, "subtype") && element.subtype.data() == nullptr) element.subtype = value;
+    document_.tags.emplace_back(key, value);
   }
 
   void add_relation(std::int64_t id) {
-    Relation relation{id, {}, {}, {}, scanner_.offset()};
+    Relation relation{id, {}, {}, {}, {}, scanner_.offset()};
+    const std::size_t tags_begin = document_.tags.size();
     each_child([&] {
-      if (scanner_.name() == "member") {
-        add_member(relation);
-      } else if (scanner_.name() == "tag") {
-        read_kind(relation);
+      if (equals(scanner_.name(), "member")) {
+        add_member();
+      } else if (equals(scanner_.name(), "tag")) {
+        add_tag(relation);
       }
     });
-    document_.relations.push_back(std::move(relation));
+    relation_tags_.push_back({tags_begin, document_.tags.size()});
+    members_end_.push_back(document_.members.size());
+    document_.relations.push_back(relation);
   }
 
-  void add_member(Relation& relation) {
+  void add_member() {
     spend(Cost::child);
     const std::optional<MemberKind> kind = member_kind(scanner_.value("type"));
     const std::optional<std::int64_t> ref = id_in(scanner_.value("ref"));
@@ -190,7 +209,25 @@ class DocumentReader {
       fault(scanner_.offset(), "import.reference", "names no node, way or relation");
       return;
     }
-    relation.members.push_back({*kind, *ref, scanner_.value("role")});
+    document_.members.push_back({*kind, *ref, scanner_.value("role")});
+  }
+
+  // Gives elements their tags, when the list of all tags grows no more.
+  template <typename Element>
+  void hand_out(std::vector<Element>& elements, const std::vector<Range>& ranges) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      elements[i].tags =
+          Tags(document_.tags).subspan(ranges[i].from, ranges[i].to - ranges[i].from);
+    }
+  }
+
+  void hand_out_members() {
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < members_end_.size(); ++i) {
+      document_.relations[i].members =
+          std::span<const Member>(document_.members).subspan(from, members_end_[i] - from);
+      from = members_end_[i];
+    }
   }
 
   // Positions relative to a local origin, a whole number of kilometres in the file's coordinates.
@@ -235,15 +272,16 @@ class DocumentReader {
     const std::size_t begin = refs_begin_[index];
     const std::size_t end = index + 1 < refs_begin_.size() ? refs_begin_[index + 1] : refs_.size();
     std::size_t first_missing = end;
-    way.nodes.reserve(end - begin);
+    const std::size_t nodes_begin = document_.way_nodes.size();
     for (std::size_t i = begin; i < end; ++i) {
-      const auto place = document_.node_index.find(refs_[i]);
+      const auto place = document_.node_index.find_near(refs_[i], near_);
       if (place && document_.nodes[*place].placed && refs_[i] != kNoId) {
-        way.nodes.push_back(*place);
+        document_.way_nodes.push_back(*place);
       } else if (first_missing == end) {
         first_missing = i;
       }
     }
+    way.nodes = std::span<const std::uint32_t>(document_.way_nodes).subspan(nodes_begin);
     if (first_missing == end) return;
     fault(way.at, "import.reference",
           fmt::format("{} of its nodes, first {}, are not there or have no place",
@@ -283,8 +321,11 @@ class DocumentReader {
   XmlScanner& scanner_;  // the document's
   std::size_t budget_;   // of memory [bytes]
   std::vector<NodePlace> places_;
-  std::vector<std::int64_t> refs_;       // to the nodes of all ways
-  std::vector<std::size_t> refs_begin_;  // those of each way
+  std::vector<std::int64_t> refs_;               // to the nodes of all ways
+  std::vector<std::size_t> refs_begin_;          // those of each way
+  std::vector<Range> way_tags_, relation_tags_;  // of the tags of each
+  std::vector<std::size_t> members_end_;         // of those of each relation
+  std::size_t near_ = 0;                         // where the last node was found
   std::string mgrs_code_, crs_;
   std::size_t bad_elevations_ = 0;
   std::size_t first_bad_elevation_ = 0;
@@ -299,15 +340,19 @@ std::vector<Eigen::Vector3d> Document::points(const Way& way) const {
   return found;
 }
 
+Attributes attributes_of(Tags tags) { return {tags.begin(), tags.end()}; }
+
+std::vector<Tag> views_of(const Attributes& tags) { return {tags.begin(), tags.end()}; }
+
 Attributes Document::tags_of(std::size_t at) const {
   XmlScanner element(text, name, at);
-  Attributes tags;
+  Attributes found;
   for (auto event = element.next(); event != XmlScanner::Event::done; event = element.next()) {
     if (event == XmlScanner::Event::start && element.depth() == 2 && element.name() == "tag") {
-      tags.emplace_back(element.value("k"), element.value("v"));
+      found.emplace_back(element.value("k"), element.value("v"));
     }
   }
-  return tags;
+  return found;
 }
 
 void Document::fault(std::size_t at, const char* rule, std::string message) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,10 @@
 
 namespace roadbed::map::lanelet2 {
 
+/// Key and value as they stand in the text.
+using Tag = std::pair<std::string_view, std::string_view>;
+using Tags = std::span<const Tag>;
+
 /// A point; its elevation is 0 where the file gives none.
 struct Node {
   std::int64_t id = 0;
@@ -27,9 +32,9 @@ struct Node {
 /// A line through nodes, those that are missing or have no place left out.
 struct Way {
   std::int64_t id = 0;
-  std::vector<std::uint32_t> nodes;
+  std::span<const std::uint32_t> nodes;
   std::string_view type, subtype;
-  Attributes tags;
+  Tags tags;
   std::size_t at = 0;  ///< where its start tag is in the text
   bool used = false;   ///< the map holds what it says
 };
@@ -46,14 +51,17 @@ struct Member {
 struct Relation {
   std::int64_t id = 0;
   std::string_view type, subtype;
-  std::vector<Member> members;
+  std::span<const Member> members;
+  Tags tags;
   std::size_t at = 0;  ///< where its start tag is in the text
 };
 
-/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the text.
+/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the text, and
+/// elements hold views of its lists.
 struct Document {
   Document(const std::string& bytes, std::string file)
       : text(bytes), name(std::move(file)), scanner(text, name) {}
+  Document(Document&&) = default;
 
   std::string_view text;
   std::string name;
@@ -61,6 +69,9 @@ struct Document {
   std::vector<Node> nodes;
   std::vector<Way> ways;
   std::vector<Relation> relations;
+  std::vector<std::uint32_t> way_nodes;  ///< of all ways, one after the other
+  std::vector<Tag> tags;                 ///< of all ways and relations
+  std::vector<Member> members;           ///< of all relations
   IdIndex node_index, way_index, relation_index;
   std::string crs;
   Eigen::Vector2d origin_in_source{0, 0};
@@ -84,6 +95,10 @@ struct Document {
 /// @throws InputError if they are not well-formed XML, or hold more elements than a map of their
 ///         size does.
 Document read_document(const std::string& bytes, const std::string& name);
+
+/// Tags as text of its own, and views of such text.
+Attributes attributes_of(Tags tags);
+std::vector<Tag> views_of(const Attributes& tags);
 
 /// A finite number that a text begins and ends with; NaN if it is none.
 double number_in(std::string_view text);

@@ -34,6 +34,23 @@ class IdIndex {
     return found->second;
   }
 
+  /// The same, searched from about a place in the order of ids, which then is where it was found:
+  /// quick for ids that follow each other.
+  std::optional<std::uint32_t> find_near(std::int64_t id, std::size_t& near) const {
+    const auto less = [](const auto& a, std::int64_t b) { return a.first < b; };
+    // Away from the place in steps that double, until the id is between two of them.
+    const std::size_t size = entries_.size();
+    std::size_t low = std::min(near, size), high = low, step = 1;
+    while (low > 0 && entries_[low - 1].first >= id) low -= std::min(low, step), step *= 2;
+    while (high < size && entries_[high].first < id) high += std::min(size - high, step), step *= 2;
+    const auto found =
+        std::lower_bound(entries_.begin() + static_cast<std::ptrdiff_t>(low),
+                         entries_.begin() + static_cast<std::ptrdiff_t>(high), id, less);
+    if (found == entries_.end() || found->first != id) return {};
+    near = static_cast<std::size_t>(found - entries_.begin());
+    return found->second;
+  }
+
   /// Entries that came after one of the same id.
   std::size_t repeated() const { return repeated_; }
 

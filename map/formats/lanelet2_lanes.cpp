@@ -32,6 +32,9 @@ class LaneBuilder {
   }
 
   BuiltLanes build() {
+    built_.lanes.reserve(static_cast<std::size_t>(
+        std::count_if(document_.relations.begin(), document_.relations.end(),
+                      [](const Relation& relation) { return relation.type == "lanelet"; })));
     for (std::uint32_t i = 0; i < document_.relations.size(); ++i) {
       const Relation& relation = document_.relations[i];
       if (relation.type != "lanelet") continue;
@@ -155,11 +158,11 @@ class LaneBuilder {
     lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
     lane.origin.source_id = std::to_string(relation.id);
     lane.name = lane.origin.source_id;
-    lane.attributes = document_.tags_of(relation.at);
-    lane.participants = participants(lane.attributes);
+    lane.attributes = attributes_of(relation.tags);
+    lane.participants = participants(relation.tags);
     lane.type = lane_type(relation.subtype, lane.participants);
-    lane.one_way = is_one_way(lane.attributes, lane.participants);
-    if (const auto limit = tagged_speed_mps(lane.attributes, lane.participants)) {
+    lane.one_way = is_one_way(relation.tags, lane.participants);
+    if (const auto limit = tagged_speed_mps(relation.tags, lane.participants)) {
       lane.speed_limits = {{0.0, limit}};
     }
     return lane;
@@ -180,7 +183,7 @@ class LaneBuilder {
 BuiltLanes build_lanes(Document& document) { return LaneBuilder(document).build(); }
 
 std::uint32_t first_node(const Document& document, const Border& border) {
-  const std::vector<std::uint32_t>& nodes = document.ways[border.way].nodes;
+  const auto& nodes = document.ways[border.way].nodes;
   return border.reversed ? nodes.back() : nodes.front();
 }
 

@@ -72,9 +72,10 @@ class RegulationBuilder {
     budget_ -= amount;
   }
 
-  Attributes copied(const Attributes& tags) {
+  template <typename Some>
+  Attributes copied(const Some& tags) {
     for (const auto& [key, value] : tags) spend(key.size() + value.size());
-    return tags;
+    return {tags.begin(), tags.end()};
   }
 
   // Which lanes name each regulatory element.
@@ -102,7 +103,7 @@ class RegulationBuilder {
     regulation.source_id = std::to_string(relation.id);
     regulation.type = relation.subtype;
     regulation.lanes = lanes_of_relation_[index];
-    regulation.attributes = document_.tags_of(relation.at);
+    regulation.attributes = attributes_of(relation.tags);
     if (relation.subtype.empty()) {
       document_.fault(relation.at, "import.regulation-type",
                       "has no subtype; it is kept, but says nothing");
@@ -163,7 +164,7 @@ class RegulationBuilder {
     signal.type = way.type;
     signal.subtype = way.subtype;
     signal.dynamic = way.type == "traffic_light";
-    signal.attributes = way.tags;
+    signal.attributes = attributes_of(way.tags);
     if (const auto limit = sign_speed_mps(way.subtype)) {
       signal.value = *limit * 3.6;
       signal.unit = "km/h";
@@ -249,12 +250,19 @@ class RegulationBuilder {
     return lanes;
   }
 
-  void add_speed_limit(const Relation& relation, const Regulation& regulation) {
-    std::string_view code = value_of(regulation.attributes, "sign_type");
-    for (const RegulationMember& member : regulation.members) {
-      if (member.role == "refers" && code.empty()) code = value_of(member.attributes, "subtype");
+  static std::string_view subtype_of(const RegulationMember& member) {
+    for (const auto& [key, value] : member.attributes) {
+      if (key == "subtype") return value;
     }
-    if (code.empty()) code = value_of(regulation.attributes, "speed_limit");
+    return {};
+  }
+
+  void add_speed_limit(const Relation& relation, const Regulation& regulation) {
+    std::string_view code = value_of(relation.tags, "sign_type");
+    for (const RegulationMember& member : regulation.members) {
+      if (member.role == "refers" && code.empty()) code = subtype_of(member);
+    }
+    if (code.empty()) code = value_of(relation.tags, "speed_limit");
     const std::optional<double> limit_mps = sign_speed_mps(code);
     if (!limit_mps) {
       document_.fault(relation.at, "import.speed-limit",

@@ -33,21 +33,22 @@ bool names_or_contains(std::string_view part, std::string_view whole) {
 }
 
 // The value of "prefix:NAME" that is most specific to a road user, "prefix" alone included.
-std::optional<std::string_view> override_for(const Attributes& tags, std::string_view prefix,
-                                             Participant kind) {
-  const std::string wanted = std::string(prefix) + ":" + std::string(name_of(kind));
+std::optional<std::string_view> override_for(Tags tags, std::string_view prefix, Participant kind) {
   std::size_t longest = 0;
   std::optional<std::string_view> found;
   for (const auto& [key, value] : tags) {
-    if (key.size() < prefix.size() || key.size() <= longest) continue;
-    if (!names_or_contains(key, wanted)) continue;
+    if (key.size() < prefix.size() || key.size() <= longest || !key.starts_with(prefix)) continue;
+    const std::string_view rest = key.substr(prefix.size());
+    const bool is_for_it =
+        rest.starts_with(':') && names_or_contains(rest.substr(1), name_of(kind));
+    if (!rest.empty() && !is_for_it) continue;
     longest = key.size();
     found = value;
   }
   return found;
 }
 
-bool has_key_from(const Attributes& tags, std::string_view prefix) {
+bool has_key_from(Tags tags, std::string_view prefix) {
   return std::any_of(tags.begin(), tags.end(),
                      [&](const auto& entry) { return entry.first.starts_with(prefix); });
 }
@@ -118,10 +119,10 @@ MarkType mark_type(std::string_view type, std::string_view subtype, bool reverse
 
 }  // namespace
 
-std::string_view value_of(const Attributes& tags, std::string_view key) {
+std::string_view value_of(Tags tags, std::string_view key) {
   const auto found =
       std::find_if(tags.begin(), tags.end(), [&](const auto& entry) { return entry.first == key; });
-  return found == tags.end() ? std::string_view() : std::string_view(found->second);
+  return found == tags.end() ? std::string_view() : found->second;
 }
 
 std::optional<bool> truth_of(std::string_view value) {
@@ -130,7 +131,7 @@ std::optional<bool> truth_of(std::string_view value) {
   return {};
 }
 
-Participants participants(const Attributes& tags) {
+Participants participants(Tags tags) {
   if (!has_key_from(tags, "participant")) return by_subtype(value_of(tags, "subtype"));
   Participants users;
   for (const auto& [kind, name] : kNames) {
@@ -140,7 +141,7 @@ Participants participants(const Attributes& tags) {
   return users;
 }
 
-bool is_one_way(const Attributes& tags, const Participants& users) {
+bool is_one_way(Tags tags, const Participants& users) {
   const Participant user = main_user(users);
   if (const auto plain = truth_of(value_of(tags, "one_way"))) return *plain;
   if (has_key_from(tags, "one_way")) {
@@ -165,7 +166,7 @@ LaneType lane_type(std::string_view subtype, const Participants& users) {
   return users.empty() ? LaneType::other : LaneType::restricted;
 }
 
-CrossingRule crossing_rule(const Attributes& line_tags, const Participants& users) {
+CrossingRule crossing_rule(Tags line_tags, const Participants& users) {
   const auto says = [&](std::string_view key) {
     return truth_of(value_of(line_tags, key)).value_or(false);
   };
@@ -187,7 +188,7 @@ CrossingRule crossing_rule(const Attributes& line_tags, const Participants& user
   return user == bicycle ? either(on_wheels, on_foot) : on_wheels;
 }
 
-std::optional<BorderMark> border_mark(const Attributes& line_tags, bool reversed) {
+std::optional<BorderMark> border_mark(Tags line_tags, bool reversed) {
   const std::string_view type = value_of(line_tags, "type");
   if (type.empty()) return {};
   BorderMark mark;
@@ -220,7 +221,7 @@ std::optional<double> sign_speed_mps(std::string_view code) {
   return speed_mps(code);
 }
 
-std::optional<double> tagged_speed_mps(const Attributes& tags, const Participants& users) {
+std::optional<double> tagged_speed_mps(Tags tags, const Participants& users) {
   const auto value = override_for(tags, "speed_limit", main_user(users));
   return value ? speed_mps(*value) : std::nullopt;
 }

@@ -36,7 +36,7 @@ std::string_view subtype_of(LaneType type) {
 void add_participants(const Lane& lane, Attributes& tags) {
   const bool beside_traffic = lane.type == LaneType::shoulder || lane.type == LaneType::stop ||
                               lane.type == LaneType::parking;
-  if (beside_traffic || participants(tags) == lane.participants) return;
+  if (beside_traffic || participants(views_of(tags)) == lane.participants) return;
   using enum Participant;
   const Participants vehicles = Participants::vehicles();
   const bool all_vehicles = (lane.participants.bits() & vehicles.bits()) == vehicles.bits();
@@ -138,7 +138,7 @@ Attributes border_tags(const std::optional<BorderMark>& mark, const CrossingWish
   Attributes tags = mark ? mark_tags(*mark) : wished_tags(wish);
   if (mark && !mark->color.empty()) tags.emplace_back("color", mark->color);
   if (mark && mark->width_m > 0.0) tags.emplace_back("width", fmt::format("{:.6g}", mark->width_m));
-  const CrossingRule rule = crossing_rule(tags, Participants::vehicles());
+  const CrossingRule rule = crossing_rule(views_of(tags), Participants::vehicles());
   const bool left = wish.to_left.value_or(rule.to_left);
   const bool right = wish.to_right.value_or(rule.to_right);
   if (left != rule.to_left || right != rule.to_right) {

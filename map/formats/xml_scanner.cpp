@@ -129,6 +129,27 @@ std::string_view XmlScanner::take_value() {
   return (seen & decodes) == 0 ? raw : decoded_.emplace_back(decode_xml(raw));
 }
 
+// An attribute as nearly all are written, ` name="value"` with nothing to decode, in one pass
+// without a look at the members; false, and nothing is taken, if it is of another form.
+bool XmlScanner::take_plain_attribute() {
+  const char* const end = text_.data() + text_.size();
+  const char* at = text_.data() + at_;
+  if (end - at < 2 || *at != ' ') return false;
+  const char* const name = ++at;
+  while (at != end && is(*at, in_name)) ++at;
+  const auto name_size = static_cast<std::size_t>(at - name);
+  if (name_size == 0 || end - at < 3 || at[0] != '=' || (at[1] != '"' && at[1] != '\''))
+    return false;
+  const char quote = at[1];
+  const char* const value = at + 2;
+  std::uint8_t seen = 0;
+  for (at = value; at != end && *at != quote; ++at) seen |= kKinds[static_cast<unsigned char>(*at)];
+  if (at == end || (seen & decodes) != 0 || attributes_.size() == kMostAttributes) return false;
+  attributes_.push_back({{name, name_size}, {value, static_cast<std::size_t>(at - value)}});
+  at_ = static_cast<std::size_t>(at + 1 - text_.data());
+  return true;
+}
+
 void XmlScanner::take_attribute() {
   const std::string_view name = take_name();
   skip_space();
@@ -169,6 +190,8 @@ XmlScanner::Event XmlScanner::read_start() {
   name_ = take_name();
   attributes_.clear();
   for (;;) {
+    while (take_plain_attribute()) {
+    }
     const bool spaced = skip_space();
     const char c = here();
     if (c == '>') {
@@ -220,6 +243,8 @@ void XmlScanner::expect_end() {
 
 std::string_view XmlScanner::value(std::string_view attribute) const {
   for (const Attribute& one : attributes_) {
+    // Names are a few letters: most others differ in size or in the first one.
+    if (one.name.size() != attribute.size() || one.name[0] != attribute[0]) continue;
     if (one.name == attribute) return one.value;
   }
   return {};

@@ -63,6 +63,7 @@ class XmlScanner {
   void skip_document_type();
   std::string_view take_name();
   std::string_view take_value();
+  bool take_plain_attribute();
   void take_attribute();
   bool find_tag();
   Event enter();
