@@ -70,8 +70,9 @@ std::vector<std::uint32_t> cuts(std::size_t count, std::size_t pieces, const Poi
   for (std::size_t piece = 0; piece <= pieces; ++piece) {
     const double share = static_cast<double>(piece) / static_cast<double>(pieces);
     const auto cut = std::lower_bound(along_m.begin(), along_m.end(), share * along_m.back());
-    made.push_back(static_cast<std::uint32_t>(
-        piece == pieces ? count - 1 : std::min<std::size_t>(cut - along_m.begin(), count - 1)));
+    const auto at_cut = static_cast<std::size_t>(cut - along_m.begin());
+    made.push_back(
+        static_cast<std::uint32_t>(piece == pieces ? count - 1 : std::min(at_cut, count - 1)));
   }
   return made;
 }
