@@ -12,7 +12,7 @@ namespace {
 
 using Node = std::uint32_t;
 constexpr Node kNone = 0xffffffffU;
-constexpr double kLeastShare = 0.34;
+constexpr double kLeastShare = 0.25;
 constexpr std::size_t kSmall = 3;
 
 /// Neighbours without direction, each once.
@@ -65,7 +65,7 @@ class Dissection {
 
  private:
   struct Cut {
-    std::size_t arcs = std::numeric_limits<std::size_t>::max();
+    std::size_t touching = std::numeric_limits<std::size_t>::max();
     std::size_t from_middle = 0;
     std::size_t at = 0;  ///< nodes before it
     std::size_t direction = 0;
@@ -84,24 +84,42 @@ class Dissection {
     for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = keys_[i].second;
   }
 
-  // The place along the sorted nodes that fewest arcs pass.
-  void improve(std::span<const Node> nodes, std::size_t direction, Cut& best) {
+  // For each place along the sorted nodes, by how many more nodes before it touch one behind than
+  // for the place before, and the other way round.
+  void count_touching(std::span<const Node> nodes) {
     for (std::size_t i = 0; i < nodes.size(); ++i) index_[nodes[i]] = static_cast<Node>(i);
+    from_left_.assign(nodes.size() + 1, 0);
+    from_right_.assign(nodes.size() + 1, 0);
+    for (Node i = 0; i < nodes.size(); ++i) {
+      Node low = i, high = i;
+      for (const Node other : rows_.of(nodes[i])) {
+        if (part_[other] != round_) continue;
+        low = std::min(low, index_[other]);
+        high = std::max(high, index_[other]);
+      }
+      ++from_left_[i + 1];
+      --from_left_[high + 1];
+      ++from_right_[low + 1];
+      --from_right_[i + 1];
+    }
+  }
+
+  // The place along the sorted nodes at which fewest nodes of one side touch the other one.
+  void improve(std::span<const Node> nodes, std::size_t direction, Cut& best) {
+    count_touching(nodes);
     const auto low =
         static_cast<std::size_t>(std::max(1.0, kLeastShare * static_cast<double>(nodes.size())));
     const std::size_t high = nodes.size() - low;
-    std::ptrdiff_t passing = 0;
+    std::int32_t left = 0, right = 0;
     for (std::size_t i = 0; i < high; ++i) {
-      if (i >= low) {
-        const std::size_t from_middle =
-            i > nodes.size() / 2 ? i - nodes.size() / 2 : nodes.size() / 2 - i;
-        const auto arcs = static_cast<std::size_t>(passing);
-        if (std::pair(arcs, from_middle) < std::pair(best.arcs, best.from_middle)) {
-          best = {arcs, from_middle, i, direction};
-        }
-      }
-      for (const Node other : rows_.of(nodes[i])) {
-        if (part_[other] == round_) passing += index_[other] > i ? 1 : -1;
+      left += from_left_[i];
+      right += from_right_[i];
+      if (i < low) continue;
+      const std::size_t from_middle =
+          i > nodes.size() / 2 ? i - nodes.size() / 2 : nodes.size() / 2 - i;
+      const auto touching = static_cast<std::size_t>(std::min(left, right));
+      if (std::pair(touching, from_middle) < std::pair(best.touching, best.from_middle)) {
+        best = {touching, from_middle, i, direction};
       }
     }
   }
@@ -205,6 +223,7 @@ class Dissection {
   std::vector<Node> part_, index_, match_, seen_;
   std::vector<Node> order_;
   std::vector<std::pair<float, Node>> keys_;
+  std::vector<std::int32_t> from_left_, from_right_;
   Node round_ = 0, mark_ = 0;
 };
 

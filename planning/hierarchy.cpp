@@ -82,35 +82,58 @@ class Elimination {
   std::vector<Rank> first_child_, next_child_, row_, other_, merged_;
 };
 
-// Counted first, then filled: both passes see the ranks below in ascending order.
-Grouped<Rank> ranks_below(const Hierarchy& hierarchy, std::size_t ranks) {
-  const auto visit = [&](const auto& take) {
-    for (Rank rank = 0; rank < ranks; ++rank) {
-      for (const RankRun& run : hierarchy.above.of(rank)) {
-        for (Rank i = 0; i < run.count; ++i) take(run.first + i, rank);
-      }
+// Visits each arc by its ranks, in the order of its lower one.
+template <typename Visit>
+void for_each_arc_up(const Hierarchy& hierarchy, const Visit& visit) {
+  for (Rank low = 0; low < hierarchy.parent.size(); ++low) {
+    for (const RankRun& run : hierarchy.above.of(low)) {
+      for (Rank high = run.first; high < run.end(); ++high) visit(low, high);
     }
-  };
-  Grouped<Rank> below;
+  }
+}
+
+// Counted first, then filled: both passes see the ranks below in ascending order.
+Grouped<RankRun> runs_below(const Hierarchy& hierarchy) {
+  const std::size_t ranks = hierarchy.parent.size();
+  Grouped<RankRun> below;
   below.first.assign(ranks + 1, 0);
-  visit([&](Rank high, Rank) { ++below.first[high + 1]; });
+  std::vector<Rank> arcs(ranks, 0), last(ranks, kNoNode - 1);
+  for_each_arc_up(hierarchy, [&](Rank low, Rank high) {
+    if (last[high] + 1 != low) ++below.first[high + 1];
+    last[high] = low;
+    ++arcs[high];
+  });
   for (std::size_t i = 0; i < ranks; ++i) below.first[i + 1] += below.first[i];
   below.items.resize(below.first.back());
-  std::vector<Rank> next(below.first.begin(), below.first.end() - 1);
-  visit([&](Rank high, Rank low) { below.items[next[high]++] = low; });
+  std::vector<Rank> next(below.first.begin(), below.first.end() - 1), first_arc(ranks, 0);
+  for (std::size_t i = 0; i + 1 < ranks; ++i) first_arc[i + 1] = first_arc[i] + arcs[i];
+  for_each_arc_up(hierarchy, [&](Rank low, Rank high) {
+    const bool goes_on = next[high] > below.first[high] && below.items[next[high] - 1].end() == low;
+    if (!goes_on) below.items[next[high]++] = {low, 0, first_arc[high]};
+    ++below.items[next[high] - 1].count;
+    ++first_arc[high];
+  });
   return below;
+}
+
+// The place of the arc to a rank that a list of runs may hold.
+std::uint32_t place_in(std::span<const RankRun> runs, Rank sought) {
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), sought,
+                       [](Rank rank, const RankRun& run) { return rank < run.first; });
+  if (after == runs.begin()) return kNoNode;
+  const RankRun& run = *(after - 1);
+  return sought < run.end() ? run.first_arc + (sought - run.first) : kNoNode;
 }
 
 }  // namespace
 
 std::uint32_t Hierarchy::arc_between(std::uint32_t low, std::uint32_t high) const {
-  const auto runs = above.of(low);
-  const auto after =
-      std::upper_bound(runs.begin(), runs.end(), high,
-                       [](std::uint32_t rank, const RankRun& run) { return rank < run.first; });
-  if (after == runs.begin()) return kNoNode;
-  const RankRun& run = *(after - 1);
-  return high - run.first < run.count ? run.first_arc + (high - run.first) : kNoNode;
+  return place_in(above.of(low), high);
+}
+
+std::uint32_t Hierarchy::place_below(std::uint32_t low, std::uint32_t high) const {
+  return place_in(below.of(high), low);
 }
 
 Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_t>& order) {
@@ -120,7 +143,7 @@ Hierarchy make_hierarchy(const RouteGraph& graph, const std::vector<std::uint32_
   for (Rank rank = 0; rank < order.size(); ++rank) made.rank_of_node[order[rank]] = rank;
   Elimination(graph, made).run();
   made.above.items.shrink_to_fit();
-  made.below = ranks_below(made, graph.nodes());
+  made.below = runs_below(made);
   made.arc_of.assign(graph.arcs(), kNoNode);
   for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
     const auto [low, high] =

@@ -10,25 +10,6 @@ namespace {
 
 constexpr auto kFar = static_cast<std::int32_t>(kNever);
 
-// Visits the ranks that lead up to both, the last ones first: the arcs to the first and to the
-// second. Stops at true. The shorter list is walked and looked up in the other one, if the arc to
-// the rank whose list it is may be `of_use`.
-template <typename OfUse, typename Visit>
-void for_each_below(const Hierarchy& hierarchy, std::uint32_t one, std::uint32_t other,
-                    const OfUse& of_use, const Visit& visit) {
-  const bool one_is_shorter = hierarchy.below.of(one).size() <= hierarchy.below.of(other).size();
-  const std::uint32_t walked = one_is_shorter ? one : other,
-                      looked_up = one_is_shorter ? other : one;
-  const auto ranks = hierarchy.below.of(walked);
-  for (auto rank = ranks.rbegin(); rank != ranks.rend(); ++rank) {
-    const std::uint32_t near = hierarchy.arc_between(*rank, walked);
-    if (!of_use(near, one_is_shorter)) continue;
-    const std::uint32_t far = hierarchy.arc_between(*rank, looked_up);
-    if (far == kNoNode) continue;
-    if (visit(*rank, one_is_shorter ? near : far, one_is_shorter ? far : near)) return;
-  }
-}
-
 // Visits the arcs of the graph between two nodes. Stops at true.
 template <typename Visit>
 void for_each_arc(const RouteGraph& graph, std::uint32_t from, std::uint32_t to,
@@ -56,6 +37,36 @@ HierarchyMetric::HierarchyMetric(const RouteGraph& graph, const Hierarchy& hiera
     weight = std::min(weight, static_cast<std::int32_t>(weights_[arc]));
   }
   for (std::uint32_t rank = 0; rank < graph.nodes(); ++rank) customise(rank);
+  turn();
+}
+
+// Ranks come in ascending order, as those below a rank do.
+void HierarchyMetric::turn() {
+  up_below_.resize(up_.size());
+  down_below_.resize(down_.size());
+  std::vector<std::uint32_t> next;
+  for (std::uint32_t rank = 0; rank < graph_.nodes(); ++rank) {
+    const auto below = hierarchy_.below.of(rank);
+    next.push_back(below.empty() ? 0 : below.front().first_arc);
+    for (const RankRun& run : hierarchy_.above.of(rank)) {
+      found_.resize(std::max<std::size_t>(found_.size(), run.count));
+    }
+  }
+  for (std::uint32_t rank = 0; rank < graph_.nodes(); ++rank) {
+    for (const RankRun& run : hierarchy_.above.of(rank)) {
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        const std::uint32_t place = next[run.first + i]++;
+        up_below_[place] = up_[run.first_arc + i];
+        down_below_[place] = down_[run.first_arc + i];
+      }
+    }
+  }
+}
+
+void HierarchyMetric::set(const Touched& arc, BothWays weights) {
+  const std::uint32_t place = hierarchy_.place_below(arc.low, arc.high);
+  up_[arc.arc] = up_below_[place] = weights.up;
+  down_[arc.arc] = down_below_[place] = weights.down;
 }
 
 // The ranks above a rank are joined to each other over it.
@@ -91,42 +102,45 @@ std::int32_t HierarchyMetric::own_weight(std::uint32_t from, std::uint32_t to) c
 }
 
 // The least weights that an arc can have, knowing that they are not below `least`.
-HierarchyMetric::Both HierarchyMetric::compute(std::uint32_t low, std::uint32_t high,
-                                               const Both& least) const {
-  Both both{own_weight(low, high), own_weight(high, low)};
-  const auto may_help = [&](std::uint32_t arc, bool to_low) {
-    return (to_low ? down_[arc] : up_[arc]) < both.up ||
-           (to_low ? up_[arc] : down_[arc]) < both.down;
-  };
+BothWays HierarchyMetric::compute(std::uint32_t low, std::uint32_t high,
+                                  const BothWays& least) const {
+  BothWays both{own_weight(low, high), own_weight(high, low)};
   if (both == least) return both;
-  for_each_below(hierarchy_, low, high, may_help,
-                 [&](std::uint32_t, std::uint32_t to_low, std::uint32_t to_high) {
-                   both.up = std::min(both.up, down_[to_low] + up_[to_high]);
-                   both.down = std::min(both.down, down_[to_high] + up_[to_low]);
-                   return both == least;
-                 });
-  return {std::min(both.up, kFar), std::min(both.down, kFar)};
+  for_each_shared(
+      hierarchy_.below.of(low), hierarchy_.below.of(high),
+      [&](std::uint32_t, std::uint32_t count, std::uint32_t to_low, std::uint32_t to_high) {
+        both = least_over(count, rows_below(to_low), rows_below(to_high), both);
+        return both == least;
+      });
+  return both;
 }
 
 template <typename Visit>
-void HierarchyMetric::for_each_beside(const Touched& arc, const Both& old, const Both& now,
-                                      const Visit& visit) const {
-  const bool down_changed = old.down != now.down, up_changed = old.up != now.up;
-  auto target = hierarchy_.above.of(arc.high).begin();
-  for (const RankRun& run : hierarchy_.above.of(arc.low)) {
-    for (std::uint32_t i = 0; i < run.count; ++i) {
-      const std::uint32_t other = run.first + i, beside = run.first_arc + i;
-      const bool out = down_changed && up_[beside] < kFar;
-      const bool in = up_changed && down_[beside] < kFar;
-      if (other == arc.high || (!out && !in)) continue;
-      if (other < arc.high) {
-        visit(Touched{other, arc.high, hierarchy_.arc_between(other, arc.high)}, beside, out, in);
-        continue;
-      }
-      while (target->first + target->count <= other) ++target;
-      visit(Touched{arc.high, other, target->first_arc + (other - target->first)}, beside, out, in);
-    }
-  }
+void HierarchyMetric::for_each_less(const Touched& arc, BothWays bases, const Visit& visit) {
+  const auto beside = hierarchy_.above.of(arc.low);
+  for_each_shared(
+      beside, hierarchy_.above.of(arc.high),
+      [&](std::uint32_t first, std::uint32_t count, std::uint32_t over, std::uint32_t target) {
+        const std::size_t number = find_less(count, bases, rows(over), rows(target), found_.data());
+        for (std::size_t i = 0; i < number; ++i) {
+          const std::uint32_t at = found_[i];
+          visit(Touched{arc.high, first + at, target + at}, over + at, true);
+        }
+        return false;
+      });
+  for_each_shared(
+      beside, hierarchy_.below.of(arc.high),
+      [&](std::uint32_t first, std::uint32_t count, std::uint32_t over, std::uint32_t target) {
+        // Seen from the other end: upwards there is downwards here.
+        const auto [up, down] = rows_below(target);
+        const std::size_t number = find_less(count, bases, rows(over), {down, up}, found_.data());
+        for (std::size_t i = 0; i < number; ++i) {
+          const std::uint32_t other = first + found_[i];
+          visit(Touched{other, arc.high, hierarchy_.arc_between(other, arc.high)}, over + found_[i],
+                false);
+        }
+        return first <= arc.low;
+      });
 }
 
 std::size_t HierarchyMetric::change(std::span<const std::uint32_t> graph_arcs,
@@ -165,21 +179,15 @@ std::size_t HierarchyMetric::raise(std::span<const std::uint32_t> graph_arcs) {
     if (next.arc == done) continue;
     done = next.arc;
     ++computed;
-    const Both old{up_[next.arc], down_[next.arc]};
-    const Both now = compute(next.low, next.high, old);
+    const BothWays old{up_[next.arc], down_[next.arc]};
+    const BothWays now = compute(next.low, next.high, old);
     if (now == old) continue;
-    for_each_beside(
-        next, old, now, [&](const Touched& other, std::uint32_t beside, bool out, bool in) {
-          const bool next_is_low = other.low == next.high;
-          const std::int32_t from_next = next_is_low ? up_[other.arc] : down_[other.arc];
-          const std::int32_t to_next = next_is_low ? down_[other.arc] : up_[other.arc];
-          if ((out && old.down + up_[beside] <= from_next) ||
-              (in && old.up + down_[beside] <= to_next)) {
-            touched.push(other);
-          }
-        });
-    up_[next.arc] = now.up;
-    down_[next.arc] = now.down;
+    // The way down the arc goes on upwards.
+    const BothWays bases{old.down != now.down ? old.down - 1 : kFar,
+                         old.up != now.up ? old.up - 1 : kFar};
+    for_each_less(next, bases,
+                  [&](const Touched& other, std::uint32_t, bool) { touched.push(other); });
+    set(next, now);
   }
   return computed;
 }
@@ -187,15 +195,17 @@ std::size_t HierarchyMetric::raise(std::span<const std::uint32_t> graph_arcs) {
 // What has become cheaper is put into the arcs above where it is less.
 std::size_t HierarchyMetric::lower(std::span<const std::uint32_t> graph_arcs) {
   std::priority_queue<Touched, std::vector<Touched>, std::greater<>> touched;
-  const auto put = [&](const Touched& at, std::int32_t& weight, std::int32_t now) {
-    if (now >= weight) return;
-    weight = now;
+  const auto put = [&](const Touched& at, BothWays now) {
+    const BothWays less{std::min(up_[at.arc], now.up), std::min(down_[at.arc], now.down)};
+    if (less == BothWays{up_[at.arc], down_[at.arc]}) return;
+    set(at, less);
     touched.push(at);
   };
   for (const std::uint32_t arc : graph_arcs) {
     const Touched at = place_of(arc);
     const bool upwards = hierarchy_.rank_of_node[graph_.tail[arc]] == at.low;
-    put(at, upwards ? up_[at.arc] : down_[at.arc], static_cast<std::int32_t>(weights_[arc]));
+    const auto weight = static_cast<std::int32_t>(weights_[arc]);
+    put(at, upwards ? BothWays{weight, kFar} : BothWays{kFar, weight});
   }
   std::size_t lowered = 0;
   std::uint32_t done = kNoNode;
@@ -205,15 +215,12 @@ std::size_t HierarchyMetric::lower(std::span<const std::uint32_t> graph_arcs) {
     if (next.arc == done) continue;
     done = next.arc;
     ++lowered;
-    const Both now{up_[next.arc], down_[next.arc]};
-    for_each_beside(next, {kFar, kFar}, now,
-                    [&](const Touched& other, std::uint32_t beside, bool out, bool in) {
-                      const bool next_is_low = other.low == next.high;
-                      std::int32_t& from_next = next_is_low ? up_[other.arc] : down_[other.arc];
-                      std::int32_t& to_next = next_is_low ? down_[other.arc] : up_[other.arc];
-                      if (out) put(other, from_next, now.down + up_[beside]);
-                      if (in) put(other, to_next, now.up + down_[beside]);
-                    });
+    const BothWays now{up_[next.arc], down_[next.arc]};
+    for_each_less(
+        next, {now.down, now.up}, [&](const Touched& other, std::uint32_t over, bool next_is_low) {
+          const std::int32_t from_next = now.down + up_[over], to_next = now.up + down_[over];
+          put(other, next_is_low ? BothWays{from_next, to_next} : BothWays{to_next, from_next});
+        });
   }
   return lowered;
 }
@@ -230,17 +237,15 @@ HierarchyMetric::Meaning HierarchyMetric::meaning(std::uint32_t low, std::uint32
                  return true;
                });
   if (found.is_arc) return found;
-  const auto may_be = [&](std::uint32_t over, bool to_low) {
-    return (to_low == upwards ? down_[over] : up_[over]) <= weight;
-  };
-  for_each_below(hierarchy_, low, high, may_be,
-                 [&](std::uint32_t rank, std::uint32_t to_low, std::uint32_t to_high) {
-                   const std::int32_t way =
-                       upwards ? down_[to_low] + up_[to_high] : down_[to_high] + up_[to_low];
-                   if (way != weight) return false;
-                   found.arc_or_rank = rank;
-                   return true;
-                 });
+  for_each_shared(
+      hierarchy_.below.of(low), hierarchy_.below.of(high),
+      [&](std::uint32_t first, std::uint32_t count, std::uint32_t to_low, std::uint32_t to_high) {
+        const std::size_t at =
+            upwards ? find_sum(count, &down_below_[to_low], &up_below_[to_high], weight)
+                    : find_sum(count, &down_below_[to_high], &up_below_[to_low], weight);
+        if (at < count) found.arc_or_rank = first + static_cast<std::uint32_t>(at);
+        return at < count;
+      });
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/planning/hierarchy.h"
+#include "roadbed/planning/hierarchy_kernel.h"
 
 namespace roadbed::planning {
 
@@ -39,10 +40,6 @@ class HierarchyMetric {
   std::uint64_t version() const { return version_; }
 
  private:
-  struct Both {
-    std::int32_t up, down;
-    bool operator==(const Both&) const = default;
-  };
   /// An arc of the hierarchy whose weights may change; lower ones come first.
   struct Touched {
     std::uint32_t low, high, arc;
@@ -51,21 +48,30 @@ class HierarchyMetric {
     }
   };
   void customise(std::uint32_t rank);
+  void turn();
+  WeightRows rows(std::uint32_t arc) const { return {&up_[arc], &down_[arc]}; }
+  WeightRows rows_below(std::uint32_t place) const {
+    return {&up_below_[place], &down_below_[place]};
+  }
+  void set(const Touched& arc, BothWays weights);
   std::int32_t own_weight(std::uint32_t from, std::uint32_t to) const;
-  Both compute(std::uint32_t low, std::uint32_t high, const Both& least) const;
+  BothWays compute(std::uint32_t low, std::uint32_t high, const BothWays& least) const;
   Touched place_of(std::uint32_t graph_arc) const;
-  /// Arcs that the arc is part of a triangle with, over its lower rank: (target, third arc, whether
-  /// the way down it and the way up it may matter there).
+  /// Visits arcs that lead up or down from the arc's higher rank, and are part of a triangle with
+  /// it over its lower one, where the way over that costs less than they do if the arc costs
+  /// `bases`: the arc, the weights of the way on from the lower rank, whether the higher rank is
+  /// the lower one there.
   template <typename Visit>
-  void for_each_beside(const Touched& arc, const Both& old, const Both& now,
-                       const Visit& visit) const;
+  void for_each_less(const Touched& arc, BothWays bases, const Visit& visit);
   std::size_t raise(std::span<const std::uint32_t> graph_arcs);
   std::size_t lower(std::span<const std::uint32_t> graph_arcs);
 
   const RouteGraph& graph_;
   const Hierarchy& hierarchy_;
   std::vector<Ticks> weights_;
-  std::vector<std::int32_t> up_, down_;
+  std::vector<std::int32_t> up_, down_;              ///< by arc
+  std::vector<std::int32_t> up_below_, down_below_;  ///< the same by second place
+  std::vector<std::uint32_t> found_;
   std::uint64_t version_ = 0;
 };
 

@@ -68,10 +68,11 @@ HierarchySearch::Meeting HierarchySearch::meet(std::span<const Seed> from,
   start(backward_, to);
   Meeting best{kFar};
   while (!forward_.open.empty() || !backward_.open.empty()) {
+    if (have_met()) return climb_together<kTraced>(best);
     const std::uint32_t rank = std::min(lowest(forward_.open), lowest(backward_.open));
     visited_.push_back(rank);
     const std::int32_t there = forward_.cost[rank], back = backward_.cost[rank];
-    if (there < kFar && back < kFar && there + back < best.cost) best = {there + back, rank};
+    if (there + back < best.cost) best = {there + back, rank};
     if (lowest(forward_.open) == rank) {
       if (there < best.cost) relax<kTraced>(forward_, metric_.up(), rank);
       step(forward_, rank);
@@ -82,6 +83,42 @@ HierarchySearch::Meeting HierarchySearch::meet(std::span<const Seed> from,
     }
   }
   return best;
+}
+
+bool HierarchySearch::have_met() const {
+  return forward_.open.size() == 1 && backward_.open.size() == 1 &&
+         forward_.open.front() == backward_.open.front();
+}
+
+// Over the ranks that both sides still have before them.
+template <bool kTraced>
+HierarchySearch::Meeting HierarchySearch::climb_together(Meeting best) {
+  const std::vector<std::uint32_t>& parent = metric_.hierarchy().parent;
+  const std::size_t first = visited_.size();
+  visited_.push_back(forward_.open.front());
+  while (parent[visited_.back()] != visited_.back()) visited_.push_back(parent[visited_.back()]);
+  const std::span<const std::uint32_t> ranks = std::span(visited_).subspan(first);
+  BothWays ahead{0, 0};
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    if (i % kStride == 0) ahead = least_ahead(ranks.subspan(i), best);
+    const std::uint32_t rank = ranks[i];
+    const std::int32_t there = forward_.cost[rank], back = backward_.cost[rank];
+    if (there + back < best.cost) best = {there + back, rank};
+    if (there + ahead.down < best.cost) relax<kTraced>(forward_, metric_.up(), rank);
+    if (back + ahead.up < best.cost) relax<kTraced>(backward_, metric_.down(), rank);
+  }
+  return best;
+}
+
+// Least costs up to one of the ranks, and down from one, as known so far.
+BothWays HierarchySearch::least_ahead(std::span<const std::uint32_t> ranks, Meeting& best) const {
+  BothWays least{kFar, kFar};
+  for (const std::uint32_t rank : ranks) {
+    const std::int32_t there = forward_.cost[rank], back = backward_.cost[rank];
+    least = {std::min(least.up, there), std::min(least.down, back)};
+    if (there + back < best.cost) best = {there + back, rank};
+  }
+  return least;
 }
 
 void HierarchySearch::clear() {

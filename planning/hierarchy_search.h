@@ -16,7 +16,10 @@ struct ClimbedSpace {
 };
 
 /// Searches a customised hierarchy along its elimination tree: every rank that can matter lies on
-/// the way from a seed to the root, so there is no queue. Keeps its working memory; one per thread.
+/// the way from a seed to the root, so there is no queue. Once the ways up from both sides have
+/// become one, a rank is only looked at further if what it cost so far, and the least that any rank
+/// ahead costs the other side, are less than the best way known. Keeps its working memory; one per
+/// thread.
 class HierarchySearch {
  public:
   explicit HierarchySearch(const HierarchyMetric& metric);
@@ -41,6 +44,8 @@ class HierarchySearch {
     std::uint32_t rank = 0;
   };
   static constexpr std::uint32_t kSeedBit = 1U << 31;
+  /// Ranks after so many of them ask anew how little what is ahead can cost.
+  static constexpr std::size_t kStride = 64;
   /// What was found out about arcs of the hierarchy: each has one place, and pushes out others.
   struct Known {
     std::uint32_t low = kNoNode, high = kNoNode;
@@ -55,6 +60,10 @@ class HierarchySearch {
   void relax(Side& side, const std::vector<std::int32_t>& weights, std::uint32_t rank) const;
   template <bool kTraced>
   Meeting meet(std::span<const Seed> from, std::span<const Seed> to);
+  bool have_met() const;
+  template <bool kTraced>
+  Meeting climb_together(Meeting best);
+  BothWays least_ahead(std::span<const std::uint32_t> ranks, Meeting& best) const;
   void clear();
   HierarchyMetric::Meaning meaning(std::uint32_t low, std::uint32_t high, bool upwards);
   void unpack(std::uint32_t low, std::uint32_t high, bool upwards,

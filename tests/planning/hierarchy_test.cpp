@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/dissection.h"
 #include "roadbed/tests/support/boost_routes.h"
@@ -50,9 +55,9 @@ struct Prepared {
   Hierarchy hierarchy;
   HierarchyMetric metric;
 
-  explicit Prepared(RouteNetwork of, RouteCost measure = RouteCost::time)
+  explicit Prepared(RouteNetwork of, const RouteOptions& by = {})
       : network(std::move(of)),
-        options(with(measure)),
+        options(by),
         rules(network, options),
         graph(make_route_graph(network)),
         weights(weigh_all(graph, rules)),
@@ -60,12 +65,6 @@ struct Prepared {
         hierarchy(make_hierarchy(graph, dissection_order(graph, guide.place_in_map))),
         metric(graph, hierarchy, weights) {}
   Prepared(const Prepared&) = delete;
-
-  static RouteOptions with(RouteCost measure) {
-    RouteOptions options;
-    options.cost = measure;
-    return options;
-  }
 
   /// Closes or opens a lane, and gives the arcs whose weights depend on that.
   std::vector<std::uint32_t> close(std::uint32_t lane, bool closed,
@@ -87,14 +86,22 @@ struct Prepared {
   }
 };
 
+// By either measure, and for road users who walk both ways.
+std::vector<RouteOptions> three_kinds() {
+  std::vector<RouteOptions> kinds(3);
+  kinds[1].cost = kinds[2].cost = RouteCost::distance;
+  kinds[2].participant = map::Participant::pedestrian;
+  return kinds;
+}
+
 struct Tally {
   long found = 0, none = 0;
 };
 
 // Random pairs; every few of them, a random lane is closed and an earlier one opened.
-void compare(const RouteNetwork& network, RouteCost measure, int queries, std::mt19937& random,
-             Tally& tally) {
-  Prepared prepared(network, measure);
+void compare(const RouteNetwork& network, const RouteOptions& options, int queries,
+             std::mt19937& random, Tally& tally) {
+  Prepared prepared(network, options);
   const RouteGraph& graph = prepared.graph;
   const std::vector<Ticks>& weights = prepared.weights;
   HierarchySearch by_hierarchy(prepared.metric);
@@ -139,26 +146,49 @@ TEST(GraphSearches, CostWhatDijkstraOfAnotherLibraryFindsOnLaneGrids) {
   Tally tally;
   for (const auto& [columns, rows] : {std::pair{2, 2}, {3, 7}, {9, 8}, {14, 14}}) {
     for (const RouteCost measure : {RouteCost::time, RouteCost::distance}) {
-      compare(tests::lane_grid(columns, rows), measure, query_count(500), random, tally);
+      RouteOptions options;
+      options.cost = measure;
+      compare(tests::lane_grid(columns, rows), options, query_count(500), random, tally);
     }
   }
+  RecordProperty("routes", std::to_string(tally.found));
+  RecordProperty("pairs_without", std::to_string(tally.none));
   EXPECT_GT(tally.found, 1000);
   EXPECT_GT(tally.none, 10);
 }
 
+// Every map that has lanes, whatever its format; files that nobody could read are left out.
 TEST(GraphSearches, CostWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  std::mt19937 random(20261121);
-  Tally tally;
-  for (const char* file :
-       {"BerkeleyLearnVerify+Scenic/Town04.xodr", "BerkeleyLearnVerify+Scenic/Town10HD.xodr",
-        "esmini+esmini/multi_intersections.xodr", "esmini+esmini/soderleden.xodr",
-        "huawei-noah+SMARTS/od_newmarket.xodr", "maliput+maliput_malidrive/cloverleaf.xodr"}) {
-    const auto road_map = map::load_map(folder / "opendrive" / file);
-    for (const RouteCost measure : {RouteCost::time, RouteCost::distance}) {
-      compare(make_route_network(road_map), measure, query_count(500), random, tally);
+  std::vector<std::filesystem::path> files;
+  for (const char* format : {"opendrive", "lanelet2", "commonroad"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / format)) {
+      const auto suffix = entry.path().extension();
+      if (suffix == ".xodr" || suffix == ".osm" || suffix == ".xml") files.push_back(entry.path());
     }
   }
+  std::sort(files.begin(), files.end());
+  std::mt19937 random(20261121);
+  Tally tally;
+  int maps = 0;
+  for (const std::filesystem::path& file : files) {
+    SCOPED_TRACE(file.filename().string());
+    RouteNetwork network;
+    try {
+      network = make_route_network(map::load_map(file));
+    } catch (const map::InputError&) {
+      continue;
+    }
+    if (network.lanes.empty()) continue;
+    ++maps;
+    for (const RouteOptions& options : three_kinds()) {
+      compare(network, options, query_count(50), random, tally);
+    }
+  }
+  RecordProperty("maps", maps);
+  RecordProperty("routes", std::to_string(tally.found));
+  RecordProperty("pairs_without", std::to_string(tally.none));
+  EXPECT_GT(maps, 50);
   EXPECT_GT(tally.found, 1000);
   EXPECT_GT(tally.none, 1000);
 }
