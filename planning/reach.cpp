@@ -11,8 +11,12 @@
 namespace roadbed::planning {
 namespace {
 
-LanePart part_of(const RouteNetwork& network, std::uint32_t lane, double from_m, double to_m) {
-  return {network.on_map(lane), network.mirrored_m(lane, from_m), network.mirrored_m(lane, to_m)};
+ReachedLane reached_part(const RouteNetwork& network, std::uint32_t lane,
+                         const map::StationRange& driven_m, double cost) {
+  return {{network.on_map(lane), network.mirrored_m(lane, driven_m.from_s_m),
+           network.mirrored_m(lane, driven_m.to_s_m)},
+          network.is_reversed(lane),
+          cost};
 }
 
 // From the place along its own passage.
@@ -29,7 +33,7 @@ void add_own_passage(const RouteSolver& solver, const NetworkPlace& from, double
     if (cost > limit) continue;
     const double from_m = std::clamp(share, 0.0, 1.0) * network.lanes[chain.back()].length_m;
     const double to_m = rules.station_within(chain.back(), from_m, limit - cost);
-    reached.push_back({part_of(network, chain.back(), from_m, to_m), cost});
+    reached.push_back(reached_part(network, chain.back(), {from_m, to_m}, cost));
   }
 }
 
@@ -53,7 +57,7 @@ std::vector<ReachedLane> reach(Router& router, const RoutePlace& from, double li
     if (solver.graph().exit_of_lane[lane] != node) continue;
     const double cost = static_cast<double>(ticks) / ticks_per_unit(measure);
     const double to_m = solver.rules().station_within(lane, 0.0, limit - cost);
-    reached.push_back({part_of(solver.network(), lane, 0.0, to_m), cost});
+    reached.push_back(reached_part(solver.network(), lane, {0.0, to_m}, cost));
   }
   std::sort(reached.begin(), reached.end(), [](const ReachedLane& a, const ReachedLane& b) {
     return std::tie(a.part.lane, a.cost) < std::tie(b.part.lane, b.cost);

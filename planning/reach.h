@@ -11,6 +11,7 @@ namespace roadbed::planning {
 /// Part of a lane that can be reached. Stations fall where it is driven against its direction.
 struct ReachedLane {
   LanePart part;
+  bool reversed = false;  ///< driven against its direction
   double cost = 0.0;  ///< at its first station, in the unit of the router's cost
 };
 

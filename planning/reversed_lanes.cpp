@@ -57,9 +57,6 @@ class Reversal {
     join_gates();
     if (options_.against_traffic) copy_links();
     store_links();
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) find_neighbours(lane);
-    network_.left_windows = std::move(left_windows_);
-    network_.right_windows = std::move(right_windows_);
     find_turns();
   }
 
@@ -173,12 +170,44 @@ class Reversal {
     }
   }
 
+  // A lane's own turn stands where its own links leave a choice; reversed ones may add one.
+  void find_turns() {
+    std::vector<bool> has_choice(network_.lanes.size(), false);
+    for (const auto& links : next_) {
+      if (links.size() < 2) continue;
+      for (const std::uint32_t next : links) has_choice[next] = true;
+    }
+    for (std::uint32_t lane = 0; lane < network_.lanes.size(); ++lane) {
+      const map::Lane& on_map = lane_on_map(lane);
+      Turn& turn = network_.lanes[lane].turn;
+      const bool counts = has_choice[lane] || on_map.junction;
+      if (network_.is_reversed(lane)) turn = counts ? mirrored(bend_of(on_map)) : Turn::none;
+      if (!network_.is_reversed(lane) && counts && turn == Turn::none) turn = bend_of(on_map);
+    }
+  }
+
+  const map::RoadMap& road_map_;
+  const NetworkOptions& options_;
+  RouteNetwork& network_;
+  std::vector<std::vector<std::uint32_t>> next_;
+};
+
+class Neighbours {
+ public:
+  Neighbours(const map::RoadMap& road_map, const NetworkOptions& options, RouteNetwork& network)
+      : road_map_(road_map), options_(options), network_(network) {}
+
+  void run() {
+    for (std::uint32_t lane = 0; lane < network_.lanes.size(); ++lane) find_neighbours(lane);
+  }
+
+ private:
   void find_neighbours(std::uint32_t lane) {
     const map::LaneLinks& links = road_map_.graph().of(network_.on_map(lane));
     const bool reversed = network_.is_reversed(lane);
     NetworkLane& made = network_.lanes[lane];
-    made.left = neighbour(lane, reversed ? links.right : links.left, left_windows_);
-    made.right = neighbour(lane, reversed ? links.left : links.right, right_windows_);
+    made.left = neighbour(lane, reversed ? links.right : links.left, network_.left_windows);
+    made.right = neighbour(lane, reversed ? links.left : links.right, network_.right_windows);
   }
 
   std::uint32_t neighbour(std::uint32_t lane, const std::optional<map::Neighbour>& beside,
@@ -219,25 +248,9 @@ class Reversal {
     }
   }
 
-  void find_turns() {
-    std::vector<bool> has_choice(network_.lanes.size(), false);
-    for (const auto& links : next_) {
-      if (links.size() < 2) continue;
-      for (const std::uint32_t next : links) has_choice[next] = true;
-    }
-    for (std::uint32_t lane = 0; lane < network_.lanes.size(); ++lane) {
-      if (!network_.is_reversed(lane)) continue;
-      const map::Lane& on_map = lane_on_map(lane);
-      const bool counts = has_choice[lane] || on_map.junction;
-      network_.lanes[lane].turn = counts ? mirrored(bend_of(on_map)) : Turn::none;
-    }
-  }
-
   const map::RoadMap& road_map_;
   const NetworkOptions& options_;
   RouteNetwork& network_;
-  std::vector<std::vector<std::uint32_t>> next_;
-  Grouped<map::StationRange> left_windows_, right_windows_;
 };
 
 }  // namespace
@@ -245,6 +258,11 @@ class Reversal {
 void add_reversed_lanes(const map::RoadMap& road_map, const NetworkOptions& options,
                         RouteNetwork& network) {
   Reversal(road_map, options, network).run();
+}
+
+void add_neighbours(const map::RoadMap& road_map, const NetworkOptions& options,
+                    RouteNetwork& network) {
+  Neighbours(road_map, options, network).run();
 }
 
 }  // namespace roadbed::planning

@@ -110,21 +110,6 @@ map::Participants users_of(const Lane& lane) {
   return users;
 }
 
-void add_neighbour(const Lane& lane, const std::optional<map::Neighbour>& beside,
-                   const NetworkOptions& options, std::uint32_t& neighbour,
-                   Grouped<map::StationRange>& windows) {
-  if (beside && beside->same_direction && (beside->change_allowed() || options.across_markings)) {
-    neighbour = beside->lane.index;
-    if (options.across_markings) {
-      windows.items.push_back({0.0, lane.length_m()});
-    } else {
-      windows.items.insert(windows.items.end(), beside->change_windows.begin(),
-                           beside->change_windows.end());
-    }
-  }
-  windows.end_group();
-}
-
 void add_links(const map::LaneLinks& links, const NetworkOptions& options,
                Grouped<std::uint32_t>& successors) {
   std::vector<std::uint32_t> to;
@@ -174,21 +159,19 @@ RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptio
   network.lanes.reserve(road_map.lanes().size());
   for (const Lane& lane : road_map.lanes()) {
     const auto& points = lane.centre.in_map.points();
-    const map::LaneLinks& links = road_map.graph().of(lane.id);
     NetworkLane made{.length_m = lane.length_m(),
                      .start_in_map = points.front(),
                      .end_in_map = points.back(),
                      .users = users_of(lane),
                      .type = lane.type,
                      .turn = turn_of(road_map, lane)};
-    add_neighbour(lane, links.left, options, made.left, network.left_windows);
-    add_neighbour(lane, links.right, options, made.right, network.right_windows);
-    add_links(links, options, network.successors);
+    add_links(road_map.graph().of(lane.id), options, network.successors);
     add_speeds(lane, !made.users.empty(), network.speeds);
     network.lanes.push_back(made);
   }
   add_signals(road_map, network.lanes);
   add_reversed_lanes(road_map, options, network);
+  add_neighbours(road_map, options, network);
   return network;
 }
 

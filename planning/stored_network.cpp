@@ -12,7 +12,7 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr auto kLastTurn = static_cast<std::uint8_t>(Turn::u_turn);
 
 // What a network is made of, said once for writing and reading, as in map/map_fields.h.

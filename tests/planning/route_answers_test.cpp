@@ -181,6 +181,65 @@ TEST(LeftHandTraffic, ChangesAndTurnsKeepTheirSides) {
   EXPECT_EQ(answer.route->legs[0].exit, LegExit::change_left);
 }
 
+// Seen in a mirror, right-hand traffic is left-hand traffic.
+map::RoadMap mirrored(map::RoadMapParts parts) {
+  const auto turn_over = [](Eigen::Vector2d point) {
+    return Eigen::Vector2d(point.x(), -point.y());
+  };
+  for (map::Lane& lane : parts.lanes) {
+    std::swap(lane.left, lane.right);
+    std::swap(lane.left_marks, lane.right_marks);
+    for (map::LaneLine* line : {&lane.left, &lane.centre, &lane.right}) {
+      auto points = line->in_map.points();
+      std::transform(points.begin(), points.end(), points.begin(), turn_over);
+      line->in_map = geometry::Polyline(std::move(points));
+    }
+    std::transform(lane.polygon.begin(), lane.polygon.end(), lane.polygon.begin(), turn_over);
+    std::reverse(lane.polygon.begin(), lane.polygon.end());
+  }
+  for (map::LaneLinks& links : parts.links) std::swap(links.left, links.right);
+  for (map::Signal& signal : parts.signals) signal.in_map = turn_over(signal.in_map);
+  return map::RoadMap(std::move(parts));
+}
+
+TEST(LeftHandTraffic, TakesTheRoutesOfTheMirroredMapWithTheirSidesSwapped) {
+  RouteOptions options, swapped;
+  options.prices_s.left_turn = swapped.prices_s.right_turn = 7.0;
+  options.prices_s.right_turn = swapped.prices_s.left_turn = 2.0;
+  const map::RoadMap mirror = mirrored(town().parts());
+  Router right_hand(town(), options), left_hand(mirror, swapped);
+  const auto told = [](const map::RoadMap& road_map, const Route& route, const char* words) {
+    const auto all = instructions_for(road_map, route);
+    return std::count_if(all.begin(), all.end(), [&](const Instruction& instruction) {
+      return instruction.text.find(words) != std::string::npos;
+    });
+  };
+  std::mt19937 random(20261122);
+  const auto any_place = [&] {
+    const LaneId lane{static_cast<std::uint32_t>(random() % town().lanes().size())};
+    return LanePlace{lane, 0.5 * town().lane(lane).length_m(), 0.0};
+  };
+  long lefts = 0, rights = 0, u_turns = 0, changes = 0;
+  for (int i = 0; i < 400; ++i) {
+    const LanePlace from = any_place(), to = any_place();
+    const RouteAnswer plain = right_hand.find(from, to), seen = left_hand.find(from, to);
+    ASSERT_EQ(plain.route.has_value(), seen.route.has_value());
+    if (!plain.route) continue;
+    EXPECT_NEAR(plain.route->cost_s, seen.route->cost_s, 1e-3);
+    const long left = told(town(), *plain.route, "left"),
+               right = told(town(), *plain.route, "right");
+    EXPECT_EQ(told(mirror, *seen.route, "right"), left);
+    EXPECT_EQ(told(mirror, *seen.route, "left"), right);
+    u_turns += told(mirror, *seen.route, "U-turn");
+    changes += told(mirror, *seen.route, "change");
+    lefts += left;
+    rights += right;
+  }
+  EXPECT_GT(std::min({lefts, rights, changes}), 20);
+  EXPECT_NE(lefts, rights);
+  EXPECT_GT(u_turns, 0);
+}
+
 TEST(Participants, UseTheirOwnLanesOnly) {
   tests::MadeMap made = tests::three_roads_in_a_row();
   made.lane({1}).type = map::LaneType::bus;

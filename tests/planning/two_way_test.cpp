@@ -123,13 +123,17 @@ TEST(TwoWayLanes, AreReachedInBothDirections) {
   options.cost = RouteCost::distance;
   Router router(road_map, options);
   std::vector<LanePart> parts;
+  std::vector<bool> reversed;
   for (const ReachedLane& lane : reach(router, {LaneId{1}, 20.0}, 60.0)) {
     parts.push_back(lane.part);
+    reversed.push_back(lane.reversed);
+    EXPECT_EQ(lane.reversed, lane.part.to_s_m < lane.part.from_s_m);
   }
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_NEAR(parts[0].from_s_m, 50.0, 1e-9);
   EXPECT_NEAR(parts[0].to_s_m, 10.0, 1e-6);
   EXPECT_NEAR(parts[3].to_s_m, 30.0, 1e-6);
+  EXPECT_EQ(reversed, (std::vector{true, false, true, false}));
   double area_m2 = 0.0;
   for (const auto& polygon : area_of(road_map, parts)) area_m2 += geometry::area_m2(polygon);
   EXPECT_NEAR(area_m2, 4.0 * 120.0, 0.1);
@@ -192,6 +196,29 @@ TEST(TwoWayLanes, MeetHeadToHead) {
   EXPECT_FALSE(there.route->legs[0].reversed);
   EXPECT_TRUE(there.route->legs[1].reversed);
   EXPECT_FALSE(find_route(road_map, {west, 15.0}, {east, 10.0}).route) << "east is one way";
+}
+
+// Driven westwards, lane b leads to the reversed lane a, and bends off into lane c, which starts
+// where b does: only b's twin has that choice.
+TEST(TwoWayLanes, GiveATurnToWhatTheyLeaveAChoiceOf) {
+  tests::MadeMap made;
+  made.parts.format = "made";
+  const auto road = made.add_road("1");
+  const LaneId a = made.add_lane(road, "1", {{0, 0}, {50, 0}}, {{0, -4}, {50, -4}});
+  const LaneId b = made.add_lane(road, "2", {{50, 0}, {100, 0}}, {{50, -4}, {100, -4}});
+  const LaneId c =
+      made.add_lane(road, "3", {{50, -4}, {46, -4}, {46, -44}}, {{50, 0}, {42, 0}, {42, -44}});
+  made.link(a, b);
+  made.lane(a).one_way = made.lane(b).one_way = false;
+  const map::RoadMap road_map = made.build();
+  EXPECT_EQ(make_route_network(road_map).lanes[c.index].turn, Turn::left);
+  const RouteAnswer answer = find_route(road_map, {b, 40.0}, {c, 30.0});
+  ASSERT_TRUE(answer.route) << answer.reason;
+  ASSERT_EQ(answer.route->legs.size(), 2U);
+  EXPECT_TRUE(answer.route->legs[0].reversed);
+  EXPECT_EQ(answer.route->legs[1].turn, Turn::left);
+  made.lane(a).one_way = made.lane(b).one_way = true;
+  EXPECT_EQ(make_route_network(made.build()).lanes[c.index].turn, Turn::none);
 }
 
 TEST(TwoWayLanes, AreStoredWithTheNetwork) {
