@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <new>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,6 +46,17 @@ constexpr Entry kCommands[] = {
 };
 // clang-format on
 
+// Declaring the options of all commands takes longer than many an answer: a command that comes
+// first is the only one that is needed.
+std::span<const Entry> entries_for(int argc, char** argv) {
+  if (argc < 2) return kCommands;
+  const auto named =
+      std::find_if(std::begin(kCommands), std::end(kCommands),
+                   [&](const Entry& entry) { return std::string_view(argv[1]) == entry.name; });
+  return named == std::end(kCommands) ? std::span<const Entry>(kCommands)
+                                      : std::span<const Entry>(named, 1);
+}
+
 struct Registered {
   CLI::App* app;
   std::unique_ptr<Command> command;
@@ -77,7 +92,7 @@ int run_program(int argc, char** argv) {
       ->capture_default_str();
 
   std::vector<Registered> commands;
-  for (const Entry& entry : kCommands) {
+  for (const Entry& entry : entries_for(argc, argv)) {
     CLI::App* sub = app.add_subcommand(entry.name);
     commands.push_back({sub, entry.make()});
     Arguments arguments(*sub);

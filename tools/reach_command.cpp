@@ -39,10 +39,10 @@ std::optional<Limit> limit_of(const std::string& text) {
 
 std::string csv(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
                 const char* unit) {
-  std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{}\n", unit);
+  std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed\n", unit);
   for (const planning::ReachedLane& lane : reached) {
-    text += fmt::format("{},{:.3f},{:.3f},{:.4f}\n", road_map.lane(lane.part.lane).name,
-                        lane.part.from_s_m, lane.part.to_s_m, lane.cost);
+    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n", road_map.lane(lane.part.lane).name,
+                        lane.part.from_s_m, lane.part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
   }
   return text;
 }
@@ -69,7 +69,10 @@ class ReachCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    if (!output_.empty()) check_writable(output_, force_);
+    if (!output_.empty()) {
+      check_suffix(output_, kAreaSuffixes);
+      check_writable(output_, force_);
+    }
     const Limit limit = limit_of(within_).value();
     const map::RoadMap road_map = map::load_map(map_file_);
     const Place from = find_place(road_map, from_, rules_.participant());
@@ -107,6 +110,7 @@ class ReachCommand : public Command {
       lanes.push_back({{"lane", road_map.lane(lane.part.lane).name},
                        {"from_s_m", lane.part.from_s_m},
                        {"to_s_m", lane.part.to_s_m},
+                       {"reversed", lane.reversed},
                        {std::string("cost_") + unit, lane.cost}});
     }
     if (json_) {
@@ -116,9 +120,9 @@ class ReachCommand : public Command {
     }
     fmt::print(streams.out, "{} lanes, {:.1f} m, within {}\n", reached.size(), length_m, within_);
     for (const planning::ReachedLane& lane : reached) {
-      fmt::print(streams.out, "  {:<16} {:>9.2f} to {:>9.2f} m  from {:.2f} {}\n",
+      fmt::print(streams.out, "  {:<16} {:>9.2f} to {:>9.2f} m  from {:.2f} {}{}\n",
                  road_map.lane(lane.part.lane).name, lane.part.from_s_m, lane.part.to_s_m,
-                 lane.cost, unit);
+                 lane.cost, unit, lane.reversed ? ", reversed" : "");
     }
   }
 

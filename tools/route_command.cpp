@@ -62,7 +62,10 @@ class RouteCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    if (!output_.empty()) check_writable(output_, force_);
+    if (!output_.empty()) {
+      check_suffix(output_, batch_.empty() ? kAreaSuffixes : std::vector<std::string>{".csv"});
+      check_writable(output_, force_);
+    }
     if (!batch_.empty()) return run_batch(streams, common);
     const map::RoadMap road_map = map::load_map(map_file_);
     const RouteQuestion::Asked asked = question_.on(road_map);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -18,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 const std::string kTown = (data_folder() / "town.xodr").string();
 const std::string kFrom = "lane:1/0/-1@10", kTo = "lane:7/0/1@55";
@@ -210,6 +212,19 @@ TEST(RouteCommand, WritesLegsAsCsvAndAPictureOfTheWay) {
   EXPECT_THAT(bytes_of(svg), HasSubstr("<svg"));
 }
 
+TEST(RouteCommands, RefuseAnOutputWhoseSuffixNamesNoFormat) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "way.pdf";
+  for (const auto& run :
+       {run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "-o", file}),
+        run_roadbed({"reach", kTown, "--from", kFrom, "--within", "9s", "-o", file})}) {
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err, HasSubstr("the suffix \".pdf\" names no format"));
+    EXPECT_THAT(run.out, IsEmpty());
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
+}
+
 TEST(ReachCommand, GivesLanesAndTheirArea) {
   const TemporaryFolder folder;
   const std::string file = folder / "reach.geojson";
@@ -218,7 +233,10 @@ TEST(ReachCommand, GivesLanesAndTheirArea) {
   ASSERT_EQ(run.status, 0) << run.err;
   const json reached = json::parse(run.out);
   EXPECT_GT(reached["lanes"].size(), 1U);
-  for (const json& lane : reached["lanes"]) EXPECT_LE(lane["cost_m"].get<double>(), 150.0);
+  for (const json& lane : reached["lanes"]) {
+    EXPECT_LE(lane["cost_m"].get<double>(), 150.0);
+    EXPECT_EQ(lane["reversed"], false);
+  }
   const json area = json::parse(bytes_of(file))["features"][0];
   EXPECT_EQ(area["geometry"]["type"], "MultiPolygon");
   EXPECT_EQ(run_roadbed({"reach", kTown, "--from", kFrom, "--within", "150"}).status, 2);

@@ -117,7 +117,7 @@ bool Arguments::given() const { return app_->parsed(); }
 void Arguments::require(std::function<std::string()> fault) {
   app_->callback([fault = std::move(fault)] {
     const std::string missing = fault();
-    if (!missing.empty()) throw CLI::RequiredError(missing);
+    if (!missing.empty()) throw CLI::ValidationError(missing);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/map/formats/svg_canvas.h"
+#include "roadbed/map/input_error.h"
 #include "roadbed/planning/guidance.h"
 #include "roadbed/planning/route_area.h"
 #include "roadbed/planning/route_path.h"
@@ -299,6 +300,17 @@ std::string route_text(const map::RoadMap& road_map, const planning::Route& rout
     text += step.text + "\n";
   }
   return text;
+}
+
+void check_suffix(const std::filesystem::path& output, const std::vector<std::string>& suffixes) {
+  const std::string suffix = output.extension().string();
+  if (std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end()) return;
+  throw map::InputError({.file = output.string(),
+                         .place = {},
+                         .element = {},
+                         .found = fmt::format("the suffix \"{}\" names no format", suffix),
+                         .needed = fmt::format("{}", fmt::join(suffixes, ", ")),
+                         .remedy = "rename the output"});
 }
 
 }  // namespace roadbed::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,12 @@ std::string area_svg(const map::RoadMap& road_map, const std::vector<geometry::P
 
 /// Lines for a reader: sums, legs, instructions.
 std::string route_text(const map::RoadMap& road_map, const planning::Route& route);
+
+/// Of outputs that hold an area, rows or a picture.
+inline const std::vector<std::string> kAreaSuffixes = {".geojson", ".json", ".csv", ".svg"};
+
+/// Checks that the suffix of an output names one of the formats.
+/// @throws InputError if it does not.
+void check_suffix(const std::filesystem::path& output, const std::vector<std::string>& suffixes);
 
 }  // namespace roadbed::tools
