@@ -12,7 +12,7 @@ namespace roadbed::planning {
 struct ReachedLane {
   LanePart part;
   bool reversed = false;  ///< driven against its direction
-  double cost = 0.0;  ///< at its first station, in the unit of the router's cost
+  double cost = 0.0;      ///< at its first station, in the unit of the router's cost
 };
 
 /// What can be reached from a place at no more than `limit`, by the router's measure: seconds or
