@@ -44,10 +44,7 @@ constexpr Series kBeta = {
     4583.0 / 161280.0 * n5 - 108847.0 / 3991680.0 * n6,
     20648693.0 / 638668800.0 * n6};
 
-double eccentricity() {
-  static const double value = std::sqrt(kFlattening * (2.0 - kFlattening));
-  return value;
-}
+const double kEccentricity = std::sqrt(kFlattening * (2.0 - kFlattening));
 
 // Σ cⱼ sin 2jζ for complex ζ, by Clenshaw's summation.
 std::complex<double> sine_series(const Series& coefficients, std::complex<double> zeta) {
@@ -71,13 +68,13 @@ std::complex<double> sine_series(const Series& coefficients, std::complex<double
 // Tangent of the conformal latitude from that of the latitude, eqs. 7–9.
 double conformal_tangent(double tau) {
   const double root = std::sqrt(1.0 + tau * tau);
-  const double sigma = std::sinh(eccentricity() * std::atanh(eccentricity() * tau / root));
+  const double sigma = std::sinh(kEccentricity * std::atanh(kEccentricity * tau / root));
   return tau * std::sqrt(1.0 + sigma * sigma) - sigma * root;
 }
 
 // Its inverse by Newton's method, eqs. 19–21.
 double geographic_tangent(double conformal) {
-  const double e2 = eccentricity() * eccentricity();
+  const double e2 = kEccentricity * kEccentricity;
   double tau = conformal / std::sqrt(1.0 - e2);
   for (int i = 0; i < 5; ++i) {
     const double at = conformal_tangent(tau);

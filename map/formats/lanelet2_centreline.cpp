@@ -23,13 +23,14 @@ struct Segment {
   Eigen::Vector2d from, to;
 };
 
+// Whether the ranges between two numbers each are apart.
+bool apart(double a, double b, double c, double d) {
+  return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
+}
+
 bool boxes_meet(const Segment& a, const Segment& b) {
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto [a_low, a_high] = std::minmax(a.from[axis], a.to[axis]);
-    const auto [b_low, b_high] = std::minmax(b.from[axis], b.to[axis]);
-    if (a_low > b_high || b_low > a_high) return false;
-  }
-  return true;
+  return !apart(a.from.x(), a.to.x(), b.from.x(), b.to.x()) &&
+         !apart(a.from.y(), a.to.y(), b.from.y(), b.to.y());
 }
 
 // Whether the closed segments have a point in common.

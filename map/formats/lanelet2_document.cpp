@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -49,6 +50,35 @@ struct Range {
   std::size_t from, to;
 };
 
+// A number as most are written: a sign, digits, a point, digits. With at most 15 digits both the
+// whole number that they are and the power of ten that divides it are exact, so that the quotient
+// is the nearest double; none if the text is of another form.
+std::optional<double> plain_decimal(std::string_view text) {
+  constexpr std::array<double, 16> kPowers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                              1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  const bool negative = text.starts_with('-');
+  if (negative) text.remove_prefix(1);
+  if (text.empty() || text.size() > 16) return {};
+  std::int64_t digits = 0;
+  std::size_t point = text.size();
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto digit = static_cast<unsigned>(text[i] - '0');
+    if (digit <= 9) {
+      digits = 10 * digits + digit;
+    } else if (text[i] == '.' && point == text.size()) {
+      point = i;
+    } else {
+      return {};
+    }
+  }
+  const bool has_point = point != text.size();
+  const std::size_t decimals = has_point ? text.size() - point - 1 : 0;
+  if (text.size() - (has_point ? 1 : 0) > 15 || point == 0 || (has_point && decimals == 0))
+    return {};
+  const double value = static_cast<double>(digits) / kPowers[decimals];
+  return negative ? -value : value;
+}
+
 // A node before its place in the map is known.
 struct RawNode {
   NodePlace place{kNothing, kNothing, kNothing, kNothing};
@@ -67,6 +97,7 @@ class DocumentReader {
   Document read() {
     scanner_.next();
     crs_ = scanner_.value("crs");
+    make_room();
     each_child([&] { add(); });
     scanner_.expect_end();
     place_nodes();
@@ -89,6 +120,15 @@ class DocumentReader {
                       .found = found,
                       .needed = "a map with content of its size",
                       .remedy = "check whether it is the right file"});
+  }
+
+  // For as many elements as files of that size have; what is not used is never touched.
+  void make_room() {
+    const std::size_t size = document_.text.size();
+    document_.nodes.reserve(size / 160);
+    places_.reserve(size / 160);
+    refs_.reserve(size / 80);
+    document_.tags.reserve(size / 160);
   }
 
   // Calls `f` at the start of each child of the element that has just started, goes to its end.
@@ -368,6 +408,7 @@ Document read_document(const std::string& bytes, const std::string& name) {
 }
 
 double number_in(std::string_view text) {
+  if (const std::optional<double> plain = plain_decimal(text)) return *plain;
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   if (text.starts_with('+')) text.remove_prefix(1);

@@ -39,6 +39,15 @@ std::size_t end_of(Kind kind, std::string_view text, std::size_t at) {
   return at;
 }
 
+// Names are a few letters, which a call to compare memory takes longer for than a loop.
+bool is_same(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] != b[i]) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 XmlScanner::XmlScanner(std::string_view text, std::string file, std::size_t from)
@@ -213,7 +222,7 @@ XmlScanner::Event XmlScanner::read_end() {
   name_ = take_name();
   skip_space();
   if (here() != '>') refuse("an end tag does not end");
-  if (open_.empty() || open_.back() != name_) {
+  if (open_.empty() || !is_same(open_.back(), name_)) {
     refuse(fmt::format("</{}> closes what <{}> began", name_, open_.empty() ? "" : open_.back()));
   }
   ++at_;
@@ -243,9 +252,7 @@ void XmlScanner::expect_end() {
 
 std::string_view XmlScanner::value(std::string_view attribute) const {
   for (const Attribute& one : attributes_) {
-    // Names are a few letters: most others differ in size or in the first one.
-    if (one.name.size() != attribute.size() || one.name[0] != attribute[0]) continue;
-    if (one.name == attribute) return one.value;
+    if (is_same(one.name, attribute)) return one.value;
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "roadbed/map/formats/lanelet2_document.h"
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_lanelet2.h"
@@ -284,6 +285,23 @@ TEST(Lanelet2, ElevationIsThatOfTheNodes) {
   EXPECT_THAT(lane(road_map, id).left.z_m, ElementsAre(1.0, 3.0));
   EXPECT_DOUBLE_EQ(lane(road_map, id).centre.z_m.front(), 1.5);
   EXPECT_DOUBLE_EQ(lane(road_map, id).centre.z_m.back(), 3.5);
+}
+
+// The oracle is the C library.
+TEST(Lanelet2, NumbersAreTheNearestDoublesToTheirText) {
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = std::to_string(random() >> (random() % 64));
+    if (random() % 4 != 0) text.insert(1 + random() % text.size(), ".");
+    if (text.back() == '.') text += std::to_string(random() % 10);
+    if (random() % 2 == 0) text.insert(0, "-");
+    EXPECT_EQ(lanelet2::number_in(text), std::strtod(text.c_str(), nullptr)) << text;
+  }
+  for (const char* text : {"", "-", ".", "1.2.3", "1e", "4 m", "nan", "1e999", "--1"}) {
+    EXPECT_TRUE(std::isnan(lanelet2::number_in(text))) << text;
+  }
+  EXPECT_TRUE(std::signbit(lanelet2::number_in("-0.0")));
+  EXPECT_EQ(lanelet2::number_in(" +1.5e-3 "), 1.5e-3);
 }
 
 TEST(Lanelet2, MultipolygonsBecomeAreasWithHoles) {
