@@ -91,6 +91,8 @@ class ClosedLoop {
                      .reason = command_.reason,
                      .from_measurement = keeper().from_measurement() && !drive_.cycles.empty(),
                      .chosen = keeper().last_plan().chosen,
+                     .start = keeper().last_plan().start,
+                     .grid = candidate_grid(keeper().last_plan()),
                      .plan_reason = keeper().last_plan().reason,
                      .beyond_the_edge_m = keeper().beyond_the_edge_m(),
                      .lead = command_.lead};
@@ -132,8 +134,9 @@ class ClosedLoop {
     check_end();
   }
 
-  double true_s_m() const {
-    return world_.line.project(truth_.motion.pose.position(), keeper().s_m()).s_m;
+  double true_s_m() {
+    s_m_ = world_.line.project(truth_.motion.pose.position(), s_m_).s_m;
+    return s_m_;
   }
 
   void check_end() {
@@ -214,6 +217,7 @@ class ClosedLoop {
 
   VehicleState truth_;
   int steps_ = 0;
+  double s_m_ = 0.0;        ///< station on the world's line, when last looked
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
   PilotCommand command_;
   int saturated_ = 0;
@@ -224,9 +228,9 @@ class ClosedLoop {
 
 }  // namespace
 
-planning::SpeedCeiling ceiling_of(const Scenario& scenario, const World& world) {
+planning::SpeedCeiling ceiling_of(const Scenario& scenario, const planning::ReferenceLine& line) {
   return planning::speed_ceiling(
-      world.line, scenario.vehicle,
+      line, scenario.vehicle,
       {.desired_speed_mps = scenario.options.desired_speed_mps,
        .max_lateral_acceleration_mps2 = scenario.options.max_lateral_acceleration_mps2,
        .deceleration_mps2 = scenario.options.comfort_deceleration_mps2});

@@ -17,11 +17,13 @@ struct LoopOptions {
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
   /// Pilots know of other vehicles only what could be known at the time, not their true future.
   bool predicts = false;
+  /// Each cycle keeps what became of its candidates; all of them are judged, which takes longer.
+  bool keeps_candidates = false;
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
 };
 
-/// Greatest speeds along the world's line for the scenario's vehicle and options.
-planning::SpeedCeiling ceiling_of(const Scenario& scenario, const World& world);
+/// Greatest speeds along a line for the scenario's vehicle and options.
+planning::SpeedCeiling ceiling_of(const Scenario& scenario, const planning::ReferenceLine& line);
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
 /// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.

@@ -214,8 +214,9 @@ std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>
   return best;
 }
 
-Route route_of(const Source& source, const std::vector<LanePlace>& starts, const TimedGoal& goal,
-               double speed_mps) {
+/// None if no route leads to the goal.
+std::optional<Route> find_route_of(const Source& source, const std::vector<LanePlace>& starts,
+                                   const TimedGoal& goal, double speed_mps) {
   const double until_s = goal.latest_s().value_or(kNothingAsked_s);
   const double reach = reach_m(speed_mps, kDefaultSpeed_mps, until_s);
   std::optional<Route> best;
@@ -225,15 +226,32 @@ Route route_of(const Source& source, const std::vector<LanePlace>& starts, const
     if (!state.is_anywhere())
       best = cheaper(std::move(best), route_to(source, starts, state, reach));
   }
-  if (best) return *std::move(best);
-  if (!anywhere) {
+  if (best || !anywhere) return best;
+  const LanePlace end = straight_ahead(source.road_map, starts.front(), reach + kRoadAhead_m);
+  return planning::find_route(source.road_map, {starts.front(), Sense::along}, end).route;
+}
+
+Route route_of(const Source& source, const std::vector<LanePlace>& starts, const TimedGoal& goal,
+               double speed_mps) {
+  std::optional<Route> route = find_route_of(source, starts, goal, speed_mps);
+  if (!route) {
     source.refuse("a goal that no route leads to", "a way over lanes that a car may use",
                   "correct the goal, or the lanelets' links");
   }
-  const LanePlace end = straight_ahead(source.road_map, starts.front(), reach + kRoadAhead_m);
-  auto answer = planning::find_route(source.road_map, {starts.front(), Sense::along}, end);
-  if (!answer.route) source.refuse("no lane ahead: " + answer.reason, "a lane", "correct the map");
-  return *std::move(answer.route);
+  return *std::move(route);
+}
+
+/// Places of lanes beside the start that a car may change to.
+std::vector<LanePlace> places_beside(const map::RoadMap& road_map, const LanePlace& start) {
+  std::vector<LanePlace> places;
+  const Eigen::Vector2d here = road_map.lane(start.lane).pose_at(start.s_m).position();
+  const map::LaneLinks& links = road_map.graph().of(start.lane);
+  for (const auto& beside : {links.left, links.right}) {
+    if (!beside || !beside->same_direction || !beside->change_allowed()) continue;
+    const geometry::Polyline& centre = road_map.lane(beside->lane).centre.in_map;
+    places.push_back({.lane = beside->lane, .s_m = centre.project(here).s_m});
+  }
+  return places;
 }
 
 /// Where the file knows no limit: what towns allow, or what start and goal show to be usual.
@@ -309,9 +327,17 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
   Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
   const Pose2 start = rear_axle(source, scenario.vehicle);
   Route route = route_of(source, start_places(source, start, scenario.vehicle), goal, speed_mps);
-  planning::ReferenceLine line = planning::ReferenceLine::along(
-      road_map, route,
-      {.default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m});
+  const planning::ReferenceLineOptions line_options{
+      .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
+  planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route, line_options);
+  std::vector<planning::ReferenceLine> other_lines;
+  const planning::RouteLeg& first = route.legs.front();
+  for (const LanePlace& place :
+       places_beside(road_map, {.lane = first.lane, .s_m = first.from_s_m})) {
+    if (const auto other = find_route_of(source, {place}, goal, speed_mps)) {
+      other_lines.push_back(planning::ReferenceLine::along(road_map, *other, line_options));
+    }
+  }
   const planning::RouteLeg& last = route.legs.back();
   const double beyond_m =
       last.reversed
@@ -327,6 +353,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
               .obstacles = {},
               .presence = {},
               .goal = std::move(goal),
+              .other_lines = std::move(other_lines),
               .road_end_s_m = road_end_s_m};
   const Source placed{file.string(), world.road_map, problem, from.time_step_s};
   add_obstacles(from, placed, world);

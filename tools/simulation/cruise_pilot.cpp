@@ -7,6 +7,7 @@
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/decision.h"
 #include "roadbed/tools/simulation/pilot.h"
+#include "roadbed/tools/simulation/right_of_way.h"
 #include "roadbed/tools/simulation/safety.h"
 #include "roadbed/tools/simulation/traffic.h"
 
@@ -14,6 +15,8 @@ namespace roadbed::tools {
 namespace {
 
 constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
+constexpr double kBeyondHalt_m = 1.0;
+constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kPassOffset_m = 0.5;  // off the reference line this far is passing
 
@@ -34,12 +37,14 @@ class CruisePilot : public Pilot {
       : scenario_(scenario),
         world_(world),
         predicts_(options.predicts),
-        ceiling_(ceiling_of(scenario, world)),
+        ceiling_(ceiling_of(scenario, world.line)),
         cruise_(cruise_options_),
-        keeper_(scenario, world,
+        keeper_(scenario, world, world.line,
                 {.tracking_error_m = options.max_tracking_error_m,
                  .heading_error_rad = options.max_heading_error_rad,
-                 .rooms = rooms(scenario.options.clearance_m)}) {
+                 .rooms = rooms(scenario.options.clearance_m),
+                 .keeps_candidates = options.keeps_candidates}),
+        right_of_way_(scenario, world) {
     decision_options_.deceleration_mps2 = scenario.options.comfort_deceleration_mps2;
   }
 
@@ -55,13 +60,18 @@ class CruisePilot : public Pilot {
                             .acceleration_mps2 = view.measured.acceleration_mps2,
                             .target_mps = set_speed_mps_},
                   .obstacles = foreseen_ ? foreseen_->obstacles() : world_.obstacles});
-    const std::optional<Lead> lead = lead_ahead(view);
-    const SpeedAnswer answer = choose_speed(question(view.measured, lead), decision_options_);
+    const std::optional<Halt> halt = halt_ahead(view);
+    const std::optional<Lead> truth = lead_ahead(view, halt);
+    const bool is_blind = truth && !view.sensors.sees(view.t_s);
+    const std::optional<Lead> lead = is_blind ? remembered(view) : truth;
+    if (!is_blind) last_seen_ = {view.t_s, lead};
+    const SpeedAnswer answer = choose_speed(question(view.measured, lead, halt), decision_options_);
     std::optional<control::LeadMeasurement> seen;
-    if (lead) seen = view.sensors.measure(*lead, view.true_speed_mps);
+    if (truth && !is_blind) seen = view.sensors.measure(*truth, view.true_speed_mps);
+    const double acceleration = view.measured.acceleration_mps2;
     PilotCommand command;
-    command.acceleration_mps2 =
-        cruise_.update(speed, view.measured.acceleration_mps2, answer.set, seen);
+    command.acceleration_mps2 = is_blind ? cruise_.update_blind(speed, acceleration, answer.set)
+                                         : cruise_.update(speed, acceleration, answer.set, seen);
     command.saturated = std::abs(command.acceleration_mps2) >= cruise_options_.max_command_mps2;
     if (answer.hold) {
       command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
@@ -75,16 +85,43 @@ class CruisePilot : public Pilot {
   }
 
  private:
-  std::optional<Lead> lead_ahead(const PilotView& view) const {
+  std::optional<Halt> halt_ahead(const PilotView& view) {
+    const PlannedPath path = keeper_.expected_path();
+    return right_of_way_.look({.t_s = view.t_s,
+                               .s_m = keeper_.s_m(),
+                               .speed_mps = view.measured.motion.speed_mps,
+                               .path = path,
+                               .ceiling = ceiling_,
+                               .traffic = traffic()});
+  }
+
+  /// Who is beyond the place to halt at is none.
+  std::optional<Lead> lead_ahead(const PilotView& view, const std::optional<Halt>& halt) const {
     const double speed = view.measured.motion.speed_mps;
     const double to_goal_m = world_.line.goal_s_m() - keeper_.s_m();
     const double look_m = std::min(look_ahead_m(speed, decision_options_),
                                    std::max(0.0, to_goal_m) + scenario_.vehicle.front_m());
-    return find_lead(keeper_.expected_path(), keeper_.s_m(), look_m, world_.obstacles, view.t_s,
-                     scenario_.vehicle, kSideMargin_m);
+    std::optional<Lead> lead =
+        find_lead(keeper_.expected_path(), keeper_.s_m(), look_m, world_.obstacles, view.t_s,
+                  scenario_.vehicle, kSideMargin_m, right_of_way_.crossing());
+    if (lead && halt && lead->gap_m > halt->s_m - keeper_.s_m() + kBeyondHalt_m) lead.reset();
+    return lead;
   }
 
-  SpeedQuestion question(const VehicleState& measured, const std::optional<Lead>& lead) const {
+  /// A lead that is not measured is taken to drive on at its speed, for a while.
+  std::optional<Lead> remembered(const PilotView& view) const {
+    const double since_s = view.t_s - last_seen_.t_s;
+    if (!last_seen_.lead || since_s > kRemembered_s) return std::nullopt;
+    Lead lead = *last_seen_.lead;
+    const double closing = view.measured.motion.speed_mps - lead.speed_mps;
+    lead.gap_m = std::max(0.0, lead.gap_m - closing * since_s);
+    return lead;
+  }
+
+  Traffic traffic() const { return foreseen_ ? foreseen_->traffic() : true_traffic(world_); }
+
+  SpeedQuestion question(const VehicleState& measured, const std::optional<Lead>& lead,
+                         const std::optional<Halt>& halt) const {
     return {.ceiling = ceiling_,
             .s_m = keeper_.s_m(),
             .goal_s_m = world_.line.goal_s_m(),
@@ -92,7 +129,8 @@ class CruisePilot : public Pilot {
             .acceleration_mps2 = measured.acceleration_mps2,
             .lead = lead,
             .lead_name = lead ? lead_name(*lead) : "",
-            .path_left_m = path_left_m(lead)};
+            .path_left_m = path_left_m(lead),
+            .halt = halt};
   }
 
   /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
@@ -139,6 +177,11 @@ class CruisePilot : public Pilot {
   planning::SpeedCeiling ceiling_;
   control::CruiseControl cruise_;
   PathKeeper keeper_;
+  RightOfWay right_of_way_;
+  struct {
+    double t_s = 0.0;
+    std::optional<Lead> lead;
+  } last_seen_;
   double set_speed_mps_ = 0.0;
 };
 

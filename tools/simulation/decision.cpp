@@ -17,6 +17,7 @@ constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before foll
 constexpr double kFollowSlack_mps = 2.0;
 constexpr double kBrakes_mps2 = 0.5;  // less is no braking
 constexpr double kFar_m = 1e4;
+constexpr double kHardestHalt_mps2 = 3.0;
 
 struct Option {
   SpeedTarget now, ahead;  ///< at the station, and where the actuator will have answered
@@ -40,6 +41,16 @@ Option by_goal(const SpeedQuestion& q, double ahead_m, double deceleration) {
   return {planning::stopping_speed(distance, deceleration),
           planning::stopping_speed(distance - ahead_m, deceleration), Behaviour::stop,
           fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
+}
+
+Option by_halt(const SpeedQuestion& q, const DecisionOptions& options, double ahead_m) {
+  const double distance = q.halt->s_m - q.s_m;
+  // Late word, as of a light that turns yellow, is met by braking harder.
+  const double needed = 0.5 * q.speed_mps * q.speed_mps / std::max(0.5, distance - ahead_m);
+  const double deceleration = std::clamp(needed, options.deceleration_mps2, kHardestHalt_mps2);
+  return {planning::stopping_speed(distance, deceleration),
+          planning::stopping_speed(distance - ahead_m, deceleration), Behaviour::yield,
+          q.halt->reason};
 }
 
 /// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
@@ -79,6 +90,7 @@ Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
 std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
   const double ahead_m = preview_m(q, options.preview_s);
   std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
+  if (q.halt) all.push_back(by_halt(q, options, ahead_m));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;
@@ -93,6 +105,7 @@ const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*w
 bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
   if (q.speed_mps > kAtRest_mps) return false;
   if (q.goal_s_m - q.s_m < kStopping_m) return true;
+  if (q.halt && q.halt->s_m - q.s_m < kStopping_m) return true;
   if (q.path_left_m && *q.path_left_m < kStopping_m) return true;
   return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
          q.lead->speed_mps < kAtRest_mps;

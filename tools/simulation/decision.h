@@ -8,6 +8,7 @@
 #include "roadbed/planning/speed_ceiling.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/lead.h"
+#include "roadbed/tools/simulation/right_of_way.h"
 
 namespace roadbed::tools {
 
@@ -22,6 +23,7 @@ struct SpeedQuestion {
   std::string lead_name;  ///< for the reason
   /// Set if the planner found nothing: the last path is still good for so far; stop on it.
   std::optional<double> path_left_m;
+  std::optional<Halt> halt = {};  ///< where a rule of the road asks to wait
 };
 
 /// The set speed, and what it is due to.
@@ -41,9 +43,9 @@ struct DecisionOptions {
   double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
 };
 
-/// The least of: the ceiling, the stop at the goal, the stop on a path that ends, and the approach
-/// to the lead, which closes up
-/// at a comfortable deceleration to the gap that the cruise control then keeps.
+/// The least of: the ceiling, the stop at the goal, the halt that a rule asks for, the stop on a
+/// path that ends, and the approach to the lead, which closes up at a comfortable deceleration to
+/// the gap that the cruise control then keeps.
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options);
 
 }  // namespace roadbed::tools

@@ -10,6 +10,8 @@ std::string_view name(Behaviour behaviour) {
       return "pass";
     case Behaviour::follow:
       return "follow";
+    case Behaviour::yield:
+      return "yield";
     case Behaviour::stop:
       return "stop";
     case Behaviour::emergency:

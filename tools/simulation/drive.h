@@ -8,6 +8,7 @@
 
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/planning/plan.h"
+#include "roadbed/tools/simulation/candidate_grid.h"
 
 namespace roadbed::tools {
 
@@ -19,6 +20,7 @@ enum class Behaviour {
   cruise,     ///< the road ahead is free: hold the set speed
   pass,       ///< beside the reference line, because something stands or moves on it
   follow,     ///< behind a lead
+  yield,      ///< waits at a light or sign, or for those who have the right of way
   stop,       ///< comes to rest: at the goal, or because no candidate is left
   emergency,  ///< the safety layer brakes harder than the cruise control may
 };
@@ -38,8 +40,10 @@ struct DriveCycle {
   std::string reason = {};        ///< "car p1 is 22.4 m ahead"
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
-      {};                          ///< none: nothing feasible, the last path is kept
-  std::string plan_reason = {};    ///< why nothing was feasible
+      {};                                  ///< none: nothing feasible, the last path is kept
+  planning::LateralState start = {};       ///< of the candidates
+  std::optional<CandidateGrid> grid = {};  ///< if candidates are kept
+  std::string plan_reason = {};            ///< why nothing was feasible
   double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<DriveLead> lead = {};

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadbed::tools {
 namespace {
 
 constexpr double kFine_m = 0.5, kWayStep_m = 1.0, kFineUntil_m = 40.0;
 constexpr double kFastest_mps = 60.0;
+constexpr double kSurfaceSlack_m = 0.01;  // lanes of real files do not meet exactly
 
 double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
                       const geometry::VehicleShape& vehicle, const BendLimits& limits) {
@@ -18,6 +20,12 @@ double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
       vehicle.wheelbase_m * std::abs(curvature_d1_per_m2) / (1.0 + turn * turn);  // of atan(L k)
   const double rate = limits.steering_rate_share * vehicle.max_steering_rate_radps;
   return std::min({kFastest_mps, by_acceleration, rate / std::max(1e-6, steering_per_m)});
+}
+
+bool is_on_road(const geometry::Rectangle& body, const map::RoadMap& road_map) {
+  return std::ranges::all_of(body.corners(), [&](const Eigen::Vector2d& corner) {
+    return road_map.on_surface(corner, kSurfaceSlack_m);
+  });
 }
 
 }  // namespace
@@ -51,6 +59,13 @@ DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
         bend_speed_mps(curvature[i], (curvature[b] - curvature[a]) / apart, vehicle, limits));
   }
   return way;
+}
+
+double on_road_m(const DrivenWay& way, const map::RoadMap& road_map) {
+  std::size_t i = 0;
+  while (i < way.body.size() && !is_on_road(way.body[i], road_map)) ++i;
+  while (i < way.body.size() && is_on_road(way.body[i], road_map)) ++i;
+  return i < way.body.size() ? way.ahead_m[i - 1] : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace roadbed::tools

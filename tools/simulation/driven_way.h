@@ -4,6 +4,7 @@
 
 #include "roadbed/geometry/rectangle.h"
 #include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/map/road_map.h"
 #include "roadbed/planning/speed_ceiling.h"
 #include "roadbed/tools/simulation/planned_path.h"
 
@@ -35,5 +36,10 @@ struct DrivenWay {
 DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
                      const planning::SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                      const BendLimits& limits = {});
+
+/// How far along the way every corner of the body stays on the road surface [m]: up to the sample
+/// before the first that does not, and infinite if there is none. Where the way begins off the road
+/// only what comes after it has returned counts.
+double on_road_m(const DrivenWay& way, const map::RoadMap& road_map);
 
 }  // namespace roadbed::tools

@@ -68,11 +68,13 @@ Rectangle rectangle_at(const planning::Obstacle& obstacle, double t_s) {
 
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
                               const std::vector<planning::Obstacle>& obstacles, double t_s,
-                              const geometry::VehicleShape& vehicle, double side_margin_m) {
+                              const geometry::VehicleShape& vehicle, double side_margin_m,
+                              const std::vector<bool>& ignored) {
   std::optional<Lead> nearest;
   double within_m = look_ahead_m;
   const Eigen::Vector2d here = path.pose_at(s_m).position();
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!ignored.empty() && ignored[i]) continue;
     const Rectangle body = rectangle_at(obstacles[i], t_s);
     const double far = within_m + vehicle.reach_m() + body.radius_m() + side_margin_m;
     if ((body.centre - here).norm() > kMostStretch * far) continue;

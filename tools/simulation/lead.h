@@ -23,9 +23,11 @@ struct Lead {
 /// @param s_m            station of the rear axle.
 /// @param look_ahead_m   no further than this.
 /// @param side_margin_m  an obstacle this near to the body's sides counts as touched.
+/// @param ignored        obstacles that are not looked at; none if empty.
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
                               const std::vector<planning::Obstacle>& obstacles, double t_s,
-                              const geometry::VehicleShape& vehicle, double side_margin_m);
+                              const geometry::VehicleShape& vehicle, double side_margin_m,
+                              const std::vector<bool>& ignored = {});
 
 /// Rectangle of an obstacle at a time.
 geometry::Rectangle rectangle_at(const planning::Obstacle& obstacle, double t_s);

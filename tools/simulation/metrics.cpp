@@ -122,7 +122,7 @@ ordered_json tracking(const Drive& drive) {
 ordered_json cycles(const Drive& drive) {
   ordered_json per_behaviour = ordered_json::object();
   for (const Behaviour behaviour : {Behaviour::cruise, Behaviour::pass, Behaviour::follow,
-                                    Behaviour::stop, Behaviour::emergency}) {
+                                    Behaviour::yield, Behaviour::stop, Behaviour::emergency}) {
     const std::size_t cycles =
         count(drive.cycles, [&](const DriveCycle& cycle) { return cycle.behaviour == behaviour; });
     per_behaviour[std::string(name(behaviour)) + "_s"] = kCycle_s * static_cast<double>(cycles);

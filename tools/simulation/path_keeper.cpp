@@ -42,18 +42,19 @@ planning::LineView straight_past(const planning::ReferenceLine& line, double end
 
 }  // namespace
 
-PathKeeper::PathKeeper(const Scenario& scenario, const World& world, const Bounds& bounds)
+PathKeeper::PathKeeper(const Scenario& scenario, const World& world,
+                       const planning::ReferenceLine& line, const Bounds& bounds)
     : scenario_(scenario),
       world_(world),
+      reference_(line),
       bounds_(bounds),
-      line_(straight_past(world.line,
-                          world.goal ? world.line.length_m()
-                                     : world.line.goal_s_m() + scenario.vehicle.front_m() + 1.0)) {}
+      line_(straight_past(line, world.goal ? line.length_m()
+                                           : line.goal_s_m() + scenario.vehicle.front_m() + 1.0)) {}
 
 LateralState PathKeeper::start_state(const VehicleState& measured) {
   const control::SingleTrackState& motion = measured.motion;
   const double curvature = std::tan(motion.steering_rad) / scenario_.vehicle.wheelbase_m;
-  const LateralState here = lateral_state(world_.line, motion.pose, curvature, s_m_);
+  const LateralState here = lateral_state(reference_, motion.pose, curvature, s_m_);
   s_m_ = here.s_m;
   from_measurement_ = true;
   if (!path_) return here;
@@ -78,6 +79,7 @@ PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets
   options.max_d_m = offsets.most_m;
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
+  options.keep_candidates = bounds_.keeps_candidates;
   planning::PlanInput input{.line = line_,
                             .start = start_,
                             .start_t_s = question.t_s,
@@ -91,6 +93,7 @@ PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets
   }
   // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
   Proposal proposal;
+  if (!may_leave_lanes) options.l_step_m = kCoarse_m;
   for (const Room& room : bounds_.rooms) {
     if (room.border_m < 0.0 && !may_leave_lanes) break;
     options.border_margin_m = room.border_m;
@@ -123,8 +126,8 @@ std::vector<planning::SpeedPlan> PathKeeper::speeds_to_try(const Question& quest
 double PathKeeper::held_until_m(const planning::Plan& plan) const {
   const double offset = plan.chosen->end_d_m;
   double s_m = plan.start.s_m + plan.chosen->end_l_m;
-  for (; s_m < world_.line.length_m(); s_m += kHoldStep_m) {
-    const planning::Corridor corridor = world_.line.corridor_at(s_m);
+  for (; s_m < reference_.length_m(); s_m += kHoldStep_m) {
+    const planning::Corridor corridor = reference_.corridor_at(s_m);
     const double room_m = offset > 0.0 ? corridor.left_m : corridor.right_m;
     if (std::abs(offset) + 0.5 * scenario_.vehicle.width_m > room_m) break;
   }
@@ -133,11 +136,11 @@ double PathKeeper::held_until_m(const planning::Plan& plan) const {
 
 PlannedPath PathKeeper::path_of(const Proposal& proposal) const {
   if (!bounds_.squeezes_past || std::abs(proposal.plan.chosen->end_d_m) < kHeldOffset_m) {
-    return PlannedPath(world_.line,
+    return PlannedPath(reference_,
                        [kept = proposal.plan](double s_m) { return kept.lateral_at(s_m); });
   }
   const double held_m = held_until_m(proposal.plan);
-  return PlannedPath(world_.line, [kept = proposal.plan, held_m](double s_m) {
+  return PlannedPath(reference_, [kept = proposal.plan, held_m](double s_m) {
     LateralState lateral = kept.lateral_at(s_m);
     lateral.d_m *= fade(s_m, held_m);
     return lateral;
@@ -153,7 +156,7 @@ void PathKeeper::take(const Proposal& proposal) {
     path_.emplace(path_of(proposal));
   } else if (!path_) {
     path_end_s_m_ = checked_to_s_m_ = start_.s_m;
-    path_.emplace(world_.line,
+    path_.emplace(reference_,
                   [d_m = start_.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
   }
 }
@@ -165,7 +168,7 @@ bool PathKeeper::in_the_way(const planning::Plan& plan) const {
 bool PathKeeper::something_is_in_the_way() const { return in_the_way(plan_); }
 
 PlannedPath PathKeeper::expected_path() const {
-  return PlannedPath(world_.line, [path = *path_, end_m = path_end_s_m_](double s_m) {
+  return PlannedPath(reference_, [path = *path_, end_m = path_end_s_m_](double s_m) {
     LateralState lateral = path.lateral_at(s_m);
     lateral.d_m *= fade(s_m, end_m);  // its slope is small enough to leave the heading alone
     return lateral;

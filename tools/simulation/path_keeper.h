@@ -27,9 +27,12 @@ class PathKeeper {
     std::vector<Room> rooms;
     /// Whether an obstacle in the way is a reason to ask for less room, or to wait.
     bool squeezes_past = false;
+    bool keeps_candidates = false;  ///< in the plan; every one is judged then
   };
 
-  PathKeeper(const Scenario& scenario, const World& world, const Bounds& bounds);
+  /// @param line  to drive along, of the world.
+  PathKeeper(const Scenario& scenario, const World& world, const planning::ReferenceLine& line,
+             const Bounds& bounds);
 
   /// How far ahead candidates may end.
   struct Ends {
@@ -63,7 +66,8 @@ class PathKeeper {
   /// Where the vehicle is: the start of what is proposed until the next call.
   void locate(const VehicleState& measured) { start_ = start_state(measured); }
 
-  /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too.
+  /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too;
+  ///                         if not, it is one of several tries, on a coarser grid.
   Proposal propose(const Question& question, const Offsets& offsets,
                    bool may_leave_lanes = true) const;
   void take(const Proposal& proposal);
@@ -101,6 +105,7 @@ class PathKeeper {
 
   const Scenario& scenario_;
   const World& world_;
+  const planning::ReferenceLine& reference_;
   Bounds bounds_;
   planning::LineView line_;
   planning::LateralState start_;

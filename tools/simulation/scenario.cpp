@@ -136,15 +136,58 @@ std::vector<ScenarioObstacle> obstacles(const JsonNode& list) {
   return result;
 }
 
+std::vector<TimeSpan> time_spans(const JsonNode& list) {
+  std::vector<TimeSpan> spans;
+  for (const JsonNode& node : not_empty(list)) {
+    node.require_object({"from_s", "to_s"});
+    const TimeSpan span{node.at("from_s").number(kTime), node.at("to_s").number(kTime)};
+    require_later(node.at("to_s"), span.to_s, span.from_s);
+    spans.push_back(span);
+  }
+  return spans;
+}
+
 ScenarioNoise noise(const JsonNode& node) {
   node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
-                       "heading_rad", "speed_mps"});
+                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
+  const auto dropouts = node.find("dropouts");
   return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
           .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
           .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
           .position_m = node.number_or("position_m", 0.0, kDeviation),
           .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
-          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation)};
+          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
+          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<TimeSpan>{},
+          .dropout_share = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
+}
+
+LightPhase light_phase(const JsonNode& node) {
+  node.require_object({"colour", "duration_s"});
+  const JsonNode colour = node.at("colour");
+  const std::map<std::string, LightColour> colours{
+      {"green", LightColour::green}, {"yellow", LightColour::yellow}, {"red", LightColour::red}};
+  const auto known = colours.find(colour.text());
+  if (known == colours.end()) {
+    colour.refuse(fmt::format("is \"{}\"", colour.text()), "green, yellow or red", "choose one");
+  }
+  return {known->second, node.at("duration_s").number(kDuration)};
+}
+
+std::vector<ScenarioLight> lights(const JsonNode& list) {
+  std::vector<ScenarioLight> result;
+  for (const JsonNode& node : list.elements()) {
+    node.require_object({"signals", "offset_s", "phases"});
+    ScenarioLight light{.signals = {}, .pointer = node.pointer(), .phases = {}};
+    for (const JsonNode& signal : not_empty(node.at("signals"))) {
+      light.signals.push_back(signal.text());
+    }
+    light.offset_s = node.number_or("offset_s", 0.0, {-3600.0, 3600.0});
+    for (const JsonNode& phase : not_empty(node.at("phases"))) {
+      light.phases.push_back(light_phase(phase));
+    }
+    result.push_back(std::move(light));
+  }
+  return result;
 }
 
 ScenarioOptions options(const JsonNode& node) {
@@ -188,6 +231,7 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("seed")) scenario.seed = seed(*node);
   if (const auto node = root.find("noise")) scenario.noise = noise(*node);
   if (const auto node = root.find("options")) scenario.options = options(*node);
+  if (const auto node = root.find("lights")) scenario.lights = lights(*node);
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
 }
 
@@ -197,7 +241,7 @@ Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& fil
   const nlohmann::json document = parse_json_strictly(bytes, file.string());
   const JsonNode root(document, file.string());
   root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "vehicle",
-                       "duration_s", "seed", "noise", "options", "obstacles"});
+                       "duration_s", "seed", "noise", "options", "lights", "obstacles"});
   root.at("roadbed_scenario").number({1.0, 1.0});
   Scenario scenario;
   scenario.file = file;

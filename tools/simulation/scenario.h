@@ -10,6 +10,7 @@
 
 #include "roadbed/geometry/pose2.h"
 #include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/tools/simulation/light.h"
 
 namespace roadbed::tools {
 
@@ -63,6 +64,11 @@ struct ScenarioObstacle {
   std::variant<ParkedObstacle, ScriptedObstacle, TrafficObstacle> motion;
 };
 
+/// Seconds of the drive.
+struct TimeSpan {
+  double from_s = 0.0, to_s = 0.0;
+};
+
 /// Standard deviations of what is measured; white and Gaussian.
 struct ScenarioNoise {
   double gap_m = 0.0;
@@ -71,6 +77,8 @@ struct ScenarioNoise {
   double position_m = 0.0;  ///< of each coordinate
   double heading_rad = 0.0;
   double speed_mps = 0.0;
+  std::vector<TimeSpan> dropouts = {};  ///< in which nothing is measured of a lead
+  double dropout_share = 0.0;           ///< of the other measurements of a lead, lost at random
 };
 
 struct ScenarioOptions {
@@ -92,6 +100,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   ScenarioNoise noise;
   ScenarioOptions options;
+  std::vector<ScenarioLight> lights;
   std::vector<ScenarioObstacle> obstacles;
 };
 

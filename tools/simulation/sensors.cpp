@@ -19,6 +19,14 @@ VehicleState Sensors::measure(const VehicleState& truth) {
   return seen;
 }
 
+bool Sensors::sees(double t_s) {
+  const bool is_blind = std::ranges::any_of(deviations_.dropouts, [&](const TimeSpan& span) {
+    return t_s >= span.from_s && t_s < span.to_s;
+  });
+  if (is_blind || deviations_.dropout_share <= 0.0) return !is_blind;
+  return std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= deviations_.dropout_share;
+}
+
 control::LeadMeasurement Sensors::measure(const Lead& truth, double own_speed_mps) {
   return {.gap_m = truth.gap_m + noise(deviations_.gap_m),
           .relative_speed_mps =

@@ -21,6 +21,9 @@ class Sensors {
   Sensors(const ScenarioNoise& noise, std::uint64_t seed);
 
   VehicleState measure(const VehicleState& truth);
+
+  /// Whether a lead is measured at a time at all; to be asked once per time.
+  bool sees(double t_s);
   control::LeadMeasurement measure(const Lead& truth, double own_speed_mps);
 
  private:

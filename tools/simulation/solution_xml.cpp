@@ -7,7 +7,7 @@
 namespace roadbed::tools {
 namespace {
 
-std::string escaped(const std::string& text) {
+std::string escaped_xml(const std::string& text) {
   std::string safe;
   for (const char sign : text) {
     if (sign == '&') {
@@ -42,7 +42,8 @@ std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<CommonRoadSolution benchmark_id=\"KS2:SM1:{}:{}\">\n"
       "  <ksTrajectory planningProblem=\"{}\">\n",
-      escaped(problem.benchmark_id), escaped(problem.version), escaped(problem.problem_id));
+      escaped_xml(problem.benchmark_id), escaped_xml(problem.version),
+      escaped_xml(problem.problem_id));
   const auto steps = static_cast<long>(std::floor(drive.trajectory.end_s() / step_s + 1e-6));
   for (long k = 0; k <= steps; ++k) {
     const auto row = drive.trajectory.at(step_s * static_cast<double>(k));

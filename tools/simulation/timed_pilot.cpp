@@ -21,6 +21,7 @@ constexpr double kBeyondGoal_s = 1.5;
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kTimedPassOffset_m = 0.5, kFollow_m = 20.0;
 constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
+constexpr double kNoEnd_m = 1e9;
 
 /// How much is dared: room to obstacles, and braking.
 struct Daring {
@@ -45,10 +46,20 @@ constexpr double kBesideCost = 0.3;     // per metre of the end's offset
 constexpr double kBearable_mps = 0.3;   // beyond what a bend allows
 constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
 
+/// One line to the goal, and the path that is kept along it.
+struct Course {
+  const planning::ReferenceLine& line;
+  planning::SpeedCeiling ceiling;
+  std::vector<GoalStretch> stretches;
+  PathKeeper keeper;
+};
+
 /// One path, the way along it, and the best drive found on it.
 struct Attempt {
+  const Course* course;
   std::optional<PathKeeper::Proposal> proposal;  ///< none: the path that is being driven
   DrivenWay way;
+  double on_road_m;  ///< how far along the way the body keeps to the road
   SpeedSearchAnswer answer;
   const Daring* daring = nullptr;
   double cost = 0.0;
@@ -81,28 +92,27 @@ class TimedPilot : public Pilot {
       : scenario_(scenario),
         world_(world),
         predicts_(options.predicts),
-        traffic_(true_traffic(world)),
-        ceiling_(ceiling_of(scenario, world)),
-        stretches_(goal_stretches(*world.goal, world.road_map, world.line, scenario.vehicle)),
-        keeper_(scenario, world,
-                {.tracking_error_m = options.max_tracking_error_m,
-                 .heading_error_rad = options.max_heading_error_rad,
-                 .rooms = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}},
-                 .squeezes_past = true}) {}
+        traffic_(true_traffic(world)) {
+    courses_.push_back(course_on(world.line, options));
+    for (const planning::ReferenceLine& line : world.other_lines) {
+      courses_.push_back(course_on(line, options));
+    }
+  }
 
-  const PathKeeper& keeper() const override { return keeper_; }
+  const PathKeeper& keeper() const override { return course().keeper; }
 
   PilotCommand decide(const PilotView& view) override {
     look_around(view.t_s);
     const std::vector<planning::Obstacle> standing = standing_at(view.t_s);
-    keeper_.locate(view.measured);
+    course().keeper.locate(view.measured);
     const PathKeeper::Question question{.t_s = view.t_s,
                                         .measured = view.measured,
                                         .speed = speed_plan(view.measured),
                                         .ends = ends_at(view.measured.motion.speed_mps),
                                         .obstacles = standing};
     const Attempt best = best_attempt(view, question);
-    if (best.proposal) keeper_.take(*best.proposal);
+    current_ = static_cast<std::size_t>(best.course - courses_.data());
+    if (best.proposal) course().keeper.take(*best.proposal);
     last_plan_ = best.answer.plan;
     PilotCommand command = command_of(best);
     explain(best, view, command);
@@ -111,15 +121,34 @@ class TimedPilot : public Pilot {
   }
 
  private:
+  Course course_on(const planning::ReferenceLine& line, const LoopOptions& options) const {
+    return {
+        .line = line,
+        .ceiling = ceiling_of(scenario_, line),
+        .stretches = goal_stretches(*world_.goal, world_.road_map, line, scenario_.vehicle),
+        .keeper = {scenario_,
+                   world_,
+                   line,
+                   {.tracking_error_m = options.max_tracking_error_m,
+                    .heading_error_rad = options.max_heading_error_rad,
+                    .rooms = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}},
+                    .squeezes_past = true,
+                    .keeps_candidates = options.keeps_candidates}}};
+  }
+
+  Course& course() { return courses_[current_]; }
+  const Course& course() const { return courses_[current_]; }
+
   void look_around(double t_s) {
     if (!predicts_) return;
     foreseen_.emplace(true_traffic(world_), t_s);
     traffic_ = foreseen_->traffic();
   }
 
-  /// The planner's own choice first, then paths beside it, and all of them with more daring.
+  /// The planner's own choice first, then paths beside it, other lines, and all of them with more
+  /// daring.
   Attempt best_attempt(const PilotView& view, const PathKeeper::Question& question) {
-    Attempt best = attempt_on(view, first_proposal(question));
+    Attempt best = attempt_on(course(), view, first_proposal(course(), question));
     search(view, kDarings.front(), best);
     std::vector<Attempt> all{best};
     for (const Daring& daring : kDarings) {
@@ -128,56 +157,91 @@ class TimedPilot : public Pilot {
         if (is_better(all[i], best)) best = all[i];
       }
       if (is_good(best)) break;
-      if (all.size() > 1) continue;
-      if (!best.answer.is_free) add_paths_beside(view, question, kBeside, all, best);
-      if (best.answer.misses_goal) add_paths_beside(view, question, kOtherLanes, all, best);
+      if (&daring == &kDarings.front()) add_others(view, question, all, best);
     }
     return best;
   }
 
+  void add_others(const PilotView& view, const PathKeeper::Question& question,
+                  std::vector<Attempt>& all, Attempt& best) {
+    if (!best.answer.is_free || best.answer.bend_excess_mps > kBearable_mps) {
+      add_paths_beside(view, question, kBeside, all, best);
+    }
+    if (best.answer.misses_goal) add_paths_beside(view, question, kOtherLanes, all, best);
+    if (!is_good(best)) add_other_courses(view, question, all, best);
+  }
+
   /// The planner's choice; near a goal that lies beside the line, one that leads through it.
-  PathKeeper::Proposal first_proposal(const PathKeeper::Question& question) const {
-    for (const GoalStretch& stretch : stretches_) {
-      const double ahead_m = stretch.s_m.most - keeper_.s_m();
+  static PathKeeper::Proposal first_proposal(const Course& on,
+                                             const PathKeeper::Question& question) {
+    for (const GoalStretch& stretch : on.stretches) {
+      const double ahead_m = stretch.s_m.most - on.keeper.s_m();
       if (std::abs(stretch.d_m) < kBesideGoal_m || !(ahead_m > 0.0 && ahead_m < kNearGoal_m))
         continue;
-      PathKeeper::Proposal to_goal = keeper_.propose(
+      PathKeeper::Proposal to_goal = on.keeper.propose(
           question, {stretch.d_m - kBesideGoal_m, stretch.d_m + kBesideGoal_m}, false);
       if (to_goal.plan.chosen) return to_goal;
     }
-    return keeper_.propose(question, {});
+    return on.keeper.propose(question, {});
   }
 
   void add_paths_beside(const PilotView& view, const PathKeeper::Question& question,
                         std::span<const PathKeeper::Offsets> beside, std::vector<Attempt>& all,
                         Attempt& best) {
     for (const PathKeeper::Offsets& offsets : beside) {
-      PathKeeper::Proposal proposal = keeper_.propose(question, offsets, false);
-      if (!proposal.plan.chosen) continue;
-      all.push_back(attempt_on(view, std::move(proposal)));
-      search(view, kDarings.front(), all.back());
-      if (is_better(all.back(), best)) best = all.back();
+      if (is_good(best)) return;
+      add(view, course(), course().keeper.propose(question, offsets, false), all, best);
     }
+  }
+
+  void add_other_courses(const PilotView& view, const PathKeeper::Question& question,
+                         std::vector<Attempt>& all, Attempt& best) {
+    for (Course& other : courses_) {
+      if (&other == &course()) continue;
+      other.keeper.locate(view.measured);
+      add(view, other, first_proposal(other, question), all, best);
+    }
+  }
+
+  void add(const PilotView& view, Course& on, PathKeeper::Proposal proposal,
+           std::vector<Attempt>& all, Attempt& best) {
+    if (!proposal.plan.chosen) return;
+    all.push_back(attempt_on(on, view, std::move(proposal)));
+    search(view, kDarings.front(), all.back());
+    if (is_better(all.back(), best)) best = all.back();
   }
 
   /// @param proposal  the path that is being driven is kept if it has no candidate.
-  Attempt attempt_on(const PilotView& view, PathKeeper::Proposal proposal) {
+  Attempt attempt_on(Course& on, const PilotView& view, PathKeeper::Proposal proposal) {
     if (!proposal.plan.chosen) {
-      keeper_.take(proposal);
-      return {.proposal = {}, .way = way_along(keeper_.path(), view), .answer = {}, .lead = {}};
+      on.keeper.take(proposal);
+      DrivenWay way = way_along(on, on.keeper.path(), view);
+      const double road_m = on_road_m(way, world_.road_map);
+      return {.course = &on,
+              .proposal = {},
+              .way = std::move(way),
+              .on_road_m = road_m,
+              .answer = {},
+              .lead = {}};
     }
-    DrivenWay way = way_along(keeper_.path_of(proposal), view);
-    return {.proposal = std::move(proposal), .way = std::move(way), .answer = {}, .lead = {}};
+    DrivenWay way = way_along(on, on.keeper.path_of(proposal), view);
+    const double road_m =
+        proposal.beyond_the_edge_m > 0.0 ? on_road_m(way, world_.road_map) : kNoEnd_m;
+    return {.course = &on,
+            .proposal = std::move(proposal),
+            .way = std::move(way),
+            .on_road_m = road_m,
+            .answer = {},
+            .lead = {}};
   }
 
-  DrivenWay way_along(const PlannedPath& path, const PilotView& view) const {
-    return sample_way(path, keeper_.s_m(), look_ahead_m(view), ceiling_, scenario_.vehicle);
+  DrivenWay way_along(const Course& on, const PlannedPath& path, const PilotView& view) const {
+    return sample_way(path, on.keeper.s_m(), look_ahead_m(view), on.ceiling, scenario_.vehicle);
   }
 
   void search(const PilotView& view, const Daring& daring, Attempt& attempt) const {
     const WayOccupancy occupancy(attempt.way, traffic_, view.t_s, steps(view.t_s), daring.margin_m);
-    attempt.answer = search_speed(
-        question_of(view, attempt.way, occupancy, attempt.proposal.has_value()), daring.speed);
+    attempt.answer = search_speed(question_of(view, attempt, occupancy), daring.speed);
     attempt.daring = &daring;
     attempt.cost = attempt.answer.cost + kBesideCost * beside_m(attempt);
     attempt.lead = lead_on(occupancy, view);
@@ -237,23 +301,26 @@ class TimedPilot : public Pilot {
     return latest && t_s > *latest;
   }
 
-  SpeedSearchQuestion question_of(const PilotView& view, const DrivenWay& way,
-                                  const WayOccupancy& occupancy, bool has_path) const {
-    const double road_end_s_m = world_.line.length_m() - scenario_.vehicle.front_m() - kRoadEnd_m;
+  SpeedSearchQuestion question_of(const PilotView& view, const Attempt& attempt,
+                                  const WayOccupancy& occupancy) const {
+    const DrivenWay& way = attempt.way;
+    const double road_end_s_m =
+        attempt.course->line.length_m() - scenario_.vehicle.front_m() - kRoadEnd_m;
     SpeedSearchQuestion asked{.way = way,
                               .occupancy = occupancy,
                               .speed_mps = view.measured.motion.speed_mps,
                               .acceleration_mps2 = view.measured.acceleration_mps2,
                               .last_command_mps2 = last_command_mps2_,
                               .horizon_s = horizon_s(view.t_s),
-                              .end_m = ahead_of(way, road_end_s_m),
+                              .end_m = std::min(ahead_of(way, road_end_s_m), attempt.on_road_m),
                               .goals = {}};
     if (goal_is_past(view.t_s) || world_.goal->states.empty()) {
       asked.most_wanted_mps = 0.0;
       return asked;
     }
-    if (!has_path) asked.most_wanted_mps = 0.0;
-    for (const GoalStretch& stretch : stretches_) asked.goals.push_back(ahead(way, stretch, view));
+    if (!attempt.proposal) asked.most_wanted_mps = 0.0;
+    for (const GoalStretch& stretch : attempt.course->stretches)
+      asked.goals.push_back(ahead(way, stretch, view));
     return asked;
   }
 
@@ -328,10 +395,9 @@ class TimedPilot : public Pilot {
   const World& world_;
   bool predicts_;
   std::optional<ForeseenTraffic> foreseen_;
-  Traffic traffic_;  ///< what is planned against; of the world, or of what is foreseen
-  planning::SpeedCeiling ceiling_;
-  std::vector<GoalStretch> stretches_;
-  PathKeeper keeper_;
+  Traffic traffic_;              ///< what is planned against; of the world, or of what is foreseen
+  std::vector<Course> courses_;  ///< the world's line first
+  std::size_t current_ = 0;      ///< that is driven
   double last_command_mps2_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };

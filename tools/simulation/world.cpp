@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -121,6 +122,19 @@ class ObstacleMaker {
   const map::RoadMap& road_map_;
 };
 
+/// A light that the map does not have would never be seen.
+void refuse_unknown_signals(const Scenario& scenario, const map::RoadMap& road_map) {
+  for (const ScenarioLight& light : scenario.lights) {
+    for (const std::string& id : light.signals) {
+      const bool known = std::ranges::any_of(
+          road_map.signals(), [&](const map::Signal& signal) { return signal.source_id == id; });
+      if (known) continue;
+      refuse(scenario, light.pointer + "/signals",
+             fmt::format("no signal \"{}\" is in the map", id), "name one of the map's signals");
+    }
+  }
+}
+
 /// @pre the obstacles are those of the scenario, in its order.
 void refuse_overlap(const Scenario& scenario, const World& world) {
   const geometry::Rectangle body = geometry::body_at(world.start, scenario.vehicle);
@@ -163,13 +177,16 @@ World make_world(const Scenario& scenario) {
         *occupancy,
         map::HeightBand{.from_m = map::HeightBand{}.from_m, .to_m = scenario.vehicle.height_m});
   }
+  refuse_unknown_signals(scenario, road_map);
+  std::vector<WaitingPlace> places = waiting_places(road_map, route, line, scenario.lights);
   World world{.road_map = std::move(road_map),
               .occupancy = std::move(occupancy),
               .field = std::move(field),
               .start = start.map_from_vehicle,
               .route = std::move(route),
               .line = std::move(line),
-              .obstacles = std::move(obstacles)};
+              .obstacles = std::move(obstacles),
+              .waiting_places = std::move(places)};
   refuse_overlap(scenario, world);
   return world;
 }

@@ -13,6 +13,7 @@
 #include "roadbed/planning/route.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/timed_goal.h"
+#include "roadbed/tools/simulation/waiting_places.h"
 
 namespace roadbed::tools {
 
@@ -33,7 +34,10 @@ struct World {
   std::vector<planning::Obstacle> obstacles;  ///< motions last for the scenario's duration
   std::vector<Presence> presence = {};        ///< one per obstacle; empty: always there
   std::optional<TimedGoal> goal = {};         ///< none: to stand at the end of the route
-  double road_end_s_m = 1e9;                  ///< station at which the lanes behind the goal end
+  /// To the goal too, from lanes beside the start that may be changed to there.
+  std::vector<planning::ReferenceLine> other_lines = {};
+  std::vector<WaitingPlace> waiting_places = {};  ///< on the route, by station
+  double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
 
   bool is_there(std::size_t obstacle, double t_s) const {
     return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);

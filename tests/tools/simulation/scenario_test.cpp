@@ -153,6 +153,38 @@ TEST(Scenario, FaultsAreReportedAtTheirPlace) {
   EXPECT_THAT(message_without("/ego", "start"), StartsWith("test.json:/ego: has no key \"start\""));
 }
 
+TEST(Scenario, LightsAndDropoutsAreReadAndChecked) {
+  json document = full();
+  document["lights"] = json::parse(
+      R"([{"signals": ["1", "2"], "offset_s": -3,
+           "phases": [{"colour": "green", "duration_s": 8}, {"colour": "red", "duration_s": 12}]}])");
+  document["noise"]["dropouts"] = json::parse(R"([{"from_s": 2, "to_s": 2.5}])");
+  document["noise"]["dropout_share"] = 0.1;
+  const Scenario scenario = parsed(document);
+  ASSERT_EQ(scenario.lights.size(), 1U);
+  EXPECT_EQ(scenario.lights[0].signals, (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(colour_at(scenario.lights[0], 4.9), LightColour::green);
+  EXPECT_EQ(colour_at(scenario.lights[0], 5.1), LightColour::red);
+  EXPECT_EQ(colour_at(scenario.lights[0], 17.1), LightColour::green);
+  EXPECT_EQ(scenario.noise.dropouts[0].to_s, 2.5);
+  EXPECT_EQ(scenario.noise.dropout_share, 0.1);
+  const auto message = [&](const std::string& pointer, const json& value) {
+    json broken = document;
+    broken[json::json_pointer(pointer)] = value;
+    return message_of(broken.dump());
+  };
+  using testing::StartsWith;
+  EXPECT_THAT(message("/lights/0/phases/0/colour", "blue"),
+              StartsWith("test.json:/lights/0/phases/0/colour: is \"blue\""));
+  EXPECT_THAT(message("/lights/0/phases/1/duration_s", 0),
+              StartsWith("test.json:/lights/0/phases/1/duration_s: is 0"));
+  EXPECT_THAT(message("/lights/0/phases", json::array()),
+              StartsWith("test.json:/lights/0/phases: is an empty list"));
+  EXPECT_THAT(message("/noise/dropouts/0/to_s", 1), StartsWith("test.json:/noise/dropouts/0/to_s"));
+  EXPECT_THAT(message("/noise/dropout_share", 2),
+              StartsWith("test.json:/noise/dropout_share: is 2"));
+}
+
 TEST(Scenario, TextThatIsNotJsonIsRefusedWithItsByte) {
   EXPECT_THAT(message_of("{\"roadbed_scenario\": 1,}"),
               testing::StartsWith("test.json:byte 24: is not JSON"));

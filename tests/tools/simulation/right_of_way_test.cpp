@@ -1,0 +1,113 @@
+#include "roadbed/tools/simulation/right_of_way.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "roadbed/tests/support/straight_world.h"
+#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kPlace_m = 60.0;  // station on the line, which starts at x = 10 m
+
+/// A car that drives north across the road at x = 75 m and is on it at a time.
+planning::Obstacle crossing_at(double t_s) {
+  return {.id = "other",
+          .motion = drive_through(
+              {{0.0, {75.0, -10.0 * t_s, M_PI_2}}, {t_s + 30.0, {75.0, 300.0, M_PI_2}}})};
+}
+
+class WaitingAtAPlace : public testing::Test {
+ protected:
+  WaitingAtAPlace() { scenario_.options.desired_speed_mps = 10.0; }
+
+  void place(WaitingKind kind) {
+    world_.waiting_places = {
+        {.kind = kind, .s_m = kPlace_m, .clear_s_m = kPlace_m + 10.0, .name = "place 1"}};
+    if (kind == WaitingKind::light) world_.waiting_places.front().light = 0;
+  }
+
+  /// What is asked with the front bumper `left_m` before the place.
+  std::optional<Halt> look(RightOfWay& rules, double t_s, double left_m, double speed_mps) {
+    const PlannedPath path(world_.line,
+                           [](double s_m) { return planning::LateralState{.s_m = s_m}; });
+    return rules.look({.t_s = t_s,
+                       .s_m = kPlace_m - left_m - scenario_.vehicle.front_m(),
+                       .speed_mps = speed_mps,
+                       .path = path,
+                       .ceiling = ceiling_of(scenario_, world_.line),
+                       .traffic = true_traffic(world_)});
+  }
+
+  Scenario scenario_;
+  World world_ = tests::straight_world({}, {});
+};
+
+TEST_F(WaitingAtAPlace, LightStopsBeforeItsLineUnlessItIsGreen) {
+  scenario_.lights = {
+      {.signals = {"1"},
+       .pointer = "",
+       .phases = {
+           {LightColour::green, 10.0}, {LightColour::yellow, 3.0}, {LightColour::red, 7.0}}}};
+  place(WaitingKind::light);
+  RightOfWay rules(scenario_, world_);
+  EXPECT_FALSE(look(rules, 9.9, 30.0, 10.0));
+  const auto at_red = look(rules, 14.0, 30.0, 10.0);
+  ASSERT_TRUE(at_red);
+  EXPECT_NEAR(at_red->s_m, kPlace_m - scenario_.vehicle.front_m() - 0.5, 1e-9);
+  EXPECT_THAT(at_red->reason, testing::HasSubstr("place 1 is red, 30.0 m ahead"));
+  EXPECT_TRUE(look(rules, 10.1, 30.0, 10.0));
+  EXPECT_FALSE(look(rules, 20.1, 30.0, 10.0)) << "the phases begin anew";
+}
+
+TEST_F(WaitingAtAPlace, LightThatTurnsYellowTooLateIsPassed) {
+  scenario_.lights = {{.signals = {"1"}, .pointer = "", .phases = {{LightColour::yellow, 5.0}}}};
+  place(WaitingKind::light);
+  RightOfWay rules(scenario_, world_);
+  EXPECT_TRUE(look(rules, 0.0, 17.0, 10.0));   // 2.94 m/s² stop it
+  EXPECT_FALSE(look(rules, 0.1, 16.0, 10.0));  // 3.13 m/s² would
+}
+
+TEST_F(WaitingAtAPlace, LightBehindTheVehicleIsOver) {
+  scenario_.lights = {{.signals = {"1"}, .pointer = "", .phases = {{LightColour::red, 5.0}}}};
+  place(WaitingKind::light);
+  RightOfWay rules(scenario_, world_);
+  EXPECT_TRUE(look(rules, 0.0, 0.2, 0.0));
+  EXPECT_FALSE(look(rules, 0.1, -0.4, 1.0));
+}
+
+TEST_F(WaitingAtAPlace, StopSignAsksForAStandstillOnce) {
+  place(WaitingKind::stop_sign);
+  RightOfWay rules(scenario_, world_);
+  EXPECT_TRUE(look(rules, 0.0, 20.0, 5.0));
+  EXPECT_TRUE(look(rules, 4.0, 1.0, 0.5));
+  EXPECT_FALSE(look(rules, 6.0, 0.6, 0.0));
+  EXPECT_FALSE(look(rules, 7.0, 0.3, 1.0));
+}
+
+TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfNobodyComesWithinIt) {
+  place(WaitingKind::give_way);
+  // From rest at the line the body is on the crossing car's way from about 2.4 to 3.9 s later.
+  for (const auto& [at_s, must_wait] :
+       {std::pair{0.3, false}, {3.0, true}, {5.5, true}, {12.0, false}}) {
+    world_.obstacles = {crossing_at(at_s)};
+    RightOfWay rules(scenario_, world_);
+    EXPECT_EQ(look(rules, 0.0, 0.5, 0.0).has_value(), must_wait) << at_s;
+  }
+}
+
+TEST_F(WaitingAtAPlace, WhoIsMetIsNamed) {
+  place(WaitingKind::left_turn);
+  world_.obstacles = {crossing_at(3.0)};
+  RightOfWay rules(scenario_, world_);
+  const auto halt = look(rules, 0.0, 0.5, 0.0);
+  ASSERT_TRUE(halt);
+  EXPECT_THAT(halt->reason, testing::StartsWith("place 1: car other would be met in "));
+}
+
+}  // namespace
+}  // namespace roadbed::tools

@@ -1,0 +1,119 @@
+// The scenarios of data/scenarios, each for one thing that traffic asks for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/simulation/closed_loop.h"
+
+namespace roadbed::tools {
+namespace {
+
+struct Driven {
+  World world;
+  Drive drive;
+
+  double clearance_m() const {
+    return std::ranges::min(drive.samples, {}, &DriveSample::clearance_m).clearance_m;
+  }
+  double off_road_m() const {
+    return std::ranges::max(drive.samples, {}, &DriveSample::off_road_m).off_road_m;
+  }
+  double speed_at(double t_s) const { return drive.trajectory.at(t_s).speed_mps; }
+
+  /// First cycle of a behaviour whose reason holds a text; null if there is none.
+  const DriveCycle* first(Behaviour behaviour, const std::string& text = "") const {
+    const auto found = std::ranges::find_if(drive.cycles, [&](const DriveCycle& cycle) {
+      return cycle.behaviour == behaviour && cycle.reason.find(text) != std::string::npos;
+    });
+    return found == drive.cycles.end() ? nullptr : &*found;
+  }
+
+  /// Time at which the front bumper passes x on the way east; huge if it never does.
+  double passes_x_at_s(double x_m) const {
+    for (const auto& row : drive.trajectory.points()) {
+      if (row.x_m + geometry::VehicleShape{}.front_m() >= x_m) return row.t_s;
+    }
+    return 1e9;
+  }
+};
+
+Driven driven(const std::string& name) {
+  const Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / (name + ".json"));
+  World world = make_world(scenario);
+  Drive drive = tools::drive(scenario, world);
+  return {std::move(world), std::move(drive)};
+}
+
+/// What every one of these drives must keep.
+void expect_arrives(const Driven& driven, double clearance_m) {
+  EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
+  EXPECT_GE(driven.clearance_m(), clearance_m);
+  EXPECT_EQ(driven.off_road_m(), 0.0);
+  EXPECT_EQ(driven.first(Behaviour::emergency), nullptr);
+}
+
+TEST(ScenarioDrives, RedLightIsStoppedAtAndGreenIsDrivenOnAt) {
+  const Driven d = driven("red_light");
+  expect_arrives(d, 1.0);
+  EXPECT_NE(d.first(Behaviour::yield, "light 2 is red"), nullptr);
+  // The light stands at x = 279 m and is red until 26 s.
+  EXPECT_LT(d.speed_at(25.9), 0.05);
+  const double front_m = d.drive.trajectory.at(25.9).x_m + geometry::VehicleShape{}.front_m();
+  EXPECT_LT(front_m, 279.0);
+  EXPECT_GT(front_m, 277.0);
+  EXPECT_GT(d.passes_x_at_s(279.0), 26.0);
+  EXPECT_LT(d.passes_x_at_s(279.0), 30.0);
+}
+
+TEST(ScenarioDrives, LeftTurnWaitsForThoseWhoComeTheOtherWay) {
+  const Driven d = driven("left_turn");
+  expect_arrives(d, 1.0);
+  EXPECT_NE(d.first(Behaviour::yield, "left turn: car"), nullptr);
+}
+
+TEST(ScenarioDrives, RoundaboutIsEnteredBehindWhoIsInIt) {
+  const Driven d = driven("roundabout");
+  expect_arrives(d, 1.0);
+  EXPECT_NE(d.first(Behaviour::yield, "give way sign 7: car in the ring"), nullptr);
+}
+
+TEST(ScenarioDrives, PedestrianIsGivenRoom) {
+  const Driven d = driven("pedestrian");
+  expect_arrives(d, 0.85);
+}
+
+TEST(ScenarioDrives, StopAndGoWithLostMeasurementsIsFollowed) {
+  const Driven d = driven("stop_and_go");
+  expect_arrives(d, 1.5);
+  const auto stands = [](const auto& row) { return row.t_s > 2.0 && row.speed_mps < 0.05; };
+  EXPECT_TRUE(std::ranges::any_of(d.drive.trajectory.points(), stands));
+}
+
+TEST(ScenarioDrives, CarThatCutsInIsGivenRoomWithoutHardBraking) {
+  const Driven d = driven("cut_in");
+  expect_arrives(d, 0.3);
+  EXPECT_NE(d.first(Behaviour::follow, "cutter"), nullptr);
+}
+
+TEST(ScenarioDrives, LaneChangeOfTheRouteIsMade) {
+  const Driven d = driven("lane_change");
+  expect_arrives(d, 0.25);
+}
+
+TEST(ScenarioDrives, NarrowingIsPassedAfterWhoComesTheOtherWay) {
+  const Driven d = driven("narrowing");
+  expect_arrives(d, 0.25);
+  EXPECT_NE(d.first(Behaviour::pass), nullptr);
+  // The two cars stand at x = 152 m; who comes the other way starts at x = 205 m with 7 m/s.
+  EXPECT_GT(d.passes_x_at_s(150.0), (205.0 - 152.0) / 7.0 - 3.0);
+}
+
+TEST(ScenarioDrives, RampIsLeftIntoAGap) {
+  const Driven d = driven("on_ramp");
+  expect_arrives(d, 1.0);
+}
+
+}  // namespace
+}  // namespace roadbed::tools

@@ -1,0 +1,76 @@
+#include "roadbed/tools/simulation/waiting_places.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/planning/route.h"
+#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/support/place.h"
+
+namespace roadbed::tools {
+namespace {
+
+struct Found {
+  std::vector<WaitingPlace> places;
+  std::vector<Eigen::Vector2d> in_source;  ///< of each
+};
+
+/// Waiting places between two places of a map.
+Found found(const std::string& file, const std::string& from, const std::string& to,
+            const std::vector<ScenarioLight>& lights) {
+  const map::RoadMap road_map = map::load_map(tests::data_folder() / file);
+  const auto answer = planning::find_route(road_map, find_place(road_map, from).for_route(),
+                                           find_place(road_map, to).for_route());
+  if (!answer.route) throw std::invalid_argument(answer.reason);
+  const auto line = planning::ReferenceLine::along(road_map, *answer.route);
+  Found result{waiting_places(road_map, *answer.route, line, lights), {}};
+  for (const WaitingPlace& place : result.places) {
+    result.in_source.push_back(road_map.to_source(line.at(place.s_m).in_map));
+  }
+  return result;
+}
+
+const std::vector<ScenarioLight> kWestLight{
+    {.signals = {"2"}, .pointer = "", .phases = {{LightColour::red, 1.0}}}};
+
+TEST(WaitingPlaces, LightOfTheScenarioHoldsWhereItStands) {
+  // The western leg of the crossroads ends at x = 280 m; the light stands 1 m before.
+  const Found way = found("town.xodr", "lane:1/3/1@6", "lane:2/3/-1@30", kWestLight);
+  ASSERT_EQ(way.places.size(), 1U);
+  EXPECT_EQ(way.places[0].kind, WaitingKind::light);
+  EXPECT_EQ(way.places[0].light, 0U);
+  EXPECT_NEAR(way.in_source[0].x(), 279.0, 0.2);
+  EXPECT_NEAR(way.places[0].clear_s_m - way.places[0].s_m, 41.0, 0.5);  // past the crossing
+}
+
+TEST(WaitingPlaces, LightThatTheScenarioDoesNotNameIsDark) {
+  EXPECT_TRUE(found("town.xodr", "lane:1/3/1@6", "lane:2/3/-1@30", {}).places.empty());
+}
+
+TEST(WaitingPlaces, LeftTurnWaitsBeforeTheOncomingLane) {
+  // The oncoming lane's southern border is y = 200 m or a little above; the turn comes from y <
+  // 200.
+  const Found way = found("town.xodr", "lane:1/3/1@6", "lane:3/1/-1@30", kWestLight);
+  ASSERT_EQ(way.places.size(), 2U);
+  EXPECT_EQ(way.places[1].kind, WaitingKind::left_turn);
+  EXPECT_GT(way.in_source[1].x(), 279.2);
+  EXPECT_LT(way.in_source[1].x(), 300.0);
+  EXPECT_LT(way.in_source[1].y(), 203.0);
+}
+
+TEST(WaitingPlaces, RightTurnCrossesNobody) {
+  EXPECT_TRUE(found("town.xodr", "lane:1/3/1@6", "lane:4/1/-1@5", {}).places.empty());
+}
+
+TEST(WaitingPlaces, GiveWaySignHoldsAtTheRoundabout) {
+  // Sign 7 stands 1 m before the end of Main Street, x = 460 m.
+  const Found way = found("town.xodr", "lane:2/3/-1@5", "lane:7/0/1@40", {});
+  ASSERT_EQ(way.places.size(), 1U);
+  EXPECT_EQ(way.places[0].kind, WaitingKind::give_way);
+  EXPECT_NEAR(way.in_source[0].x(), 459.0, 0.2);
+}
+
+}  // namespace
+}  // namespace roadbed::tools

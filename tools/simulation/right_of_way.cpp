@@ -1,0 +1,157 @@
+#include "roadbed/tools/simulation/right_of_way.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/tools/simulation/driven_way.h"
+#include "roadbed/tools/simulation/way_occupancy.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kBeforeLine_m = 0.5;  // kept from a line
+constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
+constexpr double kLookAhead_m = 80.0;
+constexpr double kHardestStop_mps2 = 3.0;
+constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
+constexpr double kStartsWithin_mps2 = 1.5;
+constexpr int kMostSteps = 150;
+constexpr double kSideRoom_m = 0.4;
+constexpr double kMovingOther_mps = 0.5;
+constexpr double kLeastAlong = 0.8;   // cosine of the angle up to which somebody drives along
+constexpr double kGapsFrom_m = 15.0;  // beyond the way to stop on
+
+/// Distances driven by each step, accelerating comfortably to the ceiling.
+std::vector<double> drive_on(const DrivenWay& way, double speed_mps, double until_m) {
+  std::vector<double> ahead{0.0};
+  while (ahead.back() < until_m && ahead.size() < kMostSteps) {
+    const double most = std::max(1.0, way.wanted_mps[way.before(ahead.back())]);
+    speed_mps = std::min(speed_mps + kStartsWithin_mps2 * WayOccupancy::kStep_s, most);
+    ahead.push_back(ahead.back() + WayOccupancy::kStep_s * speed_mps);
+  }
+  return ahead;
+}
+
+/// Obstacles that are on the way now, but cross it.
+std::vector<bool> crossing_now(const DrivenWay& way, const WayOccupancy& occupancy,
+                               const RightOfWay::View& view) {
+  std::vector<bool> crossing(view.traffic.obstacles.size(), false);
+  for (const Blocked& part : occupancy.at(0)) {
+    const planning::Obstacle& obstacle = view.traffic.obstacles[part.obstacle];
+    if (obstacle.is_static()) continue;
+    const geometry::TrajectoryPoint at = obstacle.motion.at(view.t_s);
+    const Eigen::Vector2d along(std::cos(at.heading_rad), std::sin(at.heading_rad));
+    const Eigen::Vector2d& way_along = way.body[way.before(std::max(0.0, part.from_m))].axis;
+    crossing[part.obstacle] = at.speed_mps > kMovingOther_mps && along.dot(way_along) < kLeastAlong;
+  }
+  return crossing;
+}
+
+/// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
+std::optional<std::size_t> who_blocks(const WayOccupancy& occupancy,
+                                      const std::vector<bool>& crossing, int from, int to,
+                                      double ahead_m) {
+  const auto is_lead = [&](std::size_t obstacle) {
+    return !crossing[obstacle] && std::ranges::any_of(occupancy.at(0), [&](const Blocked& part) {
+      return part.obstacle == obstacle;
+    });
+  };
+  for (int k = std::max(0, from); k <= to; ++k) {
+    for (const Blocked& part : occupancy.at(k)) {
+      const bool is_behind = part.from_m < 0.0;
+      if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
+      if (!is_lead(part.obstacle)) return part.obstacle;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string_view colour_name(LightColour colour) {
+  return colour == LightColour::yellow ? "yellow" : "red";
+}
+
+}  // namespace
+
+RightOfWay::RightOfWay(const Scenario& scenario, const World& world)
+    : scenario_(scenario), world_(world) {}
+
+double RightOfWay::left_m(const WaitingPlace& place, const View& view) const {
+  return place.s_m - view.s_m - scenario_.vehicle.front_m();
+}
+
+/// Who has begun to cross looks further at those who may cross the way.
+void RightOfWay::pass_places(const View& view) {
+  const std::vector<WaitingPlace>& places = world_.waiting_places;
+  while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
+    ++next_;
+    has_stopped_ = false;
+  }
+  if (next_ == 0) return;
+  const WaitingPlace& last = places[next_ - 1];
+  const bool is_crossing = view.s_m - scenario_.vehicle.rear_overhang_m < last.clear_s_m;
+  if (last.kind != WaitingKind::light && is_crossing) who_comes(last, view, kGapOnTheWay);
+}
+
+std::optional<Halt> RightOfWay::look(const View& view) {
+  const std::vector<WaitingPlace>& places = world_.waiting_places;
+  crossing_.assign(view.traffic.obstacles.size(), false);
+  pass_places(view);
+  for (std::size_t i = next_; i < places.size(); ++i) {
+    const double left = left_m(places[i], view);
+    if (left > kLookAhead_m) break;
+    const double squared = view.speed_mps * view.speed_mps;
+    const bool can_stop = squared <= 2.0 * kHardestStop_mps2 * std::max(0.1, left);
+    if (!can_stop) {
+      if (places[i].kind != WaitingKind::light) who_comes(places[i], view, kGapOnTheWay);
+      continue;
+    }
+    if (auto why = why_wait(places[i], view)) {
+      return Halt{places[i].s_m - scenario_.vehicle.front_m() - kBeforeLine_m, *std::move(why)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> RightOfWay::why_wait(const WaitingPlace& place, const View& view) {
+  const double left = left_m(place, view);
+  if (place.kind == WaitingKind::light) {
+    const LightColour colour = colour_at(scenario_.lights[*place.light], view.t_s);
+    if (colour == LightColour::green) return std::nullopt;
+    return fmt::format("{} is {}, {:.1f} m ahead", place.name, colour_name(colour), left);
+  }
+  if (place.kind == WaitingKind::stop_sign && &place == &world_.waiting_places[next_]) {
+    has_stopped_ = has_stopped_ || (view.speed_mps < kAtRest_mps && left < kAtLine_m);
+    if (!has_stopped_) return fmt::format("{} is {:.1f} m ahead", place.name, left);
+  }
+  const double stopping_m =
+      0.5 * view.speed_mps * view.speed_mps / scenario_.options.comfort_deceleration_mps2;
+  if (left > stopping_m + kGapsFrom_m) return std::nullopt;
+  return who_comes(place, view, kGapToTake);
+}
+
+/// None also marks those who only cross.
+std::optional<std::string> RightOfWay::who_comes(const WaitingPlace& place, const View& view,
+                                                 Gap gap) {
+  const double until_m =
+      place.clear_s_m + scenario_.vehicle.rear_overhang_m - view.s_m;  // of the rear axle
+  const DrivenWay way = sample_way(view.path, view.s_m, std::max(1.0, until_m) + 2.0, view.ceiling,
+                                   scenario_.vehicle);
+  const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);
+  const auto steps = static_cast<int>(ahead.size());
+  const WayOccupancy occupancy(way, view.traffic, view.t_s, steps + gap.after, kSideRoom_m);
+  const std::vector<bool> crossing = crossing_now(way, occupancy, view);
+  for (int k = 0; k < steps; ++k) {
+    const auto who = who_blocks(occupancy, crossing, k - gap.before, k + gap.after,
+                                ahead[static_cast<std::size_t>(k)]);
+    if (!who) continue;
+    const planning::Obstacle& obstacle = view.traffic.obstacles[*who];
+    return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,
+                       WayOccupancy::kStep_s * k);
+  }
+  crossing_ = crossing;
+  return std::nullopt;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/traffic.h"
+#include "roadbed/tools/simulation/world.h"
+
+namespace roadbed::tools {
+
+/// Where the vehicle has to stop for now, and why.
+struct Halt {
+  double s_m = 0.0;  ///< station of the rear axle
+  std::string reason;
+};
+
+/// Looks at the waiting places of a world, one after the other: lights, signs, and gaps in the
+/// traffic that has the right of way.
+///
+/// A gap is good if the vehicle, driving on from here at a comfortable acceleration, leaves what it
+/// crosses with 1 s to who was there before and 1.5 s to who comes after. Who drives along on the
+/// path already is the cruise control's lead, and not looked at here.
+class RightOfWay {
+ public:
+  /// What is known at one cycle.
+  struct View {
+    double t_s, s_m, speed_mps;
+    const PlannedPath& path;
+    const planning::SpeedCeiling& ceiling;
+    Traffic traffic;
+  };
+
+  RightOfWay(const Scenario& scenario, const World& world);
+
+  /// The nearest place that is not to be passed now; none: drive on. A place that can no longer be
+  /// stopped at with 3 m/s² is passed.
+  std::optional<Halt> look(const View& view);
+
+  /// Per obstacle, whether it is on the path, but only crosses it, and will be gone in time: it is
+  /// no lead. Of the last look.
+  const std::vector<bool>& crossing() const { return crossing_; }
+
+ private:
+  std::optional<std::string> why_wait(const WaitingPlace& place, const View& view);
+  /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
+  struct Gap {
+    int before, after;
+  };
+  static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
+
+  std::optional<std::string> who_comes(const WaitingPlace& place, const View& view, Gap gap);
+  void pass_places(const View& view);
+  double left_m(const WaitingPlace& place, const View& view) const;
+
+  const Scenario& scenario_;
+  const World& world_;
+  std::size_t next_ = 0;      ///< the first place that is not passed
+  bool has_stopped_ = false;  ///< at that one
+  std::vector<bool> crossing_;
+};
+
+}  // namespace roadbed::tools
