@@ -69,9 +69,9 @@ void note_times(std::vector<double> cycle_ms, Row& row) {
 }
 
 /// Drives one; whatever goes wrong with it is its own outcome.
-void drive_row(const fs::path& output, bool predicts, Row& row) {
+void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
   try {
-    const DrivenScenario driven = drive_scenario(row.file, predicts);
+    const DrivenScenario driven = drive_scenario(row.file, choice);
     const fs::path folder = output / row.file.stem();
     make_output_folder(folder, true);
     write_files(driven, folder);
@@ -111,7 +111,7 @@ class Progress {
 
 struct DriveOptions {
   fs::path output;
-  bool predicts;
+  DriveChoice choice;
   int threads;
 };
 
@@ -119,7 +119,7 @@ void drive_all(std::vector<Row>& rows, const DriveOptions& options, Progress& pr
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < rows.size(); i = next++) {
-      drive_row(options.output, options.predicts, rows[i]);
+      drive_row(options.output, options.choice, rows[i]);
       progress.done_one();
     }
   };
@@ -155,7 +155,9 @@ class SimulateCommand : public Command {
         .required();
     arguments.add("--timings", timings_file_,
                   "File for the wall clock of each planning cycle (.csv)");
-    arguments.flag("--predict", predicts_,
+    arguments.flag("--candidates", choice_.keeps_candidates,
+                   "Keep what became of each candidate, for the report; takes longer");
+    arguments.flag("--predict", choice_.predicts,
                    "Foresee others from what could be seen of them, not by their true future");
     arguments.flag("--force", force_, "Replace outputs that exist");
     arguments.example("  roadbed simulate data/drive.json -o drive");
@@ -169,7 +171,7 @@ class SimulateCommand : public Command {
 
  private:
   Exit run_one(const Streams& streams, const CommonOptions& common) const {
-    const DrivenScenario driven = drive_scenario(scenario_file_, predicts_);
+    const DrivenScenario driven = drive_scenario(scenario_file_, choice_);
     make_output_folder(folder_, force_);
     write_files(driven, folder_);
     if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
@@ -195,7 +197,7 @@ class SimulateCommand : public Command {
     }
     make_output_folder(folder_, force_);
     Progress progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
-    drive_all(rows, {folder_, predicts_, common.threads}, progress);
+    drive_all(rows, {folder_, choice_, common.threads}, progress);
     write_output(folder_ / "drives.csv", table_csv(rows));
     if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
     print_table(streams.out, rows);
@@ -221,7 +223,8 @@ class SimulateCommand : public Command {
   }
 
   fs::path scenario_file_, folder_, timings_file_;
-  bool force_ = false, predicts_ = false;
+  bool force_ = false;
+  DriveChoice choice_;
 };
 
 }  // namespace

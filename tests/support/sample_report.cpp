@@ -125,6 +125,9 @@ std::vector<tools::ReportPlan> plans_of(const geometry::Trajectory& drive) {
     for (double ahead_s = 0.0; ahead_s <= 2.5; ahead_s += 0.25) {
       plan.path.push_back(drive.at(t_s + ahead_s).pose().position());
     }
+    plan.chosen = tools::ReportCandidate{0.4, 22.0, {0.1, 0.2}};
+    plan.runner_up = tools::ReportCandidate{0.5, 21.0, {0.15, 0.2}};
+    plan.grid = tools::ReportGrid{{-0.1, 0.0, 0.1}, {15.0, 30.0}, {0, 0, 1, 5, 5, 0}};
     plans.push_back(std::move(plan));
   }
   return plans;
@@ -200,6 +203,8 @@ tools::ReportInput sample_report() {
   input.obstacles = {parked_car(), car_along("slow-2", 150.0, -1.75, 6.2),
                      car_along("oncoming-3", 400.0, 1.75, -9.0)};
   input.plans = plans_of(input.drive);
+  input.cost_names = {"length", "offset"};
+  input.cause_names = {"none", "off road", "", "", "", "collision"};
   input.plots = plots_of(input.drive);
   input.events = {{0.0, tools::Severity::info, "start at 12.0 m/s"},
                   {9.5, tools::Severity::warning, "least clearance 0.61 m to parked-1"},

@@ -44,19 +44,21 @@ struct Driven {
   Drive drive;
 };
 
-Driven drive_and_describe(const Scenario& scenario, const World& world, bool predicts) {
+Driven drive_and_describe(const Scenario& scenario, const World& world, const DriveChoice& choice) {
   Driven driven;
   DrivenScenario& result = driven.result;
-  driven.drive =
-      drive(scenario, world,
-            {.predicts = predicts, .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
+  driven.drive = drive(scenario, world,
+                       {.predicts = choice.predicts,
+                        .keeps_candidates = choice.keeps_candidates,
+                        .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
   result.name = scenario.name;
   result.verdict = driven.drive.verdict;
   result.audit = audit_of(scenario, world, driven.drive);
   const ReportInput report = report_of(
       scenario, world, driven.drive,
-      {.command = fmt::format("roadbed simulate {}{} -o DIR", scenario.file.filename().string(),
-                              predicts ? " --predict" : ""),
+      {.command = fmt::format("roadbed simulate {}{}{} -o DIR", scenario.file.filename().string(),
+                              choice.predicts ? " --predict" : "",
+                              choice.keeps_candidates ? " --candidates" : ""),
        .version = "roadbed " ROADBED_VERSION,
        .sources = sources_of(scenario),
        .audit = result.audit});
@@ -81,17 +83,17 @@ void refuse_other_xml(const fs::path& file) {
 
 }  // namespace
 
-DrivenScenario drive_scenario(const fs::path& file, bool predicts) {
+DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice) {
   if (is_common_road(file)) {
     const CommonRoadDrive problem = read_common_road_drive(file);
-    Driven driven = drive_and_describe(problem.scenario, problem.world, predicts);
+    Driven driven = drive_and_describe(problem.scenario, problem.world, choice);
     driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
     return std::move(driven.result);
   }
   refuse_other_xml(file);
   const Scenario scenario = read_scenario(file);
   const World world = make_world(scenario);
-  return drive_and_describe(scenario, world, predicts).result;
+  return drive_and_describe(scenario, world, choice).result;
 }
 
 }  // namespace roadbed::tools

@@ -20,10 +20,15 @@ struct DrivenScenario {
   std::vector<double> cycle_ms;                            ///< wall clock of each planning cycle
 };
 
+/// How a scenario is driven.
+struct DriveChoice {
+  bool predicts = false;          ///< pilots know of others only what could be known at the time
+  bool keeps_candidates = false;  ///< the report shows what became of each candidate
+};
+
 /// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:
 /// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml.
 /// @throws InputError if the scenario is unusable.
-/// @param predicts  pilots know of other vehicles only what could be known at the time.
-DrivenScenario drive_scenario(const std::filesystem::path& file, bool predicts = false);
+DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {});
 
 }  // namespace roadbed::tools

@@ -18,7 +18,7 @@ endforeach()
 
 set(report_page ${CMAKE_CURRENT_LIST_DIR}/page)
 # In this order: what comes later uses what comes before.
-set(report_scripts decode.js motion.js view.js clock.js scene.js draw.js map.js plots.js player.js
+set(report_scripts decode.js motion.js view.js clock.js scene.js cycle.js draw.js map.js plots.js player.js
                    report.js)
 list(TRANSFORM report_scripts PREPEND ${report_page}/ OUTPUT_VARIABLE report_script_files)
 set(report_page_source ${CMAKE_CURRENT_BINARY_DIR}/report_page_parts.cpp)

@@ -38,12 +38,37 @@ std::string note_of(const DriveCycle& cycle) {
                            cycle.chosen->end_l_m);
 }
 
-std::vector<ReportPlan> plans_of(const Drive& drive) {
-  std::vector<ReportPlan> plans;
-  for (const DriveCycle& cycle : drive.cycles) {
-    plans.push_back({cycle.t_s, cycle.path, note_of(cycle), cycle.reason});
+ReportCandidate candidate_of(const planning::Candidate& from) {
+  static const planning::CostTerms weights = planning::default_weights();
+  ReportCandidate candidate{from.end_d_m, from.end_l_m, {}};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    candidate.costs.push_back(weights[i] * from.terms[i]);
   }
-  return plans;
+  return candidate;
+}
+
+ReportPlan plan_of(const DriveCycle& cycle) {
+  ReportPlan plan{.t_s = cycle.t_s,
+                  .path = cycle.path,
+                  .note = note_of(cycle),
+                  .reason = cycle.reason,
+                  .start = {cycle.start.s_m, cycle.start.d_m, cycle.start.d_slope,
+                            cycle.start.d_curvature_per_m}};
+  if (cycle.chosen) plan.chosen = candidate_of(*cycle.chosen);
+  if (!cycle.grid) return plan;
+  if (cycle.grid->runner_up) plan.runner_up = candidate_of(*cycle.grid->runner_up);
+  plan.grid = ReportGrid{cycle.grid->end_d_m, cycle.grid->end_l_m, cycle.grid->causes};
+  return plan;
+}
+
+void add_plans(const Drive& drive, ReportInput& input) {
+  for (const DriveCycle& cycle : drive.cycles) input.plans.push_back(plan_of(cycle));
+  for (int i = 0; i < planning::kCostTerms; ++i) {
+    input.cost_names.emplace_back(planning::name(static_cast<planning::CostTerm>(i)));
+  }
+  for (int i = 0; i < planning::kRejections; ++i) {
+    input.cause_names.emplace_back(planning::name(static_cast<planning::Rejection>(i)));
+  }
 }
 
 Severity severity_of(EventLevel level) {
@@ -153,7 +178,7 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
   input.audit = audit_verdict(context.audit);
   input.vehicle = scenario.vehicle;
   input.drive = drive.trajectory;
-  input.plans = plans_of(drive);
+  add_plans(drive, input);
   input.plots = drive_plots(drive, context.audit);
   input.events = events_of(drive, context.audit);
   input.decisions = decisions_of(drive);

@@ -166,6 +166,54 @@ Json coded_vehicle(const geometry::VehicleShape& vehicle) {
           {"wheelbase", vehicle.wheelbase_m}};
 }
 
+// Costs in thousandths.
+Json coded_candidate(const std::optional<ReportCandidate>& candidate) {
+  if (!candidate) return nullptr;
+  Json costs = Json::array();
+  for (const double cost : candidate->costs) costs.push_back(rounded(1e3 * cost));
+  return {{"d", 1e-3 * static_cast<double>(rounded(1e3 * candidate->end_d_m))},
+          {"l", 1e-3 * static_cast<double>(rounded(1e3 * candidate->end_l_m))},
+          {"costs", std::move(costs)}};
+}
+
+// Equal causes in a row as their number and the cause.
+Json coded_runs(const std::vector<std::uint8_t>& causes) {
+  Json runs = Json::array();
+  for (std::size_t i = 0; i < causes.size();) {
+    std::size_t end = i;
+    while (end < causes.size() && causes[end] == causes[i]) ++end;
+    runs.push_back(end - i);
+    runs.push_back(causes[i]);
+    i = end;
+  }
+  return runs;
+}
+
+Json coded_grid(const std::optional<ReportGrid>& grid) {
+  if (!grid || grid->end_d_m.empty() || grid->end_l_m.empty()) return nullptr;
+  const auto axis = [](const std::vector<double>& ends) {
+    return Json{ends.front(), ends.back(), ends.size()};
+  };
+  return {
+      {"d", axis(grid->end_d_m)}, {"l", axis(grid->end_l_m)}, {"runs", coded_runs(grid->causes)}};
+}
+
+Json coded_start(const ReportStart& start) {
+  return {rounded(1e3 * start.s_m), rounded(1e3 * start.d_m), rounded(1e5 * start.d_slope),
+          rounded(1e6 * start.d_curvature_per_m)};
+}
+
+Json coded_plan(const ReportPlan& plan, Json path) {
+  return {{"t", plan.t_s},
+          {"note", plan.note},
+          {"reason", plan.reason},
+          {"path", std::move(path)},
+          {"start", coded_start(plan.start)},
+          {"chosen", coded_candidate(plan.chosen)},
+          {"runner", coded_candidate(plan.runner_up)},
+          {"grid", coded_grid(plan.grid)}};
+}
+
 void check_plots(const ReportInput& input) {
   for (const ReportPlot& plot : input.plots) {
     for (const ReportSeries& series : plot.series) {
@@ -201,12 +249,9 @@ std::string page_data_json(const ReportInput& input) {
        list_of(input.obstacles,
                [&](const planning::Obstacle& one) { return coded_obstacle(one, origin); })},
       {"plans", list_of(input.plans,
-                        [&](const ReportPlan& plan) {
-                          return Json{{"t", plan.t_s},
-                                      {"note", plan.note},
-                                      {"reason", plan.reason},
-                                      {"path", line(plan.path)}};
-                        })},
+                        [&](const ReportPlan& plan) { return coded_plan(plan, line(plan.path)); })},
+      {"costNames", input.cost_names},
+      {"causeNames", input.cause_names},
       {"plots", list_of(input.plots, coded_plot)},
       {"events", list_of(input.events,
                          [](const ReportEvent& event) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,12 +28,32 @@ struct ReportLane {
   LineInSource left, centre, right;
 };
 
+/// An end state of a planning cycle and what it costs.
+struct ReportCandidate {
+  double end_d_m = 0.0, end_l_m = 0.0;
+  std::vector<double> costs;  ///< weighted, one per name in ReportInput::cost_names
+};
+
+/// What became of each end state of a planning cycle.
+struct ReportGrid {
+  std::vector<double> end_d_m, end_l_m;  ///< ascending
+  std::vector<std::uint8_t> causes;      ///< index in ReportInput::cause_names, d fastest
+};
+
+/// Where a planning cycle's candidates start, in the frame of the reference line.
+struct ReportStart {
+  double s_m = 0.0, d_m = 0.0, d_slope = 0.0, d_curvature_per_m = 0.0;
+};
+
 /// What one planning cycle chose.
 struct ReportPlan {
   double t_s = 0.0;
   LineInSource path;   ///< empty: the cycle found nothing
   std::string note;    ///< "ends 0.4 m to the left after 22 m"
   std::string reason;  ///< of the decision in force; empty: that of its ReportDecision
+  ReportStart start = {};
+  std::optional<ReportCandidate> chosen = {}, runner_up = {};
+  std::optional<ReportGrid> grid = {};  ///< none: it was not kept
 };
 
 struct ReportSeries {
@@ -104,7 +125,8 @@ struct ReportInput {
   geometry::VehicleShape vehicle;
   geometry::Trajectory drive;  ///< may be empty
   std::vector<planning::Obstacle> obstacles;
-  std::vector<ReportPlan> plans;  ///< by time, one per cycle; may be empty
+  std::vector<ReportPlan> plans;                     ///< by time, one per cycle; may be empty
+  std::vector<std::string> cost_names, cause_names;  ///< of the plans' candidates
 
   std::vector<ReportPlot> plots;
   std::vector<ReportEvent> events;        ///< by time

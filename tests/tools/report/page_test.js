@@ -130,8 +130,24 @@ function testTexts() {
   expectEqual("long texts end in an ellipsis, letters stay whole", shortened("😀😀😀😀", 3), "😀😀…");
 }
 
+function testCycle() {
+  expectEqual("runs of causes", decodeRuns([2, 5, 1, 0]), [5, 5, 0]);
+  const start = {s: 10, d: 0.5, slope: 0.1, curvature: -0.02}, d = quintic(start, -1.5, 20), h = 1e-4;
+  expectNear("a candidate begins at its start", d(0), 0.5, 1e-12);
+  expectNear("with its slope", (d(h) - d(-h)) / (2 * h), 0.1, 1e-7);
+  expectNear("and its curvature", (d(h) - 2 * d(0) + d(-h)) / (h * h), -0.02, 1e-5);
+  expectNear("it ends at its end state", d(20), -1.5, 1e-12);
+  expectNear("level", (d(20 + h) - d(20 - h)) / (2 * h), 0, 1e-7);
+  const points = [[0, 0], [10, 0], [10, 10]], line = {points, stations: stationsOf(points)};
+  expectEqual("stations are lengths", line.stations, [0, 10, 20]);
+  expectEqual("left of a line that goes north is west", pointBeside(line, 15, 2), [8, 5]);
+  expectEqual("past the end it goes straight on", pointBeside(line, 25, 0), [10, 15]);
+  const grid = {d: [-1, 1, 3], l: [15, 30, 2]};
+  expectEqual("d is fastest", endOf(grid, 4), {d: 0, l: 30});
+}
+
 for (const test of [testDecoding, testMotion, testRectangle, testView, testClock, testKeys, testFragments,
-                    testPlots, testStrip, testTexts]) {
+                    testPlots, testStrip, testTexts, testCycle]) {
   try {
     test();
   } catch (error) {

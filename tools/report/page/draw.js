@@ -69,6 +69,25 @@ function drawPlan(pen) {
   if (plan) strokePoints(pen, plan.path, pen.ink("plan"), pixels(pen, 4));
 }
 
+function drawCandidates(pen) {
+  const plan = planAt(pen.scene, pen.t);
+  if (!plan || !plan.grid || pen.scene.line.points.length < 2) return;
+  for (const {cause, points} of shownCandidates(pen.scene.line, plan)) {
+    strokePoints(pen, points, pen.ink(causeInk(cause).slice(2)), pixels(pen, cause === 0 ? 1.2 : 0.6));
+  }
+}
+
+/** Where everything that moves will be in 1, 2 and 3 s. */
+function drawAhead(pen) {
+  for (const {motion, length, width} of pen.scene.obstacles.filter((one) => one.motion.t.length > 1)) {
+    for (const ahead of [1, 2, 3]) {
+      const {x, y, h} = stateAt(motion, pen.t + ahead), path = new Path2D();
+      addRing(path, rectangle(x, y, h, -length / 2, length / 2, width));
+      stroke(pen, path, pen.ink("moving"), pixels(pen, 1));
+    }
+  }
+}
+
 function fillRing(pen, corners, fill, edge) {
   const path = new Path2D();
   addRing(path, corners);
@@ -244,6 +263,8 @@ const LAYERS = [
   {key: "occupied", label: "Occupancy", shown: true, draw: drawOccupied},
   {key: "footprints", label: "Footprints (1 s)", shown: false, draw: drawFootprints},
   {key: "drive", label: "Drive", shown: true, draw: drawDrive},
+  {key: "candidates", label: "Candidates", shown: true, draw: drawCandidates},
+  {key: "ahead", label: "Others in 1, 2, 3 s", shown: false, draw: drawAhead},
   {key: "plan", label: "Plan", shown: true, draw: drawPlan},
   {key: "obstacles", label: "Obstacles", shown: true, draw: drawObstacles},
   {key: "vehicle", label: "Vehicle", shown: true, draw: drawVehicle},

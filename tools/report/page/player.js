@@ -26,7 +26,7 @@ function percent(share) {
 }
 
 // These have the same colours in every report; others follow in order of appearance.
-const KNOWN_STATES = ["cruise", "follow", "pass", "emergency", "stop"];
+const KNOWN_STATES = ["cruise", "follow", "pass", "emergency", "stop", "yield"];
 
 /** The same number for the same state. */
 function numberStates(decisions) {

@@ -42,6 +42,7 @@ function start() {
   makePlots(data.plots, page);
   makePlayer(data, page);
   clock.listeners.push(() => showState(page));
+  clock.listeners.push(() => showCycle(page, {costs: data.costNames, causes: data.causeNames}));
   setFollow(page.map, followInFragment(location.hash));
   seek(clock, timeInFragment(location.hash) ?? clock.start);
   watchHead();

@@ -46,7 +46,12 @@ function decodeObstacle(coded) {
 }
 
 function decodePlan(coded) {
-  return {t: coded.t, note: coded.note, reason: coded.reason, path: decodeLine(coded.path)};
+  const [s, d, slope, curvature] = coded.start;
+  const costs = (one) => one && {...one, costs: one.costs.map((cost) => cost / 1000)};
+  return {t: coded.t, note: coded.note, reason: coded.reason, path: decodeLine(coded.path),
+          start: {s: s / 1e3, d: d / 1e3, slope: slope / 1e5, curvature: curvature / 1e6},
+          chosen: costs(coded.chosen), runner: costs(coded.runner),
+          grid: coded.grid && {...coded.grid, causes: decodeRuns(coded.grid.runs)}};
 }
 
 /** The plan in force at a time; null before the first. */
@@ -83,6 +88,7 @@ function decodeScene(data) {
     borders: pathOfLines(lanes.flatMap((lane) => [lane.left, lane.right])),
     centres: pathOfLines(lanes.map((lane) => lane.centre)),
     route: pathOfLines(routeLines), reference: pathOfLines([reference]),
+    line: {points: reference, stations: stationsOf(reference)},
     occupied: pathOfBoxes(data.occupied.map(decodeLine)),
     drivePath: pathOfLines([drivePoints]), footprints: footprintsOf(drive, data.vehicle),
     obstacles: data.obstacles.map(decodeObstacle),
