@@ -50,11 +50,11 @@ double bound_by_curvature(const geometry::PlanBounds& plan, const CubicValue& si
   return std::hypot(across + side.d2, along);
 }
 
-// Where s runs unevenly along the road, by as much as a tenth of what lies across counts: a chord
-// is off the curve by its part across, and only places along it, which nobody sees, by the rest.
-// All of the latter that is not along the chord counts in full: the chord's direction is one that
-// the border has somewhere, so it is at most the road's turn and the border's slant from any
-// normal's. A slope along the border tells in the height.
+// Where s runs unevenly along the road, a chord is off the border by what of the second derivative
+// is across the chord; what is along it moves places along the chord only, and counts a tenth so
+// that they stay near theirs. The chord points where the border points somewhere along the stretch,
+// so the angle between it and the road is at most the road's turn and the border's slant to it. On
+// a slope, a place moved along the chord is at another height.
 double bound_by_parts(const geometry::PlanBounds& plan, const CubicValue& side, double length_m,
                       std::optional<double> slope, double height_d2) {
   constexpr double kUnseenShare = 0.1;
@@ -66,8 +66,9 @@ double bound_by_parts(const geometry::PlanBounds& plan, const CubicValue& side, 
   const double whole = std::hypot(across, along, height_d2);
   const double slant = length_m * turn + std::atan2(side.d1, forward);
   if (!slope || forward <= 0.0 || slant > 1.0) return whole;
+  const double grade = *slope / (forward * std::cos(slant));
   const double seen =
-      std::hypot(across + along * std::sin(slant), height_d2 + along * *slope / forward);
+      std::hypot(across + along * std::sin(slant), height_d2 + grade * (along + across));
   return std::min(whole, std::max(seen, kUnseenShare * along));
 }
 
