@@ -10,6 +10,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/cloud_filter.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/sensor_poses.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/occupancy_parts.h"
 #include "roadbed/tools/support/output_file.h"
@@ -28,7 +29,8 @@ class OccupancyBuildCommand : public Command {
              "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
              "(.bt .ot) to convert")
         .required();
-    arguments.add("-o,--output", output_, "OctoMap file to write (.bt)").required();
+    arguments.add("-o,--output", output_, "OctoMap file to write (.bt, or .ot with log-odds)")
+        .required();
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
         .with_default();
@@ -37,11 +39,18 @@ class OccupancyBuildCommand : public Command {
              "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
              "the viewpoint of each .pcd counts, where the file names one")
         .separated_by(',')
-        .values(3);
+        .values(3)
+        .excludes(
+            arguments.add("--poses", poses_file_,
+                          "Where the sensor was, a line for each cloud in their order (TUM: "
+                          "timestamp tx ty tz qx "
+                          "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame"));
     arguments.flag("--no-carving", no_carving_,
                    "Only mark hits, whatever viewpoints the files name");
     arguments.add("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
         .positive();
+    arguments.flag("--no-sticky", no_sticky_,
+                   "Let rays carve hits away again, as OctoMap's insertPointCloud does");
     arguments.add("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
         .within(1e-3, 1e3);
     arguments
@@ -59,33 +68,62 @@ class OccupancyBuildCommand : public Command {
         .within(1e-6, 1e6);
     arguments.add("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
     arguments.flag("--force", force_, "Replace the output if it exists");
-    arguments.example("  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt");
+    arguments.example(
+        "  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt\n"
+        "  roadbed occupancy build scans/*.pcd --poses poses.txt -o street.bt");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     check_writable(output_, force_);
-    const map::OccupancyMap occupancy = make(streams.err, common.quiet);
-    const std::string bytes = occupancy.to_bt();
-    write_output(output_, bytes);
+    const Made made = make(streams.err, common.quiet);
+    write_output(output_, made.file.bytes);
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(),
-                 occupancy.node_count(), occupancy.resolution_m(), bytes.size());
+      fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(), made.file.nodes,
+                 made.resolution_m, made.file.bytes.size());
     }
     return Exit::ok;
   }
 
  private:
-  map::OccupancyMap make(std::ostream& err, bool quiet) const {
+  struct Made {
+    map::OccupancyMap::File file;
+    double resolution_m;
+  };
+
+  bool wants_log_odds() const { return output_.extension() == ".ot"; }
+
+  Made written(const map::OccupancyMap& occupancy) const {
+    return {{wants_log_odds() ? occupancy.to_ot() : occupancy.to_bt(), occupancy.node_count()},
+            occupancy.resolution_m()};
+  }
+
+  Made make(std::ostream& err, bool quiet) const {
+    const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
     std::vector<map::PointCloud> clouds;
     for (const std::filesystem::path& file : clouds_) {
       const std::string bytes = map::read_file(file);
-      if (map::is_occupancy_file(bytes)) return convert(bytes, file);
-      clouds.push_back(prepared(map::parse_point_cloud(bytes, file.string())));
+      if (map::is_occupancy_file(bytes)) return written(convert(bytes, file));
+      map::PointCloud cloud = map::parse_point_cloud(bytes, file.string());
+      if (!poses.empty()) cloud = map::placed(cloud, poses[clouds.size()]);
+      clouds.push_back(prepared(std::move(cloud)));
       if (!quiet) print_notes(err, clouds.back());
     }
-    map::OccupancyOptions options{.resolution_m = resolution_m_};
+    map::OccupancyOptions options{.resolution_m = resolution_m_, .sticky_hits = !no_sticky_};
     if (carve_range_m_) options.carve_range_m = *carve_range_m_;
-    return map::OccupancyMap::build(clouds, options);
+    if (wants_log_odds()) return written(map::OccupancyMap::build(clouds, options));
+    return {map::OccupancyMap::build_bt(clouds, options), resolution_m_};
+  }
+
+  std::vector<Eigen::Isometry3d> poses_of_clouds() const {
+    if (poses_file_.empty()) return {};
+    std::vector<Eigen::Isometry3d> poses = map::read_sensor_poses(poses_file_);
+    if (poses.size() == clouds_.size()) return poses;
+    throw map::InputError({.file = poses_file_.string(),
+                           .place = {},
+                           .element = {},
+                           .found = fmt::format("holds {} poses", poses.size()),
+                           .needed = fmt::format("one for each of {} clouds", clouds_.size()),
+                           .remedy = "give as many clouds as poses, in the same order"});
   }
 
   map::OccupancyMap convert(const std::string& bytes, const std::filesystem::path& file) const {
@@ -125,13 +163,13 @@ class OccupancyBuildCommand : public Command {
   }
 
   std::vector<std::filesystem::path> clouds_;
-  std::filesystem::path output_;
+  std::filesystem::path output_, poses_file_;
   double resolution_m_ = 0.1;
   std::vector<double> sensor_;
   std::optional<double> carve_range_m_, scale_;
   map::CloudFilter filter_;
   std::string crs_;
-  bool no_carving_ = false, force_ = false;
+  bool no_carving_ = false, no_sticky_ = false, force_ = false;
 };
 
 }  // namespace

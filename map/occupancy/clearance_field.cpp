@@ -189,6 +189,9 @@ std::optional<ClearanceField::Nearest> ClearanceField::nearest(
 double ClearanceField::unknown_share(const geometry::Pose2& source_from_vehicle,
                                      const geometry::VehicleShape& shape) const {
   const geometry::Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
+  if (grid_->plan.lower_bound_m(rectangle.centre, ObstacleKind::unknown) > rectangle.radius_m()) {
+    return 0.0;
+  }
   const double cell_m = grid_->plan.cell_m();
   const auto cell = [&](double at_m) {
     return static_cast<std::int64_t>(std::floor(at_m / cell_m));

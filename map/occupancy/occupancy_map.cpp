@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/cell_set.h"
+#include "roadbed/map/occupancy/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree_file.h"
 #include "roadbed/map/read_file.h"
 
@@ -23,19 +23,13 @@ struct OccupancyMap::Tree {
   std::string crs;
 
   explicit Tree(double resolution_m) : octree(resolution_m) {}
+
+  OctreeHeader header(std::size_t nodes) const {
+    return {octree.getResolution(), nodes, origin_in_source, crs};
+  }
 };
 
 namespace {
-
-constexpr double kHalfRange = 32768.0;           // cells on either side of the origin
-constexpr std::size_t kMostBlocks = 24'000'000;  // of free space: some 2.4 GB
-
-std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m) {
-  const Eigen::Array3d cells = (in_tree.array() * (1.0 / resolution_m)).floor() + kHalfRange;
-  if (!((cells >= 0.0).all() && (cells < 2.0 * kHalfRange).all())) return std::nullopt;
-  return CellKey{static_cast<std::uint16_t>(cells.x()), static_cast<std::uint16_t>(cells.y()),
-                 static_cast<std::uint16_t>(cells.z())};
-}
 
 octomap::OcTreeKey octomap_key(const CellKey& key) { return {key[0], key[1], key[2]}; }
 
@@ -62,83 +56,6 @@ Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolut
   }
   return origin;
 }
-
-/// Collects what clouds measured, cell by cell.
-class Measurements {
- public:
-  Measurements(const Eigen::Vector3d& origin_in_source, const OccupancyOptions& options)
-      : origin_in_source_(origin_in_source), options_(options), rays_(options.resolution_m) {}
-
-  void add(const PointCloud& cloud) {
-    CellSet ends;
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-      const CellKey end = checked_key(cloud, "point", cloud.in_source(i));
-      hits_.insert(end);
-      if (cloud.sensor_in_source) ends.insert(end);
-    }
-    if (!cloud.sensor_in_source) return;
-    checked_key(cloud, "sensor", *cloud.sensor_in_source);
-    const Eigen::Vector3d sensor_in_tree = *cloud.sensor_in_source - origin_in_source_;
-    ends.for_each([&](const CellKey& end) { carve(cloud, sensor_in_tree, end); });
-  }
-
-  /// Hits come last: whatever was carved, they stay.
-  void mark(octomap::OcTree& octree) const {
-    const auto mark_all = [&octree](const CellSet& cells, float log_odds) {
-      cells.for_each(
-          [&](const CellKey& key) { octree.setNodeValue(octomap_key(key), log_odds, true); });
-    };
-    mark_all(free_, octree.getClampingThresMinLog());
-    mark_all(hits_, octree.getClampingThresMaxLog());
-    octree.updateInnerOccupancy();
-    octree.prune();
-  }
-
- private:
-  CellKey checked_key(const PointCloud& cloud, const char* what,
-                      const Eigen::Vector3d& in_source) const {
-    const auto key = key_at(in_source - origin_in_source_, options_.resolution_m);
-    if (key) return *key;
-    throw InputError({.file = cloud.name,
-                      .place = {},
-                      .element = fmt::format("{} ({}, {}, {})", what, in_source.x(), in_source.y(),
-                                             in_source.z()),
-                      .found = fmt::format("lies more than {} cells of {} m from the middle",
-                                           kHalfRange, options_.resolution_m),
-                      .needed = {},
-                      .remedy = "take a coarser resolution, or cut the cloud"});
-  }
-
-  void carve(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_tree, const CellKey& end) {
-    Eigen::Vector3d end_in_tree = centre_in_tree(rays_, octomap_key(end), rays_.getTreeDepth());
-    const double length_m = (end_in_tree - sensor_in_tree).norm();
-    if (length_m > options_.carve_range_m) {
-      end_in_tree =
-          sensor_in_tree + (end_in_tree - sensor_in_tree) * (options_.carve_range_m / length_m);
-    }
-    rays_.computeRayKeys(octomap_point(sensor_in_tree), octomap_point(end_in_tree), ray_);
-    for (const octomap::OcTreeKey& key : ray_) free_.insert({key[0], key[1], key[2]});
-    if (free_.block_count() > kMostBlocks) {
-      throw InputError({.file = cloud.name,
-                        .place = {},
-                        .element = "rays",
-                        .found = "cross more cells than can be kept",
-                        .needed = {},
-                        .remedy = "take a coarser resolution or a shorter carving range"});
-    }
-  }
-
-  static octomap::point3d octomap_point(const Eigen::Vector3d& point) {
-    return {static_cast<float>(point.x()), static_cast<float>(point.y()),
-            static_cast<float>(point.z())};
-  }
-
-  Eigen::Vector3d origin_in_source_;
-  OccupancyOptions options_;
-  octomap::OcTree rays_;  // stays empty: it only turns rays into keys
-  octomap::KeyRay ray_;
-  CellSet hits_, free_;
-};
 
 void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
   if (!(options.resolution_m > 0.0) || !std::isfinite(options.resolution_m)) {
@@ -171,10 +88,32 @@ std::string common_crs(std::span<const PointCloud> clouds) {
   return clouds.front().crs;
 }
 
-std::string on_one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return text;
+/// What was measured, and where.
+struct Measured {
+  Eigen::Vector3d origin_in_source;
+  std::string crs;
+  CloudMeasurements cells;
+};
+
+LogOddsRule log_odds_rule() {
+  const octomap::OcTree usual(1.0);
+  return {.hit = usual.getProbHitLog(),
+          .miss = usual.getProbMissLog(),
+          .least = usual.getClampingThresMinLog(),
+          .most = usual.getClampingThresMaxLog(),
+          .occupied_from = usual.getOccupancyThresLog()};
+}
+
+Measured measure(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
+  check(clouds, options);
+  std::size_t points = 0;
+  for (const PointCloud& cloud : clouds) points += cloud.points.size();
+  std::string crs = common_crs(clouds);
+  const Eigen::Vector3d origin = choose_origin(clouds, options.resolution_m);
+  Measured measured{origin, std::move(crs),
+                    CloudMeasurements(origin, options, log_odds_rule(), points)};
+  for (const PointCloud& cloud : clouds) measured.cells.add(cloud);
+  return measured;
 }
 
 }  // namespace
@@ -186,14 +125,30 @@ OccupancyMap& OccupancyMap::operator=(OccupancyMap&&) noexcept = default;
 
 OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
                                  const OccupancyOptions& options) {
-  check(clouds, options);
+  Measured measured = measure(clouds, options);
   auto tree = std::make_unique<Tree>(options.resolution_m);
-  tree->crs = common_crs(clouds);
-  tree->origin_in_source = choose_origin(clouds, options.resolution_m);
-  Measurements measurements(tree->origin_in_source, options);
-  for (const PointCloud& cloud : clouds) measurements.add(cloud);
-  measurements.mark(tree->octree);
+  tree->crs = measured.crs;
+  tree->origin_in_source = measured.origin_in_source;
+  if (options.sticky_hits) {
+    std::istringstream data{measured.cells.bt().data};
+    tree->octree.readBinaryData(data);
+  } else {
+    std::istringstream data{measured.cells.ot().data};
+    tree->octree.readData(data);
+  }
   return OccupancyMap(std::move(tree));
+}
+
+OccupancyMap::File OccupancyMap::build_bt(std::span<const PointCloud> clouds,
+                                          const OccupancyOptions& options) {
+  Measured measured = measure(clouds, options);
+  const OctreeBytes bytes = measured.cells.bt();
+  return {octree_header(OctreeForm::bt, {.resolution_m = options.resolution_m,
+                                         .nodes = bytes.nodes,
+                                         .origin_in_source = measured.origin_in_source,
+                                         .crs = measured.crs}) +
+              bytes.data,
+          bytes.nodes};
 }
 
 OccupancyMap OccupancyMap::load(const std::filesystem::path& file) {
@@ -242,15 +197,19 @@ std::vector<OccupancyCell> OccupancyMap::cells() const {
 }
 
 std::string OccupancyMap::to_bt() const {
-  octomap::OcTree pruned(tree_->octree);
-  pruned.prune();
-  const Eigen::Vector3d& origin = tree_->origin_in_source;
+  octomap::OcTree judged(tree_->octree);
+  judged.toMaxLikelihood();
+  judged.prune();
   std::ostringstream out;
-  out << "# Octomap OcTree binary file\n"
-      << fmt::format("# roadbed origin {} {} {} {}\n", origin.x(), origin.y(), origin.z(),
-                     on_one_line(tree_->crs))
-      << fmt::format("id OcTree\nsize {}\nres {}\ndata\n", pruned.size(), resolution_m());
-  if (pruned.size() > 0) pruned.writeBinaryData(out);
+  out << octree_header(OctreeForm::bt, tree_->header(judged.size()));
+  if (judged.size() > 0) judged.writeBinaryData(out);
+  return std::move(out).str();
+}
+
+std::string OccupancyMap::to_ot() const {
+  std::ostringstream out;
+  out << octree_header(OctreeForm::ot, tree_->header(tree_->octree.size()));
+  if (tree_->octree.size() > 0) tree_->octree.writeData(out);
   return std::move(out).str();
 }
 

@@ -97,6 +97,7 @@ double PlanGrid::lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) 
   }
   const Eigen::Vector2d inside = point.cwiseMax(0.0).cwiseMin(size_m());
   const double bound_m = bound_inside(inside, kind);
+  if (kind == ObstacleKind::occupied && inside == point) return bound_m;
   if (kind == ObstacleKind::unknown) {
     const double to_border_m = std::min(point.minCoeff(), (size_m() - point).minCoeff());
     return std::clamp(to_border_m, 0.0, bound_m);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "roadbed/map/occupancy/cloud_formats.h"
+#include "roadbed/map/occupancy/sensor_poses.h"
 #include "roadbed/map/read_file.h"
 
 namespace roadbed::map {
@@ -96,6 +97,19 @@ Box3 bounds(const PointCloud& cloud) {
     box.max_in_source = box.max_in_source.cwiseMax(point);
   }
   return box;
+}
+
+PointCloud placed(const PointCloud& cloud, const Eigen::Isometry3d& world_from_sensor) {
+  RawCloud raw;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    raw.points_in_source.emplace_back(world_from_sensor * cloud.in_source(i));
+  }
+  PointCloud moved = cloud;
+  const PointCloud points = relative_to_origin(std::move(raw));
+  moved.points = points.points;
+  moved.origin_in_source = points.origin_in_source;
+  moved.sensor_in_source = world_from_sensor.translation();
+  return moved;
 }
 
 PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {

@@ -1,0 +1,60 @@
+#pragma once
+
+// Private to map/occupancy.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+
+#include "roadbed/map/occupancy/cell_blocks.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/octree_bytes.h"
+#include "roadbed/map/occupancy/point_cloud.h"
+
+namespace roadbed::map {
+
+/// The key of the cell that a point lies in; none beyond OctoMap's ±32768 cells.
+std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m);
+
+/// How measurements change the log-odds of a cell that is not sticky; OctoMap's own numbers.
+struct LogOddsRule {
+  float hit = 0.0f, miss = 0.0f;    ///< are added
+  float least = 0.0f, most = 0.0f;  ///< and the sum is kept between these
+  float occupied_from = 0.0f;
+};
+
+/// Collects what clouds measured, cell by cell. A cloud with a sensor position is one scan: each
+/// cell counts once, as hit where a point lies in it, else as free where a ray crosses it.
+class CloudMeasurements {
+ public:
+  /// @param points  of all clouds that will come: what they may take of memory depends on it.
+  CloudMeasurements(const Eigen::Vector3d& origin_in_source, const OccupancyOptions& options,
+                    const LogOddsRule& rule, std::size_t points);
+
+  /// @throws InputError if a point or the sensor lies out of range, or the rays cross too many
+  /// cells
+  ///         to be kept.
+  void add(const PointCloud& cloud);
+
+  /// Of a `.bt`; to be called once, when all clouds are there.
+  OctreeBytes bt();
+
+  /// Of an `.ot`. @pre hits are not sticky.
+  OctreeBytes ot() const;
+
+ private:
+  CellKey checked_key(const PointCloud& cloud, const char* what,
+                      const Eigen::Vector3d& in_source) const;
+  void add_hits(const PointCloud& cloud);
+  void add_scan(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_source);
+  void check_room(const PointCloud& cloud) const;
+  void weigh_scan();
+
+  Eigen::Vector3d origin_in_source_;
+  OccupancyOptions options_;
+  LogOddsRule rule_;
+  std::size_t most_blocks_;
+  CellBlocks blocks_;
+};
+
+}  // namespace roadbed::map

@@ -1,0 +1,16 @@
+// TUM or KITTI poses in, poses or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/sensor_poses.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::map::parse_sensor_poses(bytes, "fuzz.txt");
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+#include <octomap/octomap.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <sstream>
+#include <vector>
+
+#include "roadbed/map/occupancy/occupancy_map.h"
+
+namespace roadbed::map {
+namespace {
+
+/// Points at random distances around sensors on both sides of the origin; some nearer than a cell.
+std::vector<PointCloud> random_scans(std::mt19937& random, int scans, int points) {
+  std::normal_distribution<float> spread(0.0f, 6.0f);
+  std::uniform_real_distribution<double> place(-9.0, 9.0);
+  std::vector<PointCloud> clouds;
+  for (int i = 0; i < scans; ++i) {
+    PointCloud cloud;
+    // A float, as OctoMap's own interface takes no double.
+    const Eigen::Vector3f sensor =
+        Eigen::Vector3d(place(random), place(random), 0.2 * place(random)).cast<float>();
+    cloud.sensor_in_source = sensor.cast<double>();
+    for (int k = 0; k < points; ++k) {
+      const float scale = k % 10 == 0 ? 0.02f : 1.0f;
+      const Eigen::Vector3f way(spread(random), spread(random), 0.3f * spread(random));
+      cloud.points.push_back(sensor + scale * way);
+    }
+    clouds.push_back(std::move(cloud));
+  }
+  return clouds;
+}
+
+octomap::point3d octomap_point(const Eigen::Vector3f& point) {
+  return {point.x(), point.y(), point.z()};
+}
+
+void insert(octomap::OcTree& tree, const PointCloud& cloud, double range_m) {
+  octomap::Pointcloud points;
+  for (const Eigen::Vector3f& point : cloud.points) points.push_back(octomap_point(point));
+  tree.insertPointCloud(points, octomap_point(cloud.sensor_in_source->cast<float>()), range_m,
+                        false, true);
+}
+
+std::unique_ptr<octomap::OcTree> read_with_octomap(const std::string& ot) {
+  std::istringstream stream(ot);
+  return std::unique_ptr<octomap::OcTree>(
+      dynamic_cast<octomap::OcTree*>(octomap::AbstractOcTree::read(stream)));
+}
+
+void expect_equal_nodes(octomap::OcTree& a, octomap::OcTree& b) {
+  ASSERT_EQ(a.size(), b.size());
+  auto in_b = b.begin_tree();
+  for (auto in_a = a.begin_tree(); in_a != a.end_tree(); ++in_a, ++in_b) {
+    ASSERT_EQ(in_a.getKey(), in_b.getKey());
+    ASSERT_EQ(in_a.getDepth(), in_b.getDepth());
+    ASSERT_EQ(in_a->getLogOdds(), in_b->getLogOdds());
+  }
+}
+
+TEST(OctreeBuild, WithoutStickyHitsTheTreeIsThatOfInsertPointCloudNodeForNode) {
+  std::mt19937 random(20261122);
+  for (int round = 0; round < 12; ++round) {
+    const double resolution_m = round % 3 == 0 ? 0.1 : round % 3 == 1 ? 0.2 : 0.37;
+    const double range_m = round % 2 == 0 ? -1.0 : 5.0;
+    const auto clouds = random_scans(random, 1 + round, 300);
+    octomap::OcTree theirs(resolution_m);
+    for (const PointCloud& cloud : clouds) insert(theirs, cloud, range_m);
+    OccupancyOptions options{.resolution_m = resolution_m, .sticky_hits = false};
+    if (range_m > 0.0) options.carve_range_m = range_m;
+    const OccupancyMap ours = OccupancyMap::build(clouds, options);
+    const auto tree = read_with_octomap(ours.to_ot());
+    ASSERT_TRUE(tree);
+    expect_equal_nodes(*tree, theirs);
+
+    // And so is the file of free and occupied cells.
+    theirs.toMaxLikelihood();
+    theirs.prune();
+    std::ostringstream binary;
+    theirs.writeBinaryData(binary);
+    const auto file = OccupancyMap::build_bt(clouds, options);
+    EXPECT_EQ(file.nodes, theirs.size());
+    EXPECT_TRUE(file.bytes.ends_with("\ndata\n" + binary.str()));
+    EXPECT_EQ(file.bytes, ours.to_bt());
+  }
+}
+
+/// Free cells first, then hits, each by itself, as the law of sticky hits says it.
+octomap::OcTree sticky_tree(const std::vector<PointCloud>& clouds, double resolution_m) {
+  octomap::OcTree tree(resolution_m);
+  octomap::KeyRay ray;
+  std::vector<octomap::OcTreeKey> hits;
+  for (const PointCloud& cloud : clouds) {
+    const octomap::point3d sensor = octomap_point(cloud.sensor_in_source->cast<float>());
+    for (const Eigen::Vector3f& point : cloud.points) {
+      hits.push_back(tree.coordToKey(octomap_point(point)));
+      tree.computeRayKeys(sensor, tree.keyToCoord(hits.back()), ray);
+      for (const octomap::OcTreeKey& key : ray) {
+        tree.setNodeValue(key, tree.getClampingThresMinLog(), true);
+      }
+    }
+  }
+  for (const octomap::OcTreeKey& key : hits) {
+    tree.setNodeValue(key, tree.getClampingThresMaxLog(), true);
+  }
+  tree.updateInnerOccupancy();
+  tree.prune();
+  return tree;
+}
+
+TEST(OctreeBuild, WithStickyHitsEveryCellIsWhatItsRaysAndPointsSay) {
+  std::mt19937 random(7);
+  for (const double resolution_m : {0.1, 0.25, 1.3}) {
+    const auto clouds = random_scans(random, 4, 800);
+    octomap::OcTree expected = sticky_tree(clouds, resolution_m);
+    std::ostringstream binary;
+    expected.writeBinaryData(binary);
+    const auto file = OccupancyMap::build_bt(clouds, {.resolution_m = resolution_m});
+    EXPECT_EQ(file.nodes, expected.size());
+    EXPECT_TRUE(file.bytes.ends_with("\ndata\n" + binary.str()));
+    const OccupancyMap ours = OccupancyMap::build(clouds, {.resolution_m = resolution_m});
+    EXPECT_EQ(ours.to_bt(), file.bytes);
+    EXPECT_EQ(ours.node_count(), file.nodes);
+    const auto tree = read_with_octomap(ours.to_ot());
+    ASSERT_TRUE(tree);
+    expect_equal_nodes(*tree, expected);
+  }
+}
+
+TEST(OctreeBuild, JoinsASolidCubeToOneLeafOnEveryLevel) {
+  for (const int side : {2, 4, 8, 16, 32, 64}) {
+    PointCloud cloud;
+    for (int x = 0; x < side; ++x) {
+      for (int y = 0; y < side; ++y) {
+        for (int z = 0; z < side; ++z) {
+          cloud.points.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                                    static_cast<float>(z) + 0.5f);
+        }
+      }
+    }
+    const OccupancyMap cube = OccupancyMap::build(std::vector{cloud}, {.resolution_m = 1.0});
+    ASSERT_EQ(cube.cells().size(), 1u);
+    EXPECT_EQ(cube.cells().front().size_m, side);
+    // From the root, of 65536 cells, a node on each level down to the leaf.
+    EXPECT_EQ(cube.node_count(), 17u - static_cast<std::size_t>(std::log2(side)));
+  }
+}
+
+}  // namespace
+}  // namespace roadbed::map
