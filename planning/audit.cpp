@@ -9,8 +9,11 @@
 #include <utility>
 
 #include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/body_side.h"
 #include "roadbed/planning/least_clearance.h"
+#include "roadbed/planning/moving_probe.h"
 #include "roadbed/planning/near_stretches.h"
+#include "roadbed/planning/prediction.h"
 
 namespace roadbed::planning {
 namespace {
@@ -37,7 +40,7 @@ std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
 }
 
 // Poses half a metre of motion apart, and at least one for each stand.
-double mean_unknown_share(const map::ClearanceField& field, const BodyProbe& probe,
+double mean_unknown_share(const map::ClearanceField& field, const Probe& probe,
                           const geometry::VehicleShape& body) {
   constexpr double least_apart_m = 0.5, most_poses = 20'000;
   double whole_m = 0.0;
@@ -56,7 +59,13 @@ double mean_unknown_share(const map::ClearanceField& field, const BodyProbe& pro
   return sum / static_cast<double>(poses);
 }
 
-std::vector<AuditReport::Sample> clearance_at_rows(const BodyProbe& probe,
+// A row is the start of its segment; the last one the end of the last.
+Span at_row(const Probe& probe, std::size_t row) {
+  if (row < probe.segments()) return {row, 0.0, 0.0};
+  return {probe.segments() - 1, 1.0, 1.0};
+}
+
+std::vector<AuditReport::Sample> clearance_at_rows(const Probe& probe,
                                                    const geometry::Trajectory& drive) {
   constexpr double exact_below_m = 5.0;
   constexpr std::size_t most_samples = 5000;
@@ -64,9 +73,10 @@ std::vector<AuditReport::Sample> clearance_at_rows(const BodyProbe& probe,
   const auto& rows = drive.points();
   const std::size_t step = 1 + rows.size() / most_samples;
   for (std::size_t i = 0; i < rows.size(); i += step) {
-    double clearance_m = probe.lower_bound_m(rows[i]);
+    const Span row = at_row(probe, i);
+    double clearance_m = probe.lower_bound_m(row, exact_below_m);
     if (clearance_m < exact_below_m) {
-      const auto nearest = probe.nearest(rows[i], exact_below_m);
+      const auto nearest = probe.nearest(row, exact_below_m);
       clearance_m = nearest ? nearest->distance_m : std::min(exact_below_m, probe.horizon_m());
     }
     profile.push_back({rows[i].t_s, clearance_m});
@@ -86,6 +96,77 @@ std::vector<Stretch> near_unknown(const map::ClearanceField& field,
             [](const Stretch& a, const Stretch& b) { return a.from_s < b.from_s; });
   return stretches;
 }
+
+std::string part_at(const geometry::TrajectoryPoint& at, const map::Box2& witness,
+                    const geometry::VehicleShape& body) {
+  const Eigen::Vector2d half = 0.5 * (witness.max_in_source - witness.min_in_source);
+  const geometry::Rectangle thing{.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
+                                  .half_length_m = half.x(),
+                                  .half_width_m = half.y()};
+  return std::string(side_towards(thing, at.pose(), body));
+}
+
+std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witness,
+                    const std::string& id, std::span<const MovingObstacle> moving,
+                    const geometry::VehicleShape& body) {
+  for (const MovingObstacle& mover : moving) {
+    if (id.empty() || mover.obstacle.id != id) continue;
+    const geometry::Pose2 centre = mover.obstacle.motion.at(at.t_s).pose();
+    const auto thing = body_around(centre, mover.obstacle.length_m, mover.obstacle.width_m);
+    return std::string(side_towards(thing, at.pose(), body));
+  }
+  return part_at(at, witness, body);
+}
+
+/// What is asked of both kinds of obstacles, and the answer for both.
+class Auditor {
+ public:
+  Auditor(const AuditOptions& options, const geometry::Trajectory& drive, AuditReport& report)
+      : options_(options), drive_(drive), report_(report) {}
+
+  void ask(const Probe& probe) {
+    const LeastClearance least = find_least_clearance(probe, options_.tolerance_m);
+    if (!is_asked_ || least.found_m < report_.least_clearance_m) {
+      report_.least_clearance_m = least.found_m;
+      report_.least_clearance_at_s = least.at.t_s;
+      report_.witness = least.witness;
+      report_.obstacle = least.obstacle;
+    }
+    report_.proven_clearance_m =
+        is_asked_ ? std::min(report_.proven_clearance_m, least.proven_m) : least.proven_m;
+    if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) add_conflicts(probe);
+    add_profile(clearance_at_rows(probe, drive_));
+    is_asked_ = true;
+  }
+
+ private:
+  void add_conflicts(const Probe& probe) {
+    const NearStretches found =
+        find_near_stretches(probe, options_.clearance_m, options_.tolerance_m);
+    const auto add = [](auto& to, const auto& more) {
+      to.insert(to.end(), more.begin(), more.end());
+      std::ranges::stable_sort(to, {}, [](const auto& stretch) { return stretch.from_s; });
+    };
+    add(report_.conflicts, found.near);
+    add(report_.undecided, found.undecided);
+  }
+
+  void add_profile(std::vector<AuditReport::Sample> samples) {
+    if (!is_asked_) {
+      report_.profile = std::move(samples);
+      return;
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      report_.profile[i].clearance_m =
+          std::min(report_.profile[i].clearance_m, samples[i].clearance_m);
+    }
+  }
+
+  const AuditOptions& options_;
+  const geometry::Trajectory& drive_;
+  AuditReport& report_;
+  bool is_asked_ = false;
+};
 
 Verdict judge(const AuditReport& report) {
   if (!report.conflicts.empty()) return Verdict::conflict;
@@ -131,28 +212,32 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
 }
 
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
-                  const geometry::VehicleShape& vehicle, const AuditOptions& options) {
+                  const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                  std::span<const MovingObstacle> moving_in_source) {
   check(field, drive_in_source, vehicle, options);
   const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
-  const BodyProbe probe(field, drive_in_source, body, obstacles(options.unknown));
+  const geometry::Trajectory drive = with_rows_at_changes(drive_in_source, moving_in_source);
+  const BodyProbe probe(field, drive, body, obstacles(options.unknown));
 
   AuditReport report;
-  const LeastClearance least = find_least_clearance(probe, options.tolerance_m);
-  report.least_clearance_m = least.found_m;
-  report.proven_clearance_m = least.proven_m;
-  report.least_clearance_at_s = least.at.t_s;
-  report.witness = least.witness;
-  report.beyond_horizon = !least.witness;
-  if (least.proven_m <= 0.0 || least.proven_m < options.clearance_m) {
-    NearStretches found = find_near_stretches(probe, options.clearance_m, options.tolerance_m);
-    report.conflicts = std::move(found.near);
-    report.undecided = std::move(found.undecided);
+  Auditor auditor(options, drive, report);
+  auditor.ask(probe);
+  if (!moving_in_source.empty()) {
+    auditor.ask(MovingProbe(drive, body, moving_in_source, field.horizon_m()));
+  }
+  report.beyond_horizon = !report.witness;
+  if (report.witness) {
+    report.part = part_of(drive.at(report.least_clearance_at_s), *report.witness, report.obstacle,
+                          moving_in_source, body);
+  }
+  for (Conflict& conflict : report.conflicts) {
+    conflict.part =
+        part_of(conflict.at, conflict.witness, conflict.obstacle, moving_in_source, body);
   }
   if (options.unknown == UnknownPolicy::report) {
-    report.unknown = near_unknown(field, drive_in_source, body, options);
+    report.unknown = near_unknown(field, drive, body, options);
   }
   report.unknown_share = mean_unknown_share(field, probe, body);
-  report.profile = clearance_at_rows(probe, drive_in_source);
   report.verdict = judge(report);
   return report;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/planning/moving_obstacle.h"
 
 namespace roadbed::planning {
 
@@ -36,7 +38,9 @@ struct Conflict {
   double from_s = 0.0, to_s = 0.0;
   double least_clearance_m = 0.0;  ///< within tolerance
   geometry::TrajectoryPoint at;    ///< state at the least clearance; of equal ones, the first
-  map::Box2 witness;               ///< the nearest cell then
+  map::Box2 witness;               ///< the nearest cell then, or the box around what moves
+  std::string obstacle = {};       ///< id of what moves; empty: a cell
+  std::string part = {};  ///< of the vehicle that is nearest then: "front left corner", …
 };
 
 struct AuditReport {
@@ -47,7 +51,9 @@ struct AuditReport {
   double least_clearance_m = 0.0;
   double proven_clearance_m = 0.0;
   double least_clearance_at_s = 0.0;
-  std::optional<map::Box2> witness;  ///< the nearest cell then; none beyond the horizon
+  std::optional<map::Box2> witness;  ///< as of a conflict; none beyond the horizon
+  std::string obstacle = {};         ///< the same
+  std::string part = {};             ///< of the vehicle that is nearest then; empty without witness
   bool beyond_horizon = false;       ///< nothing within the field's horizon: a lower bound only
 
   double unknown_share = 0.0;       ///< mean over poses half a metre apart
@@ -65,11 +71,15 @@ struct AuditReport {
 /// unwrapped heading are linear between rows, and a motion bound (planning/README.md, "Audit")
 /// covers every point of the body. A `clear` is a proof; there is no sampling step.
 ///
+/// Obstacles that move are linear between their rows as well. They are told from occupied cells in
+/// conflicts, which may overlap in time.
+///
 /// Cost: some lookups a row where there is room, more where it is narrow.
 /// @throws std::invalid_argument if the drive is empty, an option is negative or not finite, or the
 ///         vehicle leaves the region that the field was made for.
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
-                  const geometry::VehicleShape& vehicle, const AuditOptions& options = {});
+                  const geometry::VehicleShape& vehicle, const AuditOptions& options = {},
+                  std::span<const MovingObstacle> moving_in_source = {});
 
 /// The part of an occupancy that matters to the audit of a drive: wherever the inflated body may
 /// be, with a horizon of 50 m, or more where the clearance asks for it.

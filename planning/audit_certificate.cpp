@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/moving_probe.h"
 
 namespace roadbed::planning {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kMostCertified_m = 5.0;  // more room than this would only make
 constexpr double kMostOver_m = 1.0;       // the same, of what a span promises over its goal
 constexpr double kLeastMotion_m = 1e-7;   // motion bound of a span that is not halved any more
 
+constexpr double kOver_m = 1e-9;  // a bound over by this is over, whatever the rounding
+
 /// Proven spans, and the stretches that could not be proven.
 struct Cover {
   std::vector<ProvenSpan> proven;
@@ -24,7 +27,7 @@ struct Cover {
 
 class Prover {
  public:
-  Prover(const BodyProbe& probe, double goal_m, const std::vector<Stretch>& left_out)
+  Prover(const Probe& probe, double goal_m, const std::vector<Stretch>& left_out)
       : probe_(probe), goal_m_(goal_m), left_out_(left_out) {}
 
   Cover run() {
@@ -58,11 +61,11 @@ class Prover {
   bool settle(const Span& span) {
     const Stretch time = time_of(span);
     if (is_left_out(time)) return true;
-    const geometry::TrajectoryPoint state = probe_.middle_of(span);
     const double motion_m = probe_.motion_bound_m(span);
-    if (prove(span, probe_.lower_bound_m(state) - motion_m)) return true;
+    if (prove(span, probe_.lower_bound_m(span, goal_m_ + motion_m + kOver_m) - motion_m))
+      return true;
     const double within_m = std::min(goal_m_ + 2.0 * motion_m, probe_.horizon_m());
-    const auto nearest = probe_.nearest(state, within_m);
+    const auto nearest = probe_.nearest(span, within_m);
     if (prove(span, (nearest ? nearest->distance_m : within_m) - motion_m)) return true;
     if (motion_m > kLeastMotion_m) return false;
     cover_.left.push_back(time);
@@ -76,7 +79,7 @@ class Prover {
     return true;
   }
 
-  const BodyProbe& probe_;
+  const Probe& probe_;
   double goal_m_;
   const std::vector<Stretch>& left_out_;  // in order of time
   std::size_t next_ = 0;
@@ -97,10 +100,20 @@ std::vector<Stretch> without_proof(const AuditReport& report) {
   return in_order(std::move(stretches));
 }
 
-double least_of(const std::vector<ProvenSpan>& spans) {
+template <typename Span>
+double least_of(const std::vector<Span>& spans) {
   double least_m = std::numeric_limits<double>::infinity();
-  for (const ProvenSpan& span : spans) least_m = std::min(least_m, span.at_least_m);
+  for (const Span& span : spans) least_m = std::min(least_m, span.at_least_m);
   return least_m;
+}
+
+std::vector<ProvenTime> in_time(const Probe& probe, const std::vector<ProvenSpan>& spans) {
+  std::vector<ProvenTime> times;
+  for (const ProvenSpan& span : spans) {
+    times.push_back({probe.state_at(span.segment, span.from).t_s,
+                     probe.state_at(span.segment, span.to).t_s, span.at_least_m});
+  }
+  return times;
 }
 
 void add_to(std::vector<Stretch>& stretches, const std::vector<Stretch>& more) {
@@ -119,7 +132,8 @@ Verdict verdict_of(const AuditCertificate& certificate) {
 AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
                          const geometry::Trajectory& drive_in_source,
                          const geometry::VehicleShape& vehicle, const AuditOptions& options,
-                         const AuditReport& report) {
+                         const AuditReport& report,
+                         std::span<const MovingObstacle> moving_in_source) {
   const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
   const auto cover = [&](ObstacleKind kind, double goal_m, const std::vector<Stretch>& left_out) {
     const BodyProbe probe(field, drive_in_source, body, {kind});
@@ -132,6 +146,7 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
                                .unknown_policy = options.unknown,
                                .from_occupied = {},
                                .from_unknown = {},
+                               .from_moving = {},
                                .conflicts = report.conflicts,
                                .unknown = report.unknown,
                                .undecided = report.undecided};
@@ -153,6 +168,14 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
     Cover from_unknown = cover(ObstacleKind::unknown, options.clearance_m, report.unknown);
     certificate.from_unknown = std::move(from_unknown.proven);
     add_to(certificate.unknown, from_unknown.left);
+  }
+  if (!moving_in_source.empty()) {
+    const geometry::Trajectory drive = with_rows_at_changes(drive_in_source, moving_in_source);
+    const MovingProbe probe(drive, body, moving_in_source, field.horizon_m());
+    const Cover from_moving = Prover(probe, goal_m, left_out).run();
+    certificate.from_moving = in_time(probe, from_moving.proven);
+    add_to(certificate.undecided, from_moving.left);
+    least_m = std::min(least_m, least_of(certificate.from_moving));
   }
   certificate.verdict = verdict_of(certificate);
   const bool is_whole = certificate.conflicts.empty() && certificate.undecided.empty();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "roadbed/geometry/trajectory.h"
@@ -16,6 +17,12 @@ struct ProvenSpan {
   double at_least_m = 0.0;      ///< no time of the span is nearer to what the proof is about
 };
 
+/// A part of a drive by time, and what holds in all of it.
+struct ProvenTime {
+  double from_s = 0.0, to_s = 0.0;
+  double at_least_m = 0.0;  ///< no time of it is nearer to an obstacle that moves
+};
+
 /// Everything that another program needs to convince itself of an audit's verdict: at the middle of
 /// a proven span the distance is so large that the body cannot come nearer than `at_least_m` while
 /// it moves through the span. What the spans leave out is in the stretches.
@@ -28,8 +35,9 @@ struct AuditCertificate {
   Verdict verdict = Verdict::undecided;
   double certified_clearance_m = 0.0;  ///< least of the spans that keep away from obstacles
 
-  std::vector<ProvenSpan> from_occupied;  ///< in order of time; over `clearance_m`, and over 0
-  std::vector<ProvenSpan> from_unknown;   ///< empty where unknown space counts as free
+  std::vector<ProvenSpan> from_occupied;     ///< in order of time; over `clearance_m`, and over 0
+  std::vector<ProvenSpan> from_unknown;      ///< empty where unknown space counts as free
+  std::vector<ProvenTime> from_moving = {};  ///< the same; empty where nothing moves
   std::vector<Conflict> conflicts;
   std::vector<Stretch> unknown;
   std::vector<Stretch> undecided;
@@ -37,10 +45,11 @@ struct AuditCertificate {
 
 /// The certificate of an audit's report. Spans reach up to 0.02 m below the least clearance, so
 /// that they are few.
-/// @pre `report` is what `audit` says of the same field, drive, vehicle and options.
+/// @pre `report` is what `audit` says of the same field, drive, vehicle, options and obstacles.
 AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
                          const geometry::Trajectory& drive_in_source,
                          const geometry::VehicleShape& vehicle, const AuditOptions& options,
-                         const AuditReport& report);
+                         const AuditReport& report,
+                         std::span<const MovingObstacle> moving_in_source = {});
 
 }  // namespace roadbed::planning

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "roadbed/planning/brute_force_movers.h"
 #include "roadbed/planning/brute_force_obstacles.h"
 
 namespace roadbed::planning {
@@ -26,15 +27,17 @@ struct DriveRow {
 class Check {
  public:
   Check(const AuditCertificate& certificate, const std::vector<map::OccupancyCell>& cells,
-        double resolution_m, const geometry::Trajectory& drive)
-      : certificate_(certificate) {
+        double resolution_m, const geometry::Trajectory& drive,
+        std::span<const MovingObstacle> moving)
+      : certificate_(certificate),
+        movers_(moving),
+        body_(certificate.vehicle, certificate.inflate_m) {
     for (const auto& point : drive.points()) {
       rows_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
     }
     if (rows_.size() == 1) rows_.push_back(rows_.front());
-    const BodyOutline body(certificate.vehicle, certificate.inflate_m);
-    reach_m_ = body.reach_m();
-    obstacles_.emplace(cells, resolution_m, certificate.band, body);
+    reach_m_ = body_.reach_m();
+    obstacles_.emplace(cells, resolution_m, certificate.band, body_);
   }
 
   std::vector<std::string> run() {
@@ -56,6 +59,7 @@ class Check {
                   is_obstacle ? unproven : certificate_.unknown);
       check_distances("from_unknown", certificate_.from_unknown, true);
     }
+    if (!movers_.empty()) check_moving(unproven);
     check_certified();
     return std::move(faults_);
   }
@@ -120,6 +124,7 @@ class Check {
       return fault(what + ": lies outside its own time");
     }
     check_time({conflict.from_s, conflict.to_s});
+    if (!conflict.obstacle.empty()) return check_moving_conflict(conflict, what);
     const DriveRow row = at_time(t_s);
     const double limit_m = limit_of(conflict);
     double distance_m = obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
@@ -141,6 +146,78 @@ class Check {
     if (distance_m > 0.0 && distance_m >= certificate_.clearance_m + kSlack_m) {
       fault(what + fmt::format(": {:.6f} m is enough", distance_m));
     }
+  }
+
+  void check_moving_conflict(const Conflict& conflict, const std::string& what) {
+    const DriveRow row = at_time(conflict.at.t_s);
+    const auto distance_m =
+        movers_.distance_m(conflict.obstacle, row.t_s, body_.at(row.x_m, row.y_m, row.heading_rad));
+    if (!distance_m) return fault(what + ": there is no obstacle " + conflict.obstacle);
+    if (std::abs(*distance_m - conflict.least_clearance_m) > kSlack_m) {
+      fault(what + fmt::format(": the clearance is {:.6f} m, not {:.6f} m", *distance_m,
+                               conflict.least_clearance_m));
+    }
+    if (*distance_m > 0.0 && *distance_m >= certificate_.clearance_m + kSlack_m) {
+      fault(what + fmt::format(": {:.6f} m is enough", *distance_m));
+    }
+  }
+
+  void check_moving(const std::vector<Stretch>& unproven) {
+    double reached_s = rows_.front().t_s;
+    for (const ProvenTime& span : certificate_.from_moving) {
+      if (!is_in_drive(span.from_s) || !is_in_drive(span.to_s) || span.to_s < span.from_s ||
+          span.from_s < reached_s - kSameTime_s) {
+        return fault("from_moving: the spans are out of order, or outside the drive");
+      }
+      check_moving_gap(reached_s, span.from_s, unproven);
+      reached_s = span.to_s;
+      check_moving_distance(span);
+    }
+    check_moving_gap(reached_s, rows_.back().t_s, unproven);
+    if (certificate_.from_moving.empty() && rows_.front().t_s == rows_.back().t_s &&
+        !is_within(reached_s, reached_s, unproven)) {
+      fault("from_moving: nothing is said of the drive");
+    }
+  }
+
+  void check_moving_gap(double from_s, double to_s, const std::vector<Stretch>& unproven) {
+    if (to_s - from_s <= kSameTime_s || is_within(from_s, to_s, unproven)) return;
+    fault(fmt::format("from_moving: nothing is said of {:.6f} s to {:.6f} s", from_s, to_s));
+  }
+
+  void check_moving_distance(const ProvenTime& span) {
+    const double middle_s = 0.5 * (span.from_s + span.to_s);
+    const DriveRow row = at_time(middle_s);
+    const double motion_m = std::max(way_m(span.from_s, middle_s), way_m(middle_s, span.to_s));
+    const double needed_m = span.at_least_m + motion_m;
+    const bool has_all =
+        is_promised(span.at_least_m) &&
+        movers_.keep_away(body_.at(row.x_m, row.y_m, row.heading_rad),
+                          {span.from_s, span.to_s, rows_.front().t_s, rows_.back().t_s},
+                          needed_m - kSlack_m);
+    if (has_all) return;
+    fault(
+        fmt::format("from_moving: at {:.6f} s an obstacle is nearer than {:.6f} m, of which the "
+                    "body may move {:.6f} m",
+                    middle_s, needed_m, motion_m));
+  }
+
+  // How far a point of the body moves at most between two times.
+  double way_m(double from_s, double to_s) const {
+    double sum_m = 0.0;
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+      const DriveRow &a = rows_[i], &b = rows_[i + 1];
+      const double common_s = std::min(to_s, b.t_s) - std::max(from_s, a.t_s);
+      if (common_s <= 0.0 || b.t_s <= a.t_s) continue;
+      sum_m += common_s / (b.t_s - a.t_s) *
+               (std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) +
+                reach_m_ * std::abs(b.heading_rad - a.heading_rad));
+    }
+    return sum_m;
+  }
+
+  bool is_promised(double at_least_m) const {
+    return at_least_m > 0.0 && at_least_m >= certificate_.clearance_m;
   }
 
   void check_cover(std::string_view list, const std::vector<ProvenSpan>& spans,
@@ -207,8 +284,7 @@ class Check {
       const double distance_m =
           is_unknown ? obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m)
                      : obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
-      const bool is_promised = span.at_least_m > 0.0 && span.at_least_m >= certificate_.clearance_m;
-      if (is_promised && distance_m >= needed_m - kSlack_m) continue;
+      if (is_promised(span.at_least_m) && distance_m >= needed_m - kSlack_m) continue;
       fault(
           fmt::format("{}: at {:.6f} s the distance is {:.6f} m, and the body may move {:.6f} m: "
                       "that is no {:.6f} m",
@@ -227,12 +303,17 @@ class Check {
         least_m = std::min(least_m, span.at_least_m);
       }
     }
+    for (const ProvenTime& span : certificate_.from_moving) {
+      least_m = std::min(least_m, span.at_least_m);
+    }
     if (certificate_.certified_clearance_m <= least_m) return;
     fault(fmt::format("the spans certify {:.6f} m, not {:.6f} m", least_m,
                       certificate_.certified_clearance_m));
   }
 
   const AuditCertificate& certificate_;
+  BruteForceMovers movers_;
+  BodyOutline body_;
   std::vector<DriveRow> rows_;
   double reach_m_ = 0.0;
   std::optional<BruteForceObstacles> obstacles_;
@@ -244,8 +325,9 @@ class Check {
 std::vector<std::string> check_certificate(const AuditCertificate& certificate,
                                            const std::vector<map::OccupancyCell>& cells,
                                            double resolution_m,
-                                           const geometry::Trajectory& drive_in_source) {
-  return Check(certificate, cells, resolution_m, drive_in_source).run();
+                                           const geometry::Trajectory& drive_in_source,
+                                           std::span<const MovingObstacle> moving_in_source) {
+  return Check(certificate, cells, resolution_m, drive_in_source, moving_in_source).run();
 }
 
 }  // namespace roadbed::planning

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,14 @@ namespace roadbed::planning {
 /// measured over its whole height. Undecided stretches claim nothing; that a stretch is unknown is
 /// checked only in so far as all the rest is proven to be measured.
 ///
+/// Obstacles that move are looked at one by one: at the middle of each span all that are there at
+/// some time of it, at least as far away as the span promises plus what they and the body may move.
+///
 /// Cost: O(spans × boxes). Memory: of the columns within reach of the drive, 4 bytes each.
 std::vector<std::string> check_certificate(const AuditCertificate& certificate,
                                            const std::vector<map::OccupancyCell>& cells,
                                            double resolution_m,
-                                           const geometry::Trajectory& drive_in_source);
+                                           const geometry::Trajectory& drive_in_source,
+                                           std::span<const MovingObstacle> moving_in_source = {});
 
 }  // namespace roadbed::planning

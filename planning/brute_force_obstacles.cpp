@@ -82,6 +82,8 @@ std::size_t place_in_tile(std::int64_t x, std::int64_t y) {
 
 }  // namespace
 
+double corners_distance_m(const Corners& a, const Corners& b) { return distance_m(a, b); }
+
 BodyOutline::BodyOutline(const geometry::VehicleShape& vehicle, double margin_m)
     : rear_m_(-vehicle.rear_overhang_m - margin_m),
       front_m_(vehicle.length_m - vehicle.rear_overhang_m + margin_m),

@@ -29,6 +29,9 @@ class BodyOutline {
   double rear_m_, front_m_, side_m_;
 };
 
+/// Distance between two rectangles, given by their corners, 0 where they meet.
+double corners_distance_m(const BodyOutline::Corners& a, const BodyOutline::Corners& b);
+
 /// Occupied boxes of a height band, and columns of it that were not measured over all its height.
 /// Poses are those of the rear axle's centre.
 class BruteForceObstacles {

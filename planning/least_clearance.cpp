@@ -21,12 +21,13 @@ struct Open {
 
 class Search {
  public:
-  Search(const BodyProbe& probe, double tolerance_m) : probe_(probe), tolerance_m_(tolerance_m) {
+  Search(const Probe& probe, double tolerance_m) : probe_(probe), tolerance_m_(tolerance_m) {
     best_.found_m = best_.proven_m = probe.horizon_m();
     best_.at = probe.state_at(0, 0.0);
   }
 
   LeastClearance run() {
+    guess();
     for (std::size_t segment = 0; segment < probe_.segments(); ++segment) {
       open({segment, 0.0, 1.0}, 0.0);
     }
@@ -41,25 +42,46 @@ class Search {
   }
 
  private:
+  // A low distance to begin with keeps most spans out of the queue.
+  void guess() {
+    constexpr std::size_t looks = 64;
+    const std::size_t step = 1 + probe_.segments() / looks;
+    Span lowest;
+    double lowest_m = probe_.horizon_m();
+    for (std::size_t segment = 0; segment < probe_.segments(); segment += step) {
+      const Span whole{segment, 0.0, 1.0};
+      const double bound_m = probe_.lower_bound_m(whole, lowest_m);
+      if (bound_m >= lowest_m) continue;
+      lowest_m = bound_m;
+      lowest = whole;
+    }
+    look_at(lowest);
+  }
+
+  // Distance in the middle of the span, or what was found before if that is less.
+  double look_at(const Span& span) {
+    const auto nearest = probe_.nearest(span, best_.found_m);
+    if (nearest && (nearest->distance_m < best_.found_m || !best_.witness)) {
+      best_.found_m = nearest->distance_m;
+      best_.at = probe_.middle_of(span);
+      best_.witness = nearest->witness;
+      best_.obstacle = nearest->obstacle;
+    }
+    return nearest ? nearest->distance_m : best_.found_m;
+  }
+
   bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
 
   // Puts a span aside for good, or into the queue.
   void open(const Span& span, double known_lower_m) {
-    const double by_circles_m =
-        probe_.lower_bound_m(probe_.middle_of(span)) - probe_.motion_bound_m(span);
-    const double lower_m = std::max({0.0, known_lower_m, by_circles_m});
+    const double motion_m = probe_.motion_bound_m(span);
+    const double bound_m = probe_.lower_bound_m(span, best_.found_m + motion_m) - motion_m;
+    const double lower_m = std::max({0.0, known_lower_m, bound_m});
     if (lower_m < best_.found_m) queue_.push({span, lower_m});
   }
 
   void examine(const Open& lowest) {
-    const geometry::TrajectoryPoint state = probe_.middle_of(lowest.span);
-    const auto nearest = probe_.nearest(state, best_.found_m);
-    const double distance_m = nearest ? nearest->distance_m : best_.found_m;
-    if (nearest && (distance_m < best_.found_m || !best_.witness)) {
-      best_.found_m = distance_m;
-      best_.at = state;
-      best_.witness = nearest->witness;
-    }
+    const double distance_m = look_at(lowest.span);
     const double lower_m =
         std::max(lowest.lower_m, distance_m - probe_.motion_bound_m(lowest.span));
     if (is_settled(lower_m)) {
@@ -70,7 +92,7 @@ class Search {
     open(lowest.span.second_half(), lower_m);
   }
 
-  const BodyProbe& probe_;
+  const Probe& probe_;
   double tolerance_m_;
   LeastClearance best_;
   std::priority_queue<Open> queue_;
@@ -78,7 +100,7 @@ class Search {
 
 }  // namespace
 
-LeastClearance find_least_clearance(const BodyProbe& probe, double tolerance_m) {
+LeastClearance find_least_clearance(const Probe& probe, double tolerance_m) {
   return Search(probe, tolerance_m).run();
 }
 

@@ -3,8 +3,9 @@
 // Private to planning.
 
 #include <optional>
+#include <string>
 
-#include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/probe.h"
 
 namespace roadbed::planning {
 
@@ -14,11 +15,12 @@ struct LeastClearance {
   double proven_m = 0.0;  ///< nowhere less; found − proven ≤ tolerance
   geometry::TrajectoryPoint at;
   std::optional<map::Box2> witness;  ///< none: nothing within the horizon
+  std::string obstacle = {};         ///< the witness's id, if it moves
 };
 
 /// Best first: the span that may hold the least distance is halved until its motion bound closes
 /// the bracket. Distance as a function of time is Lipschitz with the motion bound [Piyavskii 1972,
 /// doi:10.1016/0041-5553(72)90115-2].
-LeastClearance find_least_clearance(const BodyProbe& probe, double tolerance_m);
+LeastClearance find_least_clearance(const Probe& probe, double tolerance_m);
 
 }  // namespace roadbed::planning

@@ -10,6 +10,8 @@ constexpr double kShortest_m = 0.5e-3;  // motion bound of a span of 1 mm
 
 constexpr double kMostSpans = 1e6;  // in a drive that is too near all along
 
+constexpr double kOver_m = 1e-9;  // a bound that is over by this is over, whatever the rounding
+
 enum class Label { clear, near, undecided };
 
 /// Neighbouring spans of one label.
@@ -21,7 +23,7 @@ struct Run {
 
 class Labeller {
  public:
-  Labeller(const BodyProbe& probe, double clearance_m, double tolerance_m)
+  Labeller(const Probe& probe, double clearance_m, double tolerance_m)
       : probe_(probe), clearance_m_(clearance_m), tolerance_m_(tolerance_m) {
     double whole_m = 0.0;
     for (std::size_t i = 0; i < probe.segments(); ++i)
@@ -52,18 +54,22 @@ class Labeller {
 
   // Labels the span unless it has to be halved.
   bool settle(const Span& span) {
-    const geometry::TrajectoryPoint state = probe_.middle_of(span);
     const double motion_m = probe_.motion_bound_m(span);
-    if (is_far(probe_.lower_bound_m(state) - motion_m)) return append(span, Label::clear);
+    const double enough_m = clearance_m_ + motion_m + kOver_m;
+    if (is_far(probe_.lower_bound_m(span, enough_m) - motion_m)) return append(span, Label::clear);
     const double within_m = std::min(clearance_m_ + motion_m, probe_.horizon_m());
-    const auto nearest = probe_.nearest(state, within_m);
+    const auto nearest = probe_.nearest(span, within_m);
     const double distance_m = nearest ? nearest->distance_m : within_m;
     if (is_far(distance_m - motion_m) || (!nearest && within_m < probe_.horizon_m())) {
       return append(span, Label::clear);
     }
     if (nearest && !is_far(distance_m)) {
       if (motion_m > tolerance_m_) return false;
-      return append(span, Label::near, Conflict{0.0, 0.0, distance_m, state, nearest->witness});
+      return append(span, Label::near,
+                    Conflict{.least_clearance_m = distance_m,
+                             .at = probe_.middle_of(span),
+                             .witness = nearest->witness,
+                             .obstacle = nearest->obstacle});
     }
     return motion_m <= kShortest_m && append(span, Label::undecided);
   }
@@ -115,14 +121,14 @@ class Labeller {
     last.to_s = next.to_s;
   }
 
-  const BodyProbe& probe_;
+  const Probe& probe_;
   double clearance_m_, tolerance_m_;
   std::vector<Run> runs_;
 };
 
 }  // namespace
 
-NearStretches find_near_stretches(const BodyProbe& probe, double clearance_m, double tolerance_m) {
+NearStretches find_near_stretches(const Probe& probe, double clearance_m, double tolerance_m) {
   return Labeller(probe, clearance_m, tolerance_m).run();
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "roadbed/planning/audit.h"
-#include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/probe.h"
 
 namespace roadbed::planning {
 
@@ -19,6 +19,6 @@ struct NearStretches {
 /// `tolerance_m` of motion, or too short to go on (1 mm of motion): undecided. An overlap or touch
 /// is always too near. Drives of over 40 km get a coarser tolerance, a millionth of their length.
 /// @pre clearance_m is less than the field's horizon.
-NearStretches find_near_stretches(const BodyProbe& probe, double clearance_m, double tolerance_m);
+NearStretches find_near_stretches(const Probe& probe, double clearance_m, double tolerance_m);
 
 }  // namespace roadbed::planning

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,70 +18,81 @@
 #include "roadbed/planning/audit_certificate.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/audit_svg.h"
+#include "roadbed/tools/report/from_audit.h"
+#include "roadbed/tools/report/from_map.h"
+#include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/support/audit_files.h"
+#include "roadbed/tools/support/audit_frames.h"
 #include "roadbed/tools/support/audit_json.h"
+#include "roadbed/tools/support/audit_subjects.h"
+#include "roadbed/tools/support/audited_drive.h"
 #include "roadbed/tools/support/certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/support/progress_bar.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 #include "roadbed/tools/support/vehicle_json.h"
 
 namespace roadbed::tools {
 namespace {
 
-using planning::AuditOptions;
-using planning::AuditReport;
 using planning::UnknownPolicy;
-
-bool overlap(const map::Box2& a, const map::Box2& b) {
-  return (a.min_in_source.array() <= b.max_in_source.array()).all() &&
-         (b.min_in_source.array() <= a.max_in_source.array()).all();
-}
-
-void extend(std::optional<map::Box2>& box, const Eigen::Vector2d& least,
-            const Eigen::Vector2d& most) {
-  if (!box) box = map::Box2{least, most};
-  box->min_in_source = box->min_in_source.cwiseMin(least);
-  box->max_in_source = box->max_in_source.cwiseMax(most);
-}
-
-std::optional<map::Box2> bounds_of(const std::vector<map::OccupancyCell>& cells) {
-  std::optional<map::Box2> box;
-  for (const map::OccupancyCell& cell : cells) {
-    const Eigen::Array2d centre = cell.centre_in_source.head<2>();
-    extend(box, centre - 0.5 * cell.size_m, centre + 0.5 * cell.size_m);
-  }
-  return box;
-}
-
-std::string text_of(const map::Box2& box) {
-  return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", box.min_in_source.x(),
-                     box.max_in_source.x(), box.min_in_source.y(), box.max_in_source.y());
-}
-
-std::vector<geometry::Ring> drivable_lanes(const map::RoadMap& road_map) {
-  std::vector<geometry::Ring> rings;
-  for (const map::Lane& lane : road_map.lanes()) {
-    if (!is_drivable(lane.type)) continue;
-    geometry::Ring ring;
-    for (const Eigen::Vector2d& point : lane.polygon) ring.push_back(road_map.to_source(point));
-    rings.push_back(std::move(ring));
-  }
-  return rings;
-}
 
 class AuditCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description(
-        "Prove that a drive keeps clear of occupied space, or show where it does not");
+        "Prove that drives keep clear of occupied space, or show where they do not");
     arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)");
-    arguments.add("--trajectory", trajectory_,
-                  "Drive to audit (.csv), poses of the rear axle, linear between rows; every point "
-                  "of the body is covered");
+    subjects_.declare(arguments);
     const Argument vehicle =
         arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
     const Argument map = arguments.add(
         "--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
+    arguments.add("--obstacles", obstacles_,
+                  "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
+                  "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
+                  "centre), in the drive's time and coordinates");
+    declare_question(arguments);
+    declare_outputs(arguments, {vehicle, map});
+    arguments.require([this] { return missing(); });
+    arguments.example(
+        "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
+        "--certificate proof.json\n"
+        "  roadbed audit --check proof.json\n"
+        "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
+        "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (!check_.empty()) {
+      const bool holds = check_certificate_file(check_, occupancy_, subjects_.file(), obstacles_,
+                                                json_, streams.out);
+      return holds ? Exit::ok : Exit::failed;
+    }
+    for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
+      if (!output.empty()) check_writable(output, force_);
+    }
+    const AuditQuestion question = asked();
+    std::optional<map::RoadMap> road_map;
+    if (!map_.empty()) road_map = map::load_map(map_);
+    const std::vector<AuditSubject> subjects = subjects_.list(road_map ? &*road_map : nullptr);
+    const Scene scene = make_scene(road_map, streams, common);
+    return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
+                                 : run_one(subjects.front(), question, scene, streams, common);
+  }
+
+ private:
+  /// What all drives are audited against.
+  struct Scene {
+    map::OccupancyMap occupancy;
+    std::optional<map::Box2> measured;
+    std::vector<geometry::Ring> lanes;  // of the map, if there is one
+    const map::RoadMap* road_map;
+  };
+
+  void declare_question(Arguments& arguments) {
     arguments.add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
         .within(0.0, 100.0)
         .with_default();
@@ -100,67 +111,51 @@ class AuditCommand : public Command {
         .add("--from-height", from_height_m_,
              "The vehicle's underside above the ground [m]; its top is the vehicle's height")
         .with_default();
+  }
+
+  void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
     arguments.flag("--json", json_, "Print one JSON document");
-    const Argument svg = arguments.add("--svg", svg_, "Draw the audit as a picture (.svg)");
+    const Argument svg =
+        arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)");
+    const Argument page = arguments.add("--report", report_,
+                                        "Write a page that plays the audit of one drive (.html)");
     const Argument certificate = arguments.add(
         "--certificate", certificate_,
-        "Write the proof (.json): spans of time, what holds in them, witnesses, hashes of "
-        "the inputs");
-    arguments
-        .add("--check", check_,
-             "Verify a certificate by brute force instead; its inputs are the files that it names, "
-             "or --occupancy and --trajectory")
-        .excludes(certificate)
-        .excludes(svg)
-        .excludes(vehicle)
-        .excludes(map);
+        "Write the proof of one drive (.json): spans of time, what holds in them, witnesses, "
+        "hashes of the inputs");
+    const Argument junit = arguments.add("--junit", junit_, "Write a test case per drive (.xml)");
+    const Argument geojson = arguments.add(
+        "--geojson", geojson_,
+        "Write stretches, conflicts and witnesses (.geojson), in the occupancy's coordinates");
+    const Argument saved =
+        arguments.add("--save-drive", saved_drive_, "Write the drive along a route or lane (.csv)");
+    Argument check = arguments.add(
+        "--check", check_,
+        "Verify a certificate by brute force instead; its inputs are the files that it names, "
+        "or --occupancy, --trajectory and --obstacles");
+    for (const Argument& other : {svg, page, certificate, junit, geojson, saved})
+      check.excludes(other);
+    for (const Argument& other : not_with_check) check.excludes(other);
     arguments.flag("--force", force_, "Replace outputs that exist");
-    arguments.require([this] { return missing(); });
-    arguments.example(
-        "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
-        "--certificate proof.json\n"
-        "  roadbed audit --check proof.json");
   }
 
-  Exit run(const Streams& streams, const CommonOptions& common) override {
-    if (!check_.empty()) {
-      const bool holds =
-          check_certificate_file(check_, occupancy_, trajectory_, json_, streams.out);
-      return holds ? Exit::ok : Exit::failed;
-    }
-    for (const auto& output : {svg_, certificate_}) {
-      if (!output.empty()) check_writable(output, force_);
-    }
-    const geometry::Trajectory drive = read_trajectory_csv(trajectory_);
-    const geometry::VehicleShape vehicle =
-        vehicle_.empty() ? geometry::VehicleShape{} : read_vehicle_json(vehicle_);
-    const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_);
-    const map::FieldRegion region = planning::audited_region(drive, vehicle, options_);
-    const auto lanes = check_frames(streams.err, common.quiet, occupancy, region.around);
-    const map::HeightBand band = height_band(vehicle);
-    const map::ClearanceField field(occupancy, band, region);
-    const AuditReport report = planning::audit(field, drive, vehicle, options_);
-
-    if (!svg_.empty()) {
-      write_output(svg_, audit_svg({drive, planning::inflated(vehicle, options_.inflate_m), report,
-                                    occupied_boxes(occupancy, band), lanes}));
-    }
-    if (!certificate_.empty()) {
-      const auto certificate = planning::certify(field, band, drive, vehicle, options_, report);
-      write_output(certificate_, write_certificate_json({.program = "roadbed " ROADBED_VERSION,
-                                                         .occupancy = certified_file(occupancy_),
-                                                         .trajectory = certified_file(trajectory_),
-                                                         .certificate = certificate}));
-    }
-    print(streams.out, report);
-    return report.verdict == planning::Verdict::clear ? Exit::ok : Exit::failed;
-  }
-
- private:
   std::string missing() const {
     if (!check_.empty()) return {};
     if (occupancy_.empty()) return "--occupancy";
-    return trajectory_.empty() ? "--trajectory" : "";
+    if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
+    if (!subjects_.is_swept()) {
+      return saved_drive_.empty() ? "" : "--lane, or --from and --to, for --save-drive";
+    }
+    const bool proves_nothing = !certificate_.empty() && saved_drive_.empty();
+    return proves_nothing ? "--save-drive, as a certificate is about a file" : "";
+  }
+
+  AuditQuestion asked() const {
+    AuditQuestion question{.vehicle = {}, .band = {}, .options = options_};
+    if (!vehicle_.empty()) question.vehicle = read_vehicle_json(vehicle_);
+    question.band = height_band(question.vehicle);
+    if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_);
+    return question;
   }
 
   map::HeightBand height_band(const geometry::VehicleShape& vehicle) const {
@@ -175,64 +170,136 @@ class AuditCommand : public Command {
                            .remedy = "lower --from-height"});
   }
 
-  // Says what lies apart from what; an occupancy apart from the map cannot be meant.
-  std::vector<geometry::Ring> check_frames(std::ostream& err, bool quiet,
-                                           const map::OccupancyMap& occupancy,
-                                           const map::Box2& drive) const {
-    const auto measured = bounds_of(occupancy.cells());
-    if (!quiet && (!measured || !overlap(*measured, drive))) {
-      fmt::print(err, "note: the drive ({}) lies outside the measured space ({})\n", text_of(drive),
-                 measured ? text_of(*measured) : "none");
+  Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
+                   const CommonOptions& common) const {
+    Scene scene{map::OccupancyMap::load(occupancy_), {}, {}, road_map ? &*road_map : nullptr};
+    scene.measured = measured_bounds(scene.occupancy);
+    if (!road_map) return scene;
+    scene.lanes = drivable_rings(*road_map);
+    check_overlap(scene.lanes, scene.measured, occupancy_.string());
+    const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy.crs();
+    if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
+      fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
+                 of_occupancy);
     }
-    if (map_.empty()) return {};
-    const map::RoadMap road_map = map::load_map(map_);
-    std::optional<map::Box2> roads;
-    std::vector<geometry::Ring> lanes = drivable_lanes(road_map);
-    for (const geometry::Ring& lane : lanes) {
-      for (const Eigen::Vector2d& point : lane) extend(roads, point, point);
-    }
-    if (roads && measured) check_overlap(*roads, *measured);
-    if (!quiet && !road_map.crs().empty() && !occupancy.crs().empty() &&
-        road_map.crs() != occupancy.crs()) {
-      fmt::print(err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", road_map.crs(),
-                 occupancy.crs());
-    }
-    return lanes;
+    return scene;
   }
 
-  void check_overlap(const map::Box2& roads, const map::Box2& measured) const {
-    if (overlap(roads, measured)) return;
-    throw map::InputError({.file = occupancy_.string(),
-                           .place = {},
-                           .element = {},
-                           .found = fmt::format("covers {}", text_of(measured)),
-                           .needed = fmt::format("the map's {}", text_of(roads)),
-                           .remedy = "bring map and occupancy into one frame"});
-  }
-
-  static std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
-                                               const map::HeightBand& band) {
-    std::vector<map::Box2> boxes;
-    for (const map::OccupancyCell& cell : occupancy.cells()) {
-      const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
-      if (cell.state != map::CellState::occupied) continue;
-      if (z_m + half_m <= band.from_m || z_m - half_m >= band.to_m) continue;
-      const Eigen::Array2d centre = cell.centre_in_source.head<2>();
-      boxes.push_back({centre - half_m, centre + half_m});
+  Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditQuestion& question,
+                  const Scene& scene, const Streams& streams, const CommonOptions& common) const {
+    if (!svg_.empty() || !certificate_.empty() || !report_.empty()) {
+      throw map::InputError({.file = "--svg, --report or --certificate",
+                             .place = {},
+                             .element = {},
+                             .found = "is about one drive, and --trajectory is a folder",
+                             .needed = {},
+                             .remedy = "give one file"});
     }
-    return boxes;
-  }
-
-  void print(std::ostream& out, const AuditReport& report) const {
+    ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    const std::vector<AuditedDrive> audits = audit_all(
+        scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+    write_files(audits, question, scene);
     if (json_) {
-      out << audit_json(report).dump(2) << '\n';
+      streams.out << text_of_json(audits_json(audits));
     } else {
-      out << audit_text(report);
+      streams.out << audits_table(audits);
+    }
+    return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::failed;
+  }
+
+  Exit run_one(const AuditSubject& subject, const AuditQuestion& question, const Scene& scene,
+               const Streams& streams, const CommonOptions& common) const {
+    AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
+    const map::FieldRegion region =
+        planning::audited_region(audited.drive, question.vehicle, options_);
+    if (!common.quiet && (!scene.measured || !overlap(*scene.measured, region.around))) {
+      fmt::print(streams.err, "note: the drive ({}) lies outside the measured space ({})\n",
+                 text_of(region.around), scene.measured ? text_of(*scene.measured) : "none");
+    }
+    const map::ClearanceField field(scene.occupancy, question.band, region);
+    audited.report =
+        planning::audit(field, audited.drive, question.vehicle, options_, question.moving);
+    if (!saved_drive_.empty()) write_output(saved_drive_, write_trajectory_csv(audited.drive));
+    write_picture(audited, question, scene);
+    write_report(audited, question, scene);
+    write_certificate(audited, question, field);
+    write_files({audited}, question, scene);
+    if (json_) {
+      streams.out << text_of_json(audit_json(audited));
+    } else {
+      streams.out << audit_text(audited.report);
+    }
+    return audited.is_clear() ? Exit::ok : Exit::failed;
+  }
+
+  // File names may hold bytes that are no UTF-8.
+  static std::string text_of_json(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  }
+
+  void write_picture(const AuditedDrive& audited, const AuditQuestion& question,
+                     const Scene& scene) const {
+    if (svg_.empty()) return;
+    write_output(
+        svg_,
+        audit_svg({audited.drive, planning::inflated(question.vehicle, options_.inflate_m),
+                   audited.report, occupied_boxes(scene.occupancy, question.band), scene.lanes}));
+  }
+
+  void write_report(const AuditedDrive& audited, const AuditQuestion& question,
+                    const Scene& scene) const {
+    if (report_.empty()) return;
+    const map::Box2 around =
+        planning::audited_region(audited.drive, question.vehicle, options_).around;
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
+    const Eigen::AlignedBox2d box(around.min_in_source - margin_m, around.max_in_source + margin_m);
+    AuditSurroundings page{.name = audited.name,
+                           .body = planning::inflated(question.vehicle, options_.inflate_m),
+                           .clearance_m = options_.clearance_m,
+                           .occupied = occupied_in(scene.occupancy, question.band, box),
+                           .lanes = {},
+                           .moving = question.moving,
+                           .command = "roadbed audit --occupancy " + occupancy_.string(),
+                           .version = "roadbed " ROADBED_VERSION,
+                           .crs = scene.occupancy.crs(),
+                           .sources = {source("occupancy", occupancy_)}};
+    if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
+    if (!subjects_.is_swept()) page.sources.push_back(source("trajectory", subjects_.file()));
+    write_output(report_, drive_report_html(report_of_audit(audited.drive, audited.report, page)));
+  }
+
+  static ReportSource source(const char* role, const std::filesystem::path& file) {
+    const CertifiedFile certified = certified_file(file);
+    return {.role = role, .name = certified.name, .xxhash = certified.xxhash};
+  }
+
+  void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
+                         const map::ClearanceField& field) const {
+    if (certificate_.empty()) return;
+    const auto certificate =
+        planning::certify(field, question.band, audited.drive, question.vehicle, options_,
+                          audited.report, question.moving);
+    const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
+    CertificateFile file{.program = "roadbed " ROADBED_VERSION,
+                         .occupancy = certified_file(occupancy_),
+                         .trajectory = certified_file(drive),
+                         .certificate = certificate};
+    if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
+    write_output(certificate_, write_certificate_json(file));
+  }
+
+  void write_files(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
+                   const Scene& scene) const {
+    if (!junit_.empty()) write_output(junit_, audits_junit(audits, occupancy_.string()));
+    if (!geojson_.empty()) {
+      write_output(geojson_, audits_geojson(audits, question, scene.occupancy.crs()));
     }
   }
 
-  std::filesystem::path occupancy_, trajectory_, vehicle_, map_, svg_, certificate_, check_;
-  AuditOptions options_;
+  std::filesystem::path occupancy_, vehicle_, map_, obstacles_, svg_, report_, certificate_, junit_,
+      geojson_, saved_drive_, check_;
+  AuditSubjects subjects_;
+  planning::AuditOptions options_;
   double ground_m_ = 0.0, from_height_m_ = map::HeightBand{}.from_m;
   bool json_ = false, force_ = false;
 };

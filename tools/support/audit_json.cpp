@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <vector>
+
+#include "roadbed/planning/judged_stretches.h"
 
 namespace roadbed::tools {
 namespace {
@@ -16,16 +20,36 @@ Json box_json(const map::Box2& box) {
           {"max_y_m", box.max_in_source.y()}};
 }
 
-Json conflict_json(const planning::Conflict& conflict) {
+Json state_json(const geometry::TrajectoryPoint& state) {
+  return {{"t_s", state.t_s},
+          {"x_m", state.x_m},
+          {"y_m", state.y_m},
+          {"heading_rad", state.heading_rad}};
+}
+
+Json id_json(const std::string& obstacle) { return obstacle.empty() ? Json() : Json(obstacle); }
+
+Json conflict_json(const planning::Conflict& conflict, const geometry::Trajectory& drive) {
   return {{"from_s", conflict.from_s},
           {"to_s", conflict.to_s},
+          {"from", state_json(drive.at(conflict.from_s))},
           {"least_clearance_m", conflict.least_clearance_m},
-          {"at",
-           {{"t_s", conflict.at.t_s},
-            {"x_m", conflict.at.x_m},
-            {"y_m", conflict.at.y_m},
-            {"heading_rad", conflict.at.heading_rad}}},
+          {"at", state_json(conflict.at)},
+          {"part", conflict.part},
+          {"obstacle", id_json(conflict.obstacle)},
           {"witness", box_json(conflict.witness)}};
+}
+
+Json judged_json(const AuditedDrive& audited) {
+  Json json = Json::array();
+  const geometry::Trajectory& drive = audited.drive;
+  for (const planning::JudgedStretch& stretch :
+       judged_stretches(audited.report, drive.start_s(), drive.end_s())) {
+    json.push_back({{"from_s", stretch.from_s},
+                    {"to_s", stretch.to_s},
+                    {"verdict", planning::name(stretch.verdict)}});
+  }
+  return json;
 }
 
 Json stretches_json(const std::vector<planning::Stretch>& stretches) {
@@ -36,23 +60,59 @@ Json stretches_json(const std::vector<planning::Stretch>& stretches) {
   return json;
 }
 
-std::string middle_of(const map::Box2& box) {
+// "the cell at (1.00, 2.00)", "obstacle 17 at (1.00, 2.00)".
+std::string thing_text(const map::Box2& box, const std::string& obstacle) {
   const Eigen::Vector2d middle = 0.5 * (box.min_in_source + box.max_in_source);
-  return fmt::format("({:.2f}, {:.2f})", middle.x(), middle.y());
+  return fmt::format("{} at ({:.2f}, {:.2f})",
+                     obstacle.empty() ? "the cell" : "obstacle " + obstacle, middle.x(),
+                     middle.y());
 }
 
 std::string least_text(const planning::AuditReport& report) {
   if (report.beyond_horizon) {
     return fmt::format("over {:.0f} m all along: nothing is nearer\n", report.least_clearance_m);
   }
-  return fmt::format("{:.3f} m at {:.3f} s, from the cell at {}; nowhere under {:.3f} m\n",
-                     report.least_clearance_m, report.least_clearance_at_s,
-                     middle_of(*report.witness), report.proven_clearance_m);
+  return fmt::format("{:.3f} m at {:.3f} s, {}, from {}; nowhere under {:.3f} m\n",
+                     report.least_clearance_m, report.least_clearance_at_s, report.part,
+                     thing_text(*report.witness, report.obstacle), report.proven_clearance_m);
+}
+
+constexpr std::array<std::string_view, 5> kOutcomes{"clear", "conflict", "unknown", "undecided",
+                                                    "unusable"};
+
+std::ptrdiff_t count(const std::vector<AuditedDrive>& audits, std::string_view outcome) {
+  return std::ranges::count(audits, outcome, &AuditedDrive::outcome);
+}
+
+std::string_view gravest(const std::vector<AuditedDrive>& audits) {
+  for (const std::string_view outcome : {"unusable", "conflict", "unknown", "undecided"}) {
+    if (count(audits, outcome) > 0) return outcome;
+  }
+  return "clear";
+}
+
+std::string table_row(const AuditedDrive& audited, std::size_t width) {
+  const std::string head = fmt::format("{:<{}}  {:<9}", audited.name, width, audited.outcome());
+  if (!audited.fault.empty()) return fmt::format("{}  {}\n", head, audited.fault);
+  const planning::AuditReport& report = audited.report;
+  std::string conflict;
+  if (!report.conflicts.empty()) {
+    const geometry::TrajectoryPoint from = audited.drive.at(report.conflicts.front().from_s);
+    conflict = fmt::format("{:.3f} s at ({:.2f}, {:.2f}), {}", from.t_s, from.x_m, from.y_m,
+                           report.conflicts.front().part);
+  }
+  std::string row = fmt::format(
+      "{}  {:>11}  {:>9.3f}  {:>7.1f} %  {}", head,
+      fmt::format("{}{:.3f}", report.beyond_horizon ? "over " : "", report.least_clearance_m),
+      report.least_clearance_at_s, 100.0 * report.unknown_share, conflict);
+  row.erase(row.find_last_not_of(' ') + 1);
+  return row + "\n";
 }
 
 }  // namespace
 
-Json audit_json(const planning::AuditReport& report) {
+Json audit_json(const AuditedDrive& audited) {
+  const planning::AuditReport& report = audited.report;
   Json json;
   json["verdict"] = std::string(name(report.verdict));
   json["least_clearance_m"] = report.least_clearance_m;
@@ -60,12 +120,16 @@ Json audit_json(const planning::AuditReport& report) {
   json["least_clearance_at_s"] = report.least_clearance_at_s;
   json["beyond_horizon"] = report.beyond_horizon;
   json["witness"] = report.witness ? box_json(*report.witness) : Json();
+  json["obstacle"] = id_json(report.obstacle);
+  json["part"] = report.witness ? Json(report.part) : Json();
   json["unknown_share"] = report.unknown_share;
   json["conflicts"] = Json::array();
-  for (const auto& conflict : report.conflicts)
-    json["conflicts"].push_back(conflict_json(conflict));
+  for (const auto& conflict : report.conflicts) {
+    json["conflicts"].push_back(conflict_json(conflict, audited.drive));
+  }
   json["unknown"] = stretches_json(report.unknown);
   json["undecided"] = stretches_json(report.undecided);
+  json["stretches"] = judged_json(audited);
   return json;
 }
 
@@ -76,10 +140,11 @@ std::string audit_text(const planning::AuditReport& report) {
                       100.0 * report.unknown_share);
   for (const planning::Conflict& conflict : report.conflicts) {
     text += fmt::format(
-        "{:<17}{:.3f} s to {:.3f} s: {:.3f} m from the cell at {} at {:.3f} s, at ({:.2f}, "
+        "{:<17}{:.3f} s to {:.3f} s: {}, {:.3f} m from {} at {:.3f} s, at ({:.2f}, "
         "{:.2f})\n",
-        "conflict", conflict.from_s, conflict.to_s, conflict.least_clearance_m,
-        middle_of(conflict.witness), conflict.at.t_s, conflict.at.x_m, conflict.at.y_m);
+        "conflict", conflict.from_s, conflict.to_s, conflict.part, conflict.least_clearance_m,
+        thing_text(conflict.witness, conflict.obstacle), conflict.at.t_s, conflict.at.x_m,
+        conflict.at.y_m);
   }
   for (const planning::Stretch& stretch : report.unknown) {
     text += fmt::format(
@@ -92,6 +157,40 @@ std::string audit_text(const planning::AuditReport& report) {
                         "undecided", stretch.from_s, stretch.to_s);
   }
   return text;
+}
+
+Json audits_json(const std::vector<AuditedDrive>& audits) {
+  Json json;
+  json["verdict"] = gravest(audits);
+  json["counts"] = Json::object();
+  for (const std::string_view outcome : kOutcomes) {
+    json["counts"][std::string(outcome)] = count(audits, outcome);
+  }
+  json["audits"] = Json::array();
+  for (const AuditedDrive& audited : audits) {
+    Json one{{"drive", audited.name}};
+    if (audited.fault.empty()) {
+      one.update(audit_json(audited));
+    } else {
+      one.update(Json{{"verdict", audited.outcome()}, {"fault", audited.fault}});
+    }
+    json["audits"].push_back(std::move(one));
+  }
+  return json;
+}
+
+std::string audits_table(const std::vector<AuditedDrive>& audits) {
+  std::size_t width = 5;
+  for (const AuditedDrive& audited : audits) width = std::max(width, audited.name.size());
+  std::string text = fmt::format("{:<{}}  {:<9}  {:>11}  {:>9}  {:>9}  {}\n", "drive", width,
+                                 "verdict", "least [m]", "at [s]", "unknown", "first conflict");
+  for (const AuditedDrive& audited : audits) text += table_row(audited, width);
+  text += fmt::format("{} drives:", audits.size());
+  for (const std::string_view outcome : kOutcomes) {
+    text += fmt::format("{} {} {}", outcome == kOutcomes.front() ? "" : ",", count(audits, outcome),
+                        outcome);
+  }
+  return text + "\n";
 }
 
 }  // namespace roadbed::tools

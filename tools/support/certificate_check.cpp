@@ -11,6 +11,7 @@
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 
 namespace roadbed::tools {
@@ -19,24 +20,31 @@ namespace {
 namespace fs = std::filesystem;
 
 // A file that is not the one of the certificate proves nothing of it.
-void compare(const CertifiedFile& claimed, const fs::path& file, std::vector<std::string>& faults) {
-  const CertifiedFile found = certified_file(file);
+void compare(const CertifiedFile& claimed, const CertifiedFile& found,
+             std::vector<std::string>& faults) {
   if (found.xxhash == claimed.xxhash) return;
   faults.push_back(fmt::format("{} has the hash {}, the certificate is about one with {}",
-                               file.string(), found.xxhash, claimed.xxhash));
+                               found.name, found.xxhash, claimed.xxhash));
 }
 
 std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
-                                   const fs::path& trajectory_file, const fs::path& name) {
+                                   const fs::path& trajectory_file, const fs::path& obstacles_file,
+                                   const fs::path& name) {
   std::vector<std::string> faults;
-  compare(file.occupancy, occupancy_file, faults);
-  compare(file.trajectory, trajectory_file, faults);
+  compare(file.occupancy, certified_file(occupancy_file), faults);
+  compare(file.trajectory, certified_file(trajectory_file), faults);
+  std::vector<planning::MovingObstacle> moving;
+  if (file.obstacles) {
+    const fs::path from = obstacles_file.empty() ? fs::path(file.obstacles->name) : obstacles_file;
+    moving = read_moving_obstacles(from);
+    compare(*file.obstacles, certified_obstacles(from, moving), faults);
+  }
   if (!faults.empty()) return faults;
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
   const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_file);
   try {
     return planning::check_certificate(file.certificate, occupancy.cells(),
-                                       occupancy.resolution_m(), drive);
+                                       occupancy.resolution_m(), drive, moving);
   } catch (const std::length_error& too_long) {
     throw map::InputError({.file = name.string(),
                            .place = {},
@@ -61,8 +69,9 @@ void print(std::ostream& out, const CertificateFile& file, const std::vector<std
   out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
   out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(audit.verdict), file.program);
   out << fmt::format("{:<17}{}\n", "question", question_of(audit));
-  out << fmt::format("{:<17}{} from occupied space, {} from unknown space\n", "proven spans",
-                     audit.from_occupied.size(), audit.from_unknown.size());
+  out << fmt::format("{:<17}{} from occupied space, {} from unknown space, {} from what moves\n",
+                     "proven spans", audit.from_occupied.size(), audit.from_unknown.size(),
+                     audit.from_moving.size());
   if (audit.conflicts.empty() && audit.undecided.empty()) {
     out << fmt::format("{:<17}{:.3f} m\n", "certified", audit.certified_clearance_m);
   }
@@ -72,11 +81,12 @@ void print(std::ostream& out, const CertificateFile& file, const std::vector<std
 }  // namespace
 
 bool check_certificate_file(const fs::path& certificate, const fs::path& occupancy,
-                            const fs::path& trajectory, bool json, std::ostream& out) {
+                            const fs::path& trajectory, const fs::path& obstacles, bool json,
+                            std::ostream& out) {
   const CertificateFile file = read_certificate_json(certificate);
-  const std::vector<std::string> faults =
-      faults_of(file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy,
-                trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, certificate);
+  const std::vector<std::string> faults = faults_of(
+      file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy,
+      trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, obstacles, certificate);
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},
                                   {"question", question_of(file.certificate)},

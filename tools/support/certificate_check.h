@@ -10,6 +10,7 @@ namespace roadbed::tools {
 /// @throws InputError if a file is unusable.
 bool check_certificate_file(const std::filesystem::path& certificate,
                             const std::filesystem::path& occupancy,
-                            const std::filesystem::path& trajectory, bool json, std::ostream& out);
+                            const std::filesystem::path& trajectory,
+                            const std::filesystem::path& obstacles, bool json, std::ostream& out);
 
 }  // namespace roadbed::tools

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/support/json_node.h"
+#include "roadbed/tools/support/obstacles_csv.h"
 
 namespace roadbed::tools {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using planning::AuditCertificate;
 using planning::Conflict;
 using planning::ProvenSpan;
+using planning::ProvenTime;
 using planning::Stretch;
 using planning::UnknownPolicy;
 using planning::Verdict;
@@ -49,6 +51,12 @@ Ordered spans_json(const std::vector<ProvenSpan>& spans) {
   return json;
 }
 
+Ordered times_json(const std::vector<ProvenTime>& spans) {
+  Ordered json = Ordered::array();
+  for (const ProvenTime& span : spans) json.push_back({span.from_s, span.to_s, span.at_least_m});
+  return json;
+}
+
 Ordered stretches_json(const std::vector<Stretch>& stretches) {
   Ordered json = Ordered::array();
   for (const Stretch& stretch : stretches) json.push_back({stretch.from_s, stretch.to_s});
@@ -65,6 +73,7 @@ Ordered conflicts_json(const std::vector<Conflict>& conflicts) {
                     {"at_s", conflict.at.t_s},
                     {"clearance_m", conflict.least_clearance_m},
                     {"witness_m", {least.x(), least.y(), most.x(), most.y()}}});
+    if (!conflict.obstacle.empty()) json.back()["obstacle"] = conflict.obstacle;
   }
   return json;
 }
@@ -147,6 +156,15 @@ std::vector<ProvenSpan> read_spans(const JsonNode& node) {
   return spans;
 }
 
+std::vector<ProvenTime> read_times(const JsonNode& node) {
+  std::vector<ProvenTime> spans;
+  for (const JsonNode& element : node.elements()) {
+    const std::vector<JsonNode> values = numbers(element, 3);
+    spans.push_back({values[0].number(kAny), values[1].number(kAny), values[2].number(kLength_m)});
+  }
+  return spans;
+}
+
 std::vector<Stretch> read_stretches(const JsonNode& node) {
   std::vector<Stretch> stretches;
   for (const JsonNode& element : node.elements()) {
@@ -159,7 +177,7 @@ std::vector<Stretch> read_stretches(const JsonNode& node) {
 std::vector<Conflict> read_conflicts(const JsonNode& node) {
   std::vector<Conflict> conflicts;
   for (const JsonNode& element : node.elements()) {
-    element.require_object({"from_s", "to_s", "at_s", "clearance_m", "witness_m"});
+    element.require_object({"from_s", "to_s", "at_s", "clearance_m", "witness_m", "obstacle"});
     const std::vector<JsonNode> witness = numbers(element.at("witness_m"), 4);
     Conflict conflict;
     conflict.from_s = element.at("from_s").number(kAny);
@@ -168,6 +186,7 @@ std::vector<Conflict> read_conflicts(const JsonNode& node) {
     conflict.least_clearance_m = element.at("clearance_m").number(kLength_m);
     conflict.witness = {{witness[0].number(kAny), witness[1].number(kAny)},
                         {witness[2].number(kAny), witness[3].number(kAny)}};
+    if (const auto id = element.find("obstacle")) conflict.obstacle = id->text();
     conflicts.push_back(conflict);
   }
   return conflicts;
@@ -181,6 +200,13 @@ CertifiedFile certified_file(const std::filesystem::path& file) {
           .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
 }
 
+CertifiedFile certified_obstacles(const std::filesystem::path& file,
+                                  const std::vector<planning::MovingObstacle>& obstacles) {
+  const std::string text = obstacles_text(obstacles);
+  return {.name = file.string(),
+          .xxhash = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()))};
+}
+
 std::string write_certificate_json(const CertificateFile& file) {
   const AuditCertificate& audit = file.certificate;
   Ordered json;
@@ -188,6 +214,7 @@ std::string write_certificate_json(const CertificateFile& file) {
   json["program"] = file.program;
   json["occupancy"] = file_json(file.occupancy);
   json["trajectory"] = file_json(file.trajectory);
+  if (file.obstacles) json["obstacles"] = file_json(*file.obstacles);
   json["vehicle"] = vehicle_json(audit.vehicle);
   json["heights_m"] = {audit.band.from_m, audit.band.to_m};
   json["clearance_m"] = audit.clearance_m;
@@ -200,6 +227,7 @@ std::string write_certificate_json(const CertificateFile& file) {
   json["undecided"] = stretches_json(audit.undecided);
   json["from_occupied"] = spans_json(audit.from_occupied);
   json["from_unknown"] = spans_json(audit.from_unknown);
+  if (file.obstacles) json["from_moving"] = times_json(audit.from_moving);
   return text_of(json);
 }
 
@@ -209,7 +237,7 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   node.require_object({"format", "program", "occupancy", "trajectory", "vehicle", "heights_m",
                        "clearance_m", "inflate_m", "unknown_counts_as", "verdict",
                        "certified_clearance_m", "conflicts", "unknown", "undecided",
-                       "from_occupied", "from_unknown"});
+                       "from_occupied", "from_unknown", "obstacles", "from_moving"});
   if (const JsonNode format = node.at("format"); format.text() != kFormat) {
     format.refuse(fmt::format("is \"{}\"", format.text()), fmt::format("\"{}\"", kFormat),
                   "write the certificate with this version of roadbed");
@@ -231,6 +259,10 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   audit.undecided = read_stretches(node.at("undecided"));
   audit.from_occupied = read_spans(node.at("from_occupied"));
   audit.from_unknown = read_spans(node.at("from_unknown"));
+  if (const auto obstacles = node.find("obstacles")) {
+    file.obstacles = read_file_entry(*obstacles);
+    audit.from_moving = read_times(node.at("from_moving"));
+  }
   return file;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/planning/audit_certificate.h"
 
@@ -20,8 +22,14 @@ CertifiedFile certified_file(const std::filesystem::path& file);
 struct CertificateFile {
   std::string program;  ///< name and version of what wrote it
   CertifiedFile occupancy, trajectory;
+  /// Of what moves, if anything does; the hash is that of the obstacles, not of the file's bytes,
+  /// since a scenario names other files.
+  std::optional<CertifiedFile> obstacles = {};
   planning::AuditCertificate certificate;
 };
+
+CertifiedFile certified_obstacles(const std::filesystem::path& file,
+                                  const std::vector<planning::MovingObstacle>& obstacles);
 
 /// The JSON of a certificate; reading it gives the same numbers, bit for bit. A span is written as
 /// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`.

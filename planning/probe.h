@@ -1,0 +1,66 @@
+#pragma once
+
+// Private to planning.
+
+#include <optional>
+#include <string>
+
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+
+namespace roadbed::planning {
+
+/// A part of one segment of a drive, between two of its rows: `from`, `to` in 0 … 1.
+struct Span {
+  std::size_t segment = 0;
+  double from = 0.0, to = 1.0;
+
+  double middle() const { return 0.5 * (from + to); }
+  Span first_half() const { return {segment, from, middle()}; }
+  Span second_half() const { return {segment, middle(), to}; }
+};
+
+/// What the audit asks of the things around a drive: how far the body is from them in the middle of
+/// a span, and how much that may change within it.
+class Probe {
+ public:
+  Probe(const geometry::Trajectory& drive, double reach_m) : drive_(drive), reach_m_(reach_m) {}
+  virtual ~Probe() = default;
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+
+  std::size_t segments() const;  ///< at least one: a single row is a segment without motion
+  geometry::TrajectoryPoint state_at(std::size_t segment, double share) const;
+  geometry::TrajectoryPoint middle_of(const Span& span) const {
+    return state_at(span.segment, span.middle());
+  }
+
+  /// The distance changes by no more than this between the span's middle and any other time of it.
+  /// Here that of things at rest: half the way of the axle plus half the turn times the body's
+  /// reach, and rounding.
+  virtual double motion_bound_m(const Span& span) const;
+
+  /// Lower bound of the distance in the middle of a span; at most the horizon. A bound of
+  /// `enough_m` or more need not be the best that is known.
+  virtual double lower_bound_m(const Span& span, double enough_m) const = 0;
+
+  struct Near {
+    double distance_m;
+    map::Box2 witness;          ///< box around the nearest thing
+    std::string obstacle = {};  ///< its id, if it is one that moves
+  };
+  /// Exact distance in the middle of a span; none if it is over `within_m` or the horizon.
+  virtual std::optional<Near> nearest(const Span& span, double within_m) const = 0;
+
+  virtual double horizon_m() const = 0;
+
+ protected:
+  const geometry::Trajectory& drive() const { return drive_; }
+  geometry::Pose2 middle_pose_of(const Span& span) const;
+
+ private:
+  const geometry::Trajectory& drive_;
+  double reach_m_;
+};
+
+}  // namespace roadbed::planning

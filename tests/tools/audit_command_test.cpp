@@ -1,0 +1,228 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+
+/// A post at (10.05, 1.05), one cell of 0.1 m wide, from the ground to 2 m.
+std::string post_pcd() {
+  std::string points;
+  int count = 0;
+  for (double z = 0.05; z < 2.0; z += 0.05, ++count) {
+    points += "10.05 1.05 " + std::to_string(z) + "\n";
+  }
+  const std::string number = std::to_string(count);
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + number +
+         "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + number + "\nDATA ascii\n" + points;
+}
+
+std::string along_x_csv(double y) {
+  return "t_s,x_m,y_m,heading_rad\n0,0," + std::to_string(y) + ",0\n10,20," + std::to_string(y) +
+         ",0\n";
+}
+
+class AuditCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string cloud = folder_.write("post.pcd", post_pcd());
+    ASSERT_EQ(run_roadbed({"occupancy", "build", cloud, "-o", octree_, "--quiet"}).status, 0);
+    std::filesystem::create_directories(folder_ / "drives/far/deeper");
+    folder_.write("drives/hit.csv", along_x_csv(1.0));
+    folder_.write("drives/near.csv", along_x_csv(0.0));
+    folder_.write("drives/far/deeper/trajectory.csv", along_x_csv(-5.0));
+    folder_.write("drives/far/deeper/other.csv", "not a drive");
+    folder_.write("drives/broken.csv", "t_s,x_m\n0,1\n");
+  }
+
+  ProgramRun audit(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"audit", "--occupancy", octree_, "--unknown", "free"});
+    return run_roadbed(more);
+  }
+
+  TemporaryFolder folder_;
+  std::string octree_ = folder_ / "post.bt", drives_ = folder_ / "drives";
+};
+
+TEST_F(AuditCommand, OfAFolderListsEveryDriveAndOneBrokenFileDoesNotStopTheRest) {
+  const ProgramRun run = audit({"--trajectory", drives_, "--json"});
+  EXPECT_EQ(run.status, 1);
+  const Json json = Json::parse(run.out);
+  EXPECT_EQ(json.at("verdict"), "unusable");
+  EXPECT_EQ(json.at("counts").at("clear"), 2);
+  ASSERT_EQ(json.at("audits").size(), 4u);
+  const auto audit_of = [&](std::size_t i, const char* drive) {
+    EXPECT_EQ(json.at("audits").at(i).at("drive"), drive);
+    return json.at("audits").at(i);
+  };
+  EXPECT_THAT(audit_of(0, "broken.csv").at("fault").get<std::string>(), HasSubstr("y_m"));
+  EXPECT_NEAR(audit_of(1, "far/deeper/trajectory.csv").at("least_clearance_m").get<double>(),
+              6.0 - 0.805, 0.02);
+  EXPECT_EQ(audit_of(2, "hit.csv").at("verdict"), "conflict");
+  EXPECT_NEAR(audit_of(3, "near.csv").at("least_clearance_m").get<double>(), 1.0 - 0.805, 0.02);
+  const ProgramRun table = audit({"--trajectory", drives_});
+  EXPECT_THAT(table.out, HasSubstr("\n4 drives: 2 clear, 1 conflict, 0 unknown, 0 undecided, "
+                                   "1 unusable\n"));
+}
+
+TEST_F(AuditCommand, SaysTheSameForAnyNumberOfThreads) {
+  for (const std::vector<std::string>& form : {std::vector<std::string>{}, {"--json"}}) {
+    std::vector<std::string> one{"--trajectory", drives_, "--threads", "1"}, many = one;
+    many.back() = "3";
+    one.insert(one.end(), form.begin(), form.end());
+    many.insert(many.end(), form.begin(), form.end());
+    EXPECT_EQ(audit(one).out, audit(many).out);
+  }
+}
+
+TEST_F(AuditCommand, NamesTimePlaceAndPartOfTheFirstConflictAndTheVerdictOfEachStretch) {
+  const Json json = Json::parse(audit({"--trajectory", folder_ / "drives/hit.csv", "--json"}).out);
+  const Json& conflict = json.at("conflicts").at(0);
+  // At 2 m/s the front, 3.6767 m ahead of the axle, meets the post at 10 m.
+  const double meets_s = (10.0 - 3.6767171) / 2.0;
+  EXPECT_NEAR(conflict.at("from_s").get<double>(), meets_s, 0.025);
+  EXPECT_NEAR(conflict.at("from").at("x_m").get<double>(), 2.0 * meets_s, 0.05);
+  EXPECT_EQ(conflict.at("part"), "front");
+  ASSERT_EQ(json.at("stretches").size(), 3u);
+  EXPECT_EQ(json.at("stretches").at(0).at("verdict"), "clear");
+  EXPECT_EQ(json.at("stretches").at(1).at("verdict"), "conflict");
+  EXPECT_EQ(json.at("stretches").at(1).at("from_s"), conflict.at("from_s"));
+  EXPECT_EQ(json.at("stretches").at(2).at("to_s"), 10.0);
+  const Json near = Json::parse(audit({"--trajectory", folder_ / "drives/near.csv", "--json"}).out);
+  EXPECT_THAT(near.at("part").get<std::string>(), HasSubstr("left"));
+}
+
+TEST_F(AuditCommand, WritesATestCasePerDrive) {
+  const std::string junit = folder_ / "audit.xml";
+  EXPECT_EQ(audit({"--trajectory", drives_, "--junit", junit}).status, 1);
+  const std::string xml = bytes_of(junit);
+  EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\""));
+  EXPECT_THAT(xml, HasSubstr("name=\"hit.csv\">\n      <failure message=\"conflict\">"));
+  EXPECT_THAT(xml, HasSubstr("name=\"broken.csv\">\n      <error message="));
+}
+
+TEST_F(AuditCommand, WritesStretchesConflictsAndWitnessesAsGeoJson) {
+  const std::string file = folder_ / "audit.geojson";
+  EXPECT_EQ(audit({"--trajectory", folder_ / "drives/hit.csv", "--geojson", file}).status, 1);
+  const Json json = Json::parse(bytes_of(file));
+  EXPECT_EQ(json.at("type"), "FeatureCollection");
+  std::vector<std::string> kinds;
+  for (const Json& feature : json.at("features")) {
+    kinds.push_back(feature.at("properties").at("kind"));
+    if (kinds.back() != "witness") continue;
+    const Json& ring = feature.at("geometry").at("coordinates").at(0);
+    EXPECT_EQ(ring.at(0), ring.at(4));
+    EXPECT_NEAR(ring.at(0).at(0).get<double>(), 10.0, 1e-6);
+    EXPECT_NEAR(ring.at(0).at(1).get<double>(), 1.0, 1e-6);
+  }
+  EXPECT_THAT(kinds, testing::ElementsAre("stretch", "stretch", "stretch", "conflict", "witness"));
+}
+
+TEST_F(AuditCommand, SweepsALaneOfTheMapAtAnOffsetAndProvesIt) {
+  const std::string map = data_folder() / "town.xodr", town = data_folder() / "town.bt";
+  const auto sweep = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"audit", "--occupancy", town, "--map", map, "--lane", "lane:1/0/-1",
+                               "--unknown", "free", "--speed", "36", "--force"});
+    return run_roadbed(more);
+  };
+  const std::string saved = folder_ / "lane.csv", proof = folder_ / "proof.json";
+  const ProgramRun centre = sweep({"--save-drive", saved, "--certificate", proof, "--json"});
+  ASSERT_EQ(centre.status, 0) << centre.err;
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+  const ProgramRun aside = sweep({"--offset", "0.5", "--json"});
+  const double least_m = Json::parse(centre.out).at("least_clearance_m").get<double>();
+  // What is nearest stands to the right: half a metre to the left is half a metre more.
+  EXPECT_NEAR(Json::parse(aside.out).at("least_clearance_m").get<double>(), least_m + 0.5, 0.02);
+  // The lane is 15 m long: 1.5 s at 36 km/h.
+  EXPECT_THAT(bytes_of(saved), HasSubstr("\n1.5,"));
+}
+
+TEST_F(AuditCommand, SweepsARoute) {
+  const std::string map = data_folder() / "town.xodr", town = data_folder() / "town.bt";
+  const ProgramRun run =
+      run_roadbed({"audit", "--occupancy", town, "--map", map, "--from", "lane:1/0/-1", "--to",
+                   "lane:1/1/-1@5", "--unknown", "free", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NEAR(Json::parse(run.out).at("stretches").at(0).at("to_s").get<double>(),
+              20.0 / (30.0 / 3.6), 0.05);
+}
+
+TEST_F(AuditCommand, SeesWhatMovesBesideTheOccupancyAndProvesIt) {
+  // At 2 m/s along y = -5; a box comes the other way and passes 0.195 m beside, at second 5.
+  const std::string drive = folder_ / "drives/far/deeper/trajectory.csv";
+  const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
+  const std::string beside =
+      folder_.write("beside.csv", header + "0,van,20,-3,3.14159,4,2\n10,van,0,-3,3.14159,4,2\n");
+  const std::string proof = folder_ / "proof.json";
+  const ProgramRun clear =
+      audit({"--trajectory", drive, "--obstacles", beside, "--certificate", proof, "--json"});
+  ASSERT_EQ(clear.status, 0) << clear.err;
+  EXPECT_NEAR(Json::parse(clear.out).at("least_clearance_m").get<double>(), 0.195, 0.02);
+  EXPECT_EQ(Json::parse(clear.out).at("obstacle"), "van");
+  const ProgramRun holds = run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
+
+  const std::string against =
+      folder_.write("against.csv", header + "0,van,20,-5,3.14159,4,2\n10,van,0,-5,3.14159,4,2\n");
+  const ProgramRun hit = audit({"--trajectory", drive, "--obstacles", against, "--json"});
+  EXPECT_EQ(hit.status, 1);
+  const Json conflict = Json::parse(hit.out).at("conflicts").at(0);
+  EXPECT_EQ(conflict.at("obstacle"), "van");
+  EXPECT_EQ(conflict.at("part"), "front");
+  // Fronts 3.6767 m ahead of the axle and 2 m ahead of the van's centre close at 4 m/s.
+  EXPECT_NEAR(conflict.at("from_s").get<double>(), (20.0 - 3.6767171 - 2.0) / 4.0, 0.025);
+  const ProgramRun mixed = run_roadbed({"audit", "--check", proof, "--obstacles", against});
+  EXPECT_EQ(mixed.status, 1);
+  EXPECT_THAT(mixed.out, HasSubstr("the certificate is about one with"));
+}
+
+TEST_F(AuditCommand, WritesAPageThatPlaysTheAudit) {
+  const std::string page = folder_ / "audit.html";
+  EXPECT_EQ(audit({"--trajectory", folder_ / "drives/hit.csv", "--report", page}).status, 1);
+  const std::string html = bytes_of(page);
+  EXPECT_THAT(html, HasSubstr("conflict: least clearance 0.00 m"));
+  EXPECT_THAT(html, HasSubstr("conflict begins: occupied space, front"));
+  EXPECT_THAT(html, HasSubstr("proven clearance"));
+}
+
+TEST_F(AuditCommand, TakesWhatMovesFromScenarios) {
+  const std::string drive = folder_ / "drives/near.csv";
+  for (const char* scenario : {"scenarios/pass_lorry.json", "scenarios/slower_lead.json"}) {
+    const ProgramRun run =
+        audit({"--trajectory", drive, "--obstacles", data_folder() / scenario, "--json"});
+    EXPECT_TRUE(Json::parse(run.out).contains("verdict")) << run.err;
+  }
+}
+
+TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
+  const auto expect = [](const ProgramRun& run, int status, const char* reason) {
+    EXPECT_EQ(run.status, status);
+    EXPECT_THAT(run.out + run.err, HasSubstr(reason));
+  };
+  const std::string one = folder_ / "drives/near.csv";
+  expect(audit({}), 2, "just one of --trajectory, --lane, and --from with --to");
+  expect(audit({"--trajectory", one, "--lane", "lane:1"}), 2, "just one of");
+  expect(audit({"--lane", "lane:1/0/-1"}), 2, "--map");
+  expect(audit({"--trajectory", one, "--save-drive", folder_ / "x.csv"}), 2, "--save-drive");
+  const std::string map = data_folder() / "town.xodr";
+  expect(audit({"--lane", "lane:1/0/-1", "--map", map, "--certificate", folder_ / "c.json"}), 2,
+         "--save-drive");
+  expect(audit({"--trajectory", drives_, "--svg", folder_ / "x.svg"}), 1, "one drive");
+  std::filesystem::create_directories(folder_ / "empty");
+  expect(audit({"--trajectory", folder_ / "empty"}), 1, "no drive");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.svg"));
+}
+
+}  // namespace
+}  // namespace roadbed::tests

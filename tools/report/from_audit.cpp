@@ -1,0 +1,147 @@
+#include "roadbed/tools/report/from_audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "roadbed/planning/judged_stretches.h"
+
+namespace roadbed::tools {
+namespace {
+
+using planning::AuditReport;
+using planning::Verdict;
+
+constexpr double kShownBelow_m = 5.0;  // more room is a gap in the plot
+
+Tone page_tone(Verdict verdict) {
+  if (verdict == Verdict::clear) return Tone::good;
+  return verdict == Verdict::conflict ? Tone::bad : Tone::open;
+}
+
+std::string thing_of(const std::string& obstacle) {
+  return obstacle.empty() ? "occupied space" : "obstacle " + obstacle;
+}
+
+ReportVerdict verdict_of(const AuditReport& report) {
+  if (report.beyond_horizon) {
+    return {page_tone(report.verdict), fmt::format("{}: nothing within {:.0f} m",
+                                                   name(report.verdict), report.least_clearance_m)};
+  }
+  return {page_tone(report.verdict),
+          fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}", name(report.verdict),
+                      report.least_clearance_m, report.least_clearance_at_s, report.part,
+                      thing_of(report.obstacle))};
+}
+
+ReportPlot clearance_by_row(const AuditReport& report, double clearance_m) {
+  ReportPlot plot;
+  plot.title = "Clearance up to 5 m";
+  plot.unit = "m";
+  ReportSeries series{.name = "to the nearest thing", .values = {}};
+  for (const AuditReport::Sample& sample : report.profile) {
+    plot.t_s.push_back(sample.t_s);
+    series.values.push_back(sample.clearance_m < kShownBelow_m
+                                ? sample.clearance_m
+                                : std::numeric_limits<double>::quiet_NaN());
+  }
+  plot.series.push_back(std::move(series));
+  plot.lower = clearance_m;
+  return plot;
+}
+
+ReportPlot speed_by_row(const geometry::Trajectory& drive) {
+  ReportPlot plot;
+  plot.title = "Speed";
+  plot.unit = "m/s";
+  ReportSeries series{.name = "speed", .values = {}};
+  for (const geometry::TrajectoryPoint& row : drive.points()) {
+    plot.t_s.push_back(row.t_s);
+    series.values.push_back(row.speed_mps);
+  }
+  plot.series.push_back(std::move(series));
+  return plot;
+}
+
+std::vector<ReportEvent> events_of_audit(const AuditReport& report) {
+  std::vector<ReportEvent> events;
+  for (const planning::Conflict& conflict : report.conflicts) {
+    const std::string with = fmt::format("{}, {}", thing_of(conflict.obstacle), conflict.part);
+    events.push_back({conflict.from_s, Severity::fault, "conflict begins: " + with});
+    events.push_back({conflict.at.t_s, Severity::fault,
+                      fmt::format("{:.2f} m from {}", conflict.least_clearance_m, with)});
+  }
+  for (const planning::Stretch& stretch : report.unknown) {
+    events.push_back({stretch.from_s, Severity::warning, "near space that was not measured"});
+  }
+  std::ranges::stable_sort(events, {}, &ReportEvent::t_s);
+  return events;
+}
+
+std::string reason_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::clear:
+      return "proven to keep its clearance";
+    case Verdict::conflict:
+      return "nearer than its clearance";
+    case Verdict::unknown:
+      return "near space that was not measured";
+    case Verdict::undecided:
+      return "within 1 mm of its clearance";
+  }
+  return {};
+}
+
+std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m) {
+  return {{.name = report.beyond_horizon ? "clearance, at least" : "least clearance",
+           .value = report.least_clearance_m,
+           .unit = "m",
+           .bound = fmt::format("≥ {:.2f}", clearance_m),
+           .passed = report.conflicts.empty(),
+           .at_s = report.least_clearance_at_s},
+          {.name = "proven clearance",
+           .value = report.proven_clearance_m,
+           .unit = "m",
+           .bound = {},
+           .passed = true,
+           .at_s = {}},
+          {.name = "swept area never measured",
+           .value = 100.0 * report.unknown_share,
+           .unit = "%",
+           .bound = {},
+           .passed = true,
+           .at_s = {}}};
+}
+
+}  // namespace
+
+ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport& report,
+                            const AuditSurroundings& around) {
+  ReportInput input;
+  input.title = "Audit of " + around.name;
+  input.scenario = around.name;
+  input.verdict = verdict_of(report);
+  input.lanes = around.lanes;
+  input.occupied = around.occupied;
+  input.vehicle = around.body;
+  input.drive = drive;
+  for (const planning::MovingObstacle& moving : around.moving) {
+    input.obstacles.push_back(moving.obstacle);
+  }
+  input.plots = {clearance_by_row(report, around.clearance_m), speed_by_row(drive)};
+  input.events = events_of_audit(report);
+  for (const auto& stretch : judged_stretches(report, drive.start_s(), drive.end_s())) {
+    input.decisions.push_back({stretch.from_s, stretch.to_s, std::string(name(stretch.verdict)),
+                               reason_of(stretch.verdict)});
+  }
+  input.checks = checks_of(report, around.clearance_m);
+  input.command = around.command;
+  input.version = around.version;
+  input.crs = around.crs;
+  input.sources = around.sources;
+  return input;
+}
+
+}  // namespace roadbed::tools

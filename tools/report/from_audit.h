@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/planning/audit.h"
+#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/tools/report/report.h"
+
+namespace roadbed::tools {
+
+/// What the page of an audit shows besides the audit itself, all in source coordinates.
+struct AuditSurroundings {
+  std::string name;             ///< of the drive
+  geometry::VehicleShape body;  ///< as audited, with its margin
+  double clearance_m = 0.0;     ///< asked for
+  std::vector<map::Box2> occupied;
+  std::vector<ReportLane> lanes;
+  std::vector<planning::MovingObstacle> moving;
+  std::string command, version, crs;
+  std::vector<ReportSource> sources;
+};
+
+/// A page that plays an audited drive: clearance and speed along the way, a bar with the verdict of
+/// each stretch, an event where each conflict begins and where it is nearest.
+ReportInput report_of_audit(const geometry::Trajectory& drive, const planning::AuditReport& report,
+                            const AuditSurroundings& around);
+
+}  // namespace roadbed::tools

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/polygon.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/road_map.h"
+
+namespace roadbed::tools {
+
+/// Drivable lanes of a map as rings in source coordinates.
+std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map);
+
+/// Box around all measured space in plan view; none if nothing was measured.
+std::optional<map::Box2> measured_bounds(const map::OccupancyMap& occupancy);
+
+/// Whether they meet; touching counts.
+bool overlap(const map::Box2& a, const map::Box2& b);
+
+/// "x 0.0 to 10.0, y -5.0 to 5.0".
+std::string text_of(const map::Box2& box);
+
+/// An occupancy apart from the roads of a map cannot be meant.
+/// @param measured   of the occupancy.
+/// @param occupancy  the name of its file.
+/// @throws InputError if both have an extent and the two do not meet.
+void check_overlap(const std::vector<geometry::Ring>& lanes,
+                   const std::optional<map::Box2>& measured, const std::string& occupancy);
+
+/// Occupied cells of a height band in plan view, as they are; they may lie above one another.
+std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
+                                      const map::HeightBand& band);
+
+}  // namespace roadbed::tools
