@@ -193,8 +193,7 @@ std::vector<Passage> passages_of(const RouteNetwork& network, const ChangeSpan& 
   for (std::size_t i = 0; i < span.lanes.size(); ++i) {
     const LaneChain chain = chain_of(network, span.lanes[i]);
     const std::size_t entered = i == 0 ? 0 : plan.made[i - 1], left = plan.made[i];
-    Passage passage{{chain.begin() + static_cast<std::ptrdiff_t>(entered),
-                     chain.begin() + static_cast<std::ptrdiff_t>(left) + 1},
+    Passage passage{std::span(chain).subspan(entered, left + 1 - entered),
                     {i == 0 ? ends.from : 0.0, i + 1 == span.lanes.size() ? ends.to : 1.0},
                     {}};
     passage.changes.room_m = plan.room_m;

@@ -41,8 +41,10 @@ double middle_inside(const ShareRange& range) {
 /// Lays passages behind one another as legs, priced by both measures.
 class Assembly {
  public:
-  Assembly(const TravelRules& time, const TravelRules& distance, std::size_t passages)
-      : network_(time.network()), time_(time), distance_(distance) {
+  /// @param limit_known  of each lane of the network.
+  Assembly(const TravelRules& time, const TravelRules& distance,
+           const std::vector<bool>& limit_known, std::size_t passages)
+      : network_(time.network()), time_(time), distance_(distance), limit_known_(limit_known) {
     route_.legs.reserve(passages + passages / 4);
   }
 
@@ -83,7 +85,7 @@ class Assembly {
                  .length_m = (part.to - part.from) * last_m,
                  .cost_s = time_.travel_cost(last, part.from * last_m, part.to * last_m),
                  .cost_m = distance_.travel_cost(last, part.from * last_m, part.to * last_m),
-                 .limit_known = knows_limit(network_, lane)};
+                 .limit_known = limit_known_[lane]};
     if (i + 1 < passage.chain.size()) {
       const ShareRange& window = passage.changes.ranges[i];
       leg.change_window = {network_.mirrored_m(lane, window.from * lane_m),
@@ -103,6 +105,7 @@ class Assembly {
 
   const RouteNetwork& network_;
   const TravelRules &time_, &distance_;
+  const std::vector<bool>& limit_known_;
   Route route_;
 };
 
@@ -163,12 +166,17 @@ std::string place_name(std::size_t index, std::size_t count) {
 struct Router::Measures {
   RouteOptions by_time, by_distance;
   TravelRules time, distance;
+  std::vector<bool> limit_known;  ///< of each lane of the network
 
   Measures(const RouteNetwork& network, const RouteOptions& options)
       : by_time(with(options, RouteCost::time)),
         by_distance(with(options, RouteCost::distance)),
         time(network, by_time),
-        distance(network, by_distance) {}
+        distance(network, by_distance) {
+    for (std::uint32_t lane = 0; lane < network.lanes.size(); ++lane) {
+      limit_known.push_back(knows_limit(network, lane));
+    }
+  }
 
   static RouteOptions with(RouteOptions options, RouteCost cost) {
     options.cost = cost;
@@ -213,7 +221,8 @@ std::string Router::unfit(const map::LanePlace& place, const std::string& what) 
 }
 
 Route Router::route_along(const Way& way) const {
-  Assembly assembly(measures_->time, measures_->distance, way.passages.size());
+  Assembly assembly(measures_->time, measures_->distance, measures_->limit_known,
+                    way.passages.size());
   for (std::size_t i = 0; i < way.passages.size(); ++i) assembly.add(way.passages[i], i == 0);
   return std::move(assembly).take();
 }

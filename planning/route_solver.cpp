@@ -66,12 +66,15 @@ Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
   Way way{{}, path.cost};
   std::vector<Passage>& passages = way.passages;
   const std::vector<Passage>&first = start.ways[path.from_seed], &last = goal.ways[path.to_seed];
-  passages.reserve(first.size() + path.arcs.size() + last.size());
+  const auto advances = static_cast<std::size_t>(
+      std::count_if(path.arcs.begin(), path.arcs.end(),
+                    [&](std::uint32_t arc) { return graph_->is_advance(arc); }));
+  passages.reserve(first.size() + 1 + advances + last.size());
   passages.insert(passages.end(), first.begin(), first.end());
   // From here on the last passage is one that is entered, but not left yet.
   const auto enter = [&](std::uint32_t lane) {
     passages.emplace_back();
-    passages.back().chain.push_back(lane);
+    passages.back().chain = LaneList(lane);
   };
   const bool in_last = first.size() > 1;
   if (!in_last) enter(graph_->lane_of_node[start.seeds[path.from_seed].node]);

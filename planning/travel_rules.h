@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/planning/lane_list.h"
 #include "roadbed/planning/route_network.h"
 #include "roadbed/planning/route_options.h"
 
@@ -30,7 +31,7 @@ struct ChangePlan {
 
 /// The lanes that one passage uses, in turn, the part of it that is driven, and its changes.
 struct Passage {
-  std::vector<std::uint32_t> chain;
+  LaneList chain;
   ShareRange range;
   ChangePlan changes;
 };
