@@ -17,12 +17,14 @@ constexpr int kLeastIterations = 4;  // until the parameters have settled
 constexpr int kMostIterations = 40;
 constexpr double kAim = 0.9;         // of the tolerance, so that the last bit does not take long
 constexpr double kMostWeight = 1e4;  // beyond it the equations lose their digits
+constexpr double kWiderScale = 3.0;  // of the scale: detail of wider stretches is smoothed away
 constexpr double kMostKnotsPerScale = 4.0;
 constexpr double kScales[] = {1.0, 0.8, 0.65, 0.5};  // tried in turn where the curve bends too much
 
 struct Sample {
   double u;
   Eigen::Vector2d point, along;
+  double tolerance_m;
   double weight = 1.0;
 };
 
@@ -38,14 +40,20 @@ void check(const FitOptions& options) {
   }
 }
 
-std::vector<Sample> samples_along(const Polyline& line, std::size_t count) {
+std::vector<Sample> samples_along(const Polyline& line, std::size_t count,
+                                  const FitOptions& options) {
   const double step_m = line.length_m() / static_cast<double>(count);
   std::vector<Sample> samples;
   samples.reserve(count + 1);
   for (std::size_t i = 0; i <= count; ++i) {
     const double u = step_m * static_cast<double>(i);
     const Eigen::Vector2d along = (line.at(u + step_m) - line.at(u - step_m)).normalized();
-    samples.push_back({u, line.at(u), along});
+    samples.push_back({u, line.at(u), along, options.tolerance_m});
+    for (const WiderStretch& wider : options.wider) {
+      if (u < wider.from_m || u > wider.to_m) continue;
+      samples.back().tolerance_m = wider.tolerance_m;
+      samples.back().weight = std::pow(kWiderScale, -6);
+    }
   }
   return samples;
 }
@@ -71,10 +79,9 @@ class Fit {
   Fit(const Polyline& line, double scale_m, const FitOptions& options)
       : length_m_(line.length_m()),
         scale_m_(scale_m),
-        tolerance_m_(options.tolerance_m),
         spans_(static_cast<std::size_t>(
             std::max(1.0, std::ceil(length_m_ / options.knot_distance_m)))),
-        samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder))),
+        samples_(samples_along(line, std::max<std::size_t>(2 * spans_, kSplineOrder), options)),
         control_points_(first_control_points(line, spans_)),
         curve_(control_points_, knot_distance()) {}
 
@@ -82,7 +89,7 @@ class Fit {
     for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
       if (!solve()) break;  // keeps the curve before
       measure();
-      if (largest_move_m_ <= tolerance_m_ && iteration >= kLeastIterations) break;
+      if (keeps_tolerance_ && iteration >= kLeastIterations) break;
     }
     return {std::move(curve_), largest_move_m_, 0.0};
   }
@@ -118,6 +125,7 @@ class Fit {
     }
     const double first_m = feet.front().s_m, range_m = feet.back().s_m - first_m;
     largest_move_m_ = 0.0;
+    keeps_tolerance_ = true;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       Sample& sample = samples_[i];
       if (range_m > 0.0) {
@@ -125,19 +133,21 @@ class Fit {
       }
       const double move_m = std::abs(feet[i].d_m);
       largest_move_m_ = std::max(largest_move_m_, move_m);
-      const double excess = move_m / (kAim * tolerance_m_);
-      if (move_m > tolerance_m_) {
+      const double excess = move_m / (kAim * sample.tolerance_m);
+      if (move_m > sample.tolerance_m) {
+        keeps_tolerance_ = false;
         sample.weight = std::min(kMostWeight, sample.weight * excess * excess);
       }
     }
   }
 
-  double length_m_, scale_m_, tolerance_m_;
+  double length_m_, scale_m_;
   std::size_t spans_;
   std::vector<Sample> samples_;
   std::vector<Eigen::Vector2d> control_points_;
   SmoothCurve curve_;
   double largest_move_m_ = 0.0;
+  bool keeps_tolerance_ = false;
 };
 
 double peak_curvature(const SmoothCurve& curve, double step_m) {

@@ -2,16 +2,23 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "roadbed/geometry/smooth_curve.h"
 
 namespace roadbed::geometry {
+
+/// A stretch of the line through the points, by its length, where they may move farther.
+struct WiderStretch {
+  double from_m, to_m, tolerance_m;
+};
 
 struct FitOptions {
   double knot_distance_m = 1.0;
   double scale_m = 3.0;              ///< detail shorter than this is smoothed away; ≤ 4 knots
   double tolerance_m = 0.3;          ///< largest move of the points, sideways
   double max_curvature_per_m = 0.2;  ///< a curve that bends more is tried at smaller scales too
+  std::vector<WiderStretch> wider = {};
 };
 
 struct FittedCurve {
@@ -26,8 +33,9 @@ struct FittedCurve {
 ///
 /// with tangents tᵢ and normals nᵢ of the line. The uᵢ are those of the feet of the qᵢ on the curve
 /// before, so that u stays in proportion to arc length and p‴ to the curvature rate. The weights
-/// wᵢ are 1 at first and grow where a point moves by more than the tolerance: what is left is about
-/// the least curvature rate that the tolerance permits. O(N) per iteration, about 1 ms for 50 m.
+/// wᵢ are 1 at first, less in wider stretches, and grow where a point moves by more than its
+/// tolerance: what is left is about the least curvature rate that the tolerance permits. O(N) per
+/// iteration, about 1 ms for 50 m.
 /// @param points  about `knot_distance_m` / 2 apart or nearer; between them lines are straight.
 /// @throws std::invalid_argument if there are fewer than two distinct points, one is not finite or
 ///         an option is out of range.

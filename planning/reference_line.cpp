@@ -1,5 +1,7 @@
 #include "roadbed/planning/reference_line.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,6 +39,12 @@ ReferenceLine ReferenceLine::through(const std::vector<Eigen::Vector2d>& way_poi
     data->largest_move_m = std::max(data->largest_move_m, move_m);
   }
   data->notes = std::move(path.notes);
+  if (path.largest_swing_m > half_width_m) {
+    data->notes.push_back(fmt::format(
+        "between its way-points the line swings out by {:.1f} m at ({:.2f}, {:.2f}), more than the "
+        "half width of {:.2f} m; way-points nearer to each other will hold it",
+        path.largest_swing_m, path.swing_at.x(), path.swing_at.y(), half_width_m));
+  }
   data->corridor.assign(1, {half_width_m, half_width_m, speed_limit_mps});
   return ReferenceLine(std::move(data));
 }

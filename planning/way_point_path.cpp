@@ -192,6 +192,27 @@ Points between(const Points& points, const Corner* before, const Corner* after) 
   return kept;
 }
 
+double to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
+                    const Eigen::Vector2d& b) {
+  const Eigen::Vector2d side = b - a;
+  const double share = std::clamp((point - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
+  return (a + share * side - point).norm();
+}
+
+// Goes along the way-points with the spline.
+void measure_swing(const Points& through, const Points& spline, WayPointPath& path) {
+  std::size_t i = 0;
+  for (const Eigen::Vector2d& point : spline) {
+    const auto apart_m = [&](std::size_t k) {
+      return to_segment_m(point, through[k], through[k + 1]);
+    };
+    while (i + 2 < through.size() && apart_m(i + 1) <= apart_m(i)) ++i;
+    if (apart_m(i) <= path.largest_swing_m) continue;
+    path.largest_swing_m = apart_m(i);
+    path.swing_at = point;
+  }
+}
+
 // The spline from one corner's curve (or the first way-point) to the next one's (or the last).
 void append_piece(WayPointPath& path, const Points& points, const Corner* before,
                   const Corner* after, double step_m) {
@@ -208,7 +229,9 @@ void append_piece(WayPointPath& path, const Points& points, const Corner* before
   }
   piece.erase(std::unique(piece.begin(), piece.end(), same), piece.end());
   if (piece.size() < 2) return;
-  append(path.points, geometry::SplineCurve::through(piece, first, last).resample(step_m));
+  const Points spline = geometry::SplineCurve::through(piece, first, last).resample(step_m);
+  measure_swing(piece, spline, path);
+  append(path.points, spline);
 }
 
 }  // namespace

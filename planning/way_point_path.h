@@ -24,6 +24,10 @@ struct WayPointPath {
   std::vector<Eigen::Vector2d> way_points;  ///< on the path: all but repeated ones and corners
   /// Corners that cannot be driven as asked, and what was done instead; a line of text for each.
   std::vector<std::string> notes;
+  /// Where a spline is farthest from the straight lines between its way-points, and how far: few
+  /// way-points in a turn leave it free to swing out.
+  Eigen::Vector2d swing_at{0, 0};
+  double largest_swing_m = 0.0;
 };
 
 /// Cubic splines through the way-points, measured by arc length [paper eq. 1–5], with quintic

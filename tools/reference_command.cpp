@@ -9,6 +9,7 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/line_driving.h"
 #include "roadbed/planning/reference_line.h"
 #include "roadbed/planning/route.h"
 #include "roadbed/tools/command.h"
@@ -39,14 +40,6 @@ std::string csv(const map::RoadMap& road_map, const planning::ReferenceLine& lin
   for (int i = 0; i * step_m < end_m - 1e-6; ++i) append_row(text, road_map, line, i * step_m);
   append_row(text, road_map, line, end_m);
   return fmt::to_string(text);
-}
-
-double peak_curvature_per_m(const planning::ReferenceLine& line) {
-  double peak = 0.0;
-  for (double s = 0.0; s < line.goal_s_m(); s += 0.25) {
-    peak = std::max(peak, std::abs(line.at(s).curvature_per_m));
-  }
-  return peak;
 }
 
 class ReferenceCommand : public Command {
@@ -108,13 +101,20 @@ class ReferenceCommand : public Command {
       fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
       return Exit::failed;
     }
-    const auto line = planning::ReferenceLine::along(road_map, *answer.route, options_);
+    planning::ReferenceLineOptions options = options_;
+    options.corner_vehicle = way_points_.vehicle();
+    const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
     write_output(output_, csv(road_map, line, step_m_));
     if (!common.quiet) {
+      for (const std::string& note : line.notes()) fmt::print(streams.err, "note: {}\n", note);
+      const planning::LineDriving driving = planning::driving_along(
+          line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}), {});
       fmt::print(streams.err,
-                 "{}: {:.1f} m, peak curvature {:.3f} 1/m, at most {:.2f} m off the centreline\n",
-                 output_.string(), line.goal_s_m(), peak_curvature_per_m(line),
-                 line.largest_move_m());
+                 "{}: {:.1f} m, peak curvature {:.3f} 1/m at {:.0f} m, of its rate {:.3f} 1/m² at "
+                 "{:.0f} m, at most {:.2f} m off the centreline\n",
+                 output_.string(), line.goal_s_m(), driving.peak_curvature_per_m.value,
+                 driving.peak_curvature_per_m.s_m, driving.peak_curvature_rate_per_m2.value,
+                 driving.peak_curvature_rate_per_m2.s_m, line.largest_move_m());
     }
     return Exit::ok;
   }

@@ -1,4 +1,5 @@
-// Routes and reference lines between random pairs of drivable lanes, one row per map:
+// Routes and reference lines between random pairs of drivable lanes, one row per map, drawn for a
+// car whose wheels steer 0.2 1/m at most, as most cars' do, but of the default's size:
 //   reference_lines_survey MAP...
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/line_driving.h"
 #include "roadbed/planning/reference_line.h"
 
 namespace roadbed::tests {
@@ -19,14 +21,21 @@ namespace {
 
 constexpr int kPairs = 100;
 constexpr double kFine_m = 0.02;
-constexpr double kPose_m = 0.5;
+constexpr double kSteered_per_m = 0.2;
 
 struct Row {
   int found = 0, explained = 0, too_bent = 0, changes = 0;
+  int widened = 0, unsteerable = 0, off_road = 0, unsaid = 0;
   double length_m = 0.0, jump = 0.0, rate_jump = 0.0, peak_per_m = 0.0, move_m = 0.0;
+  double rate_per_m2 = 0.0, slowest_mps = 1e300, off_road_m = 0.0;
   double slowest_route_ms = 0.0, line_ms = 0.0;
-  long points = 0, inside = 0;
 };
+
+geometry::VehicleShape car() {
+  geometry::VehicleShape vehicle;
+  vehicle.max_steering_rad = std::atan(kSteered_per_m * vehicle.wheelbase_m);
+  return vehicle;
+}
 
 // What the change of a value over a step differs from the integral of its derivative: a jump, if
 // there is one (Simpson's rule).
@@ -52,22 +61,23 @@ void measure_smoothness(const planning::ReferenceLine& line, Row& row) {
     a = b;
   }
   row.peak_per_m = std::max(row.peak_per_m, peak);
-  row.too_bent += peak > 0.2 ? 1 : 0;
 }
 
-void measure_body(const map::RoadMap& road_map, const planning::ReferenceLine& line, Row& row) {
-  const auto corners = geometry::VehicleShape{}.corners_in_vehicle();
-  for (double s = 0.0; s < line.goal_s_m(); s += kPose_m) {
-    const planning::ReferencePoint at = line.at(s);
-    const geometry::Pose2 map_from_vehicle{at.in_map.x(), at.in_map.y(), at.heading_rad};
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (const double share : {0.0, 0.25, 0.5, 0.75}) {
-        const Eigen::Vector2d edge = corners[i] + share * (corners[(i + 1) % 4] - corners[i]);
-        ++row.points;
-        row.inside += road_map.on_surface(map_from_vehicle * edge, 0.01) ? 1 : 0;
-      }
-    }
-  }
+void measure_driving(const map::RoadMap& road_map, const planning::ReferenceLine& plain,
+                     const planning::ReferenceLine& line, Row& row) {
+  const auto on_road = [&](const Eigen::Vector2d& place) {
+    return road_map.on_surface(place, 0.05);
+  };
+  const auto driving = planning::driving_along(line, line.goal_s_m(), car(), on_road);
+  const auto before = planning::driving_along(plain, plain.goal_s_m(), car(), {});
+  row.too_bent += before.bends.empty() ? 0 : 1;
+  row.widened += !before.bends.empty() && driving.bends.empty() ? 1 : 0;
+  row.unsteerable += driving.bends.empty() ? 0 : 1;
+  row.off_road += driving.leaves.empty() ? 0 : 1;
+  row.off_road_m += planning::length_of(driving.leaves);
+  row.unsaid += line.notes().size() != driving.bends.size() + driving.leaves.size() ? 1 : 0;
+  row.rate_per_m2 = std::max(row.rate_per_m2, driving.peak_curvature_rate_per_m2.value);
+  row.slowest_mps = std::min(row.slowest_mps, driving.slowest_mps.value);
 }
 
 double ms_since(std::chrono::steady_clock::time_point start) {
@@ -89,14 +99,16 @@ void survey_pair(const map::RoadMap& road_map, const map::Lane& from, const map:
   }
   ++row.found;
   const auto drawn = std::chrono::steady_clock::now();
-  const auto line = planning::ReferenceLine::along(road_map, *answer.route);
+  const auto plain = planning::ReferenceLine::along(road_map, *answer.route);
   row.line_ms += ms_since(drawn);
+  const auto line =
+      planning::ReferenceLine::along(road_map, *answer.route, {.corner_vehicle = car()});
   row.length_m += line.goal_s_m();
   row.changes += answer.route->lane_changes;
   const double bent_before = row.peak_per_m, move_before = row.move_m;
   row.move_m = std::max(row.move_m, line.largest_move_m());
   measure_smoothness(line, row);
-  measure_body(road_map, line, row);
+  measure_driving(road_map, plain, line, row);
   if (std::getenv("SURVEY_WORST") != nullptr &&
       (row.peak_per_m > std::max(0.2, bent_before) || row.move_m > std::max(0.31, move_before))) {
     fmt::print(stderr, "  {}@{:.3f} to {}@{:.3f}: peak {:.3f}, move {:.3f}\n", from.name, start.s_m,
@@ -119,22 +131,24 @@ void survey(const std::filesystem::path& file) {
     survey_pair(road_map, from, to, random, row);
   }
   fmt::print(
-      "{:<42} {:>5} {:>5} {:>4} {:>7.1f} {:>8.1e} {:>8.1e} {:>6.3f} {:>4} {:>6.3f} {:>8.3f} "
-      "{:>7.2f} {:>7.2f}\n",
+      "{:<22} {:>5} {:>4} {:>4} {:>6.1f} {:>8.1e} {:>8.1e} {:>6.3f} {:>6.3f} {:>6.3f} {:>5.1f} "
+      "{:>4} "
+      "{:>5} {:>5} {:>4} {:>6.1f} {:>6} {:>6.2f} {:>6.2f}\n",
       file.filename().string(), row.found, row.explained, row.changes, row.length_m / 1e3, row.jump,
-      row.rate_jump, row.peak_per_m, row.too_bent, row.move_m,
-      row.points > 0 ? 100.0 * static_cast<double>(row.inside) / static_cast<double>(row.points)
-                     : 0.0,
-      row.slowest_route_ms, row.line_ms / std::max(1.0, row.length_m / 1e3));
+      row.rate_jump, row.peak_per_m, row.rate_per_m2, row.move_m, row.slowest_mps, row.too_bent,
+      row.widened, row.unsteerable, row.off_road, row.off_road_m, row.unsaid, row.slowest_route_ms,
+      row.line_ms / std::max(1.0, row.length_m / 1e3));
 }
 
 }  // namespace
 }  // namespace roadbed::tests
 
 int main(int argc, char** argv) {
-  fmt::print("{:<42} {:>5} {:>5} {:>4} {:>7} {:>8} {:>8} {:>6} {:>4} {:>6} {:>8} {:>7} {:>7}\n",
-             "map", "found", "none", "chg", "km", "k jump", "k' jump", "peak", ">0.2", "move",
-             "on road%", "rt ms", "ms/km");
+  fmt::print(
+      "{:<22} {:>5} {:>4} {:>4} {:>6} {:>8} {:>8} {:>6} {:>6} {:>6} {:>5} {:>4} {:>5} {:>5} {:>4} "
+      "{:>6} {:>6} {:>6} {:>6}\n",
+      "map", "found", "none", "chg", "km", "k jump", "k' jump", "peak k", "k'", "move", "m/s",
+      ">0.2", "wider", "bends", "off", "off m", "unsaid", "rt ms", "ms/km");
   for (int i = 1; i < argc; ++i) {
     try {
       roadbed::tests::survey(argv[i]);

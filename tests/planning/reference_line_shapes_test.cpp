@@ -114,6 +114,15 @@ TEST(ReferenceLineShapes, SpikesAreRefusedWithTheirPlace) {
   }
 }
 
+TEST(ReferenceLineShapes, SayWhereFewWayPointsLetThemSwingOut) {
+  // A U-turn of 3 m by four way-points: the line through them is 3.6 m beside them.
+  const ReferenceLine line = ReferenceLine::through({{0, 0}, {20, 0}, {20, 3}, {0, 3}}, 1.75, 10.0);
+  ASSERT_EQ(line.notes().size(), 1u);
+  EXPECT_NE(line.notes()[0].find("swings out by 3.6 m"), std::string::npos) << line.notes()[0];
+  EXPECT_TRUE(
+      ReferenceLine::through({{0, 0}, {20, 0}, {20, 3}, {0, 3}}, 4.5, 10.0).notes().empty());
+}
+
 TEST(ReferenceLineShapes, CornersAreRoundedForAVehicleInsideItsRoad) {
   const WayPoints right_angle{{0, 0}, {40, 0}, {40, 40}};
   const geometry::VehicleShape vehicle;

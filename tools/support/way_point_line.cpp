@@ -67,8 +67,11 @@ void WayPointLine::declare(Arguments& arguments) {
       "Ends of the spline: no curvature, the given headings, or closed");
   arguments.add("--headings", headings_deg_, "Headings of clamped ends, FIRST,LAST [deg]")
       .separated_by(',');
-  arguments.add("--vehicle", vehicle_file_,
-                "JSON file; corners are rounded for it at the speed limit, inside the half width");
+  arguments.add(
+      "--vehicle", vehicle_file_,
+      "JSON file; bends that it cannot steer are drawn wider, and what it cannot drive is "
+      "noted; corners of way-points are rounded for it at the speed limit, inside the "
+      "half width");
   arguments.add("--half-width", half_width_m_, "Room to each side of a line of way-points [m]")
       .within(0.1, 100.0)
       .with_default();
@@ -80,18 +83,22 @@ void WayPointLine::declare(Arguments& arguments) {
 std::string WayPointLine::fault() const {
   const bool is_clamped = ends_ == Ends::clamped;
   if (!asked() && (interpolate_ || ends_ != Ends::natural)) return "--waypoints, for --interpolate";
-  if (!vehicle_file_.empty() && (!asked() || interpolate_))
-    return "--waypoints without --interpolate, for --vehicle";
+  if (!vehicle_file_.empty() && interpolate_) return "no --interpolate, for --vehicle";
   if (ends_ != Ends::natural && !interpolate_) return "--interpolate, for --ends";
   if (is_clamped != !headings_deg_.empty()) return "both or none of --ends clamped and --headings";
   if (is_clamped && headings_deg_.size() != 2) return "--headings with two numbers, FIRST,LAST";
   return {};
 }
 
+std::optional<geometry::VehicleShape> WayPointLine::vehicle() const {
+  if (vehicle_file_.empty()) return std::nullopt;
+  return read_vehicle_json(vehicle_file_);
+}
+
 planning::ReferenceLine WayPointLine::smoothed(const std::vector<Eigen::Vector2d>& points,
                                                double max_move_m) const {
   planning::ReferenceLineOptions options{.max_smoothing_m = max_move_m};
-  if (!vehicle_file_.empty()) options.corner_vehicle = read_vehicle_json(vehicle_file_);
+  options.corner_vehicle = vehicle();
   options.corner_speed_mps = speed_limit_kmh_ / 3.6;
   return planning::ReferenceLine::through(points, half_width_m_, speed_limit_kmh_ / 3.6, options);
 }

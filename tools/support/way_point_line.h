@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ class WayPointLine {
   void declare(Arguments& arguments);
 
   bool asked() const { return !file_.empty(); }
+
+  /// Who is to drive along the line, if that is said.
+  /// @throws InputError if the file cannot be read.
+  std::optional<geometry::VehicleShape> vehicle() const;
 
   /// What is wrong with the options together; empty if nothing is.
   std::string fault() const;
