@@ -1,7 +1,9 @@
 // bench_planner --path F --points N --reps R --json [--dump F]: times one planning cycle of 5,396
-// candidates and twelve terms on one core, so that it can be run in turn with other planners.
+// candidates and twelve terms on one core, so that it can be run in turn with other planners. With
+// every candidate evaluated it also says what share of the core's peak that is.
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <time.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,6 +13,8 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/planning/row_kernel.h"
+#include "roadbed/tests/benchmark/peak_flops.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
 #include "roadbed/tools/support/output_file.h"
 
@@ -23,13 +27,19 @@ struct Options {
   std::string path_file, dump_file;
   int points = 31;
   int repetitions = 51;
-  bool json = false, exhaustive = false, blocked = false;
+  bool json = false, exhaustive = false, blocked = false, cold = false;
 };
 
 struct Timing {
   double median_ms, least_ms, worst_ms;
-  std::size_t evaluated, colliding;
+  double median_cpu_ms;  // of this thread: others on the core do not count
+  std::size_t evaluated;
 };
+
+constexpr double kCandidates = 5396.0;
+// Of the kernel per candidate and point: 101 additions, multiplications, divisions and roots, and 3
+// maxima (planning/row_kernel.cpp).
+constexpr double kFlopsPerPoint = 104.0;
 
 planning::PlanOptions plan_options_of(const Options& options) {
   planning::PlanOptions plan_options = benchmark_scene::options_with(options.points);
@@ -37,21 +47,67 @@ planning::PlanOptions plan_options_of(const Options& options) {
   return plan_options;
 }
 
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+double thread_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// Nothing of the planner's is in any cache after this.
+void evict_caches() {
+  static std::vector<unsigned char> memory(96UL << 20U);
+  for (std::size_t i = 0; i < memory.size(); i += 64) ++memory[i];
+}
+
 Timing time_cycles(const benchmark_scene::PlannerScene& scene, const Options& options) {
   using Clock = std::chrono::steady_clock;
   const planning::PlanInput input = scene.input();
   const planning::PlanOptions plan_options = plan_options_of(options);
   planning::Plan plan;
-  std::vector<double> times_ms;
+  std::vector<double> times_ms, cpu_ms;
   for (int i = -2; i < options.repetitions; ++i) {  // two to warm up
+    if (options.cold) evict_caches();
+    const double cpu_begin_ms = thread_ms();
     const auto begin = Clock::now();
     plan = planning::plan_path(input, geometry::VehicleShape{}, plan_options);
     const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
-    if (i >= 0) times_ms.push_back(taken.count());
+    const double cpu_taken_ms = thread_ms() - cpu_begin_ms;
+    if (i < 0) continue;
+    times_ms.push_back(taken.count());
+    cpu_ms.push_back(cpu_taken_ms);
   }
-  std::ranges::sort(times_ms);
-  return {times_ms[times_ms.size() / 2], times_ms.front(), times_ms.back(), plan.evaluated,
-          plan.rejected[static_cast<std::size_t>(planning::Rejection::collision)]};
+  const auto [least, worst] = std::ranges::minmax(times_ms);
+  return {median(times_ms), least, worst, median(cpu_ms), plan.evaluated};
+}
+
+// Candidates that collide and cost less than the chosen one.
+std::ptrdiff_t colliding(const benchmark_scene::PlannerScene& scene, const Options& options) {
+  planning::PlanOptions plan_options = plan_options_of(options);
+  plan_options.keep_candidates = true;
+  const planning::PlanInput input = scene.input();
+  const planning::Plan plan = planning::plan_path(input, geometry::VehicleShape{}, plan_options);
+  return std::ranges::count_if(plan.candidates, [&](const planning::Candidate& candidate) {
+    return candidate.rejection == planning::Rejection::collision && plan.chosen &&
+           candidate.cost < plan.chosen->cost;
+  });
+}
+
+// What evaluating every candidate comes to, beside what the core can do.
+struct Work {
+  double gflop, kernel_mb, peak_gflops;
+};
+
+Work work_of(const Options& options) {
+  const double points = kCandidates * options.points;
+  const double point_bytes = sizeof(planning::KernelPoint);
+  return {1e-9 * kFlopsPerPoint * points,
+          1e-6 * point_bytes * points / static_cast<double>(planning::kLanesPerBlock),
+          benchmark_scene::peak_gflops()};
 }
 
 ordered_json terms_json(const planning::CostTerms& terms) {
@@ -124,6 +180,9 @@ void run(const Options& options) {
   const benchmark_scene::PlannerScene scene(benchmark_scene::read_way_points(options.path_file),
                                             options.blocked);
   const Timing timing = time_cycles(scene, options);
+  const std::ptrdiff_t cheaper = colliding(scene, options);
+  const Work work = work_of(options);
+  const double gflops = 1e3 * work.gflop / timing.median_cpu_ms;
   if (!options.dump_file.empty()) tools::write_output(options.dump_file, dump(scene, options));
   if (options.json) {
     const ordered_json json = {{"candidates", 5396},
@@ -133,16 +192,27 @@ void run(const Options& options) {
                                {"least_ms", timing.least_ms},
                                {"worst_ms", timing.worst_ms},
                                {"evaluated", timing.evaluated},
-                               {"colliding", timing.colliding},
+                               {"median_cpu_ms", timing.median_cpu_ms},
+                               {"colliding", cheaper},
+                               {"gflop", work.gflop},
+                               {"kernel_mb", work.kernel_mb},
+                               {"peak_gflops", work.peak_gflops},
                                {"peak_memory_mb", peak_memory_mb()},
                                {"repetitions", options.repetitions}};
     fmt::print("{}\n", json.dump());
   } else {
     fmt::print(
-        "5396 candidates, {} terms, {} points: median {:.3f} ms, least {:.3f}, worst {:.3f}; {} "
-        "evaluated, {} cheaper ones collide; {:.1f} MB\n",
-        planning::kCostTerms, options.points, timing.median_ms, timing.least_ms, timing.worst_ms,
-        timing.evaluated, timing.colliding, peak_memory_mb());
+        "5396 candidates, {} terms, {} points: median {:.3f} ms ({:.3f} ms of processor time), "
+        "least {:.3f}, worst {:.3f}; {} evaluated, {} cheaper ones collide; {:.1f} MB\n",
+        planning::kCostTerms, options.points, timing.median_ms, timing.median_cpu_ms,
+        timing.least_ms, timing.worst_ms, timing.evaluated, cheaper, peak_memory_mb());
+    if (options.exhaustive) {
+      fmt::print(
+          "{:.1f} Mflop on {:.1f} MB of shared points: {:.1f} Gflop/s with all else, {:.0f} % of "
+          "{:.1f}\n",
+          1e3 * work.gflop, work.kernel_mb, gflops, 100.0 * gflops / work.peak_gflops,
+          work.peak_gflops);
+    }
   }
 }
 
@@ -159,7 +229,8 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--exhaustive", options.exhaustive, "Evaluate even what cannot be the cheapest");
-  app.add_flag("--blocked", options.blocked, "Ten slow cars on the line: the cheapest collide");
+  app.add_flag("--blocked", options.blocked, "Ten slow cars ahead: the cheapest collide");
+  app.add_flag("--cold", options.cold, "Nothing is in a cache before a cycle");
   app.add_flag("--json", options.json, "One JSON document on stdout");
   app.add_option("--dump", options.dump_file, "Writes every candidate and the winner as JSON");
   app.footer("Example: bench_planner --path path.csv --points 31 --reps 51 --json");

@@ -13,13 +13,14 @@ namespace {
 
 constexpr double kHalfWidth_m = 4.5;
 constexpr double kStart_m = 70.0;
+constexpr double kInTheWay_m = 0.9;  // to the right of the line, of the cars that block it
 
 struct Place {
   double s_m, side_m, speed_mps;
 };
 
 Place place_of(int number, bool blocked) {
-  if (blocked) return {kStart_m + 18.0 + 6.0 * number, 0.0, 3.0};
+  if (blocked) return {kStart_m + 18.0 + 6.0 * number, -kInTheWay_m, 3.0};
   return {kStart_m + 12.0 + 8.0 * number, -3.5 + 3.5 * (number % 3), 8.0};
 }
 
