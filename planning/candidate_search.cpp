@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 namespace roadbed::planning {
@@ -13,64 +12,88 @@ bool CandidateSearch::is_later(const Entry& a, const Entry& b) {
   return a.cost != b.cost ? a.cost > b.cost : !a.is_block && b.is_block;
 }
 
-CandidateSearch::CandidateSearch(std::vector<Row> rows, std::vector<KernelPoint> points,
-                                 std::size_t lanes, bool evaluate_all)
-    : points_(std::move(points)),
-      rows_(std::move(rows)),
-      lanes_(lanes),
-      cost_(rows_.size() * lanes),
-      rejection_(rows_.size() * lanes, Rejection::none) {
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    for (std::size_t block = 0; block < rows_[row].blocks(); ++block) {
-      const double bound = rows_[row].bound(block);
-      if (evaluate_all) {
-        evaluate(row, block);
-      } else if (std::isfinite(bound)) {
-        heap_.push_back({bound, true, row * lanes_ + rows_[row].first_lane(block)});
-      } else {
-        reject_block(row, block);
-      }
-    }
+void CandidateSearch::add(Row row) {
+  const std::size_t index = rows_.size();
+  rows_.push_back(std::move(row));
+  cost_.resize(rows_.size() * lanes_);
+  limits_.resize(cost_.size(), Rejection::none);
+  rejection_.resize(cost_.size(), Rejection::none);
+  is_evaluated_.resize(rows_.size() * rows_[index].blocks());
+  for (std::size_t block = 0; block < rows_[index].blocks(); ++block) {
+    if (evaluates_all_) evaluate(index, block);
+    enter_block(index, block);
   }
-  std::ranges::make_heap(heap_, is_later);
+}
+
+void CandidateSearch::restart(std::span<const LaneInterval> on_road) {
+  heap_.clear();
+  is_heap_ = false;
+  std::ranges::fill(rejection_, Rejection::none);
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    rows_[row].set_on_road(on_road[row]);
+    for (std::size_t block = 0; block < rows_[row].blocks(); ++block) enter_block(row, block);
+  }
 }
 
 void CandidateSearch::evaluate(std::size_t row, std::size_t block) {
   const std::size_t first = row * lanes_ + rows_[row].first_lane(block);
   const std::size_t count = rows_[row].lanes_in(block);
   rows_[row].evaluate(block, std::span(cost_).subspan(first, count),
-                      std::span(rejection_).subspan(first, count));
+                      std::span(limits_).subspan(first, count));
   evaluated_ += count;
-  for (std::size_t i = first; i < first + count; ++i) {
-    if (rejection_[i] == Rejection::none) heap_.push_back({cost_[i], false, i});
+  is_evaluated_[row * rows_[row].blocks() + block] = true;
+}
+
+void CandidateSearch::enter_block(std::size_t row, std::size_t block) {
+  if (is_evaluated_[row * rows_[row].blocks() + block]) return enter_candidates(row, block);
+  const double bound = rows_[row].bound(block);
+  if (std::isfinite(bound)) {
+    heap_.push_back({bound, true, row * lanes_ + rows_[row].first_lane(block)});
+  } else {
+    rejects_block(row, block, [](std::size_t) { return Rejection::none; });
   }
 }
 
-void CandidateSearch::reject_block(std::size_t row, std::size_t block) {
+void CandidateSearch::enter_candidates(std::size_t row, std::size_t block) {
   for (std::size_t i = 0; i < rows_[row].lanes_in(block); ++i) {
-    const std::size_t lane = rows_[row].first_lane(block) + i;
-    rejection_[row * lanes_ + lane] = rows_[row].first_verdict(lane);
+    const std::size_t lane = rows_[row].first_lane(block) + i, index = row * lanes_ + lane;
+    const Rejection first = rows_[row].first_verdict(lane);
+    rejection_[index] = first != Rejection::none ? first : limits_[index];
+    if (rejection_[index] != Rejection::none) continue;
+    heap_.push_back({cost_[index], false, index});
+    if (is_heap_) std::ranges::push_heap(heap_, is_later);
   }
 }
 
-CandidateSearch::Entry CandidateSearch::pop() {
+bool CandidateSearch::rejects_block(std::size_t row, std::size_t block, const Known& known) {
+  for (std::size_t i = 0; i < rows_[row].lanes_in(block); ++i) {
+    const std::size_t lane = rows_[row].first_lane(block) + i, index = row * lanes_ + lane;
+    const Rejection first = rows_[row].first_verdict(lane);
+    rejection_[index] = first != Rejection::none ? first : known(index);
+    if (rejection_[index] == Rejection::none) return false;
+  }
+  return true;
+}
+
+CandidateSearch::Entry CandidateSearch::pop(const Known& known) {
   std::ranges::pop_heap(heap_, is_later);
   const Entry entry = heap_.back();
   heap_.pop_back();
   if (!entry.is_block) return entry;
-  const std::size_t size_before = heap_.size();
-  evaluate(entry.index / lanes_, entry.index % lanes_ / kLanesPerBlock);
-  for (std::size_t size = size_before + 1; size <= heap_.size(); ++size) {
-    std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(size), is_later);
-  }
+  const std::size_t row = entry.index / lanes_, block = entry.index % lanes_ / kLanesPerBlock;
+  if (rejects_block(row, block, known)) return entry;
+  evaluate(row, block);
+  enter_candidates(row, block);
   return entry;
 }
 
-std::vector<std::size_t> CandidateSearch::pop_equals() {
+std::vector<std::size_t> CandidateSearch::pop_equals(const Known& known) {
+  if (!is_heap_) std::ranges::make_heap(heap_, is_later);
+  is_heap_ = true;
   std::vector<std::size_t> equals;
   double limit = 0.0;
   while (!heap_.empty() && (equals.empty() || heap_.front().cost <= limit)) {
-    const Entry entry = pop();
+    const Entry entry = pop(known);
     if (entry.is_block) continue;
     if (equals.empty()) limit = entry.cost * (1.0 + kEqualCost);
     equals.push_back(entry.index);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "roadbed/planning/row.h"
@@ -16,15 +18,25 @@ inline constexpr double kEqualCost = 1e-12;
 /// the worst case, when every candidate is asked for, everything is evaluated once.
 class CandidateSearch {
  public:
-  /// @param rows      one per length of the grid, with equal lanes.
-  /// @param points    what the rows refer to.
-  /// @param evaluate_all  from the start.
-  CandidateSearch(std::vector<Row> rows, std::vector<KernelPoint> points, std::size_t lanes,
-                  bool evaluate_all);
+  /// What is known of a candidate before it is evaluated: why it fails, or `none`.
+  using Known = std::function<Rejection(std::size_t index)>;
+
+  /// @param lanes  of every row.
+  /// @param evaluate_all  each row as it is added; its points are not needed any more then.
+  CandidateSearch(std::size_t lanes, bool evaluate_all)
+      : lanes_(lanes), evaluates_all_(evaluate_all) {}
+
+  /// The next length of the grid.
+  void add(Row row);
+
+  /// Begins anew with another road for every row. What was evaluated is kept.
+  void restart(std::span<const LaneInterval> on_road);
 
   /// Takes out the cheapest candidate and all that cost the same, by index with d_e fastest, in no
   /// particular order. Empty: there is none left.
-  std::vector<std::size_t> pop_equals();
+  /// @param known  A block of which every candidate is known to fail is not evaluated: its
+  ///               candidates fail for that.
+  std::vector<std::size_t> pop_equals(const Known& known);
 
   /// Of a candidate in an evaluated block.
   double cost(std::size_t index) const { return cost_[index]; }
@@ -45,14 +57,19 @@ class CandidateSearch {
   static bool is_later(const Entry& a, const Entry& b);
 
   void evaluate(std::size_t row, std::size_t block);
-  void reject_block(std::size_t row, std::size_t block);
-  Entry pop();
+  void enter_block(std::size_t row, std::size_t block);
+  void enter_candidates(std::size_t row, std::size_t block);
+  bool rejects_block(std::size_t row, std::size_t block, const Known& known);
+  Entry pop(const Known& known);
 
-  std::vector<KernelPoint> points_;
   std::vector<Row> rows_;
   std::size_t lanes_;
+  bool evaluates_all_;
+  bool is_heap_ = false;
   std::vector<double> cost_;
-  std::vector<Rejection> rejection_;
+  std::vector<Rejection> limits_;     // verdicts of evaluate()
+  std::vector<Rejection> rejection_;  // with the road, and what was added
+  std::vector<bool> is_evaluated_;    // per block
   std::vector<Entry> heap_;
   std::size_t evaluated_ = 0;
 };

@@ -93,16 +93,21 @@ double allowed_excess_m(const Course& course, double l_m) {
   return course.start_excess_m * std::max(0.0, 1.0 - l_m / course.recovery_m);
 }
 
+OffsetRange offsets_on_road(const Course& course, double l_m) {
+  const Corridor corridor = course.line.corridor_at(course.start.s_m + l_m);
+  const double inward_m = course.half_width_m - allowed_excess_m(course, l_m);
+  return {inward_m - corridor.right_m, corridor.left_m - inward_m};
+}
+
 Station station_at(const Course& course, double l_m) {
   const double s_m = course.start.s_m + l_m;
-  const Corridor corridor = course.line.corridor_at(s_m);
-  const double inward_m = course.half_width_m - allowed_excess_m(course, l_m);
+  const OffsetRange range = offsets_on_road(course, l_m);
   Station station{.l_m = l_m,
                   .line = course.line.at(s_m),
                   .speed = course.speed.at(l_m),
                   .previous_d_m = {},
-                  .min_d_m = inward_m - corridor.right_m,
-                  .max_d_m = corridor.left_m - inward_m};
+                  .min_d_m = range.min_d_m,
+                  .max_d_m = range.max_d_m};
   if (course.previous_d_m) station.previous_d_m = course.previous_d_m(s_m);
   return station;
 }
@@ -169,6 +174,10 @@ Rejection judge(const std::vector<Station>& stations, const geometry::Quintic& q
   return Rejection::none;
 }
 
+double mean_speed_mps(const Station& from, const Station& to) {
+  return std::max(0.5 * (from.speed.speed_mps + to.speed.speed_mps), kSlowest_mps);
+}
+
 std::vector<geometry::TrajectoryPoint> drive_along(const std::vector<Station>& stations,
                                                    const geometry::Quintic& quintic,
                                                    double start_t_s, double wheelbase_m) {
@@ -184,43 +193,12 @@ std::vector<geometry::TrajectoryPoint> drive_along(const std::vector<Station>& s
     if (i > 0) {
       const double length_m =
           0.5 * (last_stretch + curve->stretch) * (stations[i].l_m - stations[i - 1].l_m);
-      const double mean_mps = 0.5 * (drive[i - 1].speed_mps + drive[i].speed_mps);
-      t_s += length_m / std::max(mean_mps, kSlowest_mps);  // exact for constant acceleration
+      t_s += length_m / mean_speed_mps(stations[i - 1], stations[i]);
     }
     drive.back().t_s = t_s;
     last_stretch = curve->stretch;
   }
   return drive;
-}
-
-std::optional<DrivePoint> drive_point(const std::vector<Station>& stations, std::size_t station,
-                                      const geometry::Quintic& quintic, double start_t_s) {
-  const auto& c = quintic.coefficients();
-  DrivePoint point{.pose = {}, .t_s = start_t_s};
-  double last_stretch = 0.0;
-  for (std::size_t i = 0; i <= station; ++i) {
-    const double l = stations[i].l_m;
-    const double d_m = c[0] + l * (c[1] + l * (c[2] + l * (c[3] + l * (c[4] + l * c[5]))));
-    const double across =
-        c[1] + l * (2.0 * c[2] + l * (3.0 * c[3] + l * (4.0 * c[4] + l * 5.0 * c[5])));
-    const ReferencePoint& line = stations[i].line;
-    const double along = 1.0 - line.curvature_per_m * d_m;
-    if (!(along > kLeastUnfolded)) return std::nullopt;
-    const double stretch = std::sqrt(along * along + across * across);
-    if (i > 0) {
-      const double length_m = 0.5 * (last_stretch + stretch) * (l - stations[i - 1].l_m);
-      const double mean_mps = 0.5 * (stations[i - 1].speed.speed_mps + stations[i].speed.speed_mps);
-      point.t_s += length_m / std::max(mean_mps, kSlowest_mps);
-      point.driven_m += length_m;
-    }
-    last_stretch = stretch;
-    if (i < station) continue;
-    const double heading_rad = line.heading_rad;
-    point.pose = {line.in_map.x() - d_m * std::sin(heading_rad),
-                  line.in_map.y() + d_m * std::cos(heading_rad),
-                  heading_rad + std::atan2(across, along)};
-  }
-  return point;
 }
 
 }  // namespace roadbed::planning

@@ -117,6 +117,12 @@ struct Course {
 /// How far outside the corridor a candidate may be `l_m` ahead, 0 if its start is inside.
 double allowed_excess_m(const Course& course, double l_m);
 
+/// Values of d that keep the rear axle's full width in the corridor, as far as the start allows.
+struct OffsetRange {
+  double min_d_m, max_d_m;
+};
+OffsetRange offsets_on_road(const Course& course, double l_m);
+
 Station station_at(const Course& course, double l_m);
 
 /// `count` stations, equally spaced over [0, end_l_m].
@@ -147,16 +153,7 @@ std::vector<geometry::TrajectoryPoint> drive_along(const std::vector<Station>& s
                                                    const geometry::Quintic& quintic,
                                                    double start_t_s, double wheelbase_m);
 
-/// One point of such a drive.
-struct DrivePoint {
-  geometry::Pose2 pose;
-  double t_s = 0.0;
-  double driven_m = 0.0;
-};
-
-/// The point of drive_along() at one of the candidate's own stations, without the others. None if
-/// the candidate is folded before. @pre the station is not past the quintic's end
-std::optional<DrivePoint> drive_point(const std::vector<Station>& stations, std::size_t station,
-                                      const geometry::Quintic& quintic, double start_t_s);
+/// Mean speed between two stations, exact for a constant acceleration; a standing vehicle creeps.
+double mean_speed_mps(const Station& from, const Station& to);
 
 }  // namespace roadbed::planning

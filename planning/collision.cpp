@@ -90,9 +90,12 @@ struct CollisionChecker::Impl {
         vehicle(of_vehicle),
         options(by_options),
         circles(geometry::covering_circles(vehicle, options.circles)),
-        standing(scene.obstacles) {
+        standing(scene.counts ? StaticObstacles(std::vector<Obstacle>{})
+                              : StaticObstacles(scene.obstacles)) {
+    if (scene.counts) scene.field = nullptr;
     for (const Obstacle& obstacle : scene.obstacles) {
       if (obstacle.is_static() || obstacle.motion.empty()) continue;
+      if (!is_counted(obstacle.motion.at(scene.start_t_s).pose())) continue;
       const auto centre_at = [&obstacle](double t_s) { return obstacle.motion.at(t_s).pose(); };
       const auto fastest = [&obstacle](double radius_m, double from_s, double to_s) {
         return fastest_mps(obstacle.motion, radius_m, from_s, to_s);
@@ -102,6 +105,7 @@ struct CollisionChecker::Impl {
     }
     for (const PredictedObstacle& obstacle : scene.predicted) {
       const Prediction& prediction = obstacle.prediction;
+      if (!is_counted(prediction.at(scene.start_t_s))) continue;
       const auto fastest = [&prediction](double radius_m, double from_s, double to_s) {
         return prediction.fastest_mps(radius_m, from_s, to_s);
       };
@@ -111,6 +115,9 @@ struct CollisionChecker::Impl {
     }
   }
 
+  bool is_counted(const geometry::Pose2& centre) const {
+    return !scene.counts || scene.counts(centre);
+  }
   double horizon_end_s() const { return scene.start_t_s + options.horizon_s; }
   double demanded_m(double driven_m) const;
   void look_at(const std::vector<TrajectoryPoint>& drive, Place place, Moment& moment) const;
@@ -121,6 +128,9 @@ struct CollisionChecker::Impl {
                                  const Clearance& clearance) const;
   Place follow(const std::vector<Leg>& legs, Place from, double rate_mps, double slack_m) const;
 
+  Rectangle nearest(std::size_t with, const Moment& moment) const;
+  Rectangle nearest_cell(const Moment& moment) const;
+  geometry::Pose2 in_source(const geometry::Pose2& in_map) const;
   double from_standing_m(const Moment& moment, double enough_m) const;
   double from_occupied_m(const Moment& moment, double enough_m) const;
   double from_mover_m(const Moment& moment, const Mover& mover, double enough_m) const;
@@ -182,7 +192,7 @@ std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
     const Leg& leg = legs[place.leg];
     const double demanded = demanded_m(leg.from_m + place.share * leg.length_m);
     const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
-    if (!(slack_m >= options.tolerance_m)) return Contact{place.leg, with};
+    if (!(slack_m >= options.tolerance_m)) return Contact{place.leg, with, nearest(with, moment)};
     place = follow(legs, place, rate_mps, slack_m);
   }
   return std::nullopt;
@@ -203,11 +213,30 @@ double CollisionChecker::Impl::from_occupied_m(const Moment& moment, double enou
     bound_m = std::min(bound_m, scene.field->distance_bound_m(in_source) - circles.radius_m);
   }
   if (bound_m > enough_m) return bound_m;
-  const geometry::Pose2 source_from_vehicle{moment.pose.x_m + scene.origin_in_source.x(),
-                                            moment.pose.y_m + scene.origin_in_source.y(),
-                                            moment.pose.heading_rad};
-  const auto nearest = scene.field->nearest(source_from_vehicle, vehicle, enough_m);
-  return nearest ? nearest->distance_m : enough_m;
+  const auto found = scene.field->nearest(in_source(moment.pose), vehicle, enough_m);
+  return found ? found->distance_m : enough_m;
+}
+
+geometry::Pose2 CollisionChecker::Impl::in_source(const geometry::Pose2& in_map) const {
+  return {in_map.x_m + scene.origin_in_source.x(), in_map.y_m + scene.origin_in_source.y(),
+          in_map.heading_rad};
+}
+
+// The standing body or the occupied cell that is nearest at a moment of contact.
+Rectangle CollisionChecker::Impl::nearest(std::size_t with, const Moment& moment) const {
+  if (with == kStanding) return standing.nearest(moment.body);
+  return with == kOccupied ? nearest_cell(moment) : Rectangle{};
+}
+
+Rectangle CollisionChecker::Impl::nearest_cell(const Moment& moment) const {
+  const auto found =
+      scene.field->nearest(in_source(moment.pose), vehicle, options.clearance_m + kNear_m);
+  const map::Box2& box = found->witness;
+  const Eigen::Vector2d size = box.max_in_source - box.min_in_source;
+  return {0.5 * (box.min_in_source + box.max_in_source) - scene.origin_in_source,
+          {1.0, 0.0},
+          0.5 * size.x(),
+          0.5 * size.y()};
 }
 
 double CollisionChecker::Impl::from_mover_m(const Moment& moment, const Mover& mover,
@@ -223,7 +252,7 @@ double CollisionChecker::Impl::from_mover_m(const Moment& moment, const Mover& m
 CollisionChecker::CollisionChecker(const CollisionScene& scene,
                                    const geometry::VehicleShape& vehicle,
                                    const CollisionOptions& options)
-    : impl_(std::make_unique<const Impl>(scene, vehicle, options)) {}
+    : impl_(std::make_unique<Impl>(scene, vehicle, options)) {}
 
 CollisionChecker::~CollisionChecker() = default;
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
@@ -257,20 +286,25 @@ std::optional<Contact> CollisionChecker::first_contact(
   return found;
 }
 
-bool CollisionChecker::surely_hits(const Contact& other, const geometry::Pose2& pose, double t_s,
+double CollisionChecker::distance_m(const Contact& other, const Rectangle& body, double t_s) const {
+  if (other.with < kFirstMover) return geometry::distance_m(body, other.standing);
+  const Mover& mover = impl_->movers[other.with - kFirstMover];
+  if (t_s > mover.until_s) return std::numeric_limits<double>::infinity();
+  return geometry::distance_m(body,
+                              body_around(mover.centre_at(t_s), mover.length_m, mover.width_m));
+}
+
+bool CollisionChecker::surely_hits(const Contact& other, const Rectangle& body, double t_s,
                                    double driven_m) const {
-  const Impl& impl = *impl_;
-  const Rectangle body = geometry::body_at(pose, impl.vehicle);
-  double distance_m = std::numeric_limits<double>::infinity();
-  if (other.with == kStanding) {
-    distance_m = impl.standing.distance_m(body);
-  } else if (other.with >= kFirstMover) {
-    const Mover& mover = impl.movers[other.with - kFirstMover];
-    if (t_s > mover.until_s) return false;
-    distance_m = geometry::distance_m(
-        body, body_around(mover.centre_at(t_s), mover.length_m, mover.width_m));
-  }
-  return distance_m < impl.demanded_m(driven_m) - kSure_m;
+  return distance_m(other, body, t_s) < impl_->demanded_m(driven_m) - kSure_m;
+}
+
+bool CollisionChecker::is_empty() const {
+  return impl_->standing.empty() && impl_->scene.field == nullptr && impl_->movers.empty();
+}
+
+void CollisionChecker::set_clearance(double clearance_m) {
+  impl_->options.clearance_m = clearance_m;
 }
 
 }  // namespace roadbed::planning

@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/rectangle.h"
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
@@ -34,12 +36,15 @@ struct CollisionScene {
   Eigen::Vector2d origin_in_source{0, 0};      ///< source = map + origin, for the field
   double start_t_s = 0.0;
   std::span<const PredictedObstacle> predicted = {};  ///< besides `obstacles`
+  /// If given, only what moves counts, and of that what this holds for: of its centre at the start.
+  std::function<bool(const geometry::Pose2&)> counts = {};
 };
 
 /// Where a drive comes too near to something.
 struct Contact {
-  std::size_t leg = 0;   ///< of the drive: between its points `leg` and `leg` + 1
-  std::size_t with = 0;  ///< what it was; means something to the same checker only
+  std::size_t leg = 0;                ///< of the drive: between its points `leg` and `leg` + 1
+  std::size_t with = 0;               ///< what it was; means something to the same checker only
+  geometry::Rectangle standing = {};  ///< the body or cell, unless it was something that moves
 };
 
 /// Distances of a driving vehicle to obstacles, at every moment of the drive.
@@ -66,15 +71,25 @@ class CollisionChecker {
   /// What a drive comes too near to, and where; none if it is free.
   std::optional<Contact> first_contact(const std::vector<geometry::TrajectoryPoint>& drive) const;
 
-  /// Whether a drive that has this pose at this time cannot be free, because of what it was that
-  /// another drive came too near to: a quick first look at drives that are much alike.
+  /// Distance of the vehicle's body at a time to what another drive came too near to; infinite
+  /// where that is not looked at any more.
+  double distance_m(const Contact& other, const geometry::Rectangle& body, double t_s) const;
+
+  /// Whether a drive that has the body there at that time cannot be free, because of what another
+  /// drive came too near to: a quick first look at drives that are much alike.
   /// @param driven_m  on the drive before; may be off by a centimetre.
-  bool surely_hits(const Contact& other, const geometry::Pose2& pose, double t_s,
+  bool surely_hits(const Contact& other, const geometry::Rectangle& body, double t_s,
                    double driven_m) const;
+
+  /// Whether there is nothing to come too near to.
+  bool is_empty() const;
+
+  /// Another clearance from now on.
+  void set_clearance(double clearance_m);
 
  private:
   struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace roadbed::planning

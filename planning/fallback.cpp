@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "roadbed/planning/collision.h"
+#include "roadbed/planning/plan_cycle.h"
 
 namespace roadbed::planning {
 namespace {
@@ -117,44 +120,31 @@ std::string words_for(const PlanOrStop& answer) {
                      stop.deceleration_mps2, manner);
 }
 
-bool something_collides(const Plan& plan) {
-  return plan.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
+// Whether a grid holds a way, in one room after the other.
+bool look_at(PlanCycle& cycle, Resort resort, const std::vector<double>& beyond_m, double margin_m,
+             double clearance_m, PlanOrStop& answer) {
+  std::vector<Room> rooms;
+  for (const double out_m : beyond_m) rooms.push_back({margin_m - out_m, clearance_m});
+  std::vector<Plan> plans = plan_in_rooms(cycle, rooms);
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    answer.resort = beyond_m[i] > 0.0 ? Resort::beyond_the_edge : resort;
+    answer.beyond_the_edge_m = beyond_m[i];
+    answer.attempts.push_back({answer.resort, beyond_m[i], plans[i].rejected});
+  }
+  answer.plan = std::move(plans.back());
+  return answer.plan.chosen.has_value();
 }
 
-// Looks at one grid after the other until something can be driven.
-class Attempts {
- public:
-  Attempts(const PlanInput& input, const VehicleShape& vehicle)
-      : input_(input), vehicle_(vehicle) {}
-
-  bool look(Resort resort, const PlanOptions& options, double beyond_m) {
-    PlanOptions with_margin = options;
-    with_margin.border_margin_m -= beyond_m;
-    answer.plan = plan_path(input_, vehicle_, with_margin);
-    answer.attempts.push_back({resort, beyond_m, answer.plan.rejected});
-    answer.resort = resort;
-    answer.beyond_the_edge_m = beyond_m;
-    return answer.plan.chosen.has_value();
-  }
-
-  PlanOrStop answer;
-
- private:
-  const PlanInput& input_;
-  const VehicleShape& vehicle_;
-};
-
 // Whether any of the grids holds a way.
-bool look_at_grids(Attempts& attempts, const PlanOptions& options,
-                   const FallbackOptions& fallback) {
-  if (attempts.look(Resort::none, options, 0.0)) return true;
-  const PlanOptions wide = widened(options, fallback);
-  if (attempts.look(Resort::wider_grid, wide, 0.0)) return true;
-  for (const double beyond_m : fallback.beyond_the_edge_m) {
-    if (something_collides(attempts.answer.plan)) return false;
-    if (attempts.look(Resort::beyond_the_edge, wide, beyond_m)) return true;
-  }
-  return false;
+bool look_at_grids(const PlanInput& input, const VehicleShape& vehicle, const PlanOptions& options,
+                   const FallbackOptions& fallback, PlanOrStop& answer) {
+  const double margin_m = options.border_margin_m, clearance_m = options.clearance_m;
+  PlanCycle as_asked(input, vehicle, options);
+  if (look_at(as_asked, Resort::none, {0.0}, margin_m, clearance_m, answer)) return true;
+  PlanCycle wide(input, vehicle, widened(options, fallback));
+  std::vector<double> beyond_m{0.0};
+  std::ranges::copy(fallback.beyond_the_edge_m, std::back_inserter(beyond_m));
+  return look_at(wide, Resort::wider_grid, beyond_m, margin_m, clearance_m, answer);
 }
 
 }  // namespace
@@ -169,9 +159,8 @@ PlanOrStop plan_or_stop(const PlanInput& input, const LateralPath& previous,
                         const VehicleShape& vehicle, const PlanOptions& options,
                         const FallbackOptions& fallback) {
   check(fallback);
-  Attempts attempts(input, vehicle);
-  PlanOrStop& answer = attempts.answer;
-  if (!look_at_grids(attempts, options, fallback)) {
+  PlanOrStop answer;
+  if (!look_at_grids(input, vehicle, options, fallback, answer)) {
     answer.resort = Resort::stop;
     answer.beyond_the_edge_m = 0.0;
     answer.stop = choose_stop({.input = input,
@@ -181,7 +170,7 @@ PlanOrStop plan_or_stop(const PlanInput& input, const LateralPath& previous,
                               options, fallback.decelerations_mps2);
   }
   answer.reason = words_for(answer);
-  return std::move(attempts.answer);
+  return answer;
 }
 
 }  // namespace roadbed::planning

@@ -11,7 +11,7 @@ namespace {
 using geometry::Trajectory;
 using geometry::TrajectoryPoint;
 
-constexpr double kStopStep_s = 0.05, kPassStep_m = 1.0;
+constexpr double kStopStep_s = 0.05;
 constexpr double kLeastStretch = 0.05;  // of a path that is all but folded
 constexpr double kLeastSpeed_mps = 0.05;
 

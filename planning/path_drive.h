@@ -26,8 +26,11 @@ struct PathCourse {
 geometry::Trajectory stopping_drive(const PathCourse& course, double speed_mps,
                                     double deceleration_mps2, double until_s);
 
+/// Between rows of passing_drive(), along the line.
+inline constexpr double kPassStep_m = 1.0;
+
 /// The drive along a path up to a station, at a planned speed by the length driven; its last row is
-/// the first one over `until_s` after the start. A row every metre or so of the line.
+/// the first one over `until_s` after the start. A row every kPassStep_m of the line.
 geometry::Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed,
                                    double end_s_m, double until_s);
 

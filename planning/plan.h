@@ -42,6 +42,19 @@ struct PlanOptions {
   bool exhaustive = false;       ///< evaluate even what cannot be the cheapest; same answer
 };
 
+/// What is kept from the corridor's edges (less than 0: the body may stick out so far) and from
+/// obstacles.
+struct Room {
+  double border_margin_m = 0.0;
+  double clearance_m = 0.3;
+
+  bool operator==(const Room&) const = default;
+};
+
+inline Room room_of(const PlanOptions& options) {
+  return {options.border_margin_m, options.clearance_m};
+}
+
 /// The question of one planning cycle.
 struct PlanInput {
   LineView line;  ///< a ReferenceLine may be given
@@ -62,11 +75,13 @@ using RejectionCounts = std::array<std::size_t, kRejections>;
 /// What one planning cycle found. Having no candidate left is an answer, not an error.
 struct Plan {
   std::optional<Candidate> chosen;
-  LateralState start;                 ///< of the chosen candidate's quintic
+  LateralState start;                        ///< of the chosen candidate's quintic
+  std::optional<geometry::Quintic> quintic;  ///< the chosen one
   geometry::Trajectory trajectory;    ///< the chosen drive over time; rear axle; empty if none
   std::vector<Candidate> candidates;  ///< the whole grid, d_e fastest, if asked for
-  /// Of those that were looked at before the choice; if there is one, a candidate that collides and
-  /// leaves the road with a corner may count as either.
+  /// Of those that were looked at before the choice, each under one cause that it fails for; the
+  /// first one in the order of Rejection if all candidates are kept. Some collide if, and only if,
+  /// one does that could be driven but for obstacles.
   RejectionCounts rejected{};
   std::size_t evaluated = 0;  ///< candidates whose cost had to be computed
   std::string reason;         ///< counts per cause if nothing is feasible

@@ -12,8 +12,7 @@ constexpr double kStep_m = 0.25;
 
 }  // namespace
 
-RoadBorder::RoadBorder(const LineView& line, double from_s_m, double to_s_m, double margin_m)
-    : from_s_m_(from_s_m), margin_m_(margin_m) {
+RoadBorder::RoadBorder(const LineView& line, double from_s_m, double to_s_m) : from_s_m_(from_s_m) {
   const int count = static_cast<int>(std::ceil((to_s_m - from_s_m) / kStep_m)) + 2;
   samples_.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
@@ -27,17 +26,15 @@ RoadBorder::RoadBorder(const LineView& line, double from_s_m, double to_s_m, dou
   }
 }
 
-double RoadBorder::excess_m(const geometry::Pose2& map_from_vehicle,
-                            const geometry::VehicleShape& vehicle, double near_s_m) const {
-  const Eigen::Vector2d axis(std::cos(map_from_vehicle.heading_rad),
-                             std::sin(map_from_vehicle.heading_rad));
-  const Eigen::Vector2d left(-axis.y(), axis.x());
+double RoadBorder::excess_m(const geometry::Rectangle& body, double rear_overhang_m,
+                            double near_s_m) const {
+  const Eigen::Vector2d left(-body.axis.y(), body.axis.x());
+  const double middle_s_m = near_s_m + body.half_length_m - rear_overhang_m;
   double excess_m = -1e300;
-  for (const double ahead_m : {-vehicle.rear_overhang_m, vehicle.front_m()}) {
-    for (const double side : {-0.5, 0.5}) {
-      const Eigen::Vector2d corner =
-          map_from_vehicle.position() + ahead_m * axis + side * vehicle.width_m * left;
-      excess_m = std::max(excess_m, excess_of_point_m(corner, near_s_m + ahead_m));
+  for (const double ahead_m : {-body.half_length_m, body.half_length_m}) {
+    for (const double side_m : {-body.half_width_m, body.half_width_m}) {
+      const Eigen::Vector2d corner = body.centre + ahead_m * body.axis + side_m * left;
+      excess_m = std::max(excess_m, excess_of_point_m(corner, middle_s_m + ahead_m));
     }
   }
   return excess_m;
@@ -66,8 +63,7 @@ double RoadBorder::excess_of_point_m(const Eigen::Vector2d& point, double near_s
   const auto between = [&](double at_a, double at_b) { return at_a + share * (at_b - at_a); };
   const double d_m =
       between(geometry::cross(a.tangent, from_a), geometry::cross(b.tangent, from_b));
-  return margin_m_ +
-         std::max(d_m - between(a.left_m, b.left_m), -d_m - between(a.right_m, b.right_m));
+  return std::max(d_m - between(a.left_m, b.left_m), -d_m - between(a.right_m, b.right_m));
 }
 
 }  // namespace roadbed::planning

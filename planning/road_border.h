@@ -3,8 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/rectangle.h"
 #include "roadbed/planning/line_view.h"
 
 namespace roadbed::planning {
@@ -12,15 +11,13 @@ namespace roadbed::planning {
 /// The corridor's edges along a stretch of a reference line, ready to be asked for many poses.
 class RoadBorder {
  public:
-  /// @param margin_m  to keep from the edges.
-  RoadBorder(const LineView& line, double from_s_m, double to_s_m, double margin_m);
+  RoadBorder(const LineView& line, double from_s_m, double to_s_m);
 
-  /// How far a vehicle's rectangle sticks out of the corridor at a pose of its rear axle beside
-  /// station `near_s_m` [m]; 0 or less inside. Each corner is held against the edge at its own
+  /// How far a vehicle's body sticks out of the corridor [m]; 0 or less inside. Its rear axle is
+  /// beside station `near_s_m`. Each corner is held against the edge at its own
   /// station, so a front that swings out in a bend is seen. Exact to about a millimetre where
   /// the line's radius is 10 m.
-  double excess_m(const geometry::Pose2& map_from_vehicle, const geometry::VehicleShape& vehicle,
-                  double near_s_m) const;
+  double excess_m(const geometry::Rectangle& body, double rear_overhang_m, double near_s_m) const;
 
  private:
   struct Sample {
@@ -30,7 +27,7 @@ class RoadBorder {
   double excess_of_point_m(const Eigen::Vector2d& point, double near_s_m) const;
   std::size_t sample_before(const Eigen::Vector2d& point, double near_s_m) const;
 
-  double from_s_m_, margin_m_;
+  double from_s_m_;
   std::vector<Sample> samples_;
 };
 

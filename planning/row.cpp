@@ -15,23 +15,6 @@ constexpr double kRounding = 1e-9, kQuarticRounding = 1e-13;
 
 double squared(double value) { return value * value; }
 
-// T of a candidate is at least that of its part along the line, dσ/ds ≥ 1 − κ d: linear in d_e.
-struct LeastDuration {
-  double at_zero_s = 0.0, per_unit_s = 0.0;
-  double at(double e) const { return at_zero_s + e * per_unit_s; }
-};
-
-LeastDuration least_duration(const std::vector<RowStation>& row,
-                             std::span<const KernelPoint> points) {
-  LeastDuration least;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const double curvature = row[i].station.line.curvature_per_m;
-    least.at_zero_s += points[i].time_weight * (1.0 - curvature * row[i].at_zero[0]);
-    least.per_unit_s -= points[i].time_weight * curvature * row[i].per_unit[0];
-  }
-  return least;
-}
-
 // A quartic, less what rounding may have added. Its even coefficients are sums of squares but for
 // parts that those of degree 0 and 4 outweigh, so that they bound every part of the sums.
 double rounded_down(const Quartic& c, double e) {
@@ -48,9 +31,22 @@ Row::Row(const std::vector<Station>& stations, const QuinticFamily& family,
   const std::vector<RowStation> row = row_stations(stations, family);
   for (std::size_t i = 0; i < row.size(); ++i) points[i] = kernel_point(row[i], question);
   closed_form_ = closed_form_cost(row, question);
-  on_road_ = lanes_on_road(row);
   unfolded_ = lanes_unfolded(row);
-  set_bounds(row);
+  least_duration_ = least_duration(row, points_);
+  bound_curvature();
+  set_on_road(lanes_on_road(row));
+}
+
+// dσ/ds ≥ 1 − κ d.
+Row::LeastDuration Row::least_duration(const std::vector<RowStation>& row,
+                                       std::span<const KernelPoint> points) {
+  LeastDuration least;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double curvature = row[i].station.line.curvature_per_m;
+    least.at_zero_s += points[i].time_weight * (1.0 - curvature * row[i].at_zero[0]);
+    least.per_unit_s -= points[i].time_weight * curvature * row[i].per_unit[0];
+  }
+  return least;
 }
 
 double Row::time_cost(double duration_s) const {
@@ -65,24 +61,28 @@ Rejection Row::first_verdict(std::size_t lane) const {
   return unfolded_.holds(end_d_m) ? Rejection::none : Rejection::beyond_curvature;
 }
 
-void Row::set_bounds(const std::vector<RowStation>& row) {
+void Row::bound_curvature() {
   const std::vector<double>& end_d_m = question_.end_d_m;
-  bounds_.assign((end_d_m.size() + kLanesPerBlock - 1) / kLanesPerBlock, kInfinity);
-  std::vector<double> from_d_m(bounds_.size()), to_d_m(bounds_.size());
-  for (std::size_t block = 0; block < bounds_.size(); ++block) {
+  bounds_.resize((end_d_m.size() + kLanesPerBlock - 1) / kLanesPerBlock);
+  std::vector<double> from_d_m(blocks()), to_d_m(blocks());
+  for (std::size_t block = 0; block < blocks(); ++block) {
     from_d_m[block] = end_d_m[first_lane(block)];
     to_d_m[block] = end_d_m[first_lane(block) + lanes_in(block) - 1];
   }
-  std::vector<Quartic> curvature(bounds_.size(), Quartic{});
-  add_curvature_bounds(points_, from_d_m, to_d_m, curvature);
-  const LeastDuration duration = least_duration(row, points_);
-  for (std::size_t lane = 0; lane < end_d_m.size(); ++lane) {
-    const double e = end_d_m[lane];
+  curvature_.assign(blocks(), Quartic{});
+  add_curvature_bounds(points_, from_d_m, to_d_m, curvature_);
+}
+
+void Row::set_on_road(const LaneInterval& on_road) {
+  on_road_ = on_road;
+  std::ranges::fill(bounds_, kInfinity);
+  for (std::size_t lane = 0; lane < question_.end_d_m.size(); ++lane) {
+    const double e = question_.end_d_m[lane];
     if (first_verdict(lane) != Rejection::none) continue;
-    double& bound = bounds_[lane / kLanesPerBlock];
-    const double cost = closed_form_.at(e) + time_cost(duration.at(e)) +
-                        std::max(0.0, rounded_down(curvature[lane / kLanesPerBlock], e));
-    bound = std::min(bound, cost * (1.0 - kRounding));
+    const std::size_t block = lane / kLanesPerBlock;
+    const double cost = closed_form_.at(e) + time_cost(least_duration_.at(e)) +
+                        std::max(0.0, rounded_down(curvature_[block], e));
+    bounds_[block] = std::min(bounds_[block], cost * (1.0 - kRounding));
   }
 }
 
@@ -95,9 +95,8 @@ void Row::evaluate(std::size_t block, std::span<double> cost,
   const DrivingLimits& limits = question_.limits;
   for (std::size_t i = 0; i < end_d_m.size(); ++i) {
     cost[i] = sums[i] + closed_form_.at(end_d_m[i]) + time_cost(duration_s[i]);
-    rejection[i] = first_verdict(first_lane(block) + i);
-    if (rejection[i] != Rejection::none) continue;
-    if (!(curvature[i] <= squared(limits.max_curvature_per_m))) {
+    rejection[i] = Rejection::none;
+    if (!unfolded_.holds(end_d_m[i]) || !(curvature[i] <= squared(limits.max_curvature_per_m))) {
       rejection[i] = Rejection::beyond_curvature;
     } else if (!(acceleration[i] <= squared(limits.max_lateral_acceleration_mps2))) {
       rejection[i] = Rejection::lateral_acceleration;
@@ -116,6 +115,10 @@ RowResult evaluate_row(const std::vector<Station>& stations, const QuinticFamily
   for (std::size_t block = 0; block < row.blocks(); ++block) {
     row.evaluate(block, std::span(result.cost).subspan(row.first_lane(block), row.lanes_in(block)),
                  std::span(result.rejection).subspan(row.first_lane(block), row.lanes_in(block)));
+  }
+  for (std::size_t lane = 0; lane < question.end_d_m.size(); ++lane) {
+    const Rejection first = row.first_verdict(lane);
+    if (first != Rejection::none) result.rejection[lane] = first;
   }
   return result;
 }

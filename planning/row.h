@@ -28,22 +28,35 @@ class Row {
   /// road or is folded. planning/README.md, eq. B.
   double bound(std::size_t block) const { return bounds_[block]; }
 
-  /// Cost and verdict of a block's lanes; a cost is meaningless where folded or off the road.
+  /// Cost and verdict of a block's lanes, the road left out; a cost is meaningless where folded.
   /// @pre both spans have lanes_in(block) elements
   void evaluate(std::size_t block, std::span<double> cost, std::span<Rejection> rejection) const;
 
   /// A lane's verdict as far as it is known without looking at curvature.
   Rejection first_verdict(std::size_t lane) const;
 
+  /// Another road than the stations have; bounds change with it.
+  void set_on_road(const LaneInterval& on_road);
+
  private:
+  // T of a candidate is at least that of its part along the line: linear in d_e.
+  struct LeastDuration {
+    double at_zero_s = 0.0, per_unit_s = 0.0;
+    double at(double e) const { return at_zero_s + e * per_unit_s; }
+  };
+
+  static LeastDuration least_duration(const std::vector<RowStation>& row,
+                                      std::span<const KernelPoint> points);
   double time_cost(double duration_s) const;
-  void set_bounds(const std::vector<RowStation>& row);
+  void bound_curvature();
 
   RowQuestion question_;
   std::span<const KernelPoint> points_;
   RowQuadratic closed_form_;
+  LeastDuration least_duration_;
   LaneInterval on_road_, unfolded_;
-  std::vector<double> bounds_;  // one per block
+  std::vector<Quartic> curvature_;  // what it costs at least, one per block
+  std::vector<double> bounds_;      // one per block
 };
 
 /// Cost and verdict of every candidate of one length.

@@ -95,12 +95,11 @@ RowQuadratic closed_form_cost(const std::vector<RowStation>& row, const RowQuest
   return sum;
 }
 
-void LaneInterval::keep(double least_d, double most_d, const RowStation& at) {
-  const double zero = at.at_zero[0], per_unit = at.per_unit[0];
+void LaneInterval::keep(double least_d, double most_d, double at_zero, double per_unit) {
   if (per_unit > kFixed) {
-    from = std::max(from, (least_d - zero) / per_unit);
-    to = std::min(to, (most_d - zero) / per_unit);
-  } else if (!(zero >= least_d && zero <= most_d)) {
+    from = std::max(from, (least_d - at_zero) / per_unit);
+    to = std::min(to, (most_d - at_zero) / per_unit);
+  } else if (!(at_zero >= least_d && at_zero <= most_d)) {
     from = std::numeric_limits<double>::infinity();  // the start breaks it for all of them
   }
 }
@@ -108,7 +107,19 @@ void LaneInterval::keep(double least_d, double most_d, const RowStation& at) {
 LaneInterval lanes_on_road(const std::vector<RowStation>& row) {
   LaneInterval interval;
   for (const RowStation& at : row) {
-    interval.keep(at.station.min_d_m - kLimitSlack, at.station.max_d_m + kLimitSlack, at);
+    interval.keep(at.station.min_d_m - kLimitSlack, at.station.max_d_m + kLimitSlack, at.at_zero[0],
+                  at.per_unit[0]);
+  }
+  return interval;
+}
+
+LaneInterval lanes_on_road(const Course& course, const QuinticFamily& family, int count) {
+  LaneInterval interval;
+  for (int i = 0; i < count; ++i) {
+    const double l_m = family.at_zero.length() * i / (count - 1);
+    const OffsetRange range = offsets_on_road(course, l_m);
+    interval.keep(range.min_d_m - kLimitSlack, range.max_d_m + kLimitSlack,
+                  family.at_zero.at(l_m)[0], family.per_unit.at(l_m)[0]);
   }
   return interval;
 }
@@ -120,7 +131,8 @@ LaneInterval lanes_unfolded(const std::vector<RowStation>& row) {
     const double curvature = at.station.line.curvature_per_m;
     if (curvature == 0.0) continue;
     const double limit_d = (1.0 - kLeastUnfolded) / curvature;
-    interval.keep(curvature < 0.0 ? limit_d : -infinity, curvature < 0.0 ? infinity : limit_d, at);
+    interval.keep(curvature < 0.0 ? limit_d : -infinity, curvature < 0.0 ? infinity : limit_d,
+                  at.at_zero[0], at.per_unit[0]);
   }
   return interval;
 }

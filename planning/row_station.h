@@ -48,11 +48,15 @@ struct LaneInterval {
   double from = -std::numeric_limits<double>::infinity();
   double to = std::numeric_limits<double>::infinity();
 
-  void keep(double least_d, double most_d, const RowStation& at);
+  /// A limit on d = at_zero + d_e · per_unit.
+  void keep(double least_d, double most_d, double at_zero, double per_unit);
   bool holds(double end_d_m) const { return end_d_m >= from && end_d_m <= to; }
 };
 
 LaneInterval lanes_on_road(const std::vector<RowStation>& row);
+
+/// The same from the course, for `count` stations, without what else there is at them.
+LaneInterval lanes_on_road(const Course& course, const QuinticFamily& family, int count);
 
 /// 1 − κ d > kLeastUnfolded.
 LaneInterval lanes_unfolded(const std::vector<RowStation>& row);

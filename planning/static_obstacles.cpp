@@ -77,4 +77,9 @@ double StaticObstacles::distance_m(const Rectangle& rectangle) const {
   return nearest_m;
 }
 
+const Rectangle& StaticObstacles::nearest(const Rectangle& rectangle) const {
+  return *std::ranges::min_element(
+      bodies_, {}, [&](const Rectangle& body) { return geometry::distance_m(rectangle, body); });
+}
+
 }  // namespace roadbed::planning

@@ -27,6 +27,9 @@ class StaticObstacles {
   /// Exact distance to the nearest body [m]; infinite if there is none. O(N).
   double distance_m(const geometry::Rectangle& rectangle) const;
 
+  /// The body that is nearest to a rectangle; of equally near ones the first. O(N). @pre not empty
+  const geometry::Rectangle& nearest(const geometry::Rectangle& rectangle) const;
+
   /// Greatest distance from a point of a body to the nearest of the points spread on it.
   static constexpr double kLargestGap_m = 0.25;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace roadbed::planning {
 namespace {
@@ -34,22 +33,12 @@ class Ahead {
   Eigen::Vector2d axis_, axle_;
 };
 
-std::vector<Obstacle> moving_ahead(const CollisionScene& scene, const Ahead& ahead) {
-  std::vector<Obstacle> moving;
-  std::ranges::copy_if(scene.obstacles, std::back_inserter(moving), [&](const Obstacle& obstacle) {
-    return !obstacle.is_static() && !obstacle.motion.empty() &&
-           ahead.holds(obstacle.motion.at(scene.start_t_s).pose());
-  });
+CollisionScene of_what_moves_ahead(const CollisionScene& scene, const Course& course) {
+  CollisionScene moving = scene;
+  moving.counts = [ahead = Ahead(course)](const geometry::Pose2& centre) {
+    return ahead.holds(centre);
+  };
   return moving;
-}
-
-std::vector<PredictedObstacle> predicted_ahead(const CollisionScene& scene, const Ahead& ahead) {
-  std::vector<PredictedObstacle> predicted;
-  std::ranges::copy_if(scene.predicted, std::back_inserter(predicted),
-                       [&](const PredictedObstacle& obstacle) {
-                         return ahead.holds(obstacle.prediction.at(scene.start_t_s));
-                       });
-  return predicted;
 }
 
 double next_multiple(double value, double step) { return step * std::ceil(value / step - 1e-9); }
@@ -67,22 +56,30 @@ WayOn::WayOn(const Course& course, const CollisionScene& scene,
       vehicle_(vehicle),
       options_(options),
       start_t_s_(scene.start_t_s),
-      moving_(moving_ahead(scene, Ahead(course))),
-      predicted_(predicted_ahead(scene, Ahead(course))),
-      checker_({.obstacles = moving_, .start_t_s = scene.start_t_s, .predicted = predicted_},
-               vehicle,
+      checker_(of_what_moves_ahead(scene, course), vehicle,
                {.circles = options.circles,
                 .clearance_m = options.clearance_m,
                 .recovery_m = options.recovery_m,
                 .horizon_s = options.horizon_s}) {}
 
+WayOn::Place WayOn::place_of(double end_d_m, double end_l_m) const {
+  return {end_d_m, next_multiple(course_.start.s_m + end_l_m, kReachStep_m)};
+}
+
 bool WayOn::exists(double end_d_m, double end_l_m) {
-  if (moving_.empty() && predicted_.empty()) return true;
-  if (options_.horizon_s == 0.0) return true;
-  const std::pair end(end_d_m, next_multiple(course_.start.s_m + end_l_m, kReachStep_m));
-  const auto known = known_.find(end);
+  if (checker_.is_empty() || options_.horizon_s == 0.0) return true;
+  const Place place = place_of(end_d_m, end_l_m);
+  const auto known = known_.find(place);
   if (known != known_.end()) return known->second;
-  return known_[end] = find(end.first, end.second);
+  const bool leads_on = find(place.first, place.second);
+  some_end_ = some_end_ || !leads_on;
+  return known_[place] = leads_on;
+}
+
+bool WayOn::is_known_to_end(double end_d_m, double end_l_m) const {
+  if (!some_end_) return false;
+  const auto known = known_.find(place_of(end_d_m, end_l_m));
+  return known != known_.end() && !known->second;
 }
 
 PathCourse WayOn::along(const LateralPath& path) const {
@@ -107,6 +104,15 @@ bool WayOn::passes(const LateralPath& hold, double end_d_m, double back_from_m) 
           .points());
 }
 
+// How far the way at the offset is free; whatever goes on to a later station meets the same.
+double WayOn::free_until_m(const LateralPath& hold, double end_s_m) const {
+  const double last_m = end_s_m + (kLeaveSteps + 1) * kLeaveStep_m;
+  const Trajectory drive = passing_drive(along(hold), course_.speed, last_m, options_.horizon_s);
+  const auto contact = checker_.first_contact(drive.points());
+  if (!contact) return last_m;
+  return course_.start.s_m + kPassStep_m * static_cast<double>(contact->leg + 1);
+}
+
 bool WayOn::find(double end_d_m, double end_s_m) const {
   const double start_s_m = course_.start.s_m;
   const geometry::Quintic out = QuinticFamily(course_.start, end_s_m - start_s_m).member(end_d_m);
@@ -116,9 +122,11 @@ bool WayOn::find(double end_d_m, double end_s_m) const {
       stopping_drive(along(hold), speed_mps, options_.deceleration_mps2, options_.horizon_s);
   if (checker_.is_free(stop.points())) return true;
   const int enough = is_begun(end_d_m, end_s_m) ? 1 : 2;
+  const double free_to_m = free_until_m(hold, end_s_m);
   int in_a_row = 0;
   for (int i = 0; i < kLeaveSteps && in_a_row < enough; ++i) {
     const double back_from_m = next_multiple(end_s_m, kLeaveStep_m) + i * kLeaveStep_m;
+    if (back_from_m > free_to_m) break;
     in_a_row = passes(hold, end_d_m, back_from_m) ? in_a_row + 1 : 0;
   }
   return in_a_row >= enough;

@@ -36,14 +36,19 @@ class WayOn {
   /// @param course, vehicle  kept by reference.
   WayOn(const Course& course, const CollisionScene& scene, const geometry::VehicleShape& vehicle,
         const Options& options);
-  WayOn(const WayOn&) = delete;  // its checker refers to its own lists
-  WayOn& operator=(const WayOn&) = delete;
 
   /// Of an end state. Each offset is looked at once per station that it is reached at.
   bool exists(double end_d_m, double end_l_m);
 
+  /// Whether it was asked for, and there is none.
+  bool is_known_to_end(double end_d_m, double end_l_m) const;
+
  private:
+  using Place = std::pair<double, double>;  // end offset and station
+
+  Place place_of(double end_d_m, double end_l_m) const;
   bool find(double end_d_m, double end_s_m) const;
+  double free_until_m(const LateralPath& hold, double end_s_m) const;
   bool is_begun(double end_d_m, double end_s_m) const;
   bool passes(const LateralPath& hold, double end_d_m, double back_from_m) const;
   PathCourse along(const LateralPath& path) const;
@@ -52,10 +57,9 @@ class WayOn {
   const geometry::VehicleShape& vehicle_;
   Options options_;
   double start_t_s_;
-  std::vector<Obstacle> moving_;
-  std::vector<PredictedObstacle> predicted_;
   CollisionChecker checker_;
-  std::map<std::pair<double, double>, bool> known_;  // by end offset and station
+  std::map<Place, bool> known_;
+  bool some_end_ = false;
 };
 
 }  // namespace roadbed::planning

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <thread>
 #include <vector>
@@ -254,10 +255,19 @@ TEST(PlanPath, TakesWhatAPlainLoopOverTheWholeGridTakes) {
   EXPECT_GT(detours, static_cast<int>(scenes / 20));  // nor trivial
 }
 
+std::size_t all_rejected(const RejectionCounts& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+std::size_t colliding(const Plan& plan) {
+  return plan.rejected[static_cast<std::size_t>(Rejection::collision)];
+}
+
 void expect_same(const Plan& a, const Plan& b, std::uint32_t seed) {
   ASSERT_EQ(a.chosen.has_value(), b.chosen.has_value()) << "seed " << seed;
   if (!a.chosen) {
-    EXPECT_EQ(a.rejected, b.rejected) << "seed " << seed;
+    EXPECT_EQ(all_rejected(a.rejected), all_rejected(b.rejected)) << "seed " << seed;
+    EXPECT_EQ(colliding(a) > 0, colliding(b) > 0) << "seed " << seed;
     return;
   }
   EXPECT_EQ(a.chosen->end_d_m, b.chosen->end_d_m) << "seed " << seed;

@@ -100,19 +100,19 @@ Figure candidates() {
               .x_label = "l [m]",
               .y_label = "d [m]",
               .series = {}};
-  const auto draw = [&](const planning::Candidate& candidate, Series series) {
+  const auto draw = [&](const planning::Candidate& candidate, int parts, Series series) {
     const auto quintic =
         planning::QuinticFamily(start, candidate.end_l_m).member(candidate.end_d_m);
-    for (int i = 0; i <= 15; ++i) {
-      const double l_m = candidate.end_l_m * i / 15.0;
+    for (int i = 0; i <= parts; ++i) {
+      const double l_m = candidate.end_l_m * i / parts;
       series.points.push_back({l_m, quintic.at(l_m)[0]});
     }
     chart.series.push_back(std::move(series));
   };
   for (const planning::Candidate& candidate : plan.candidates) {
-    draw(candidate, {"candidates", Mark::thin, kBlue, {}});
+    draw(candidate, 15, {"candidates", Mark::thin, kBlue, {}});
   }
-  if (plan.chosen) draw(*plan.chosen, {"optimal, free of collision", Mark::line, kRed, {}});
+  if (plan.chosen) draw(*plan.chosen, 60, {"optimal, free of collision", Mark::line, kRed, {}});
   return {"figure_9_candidates", chart};
 }
 

@@ -27,7 +27,7 @@ double look_ahead_m(double speed_mps, const DecisionOptions& options) {
 }
 
 /// In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
-std::vector<PathKeeper::Room> rooms(double clearance_m) {
+std::vector<planning::Room> rooms(double clearance_m) {
   return {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
 }
 

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "roadbed/geometry/angle.h"
+#include "roadbed/planning/plan_cycle.h"
 
 namespace roadbed::tools {
 namespace {
 
 using planning::LateralState;
-using planning::Rejection;
 
 constexpr double kReturn_m = 20.0;
 constexpr double kCoarse_m = 0.6;  // between ends of what is tried after the first plan
@@ -72,14 +74,7 @@ void PathKeeper::plan(const Question& question) {
   take(propose(question, {}));
 }
 
-PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets& offsets,
-                                         bool may_leave_lanes) const {
-  planning::PlanOptions options;
-  options.min_d_m = offsets.least_m;
-  options.max_d_m = offsets.most_m;
-  options.min_l_m = question.ends.least_m;
-  options.max_l_m = question.ends.most_m;
-  options.keep_candidates = bounds_.keeps_candidates;
+planning::PlanInput PathKeeper::input_for(const Question& question) const {
   planning::PlanInput input{.line = line_,
                             .start = start_,
                             .start_t_s = question.t_s,
@@ -91,35 +86,64 @@ PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets
   if (path_) {
     input.previous_d_m = [this](double s_m) { return path_->lateral_at(s_m).d_m; };
   }
-  // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
-  Proposal proposal;
-  if (!may_leave_lanes) options.l_step_m = kCoarse_m;
-  for (const Room& room : bounds_.rooms) {
-    if (room.border_m < 0.0 && !may_leave_lanes) break;
-    options.border_margin_m = room.border_m;
-    options.clearance_m = room.clearance_m;
-    for (const planning::SpeedPlan& speed : speeds_to_try(question)) {
-      input.speed = speed;
-      proposal = {planning::plan_path(input, scenario_.vehicle, options),
-                  std::max(0.0, -room.border_m), options.max_l_m};
-      if (proposal.plan.chosen || (in_the_way(proposal.plan) && !bounds_.squeezes_past)) {
-        return proposal;
-      }
-      if (bounds_.squeezes_past) options.l_step_m = kCoarse_m;
-    }
-  }
-  return proposal;
+  return input;
 }
 
-/// A bend or a gap that is too sharp at the planned speed may be driven while braking.
-std::vector<planning::SpeedPlan> PathKeeper::speeds_to_try(const Question& question) const {
-  std::vector<planning::SpeedPlan> speeds{question.speed};
-  if (bounds_.squeezes_past && question.speed.speed_mps > 2.0 * kCrawl_mps) {
-    speeds.push_back({.speed_mps = question.speed.speed_mps,
-                      .acceleration_mps2 = -kBraking_mps2,
-                      .target_mps = kCrawl_mps});
+std::vector<planning::Room> PathKeeper::rooms(bool may_leave_lanes) const {
+  std::vector<planning::Room> rooms = bounds_.rooms;
+  if (!may_leave_lanes) {
+    std::erase_if(rooms, [](const planning::Room& room) { return room.border_margin_m < 0.0; });
   }
-  return speeds;
+  return rooms;
+}
+
+PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets& offsets,
+                                         bool may_leave_lanes) const {
+  planning::PlanOptions options;
+  options.min_d_m = offsets.least_m;
+  options.max_d_m = offsets.most_m;
+  options.min_l_m = question.ends.least_m;
+  options.max_l_m = question.ends.most_m;
+  options.keep_candidates = bounds_.keeps_candidates;
+  if (!may_leave_lanes) options.l_step_m = kCoarse_m;
+  const std::vector<planning::Room> in_turn = rooms(may_leave_lanes);
+  if (bounds_.squeezes_past) return squeeze(question, options, in_turn);
+  const planning::PlanInput input = input_for(question);
+  planning::PlanCycle cycle(input, scenario_.vehicle, options);
+  std::vector<planning::Plan> plans = plan_in_rooms(cycle, in_turn);
+  const double border_m = in_turn[plans.size() - 1].border_margin_m;
+  return {std::move(plans.back()), std::max(0.0, -border_m), options.max_l_m};
+}
+
+/// With less and less room, at the planned speed and while braking: a bend or a gap that is too
+/// sharp at the one may be driven at the other. After the first look a coarse grid will do.
+PathKeeper::Proposal PathKeeper::squeeze(const Question& question,
+                                         const planning::PlanOptions& options,
+                                         const std::vector<planning::Room>& rooms) const {
+  std::vector<planning::PlanInput> inputs{input_for(question)};
+  if (question.speed.speed_mps > 2.0 * kCrawl_mps) {
+    inputs.push_back(inputs.front());
+    inputs.back().speed = {.speed_mps = question.speed.speed_mps,
+                           .acceleration_mps2 = -kBraking_mps2,
+                           .target_mps = kCrawl_mps};
+  }
+  const auto proposal = [&](planning::PlanCycle& cycle, const planning::Room& room) {
+    return Proposal{cycle.plan(room), std::max(0.0, -room.border_margin_m), options.max_l_m};
+  };
+  planning::PlanCycle fine(inputs.front(), scenario_.vehicle, options);
+  Proposal last = proposal(fine, rooms.front());
+  planning::PlanOptions coarse = options;
+  coarse.l_step_m = kCoarse_m;
+  std::vector<std::unique_ptr<planning::PlanCycle>> cycles(inputs.size());
+  for (std::size_t i = 1; i < rooms.size() * inputs.size() && !last.plan.chosen; ++i) {
+    const std::size_t by_speed = i % inputs.size();
+    auto& cycle = cycles[by_speed];
+    if (!cycle) {
+      cycle = std::make_unique<planning::PlanCycle>(inputs[by_speed], scenario_.vehicle, coarse);
+    }
+    last = proposal(*cycle, rooms[i / inputs.size()]);
+  }
+  return last;
 }
 
 /// Past the plan's end its offset is held as long as the corridor has room for it.
@@ -161,11 +185,7 @@ void PathKeeper::take(const Proposal& proposal) {
   }
 }
 
-bool PathKeeper::in_the_way(const planning::Plan& plan) const {
-  return plan.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
-}
-
-bool PathKeeper::something_is_in_the_way() const { return in_the_way(plan_); }
+bool PathKeeper::something_is_in_the_way() const { return is_in_the_way(plan_); }
 
 PlannedPath PathKeeper::expected_path() const {
   return PlannedPath(reference_, [path = *path_, end_m = path_end_s_m_](double s_m) {

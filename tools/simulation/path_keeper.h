@@ -14,17 +14,11 @@ namespace roadbed::tools {
 /// vehicle follows it well enough, and keeps the last path when nothing is feasible.
 class PathKeeper {
  public:
-  /// What is kept from the corridor's edges (less than 0: the body may stick out so far) and from
-  /// obstacles.
-  struct Room {
-    double border_m, clearance_m;
-  };
-
   struct Bounds {
     double tracking_error_m;
     double heading_error_rad;
     /// What is tried in turn until something is feasible.
-    std::vector<Room> rooms;
+    std::vector<planning::Room> rooms;
     /// Whether an obstacle in the way is a reason to ask for less room, or to wait.
     bool squeezes_past = false;
     bool keeps_candidates = false;  ///< in the plan; every one is judged then
@@ -99,8 +93,10 @@ class PathKeeper {
 
  private:
   planning::LateralState start_state(const VehicleState& measured);
-  bool in_the_way(const planning::Plan& plan) const;
-  std::vector<planning::SpeedPlan> speeds_to_try(const Question& question) const;
+  planning::PlanInput input_for(const Question& question) const;
+  Proposal squeeze(const Question& question, const planning::PlanOptions& options,
+                   const std::vector<planning::Room>& rooms) const;
+  std::vector<planning::Room> rooms(bool may_leave_lanes) const;
   double held_until_m(const planning::Plan& plan) const;
 
   const Scenario& scenario_;

@@ -1,0 +1,235 @@
+#include "roadbed/planning/plan_cycle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "roadbed/planning/candidate_search.h"
+#include "roadbed/planning/closer_look.h"
+#include "roadbed/planning/cycle.h"
+#include "roadbed/planning/row.h"
+
+namespace roadbed::planning {
+namespace {
+
+void check(const LateralState& start, const PlanOptions& options) {
+  const auto demand = [](bool kept, const char* rule) {
+    if (!kept) throw std::invalid_argument(fmt::format("plan: {}", rule));
+  };
+  demand(std::isfinite(start.s_m) && std::isfinite(start.d_m) && std::isfinite(start.d_slope) &&
+             std::isfinite(start.d_curvature_per_m),
+         "the start must be finite");
+  demand(options.points >= 2, "a candidate needs at least 2 points");
+  demand(options.max_lateral_acceleration_mps2 > 0.0, "max_lateral_acceleration must be positive");
+  demand(options.recovery_m > 0.0, "recovery_m must be positive");
+  demand(options.horizon_s >= 0.0, "the horizon must not be negative");
+  demand(options.way_on_horizon_s >= 0.0, "way_on_horizon must not be negative");
+  demand(options.way_on_deceleration_mps2 > 0.0, "way_on_deceleration must be positive");
+  check_weights(options.weights);
+}
+
+void check(const Room& room) {
+  if (!(room.clearance_m >= 0.0)) {
+    throw std::invalid_argument("plan: the clearance must not be negative");
+  }
+  if (!std::isfinite(room.border_margin_m)) {
+    throw std::invalid_argument("plan: the border margin must be finite");
+  }
+}
+
+RowQuestion question_of(const Cycle& cycle) {
+  const PlanOptions& options = cycle.options();
+  RowQuestion question{
+      .end_d_m = cycle.grid().end_d_m(),
+      .weights = options.weights,
+      .frame = {},
+      .limits = driving_limits(cycle.vehicle(), options.max_lateral_acceleration_mps2)};
+  if (options.limit_steering_rate) {
+    question.limits.max_steering_rate_radps = cycle.vehicle().max_steering_rate_radps;
+  }
+  return question;
+}
+
+bool evaluates_all(const PlanOptions& options) {
+  return options.exhaustive || options.keep_candidates;
+}
+
+// What rows refer to. One block for all of them: the allocator keeps it from cycle to cycle, where
+// it would give many small ones back, and have their pages cleared again. Rows that are evaluated
+// at once share their points, which then stay in the fastest cache.
+std::vector<KernelPoint> kernel_points(const Cycle& cycle) {
+  const auto count = static_cast<std::size_t>(cycle.options().points);
+  return std::vector<KernelPoint>(evaluates_all(cycle.options()) ? count
+                                                                 : cycle.grid().rows() * count);
+}
+
+CandidateSearch search_of(const Cycle& cycle, std::span<KernelPoint> points) {
+  const auto count = static_cast<std::size_t>(cycle.options().points);
+  CandidateSearch search(cycle.grid().lanes(), evaluates_all(cycle.options()));
+  RowQuestion question = question_of(cycle);
+  for (std::size_t row = 0; row < cycle.grid().rows(); ++row) {
+    question.frame = cycle.frame(row);
+    search.add(Row(cycle.make_stations(row), cycle.family(row), question,
+                   points.subspan(points.size() == count ? 0 : row * count, count)));
+  }
+  return search;
+}
+
+Candidate candidate_at(const Cycle& cycle, const CandidateSearch& search, std::size_t index) {
+  return {.end_d_m = cycle.grid().end_d_m(index),
+          .end_l_m = cycle.grid().end_l_m(index),
+          .terms = {},
+          .cost = search.cost(index),
+          .rejection = search.rejections()[index]};
+}
+
+Candidate candidate_with_terms(Cycle& cycle, const CandidateSearch& search, std::size_t index) {
+  Candidate candidate = candidate_at(cycle, search, index);
+  const std::size_t row = index / cycle.grid().lanes();
+  const auto points = cost_points(cycle.stations(row), cycle.quintic(index));
+  if (!points.empty()) candidate.terms = cost_terms(points, cycle.frame(row));
+  return candidate;
+}
+
+// The first one, cheapest first, that keeps to the road and collides with nothing.
+std::optional<std::size_t> choose_lazily(Cycle& cycle, CandidateSearch& search) {
+  CloserLook look(cycle);
+  const auto known = [&](std::size_t index) { return look.known(index); };
+  for (auto equals = search.pop_equals(known); !equals.empty(); equals = search.pop_equals(known)) {
+    std::ranges::sort(equals, [&](std::size_t a, std::size_t b) {
+      return is_preferred(candidate_at(cycle, search, a), candidate_at(cycle, search, b));
+    });
+    for (const std::size_t index : equals) {
+      Rejection found = look.known(index);
+      if (found == Rejection::none) found = look.at(index);
+      search.reject(index, found);
+      if (found == Rejection::none) return index;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<Candidate> all_candidates(Cycle& cycle, CandidateSearch& search) {
+  CloserLook look(cycle);
+  std::vector<Candidate> candidates;
+  candidates.reserve(cycle.grid().size());
+  for (std::size_t index = 0; index < cycle.grid().size(); ++index) {
+    const Rejection found = search.rejections()[index];
+    if (found == Rejection::none || found == Rejection::collision) {
+      search.reject(index, look.at(index));
+    }
+    candidates.push_back(candidate_with_terms(cycle, search, index));
+  }
+  return candidates;
+}
+
+RejectionCounts count(const std::vector<Rejection>& rejections) {
+  RejectionCounts counts{};
+  for (const Rejection rejection : rejections) ++counts[static_cast<std::size_t>(rejection)];
+  counts[static_cast<std::size_t>(Rejection::none)] = 0;
+  return counts;
+}
+
+// What is wrong with the start, that none of the candidates can help.
+std::string fault_of_start(const Cycle& cycle) {
+  const Corridor room = cycle.input().line.corridor_at(cycle.input().start.s_m);
+  const double width_m = room.left_m + room.right_m;
+  if (cycle.vehicle().width_m > width_m) {
+    return fmt::format(
+        "the vehicle is {:.2f} m wide and the road {:.2f} m: ", cycle.vehicle().width_m, width_m);
+  }
+  if (cycle.course().start_excess_m > 0.0) {
+    return fmt::format("the start is {:.2f} m off the road: ", cycle.course().start_excess_m);
+  }
+  return {};
+}
+
+std::string reason_for_none(const Cycle& cycle, const RejectionCounts& rejected) {
+  const auto of = [&](Rejection cause) { return rejected[static_cast<std::size_t>(cause)]; };
+  return fmt::format(
+      "{}none of {} candidates can be driven: {} leave the road, {} are beyond the curvature that "
+      "can be steered, {} are beyond the lateral acceleration, {} are beyond the steering rate, {} "
+      "collide",
+      fault_of_start(cycle), cycle.grid().size(), of(Rejection::off_road),
+      of(Rejection::beyond_curvature), of(Rejection::lateral_acceleration),
+      of(Rejection::steering_rate), of(Rejection::collision));
+}
+
+}  // namespace
+
+struct PlanCycle::Impl {
+  Impl(const PlanInput& input, const geometry::VehicleShape& vehicle, const PlanOptions& by_options)
+      : options(by_options),
+        cycle(input, vehicle, options),
+        points(kernel_points(cycle)),
+        search(search_of(cycle, points)) {}
+
+  void move_to(const Room& room) {
+    if (!is_fresh || room != cycle.room()) {
+      cycle.set_room(room);
+      std::vector<LaneInterval> on_road;
+      for (std::size_t row = 0; row < cycle.grid().rows(); ++row) {
+        on_road.push_back(lanes_on_road(cycle.course(), cycle.family(row), options.points));
+      }
+      search.restart(on_road);
+    }
+    is_fresh = false;
+  }
+
+  PlanOptions options;
+  Cycle cycle;
+  std::vector<KernelPoint> points;
+  CandidateSearch search;
+  bool is_fresh = true;
+};
+
+PlanCycle::PlanCycle(const PlanInput& input, const geometry::VehicleShape& vehicle,
+                     const PlanOptions& options) {
+  check(input.start, options);
+  check(room_of(options));
+  impl_ = std::make_unique<Impl>(input, vehicle, options);
+}
+
+PlanCycle::~PlanCycle() = default;
+
+Plan PlanCycle::plan(const Room& room) {
+  check(room);
+  impl_->move_to(room);
+  Cycle& cycle = impl_->cycle;
+  CandidateSearch& search = impl_->search;
+  const std::optional<std::size_t> choice = choose_lazily(cycle, search);
+  Plan plan;
+  plan.evaluated = search.evaluated();
+  plan.start = cycle.input().start;
+  if (choice) {
+    plan.chosen = candidate_with_terms(cycle, search, *choice);
+    plan.quintic = cycle.quintic(*choice);
+    plan.trajectory = geometry::Trajectory(cycle.drive(*choice).points);
+    plan.rejected = count(search.rejections());
+  }
+  if (impl_->options.keep_candidates) plan.candidates = all_candidates(cycle, search);
+  if (!choice) {
+    plan.rejected = count(search.rejections());
+    plan.reason = reason_for_none(cycle, plan.rejected);
+  }
+  return plan;
+}
+
+bool is_in_the_way(const Plan& plan) {
+  return plan.rejected[static_cast<std::size_t>(Rejection::collision)] > 0;
+}
+
+std::vector<Plan> plan_in_rooms(PlanCycle& cycle, std::span<const Room> rooms) {
+  std::vector<Plan> plans;
+  for (const Room& room : rooms) {
+    plans.push_back(cycle.plan(room));
+    if (plans.back().chosen || is_in_the_way(plans.back())) break;
+  }
+  return plans;
+}
+
+}  // namespace roadbed::planning
