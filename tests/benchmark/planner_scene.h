@@ -15,8 +15,9 @@ std::vector<Eigen::Vector2d> read_way_points(const std::filesystem::path& file);
 /// The cycle that is timed: 12 m/s, 0.3 m/s², 0.2 m beside the line at station 70 m, on a road of
 /// ±4.5 m; ten cars at 8 m/s ahead, in turn to the right, on the line and to the left.
 struct PlannerScene {
-  /// @param blocked  the ten cars are one behind the other to the right of the line, at 3 m/s: some
-  ///                 500 candidates that collide are cheaper than the one that is chosen.
+  /// @param blocked  the ten cars are one behind the other to the right of the line, at 3 m/s:
+  /// hundreds
+  ///                 of candidates that collide are cheaper than the one that is chosen.
   explicit PlannerScene(const std::vector<Eigen::Vector2d>& way_points, bool blocked = false);
 
   planning::PlanInput input() const;
