@@ -11,12 +11,12 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kPlaceStep_m = 0.25;
+constexpr double kLookStep_m = 0.25;
 constexpr double kSidePart_m = 0.5;  // between places of the body's outline
 constexpr double kSameStretch_m = 2.0;
 
-// Stretches grow as places are added in order.
-class Stretches {
+// FaultStretches grow as places are added in order.
+class FaultStretches {
  public:
   void add(double s_m, double value) {
     if (all_.empty() || s_m - all_.back().to_s_m > kSameStretch_m) all_.push_back({s_m, s_m, 0.0});
@@ -80,7 +80,7 @@ double greatest_curvature_per_m(const geometry::VehicleShape& vehicle) {
 
 double length_of(const std::vector<LineFault>& faults) {
   double sum_m = 0.0;
-  for (const LineFault& fault : faults) sum_m += kPlaceStep_m + fault.to_s_m - fault.from_s_m;
+  for (const LineFault& fault : faults) sum_m += kLookStep_m + fault.to_s_m - fault.from_s_m;
   return sum_m;
 }
 
@@ -91,8 +91,8 @@ LineDriving driving_along(const LineView& line, double end_s_m,
   const std::vector<Eigen::Vector2d> body = outline(vehicle);
   LineDriving driving;
   driving.slowest_mps.value = std::numeric_limits<double>::infinity();
-  Stretches bends, leaves;
-  for (double s_m = 0.0; s_m <= end_s_m; s_m += kPlaceStep_m) {
+  FaultStretches bends, leaves;
+  for (double s_m = 0.0; s_m <= end_s_m; s_m += kLookStep_m) {
     const ReferencePoint at = line.at(s_m);
     add_peaks(at, vehicle, driving);
     const double curvature = std::abs(at.curvature_per_m);
