@@ -1,5 +1,6 @@
 #include "roadbed/planning/collision.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,6 +15,7 @@ namespace {
 
 using geometry::Rectangle;
 using geometry::TrajectoryPoint;
+using geometry::VehicleShape;
 
 // Nearer than this beyond the demanded clearance the exact distance is found; farther away a lower
 // bound from the circles will do.
@@ -53,6 +55,26 @@ std::vector<Leg> legs_of(const std::vector<TrajectoryPoint>& drive, double reach
     from_m += length_m;
   }
   return legs;
+}
+
+// A rectangle that holds the body all along a leg: in the frame of the middle heading the corners
+// move from one end to the other on lines that bend by no more than reach · Δθ² / 8.
+Rectangle cover_of(const TrajectoryPoint& a, const TrajectoryPoint& b,
+                   const VehicleShape& vehicle) {
+  const double turn_rad = b.heading_rad - a.heading_rad;
+  const double heading_rad = a.heading_rad + 0.5 * turn_rad;
+  const Eigen::Vector2d axis(std::cos(heading_rad), std::sin(heading_rad)),
+      left(-axis.y(), axis.x());
+  Eigen::AlignedBox2d box;
+  for (const TrajectoryPoint* end : {&a, &b}) {
+    for (const Eigen::Vector2d& corner : geometry::body_at(end->pose(), vehicle).corners()) {
+      box.extend(Eigen::Vector2d(axis.dot(corner), left.dot(corner)));
+    }
+  }
+  const double bend_m = 0.125 * vehicle.reach_m() * turn_rad * turn_rad;
+  const Eigen::Vector2d centre = box.center(), size = box.sizes();
+  return {centre.x() * axis + centre.y() * left, axis, 0.5 * size.x() + bend_m,
+          0.5 * size.y() + bend_m};
 }
 
 // A place on a drive: on a leg, a share of it from its start.
@@ -126,6 +148,7 @@ struct CollisionChecker::Impl {
   std::optional<Contact> contact(std::size_t with, const std::vector<TrajectoryPoint>& drive,
                                  const std::vector<Leg>& legs, double rate_mps, double until_s,
                                  const Clearance& clearance) const;
+  bool is_clear_of_standing(std::size_t with, const Rectangle& cover, double enough_m) const;
   Place follow(const std::vector<Leg>& legs, Place from, double rate_mps, double slack_m) const;
 
   Rectangle nearest(std::size_t with, const Moment& moment) const;
@@ -186,6 +209,7 @@ std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
                                                        double rate_mps, double until_s,
                                                        const Clearance& clearance) const {
   Moment moment;
+  std::size_t covered = 0;  // legs that were looked at as a whole
   for (Place place; place.leg < legs.size();) {
     look_at(drive, place, moment);
     if (moment.t_s > until_s) return std::nullopt;
@@ -193,9 +217,30 @@ std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
     const double demanded = demanded_m(leg.from_m + place.share * leg.length_m);
     const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
     if (!(slack_m >= options.tolerance_m)) return Contact{place.leg, with, nearest(with, moment)};
-    place = follow(legs, place, rate_mps, slack_m);
+    const Place next = follow(legs, place, rate_mps, slack_m);
+    const bool is_slow = next.leg == place.leg && place.leg >= covered;
+    covered = std::max(covered, place.leg + 1);
+    // Beside a wall every step is short, and the whole leg mostly clear.
+    const bool is_clear =
+        is_slow &&
+        is_clear_of_standing(with, cover_of(drive[place.leg], drive[place.leg + 1], vehicle),
+                             demanded_m(leg.from_m + leg.length_m));
+    place = is_clear ? Place{place.leg + 1, 0.0} : next;
   }
   return std::nullopt;
+}
+
+bool CollisionChecker::Impl::is_clear_of_standing(std::size_t with, const Rectangle& cover,
+                                                  double enough_m) const {
+  if (with == kStanding) return standing.distance_m(cover) >= enough_m;
+  if (with != kOccupied) return false;
+  VehicleShape shape = vehicle;
+  shape.length_m = 2.0 * cover.half_length_m;
+  shape.width_m = 2.0 * cover.half_width_m;
+  shape.rear_overhang_m = cover.half_length_m;
+  const geometry::Pose2 centre{cover.centre.x(), cover.centre.y(),
+                               std::atan2(cover.axis.y(), cover.axis.x())};
+  return !scene.field->nearest(in_source(centre), shape, enough_m);
 }
 
 double CollisionChecker::Impl::from_standing_m(const Moment& moment, double enough_m) const {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHalfWidth_m = 4.5;
 constexpr double kStart_m = 70.0;
-constexpr double kInTheWay_m = 0.9;  // to the right of the line, of the cars that block it
+constexpr double kInTheWay_m = 1.5;  // to the right of the line, of the cars that block it
 
 struct Place {
   double s_m, side_m, speed_mps;

@@ -153,6 +153,49 @@ TEST(CollisionChecker, AgreesWithDenseSamplingOnRandomScenes) {
   EXPECT_GT(colliding, 50);
 }
 
+// A post beside a bend that comes about as near to the body as is allowed, anywhere.
+Obstacle post_beside(const std::vector<TrajectoryPoint>& drive, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const std::size_t leg = 7 + random() % (drive.size() - 8);  // the whole clearance holds there
+  const auto at = interpolate(drive[leg], drive[leg + 1], 0.5 + 0.5 * unit(random));
+  const auto body = geometry::body_at(at.pose(), VehicleShape{});
+  const double beside_m = body.half_width_m + 0.6 + 0.3 * unit(random);
+  const Eigen::Vector2d left(-body.axis.y(), body.axis.x());
+  const Eigen::Vector2d place = body.centre + unit(random) * body.half_length_m * body.axis +
+                                (random() % 2 == 0 ? 1.0 : -1.0) * beside_m * left;
+  return thing(place.x(), place.y(), 0.1, 0.1, at.heading_rad);
+}
+
+TEST(CollisionChecker, KeepsTheClearanceToWhatABendPassesClosely) {
+  std::mt19937 random(19);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int free = 0, colliding = 0;
+  for (int scene = 0; scene < 800; ++scene) {
+    const double turn_rad = 0.3 * unit(random);
+    std::vector<TrajectoryPoint> drive{{}};
+    for (int i = 0; i < 14; ++i) {
+      TrajectoryPoint next = drive.back();
+      next.heading_rad += turn_rad;
+      next.x_m += 1.5 * std::cos(next.heading_rad - 0.5 * turn_rad);
+      next.y_m += 1.5 * std::sin(next.heading_rad - 0.5 * turn_rad);
+      next.t_s += 0.3;
+      drive.push_back(next);
+    }
+    const std::vector<Obstacle> posts{post_beside(drive, random)};
+    const double slack_m = least_slack_m(drive, posts);
+    const bool found_free = is_free(drive, posts);
+    if (found_free) {
+      EXPECT_GE(slack_m, -1e-9) << "scene " << scene;
+      ++free;
+    } else {
+      EXPECT_LE(slack_m, 0.02 + 0.01) << "scene " << scene;
+      ++colliding;
+    }
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(colliding, 50);
+}
+
 TEST(StaticObstacles, BoundIsBelowTheDistanceAndNear) {
   std::mt19937 random(19);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
