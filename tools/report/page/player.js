@@ -25,13 +25,20 @@ function percent(share) {
   return (100 * share).toFixed(3) + "%";
 }
 
-// These have the same colours in every report; others follow in order of appearance.
-const KNOWN_STATES = ["cruise", "follow", "pass", "emergency", "stop", "yield"];
+// These have the same colours in every report, the states of drives and the verdicts of audits;
+// others follow in order of appearance.
+const KNOWN_STATES = new Map([
+  ["cruise", 0], ["follow", 1], ["pass", 2], ["emergency", 3], ["stop", 4], ["yield", 5],
+  ["clear", 2], ["conflict", 3], ["unknown", 5], ["undecided", 6],
+]);
+const FIRST_FREE = 7;
 
 /** The same number for the same state. */
 function numberStates(decisions) {
-  const numbers = new Map(KNOWN_STATES.map((state, i) => [state, i]));
-  for (const {state} of decisions) if (!numbers.has(state)) numbers.set(state, numbers.size);
+  const numbers = new Map(KNOWN_STATES);
+  for (const {state} of decisions) {
+    if (!numbers.has(state)) numbers.set(state, FIRST_FREE + numbers.size - KNOWN_STATES.size);
+  }
   return numbers;
 }
 
