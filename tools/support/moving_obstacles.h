@@ -7,9 +7,8 @@
 
 namespace roadbed::tools {
 
-/// Obstacles over time, in source coordinates: of a scenario (`.json`, or CommonRoad `.xml`, whose
-/// time 0 is that of its first planning problem, else of time step 0), or boxes with time stamps
-/// (`.csv`).
+/// Obstacles over time, in source coordinates: of a scenario (`.json`, or CommonRoad `.xml`, see
+/// `recorded_boxes`), or boxes with time stamps (`.csv`).
 /// @throws InputError if the file, or one that it names, is unusable.
 std::vector<planning::MovingObstacle> read_moving_obstacles(const std::filesystem::path& file);
 
