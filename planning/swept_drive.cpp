@@ -37,11 +37,12 @@ void set_curvatures(std::vector<geometry::TrajectoryPoint>& rows) {
 geometry::Trajectory swept_along(const std::function<geometry::Pose2(double s_m)>& line,
                                  double length_m, const SweepOptions& options) {
   check(length_m, options);
-  const auto steps =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length_m / options.step_m)));
+  // A length that is a multiple but for rounding gets no row of its own for that.
+  const double steps_along = std::ceil(length_m / options.step_m - 1e-9);
+  const auto steps = std::max<std::size_t>(1, static_cast<std::size_t>(steps_along));
   std::vector<geometry::TrajectoryPoint> rows;
   for (std::size_t i = 0; i <= steps; ++i) {
-    const double s_m = std::min(length_m, static_cast<double>(i) * options.step_m);
+    const double s_m = i < steps ? static_cast<double>(i) * options.step_m : length_m;
     const geometry::Pose2 at = line(s_m) * geometry::Pose2{0.0, options.offset_m, 0.0};
     rows.push_back({.t_s = s_m / options.speed_mps,
                     .x_m = at.x_m,

@@ -29,6 +29,23 @@ TEST(SweptDrive, KeepsItsOffsetFromACircleAndItsSpeedAlongIt) {
   }
 }
 
+TEST(SweptDrive, EndsJustAtTheLengthAlsoWhereThatIsAMultipleOfTheStepButForRounding) {
+  const auto line = [](double s_m) { return Pose2{s_m, 0, 0}; };
+  for (int n = 1; n <= 60; ++n) {
+    const double whole_m = 0.25 * n;
+    for (const double length_m :
+         {std::nextafter(whole_m, 0.0), whole_m, std::nextafter(whole_m, 100.0)}) {
+      for (const double speed_kmh : {7.0, 30.0, 36.0, 50.0}) {
+        const geometry::Trajectory drive =
+            swept_along(line, length_m, {.speed_mps = speed_kmh / 3.6, .step_m = 0.25});
+        EXPECT_EQ(drive.points().size(), static_cast<std::size_t>(n) + 1);
+        EXPECT_EQ(drive.points().back().x_m, length_m);
+        EXPECT_EQ(drive.end_s(), length_m / (speed_kmh / 3.6));
+      }
+    }
+  }
+}
+
 TEST(SweptDrive, RefusesWhatIsNoSweep) {
   const auto line = [](double s_m) { return Pose2{s_m, 0, 0}; };
   EXPECT_THROW(swept_along(line, 0.0), std::invalid_argument);
