@@ -45,7 +45,7 @@ class AuditCommand : public Command {
     arguments.description(
         "Prove that drives keep clear of occupied space, or show where they do not");
     arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)");
-    subjects_.declare(arguments);
+    std::vector<Argument> not_with_check = subjects_.declare(arguments);
     const Argument vehicle =
         arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
     const Argument map = arguments.add(
@@ -53,9 +53,11 @@ class AuditCommand : public Command {
     arguments.add("--obstacles", obstacles_,
                   "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
                   "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
-                  "centre), in the drive's time and coordinates");
+                  "centre; an id of one row stands for ever, one of several is there from its "
+                  "first to its last), in the drive's time and coordinates");
     declare_question(arguments);
-    declare_outputs(arguments, {vehicle, map});
+    not_with_check.insert(not_with_check.end(), {vehicle, map});
+    declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
     arguments.example(
         "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "

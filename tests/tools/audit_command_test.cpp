@@ -187,6 +187,76 @@ TEST_F(AuditCommand, SeesWhatMovesBesideTheOccupancyAndProvesIt) {
   EXPECT_THAT(mixed.out, HasSubstr("the certificate is about one with"));
 }
 
+TEST_F(AuditCommand, ChecksNoProofAgainstObstaclesThatItIsNotAbout) {
+  const std::string drive = folder_ / "drives/far/deeper/trajectory.csv";
+  const std::string proof = folder_ / "proof.json";
+  ASSERT_EQ(audit({"--trajectory", drive, "--certificate", proof}).status, 0);
+  const ProgramRun alone = run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_THAT(alone.out, HasSubstr("; nothing moves\n"));
+  const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
+  const std::string against = folder_.write("against.csv", header + "0,van,10,-5,0,4,2\n");
+  for (const std::string& obstacles : {against, std::string(folder_ / "not_there.csv")}) {
+    const ProgramRun run = run_roadbed({"audit", "--check", proof, "--obstacles", obstacles});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.out, HasSubstr("the certificate is not about what moves in " + obstacles));
+  }
+
+  const std::string beside = folder_.write("beside.csv", header + "0,van,10,-9,0,4,2\n");
+  const std::string about = folder_ / "about.json";
+  ASSERT_EQ(audit({"--trajectory", drive, "--obstacles", beside, "--certificate", about}).status,
+            0);
+  const ProgramRun json = run_roadbed({"audit", "--check", about, "--json"});
+  EXPECT_EQ(json.status, 0);
+  EXPECT_THAT(Json::parse(json.out).at("question").get<std::string>(),
+              HasSubstr("what moves is that of " + beside));
+}
+
+// A car may be in box A all through steps 0 to 10, and in box B in steps 11 to 20.
+TEST_F(AuditCommand, SeesEveryOccupancyOfAnObstacleAllThroughItsTime) {
+  const auto shape = [](const std::string& x) {
+    return "<shape><rectangle><length>4</length><width>2</width><orientation>0</orientation>"
+           "<center><x>" +
+           x + "</x><y>-5</y></center></rectangle></shape>";
+  };
+  const auto file = [&](const std::string& obstacles) {
+    return folder_.write(
+        "made.xml", "<commonRoad timeStepSize=\"0.5\" commonRoadVersion=\"2020a\">" + obstacles +
+                        "</commonRoad>");
+  };
+  const auto time = [](const std::string& least, const std::string& most) {
+    return "<time><intervalStart>" + least + "</intervalStart><intervalEnd>" + most +
+           "</intervalEnd></time>";
+  };
+  const auto verdict = [&](const std::string& obstacles) {
+    return Json::parse(audit({"--trajectory", folder_ / "drives/far/deeper/trajectory.csv",
+                              "--obstacles", file(obstacles), "--json"})
+                           .out);
+  };
+  const auto phantom = [&](const std::string& x_a, const std::string& x_b) {
+    return "<phantomObstacle id=\"7\"><occupancySet><occupancy>" + shape(x_a) + time("0", "10") +
+           "</occupancy><occupancy>" + shape(x_b) + time("11", "20") +
+           "</occupancy></occupancySet></phantomObstacle>";
+  };
+  // The body is at 2 m/s from 0 m: its front passes 10 m near second 3.2, in A's time.
+  const Json through_a = verdict(phantom("12", "300"));
+  EXPECT_EQ(through_a.at("verdict"), "conflict");
+  EXPECT_EQ(through_a.at("conflicts").at(0).at("obstacle"), "7.1");
+  EXPECT_NEAR(through_a.at("conflicts").at(0).at("from_s").get<double>(),
+              (12.0 - 2.0 - 3.6767171) / 2.0, 0.025);
+  EXPECT_NEAR(through_a.at("conflicts").at(0).at("to_s").get<double>(), 5.5, 0.025);
+  EXPECT_EQ(verdict(phantom("300", "12")).at("conflicts").at(0).at("obstacle"), "7.2");
+  EXPECT_EQ(verdict(phantom("300", "300")).at("verdict"), "clear");
+  EXPECT_EQ(verdict("<environmentObstacle id=\"8\"><type>building</type>" + shape("12") +
+                    "</environmentObstacle>")
+                .at("verdict"),
+            "conflict");
+  const ProgramRun unsaid = audit({"--trajectory", folder_ / "drives/near.csv", "--obstacles",
+                                   file("<phantomObstacle id=\"9\"/>")});
+  EXPECT_EQ(unsaid.status, 1);
+  EXPECT_THAT(unsaid.err, HasSubstr("obstacle 9: nothing says where it is"));
+}
+
 TEST_F(AuditCommand, WritesAPageThatPlaysTheAudit) {
   const std::string page = folder_ / "audit.html";
   EXPECT_EQ(audit({"--trajectory", folder_ / "drives/hit.csv", "--report", page}).status, 1);
@@ -216,6 +286,10 @@ TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
   expect(audit({"--lane", "lane:1/0/-1"}), 2, "--map");
   expect(audit({"--trajectory", one, "--save-drive", folder_ / "x.csv"}), 2, "--save-drive");
   const std::string map = data_folder() / "town.xodr";
+  expect(audit({"--trajectory", one, "--offset", "3"}), 2, "--offset");
+  expect(audit({"--trajectory", one, "--speed", "80"}), 2, "--speed");
+  expect(audit({"--trajectory", one, "--cost", "distance"}), 2, "--cost");
+  expect(audit({"--trajectory", one, "--signal-cost", "3"}), 2, "--signal-cost");
   expect(audit({"--lane", "lane:1/0/-1", "--map", map, "--certificate", folder_ / "c.json"}), 2,
          "--save-drive");
   expect(audit({"--trajectory", drives_, "--svg", folder_ / "x.svg"}), 1, "one drive");

@@ -45,25 +45,29 @@ geometry::Trajectory AuditSubject::drive() const {
   return file.empty() ? swept : read_trajectory_csv(file);
 }
 
-void AuditSubjects::declare(Arguments& arguments) {
-  arguments.add(
+std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
+  Argument trajectory = arguments.add(
       "--trajectory", trajectory_,
       "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
       "the body is covered. Or a folder: its .csv files, and each trajectory.csv below");
-  question_.declare(arguments, true);
+  std::vector<Argument> of_sweeps = question_.declare(arguments, true);
   arguments
       .add("--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]")
       .checked([](const std::string& text) {
         return text.starts_with("lane:") ? place_syntax_fault(text) : "is not lane:NAME[@S]";
       });
-  arguments.add("--speed", speed_kmh_, "Of a drive along a route or lane [km/h]")
-      .within(0.1, 1000.0)
-      .with_default();
-  arguments
-      .add("--offset", offset_m_,
-           "Of the rear axle from the route's line or the lane's centre, to the left [m]")
-      .within(-1000.0, 1000.0)
-      .with_default();
+  of_sweeps.push_back(
+      arguments.add("--speed", speed_kmh_, "Of a drive along a route or lane [km/h]")
+          .within(0.1, 1000.0)
+          .with_default());
+  of_sweeps.push_back(
+      arguments
+          .add("--offset", offset_m_,
+               "Of the rear axle from the route's line or the lane's centre, to the left [m]")
+          .within(-1000.0, 1000.0)
+          .with_default());
+  for (const Argument& other : of_sweeps) trajectory.excludes(other);
+  return of_sweeps;
 }
 
 std::string AuditSubjects::fault(bool has_map) const {

@@ -25,7 +25,8 @@ struct AuditSubject {
 /// the map, swept: `--from --to` with the rules of routes, `--lane`, `--speed --offset`.
 class AuditSubjects {
  public:
-  void declare(Arguments& arguments);
+  /// @returns what says how a line is found and swept, which drives of files do not have.
+  std::vector<Argument> declare(Arguments& arguments);
 
   /// What is wrong with the options together; empty if nothing is.
   std::string fault(bool has_map) const;

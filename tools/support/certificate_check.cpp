@@ -38,6 +38,9 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
     const fs::path from = obstacles_file.empty() ? fs::path(file.obstacles->name) : obstacles_file;
     moving = read_moving_obstacles(from);
     compare(*file.obstacles, certified_obstacles(from, moving), faults);
+  } else if (!obstacles_file.empty()) {
+    faults.push_back(fmt::format("the certificate is not about what moves in {}, nor anywhere else",
+                                 obstacles_file.string()));
   }
   if (!faults.empty()) return faults;
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
@@ -56,19 +59,21 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
 }
 
 // What the verdict is about: a certificate of another question proves nothing of one's own.
-std::string question_of(const planning::AuditCertificate& audit) {
+std::string question_of(const CertificateFile& file) {
+  const planning::AuditCertificate& audit = file.certificate;
   return fmt::format(
       "body {} m by {} m, {} m of it behind the rear axle, grown by {} m; heights {} m to {} m; "
-      "clearance {} m; unknown space counts as {}",
+      "clearance {} m; unknown space counts as {}; {}",
       audit.vehicle.length_m, audit.vehicle.width_m, audit.vehicle.rear_overhang_m, audit.inflate_m,
-      audit.band.from_m, audit.band.to_m, audit.clearance_m, planning::name(audit.unknown_policy));
+      audit.band.from_m, audit.band.to_m, audit.clearance_m, planning::name(audit.unknown_policy),
+      file.obstacles ? "what moves is that of " + file.obstacles->name : "nothing moves");
 }
 
 void print(std::ostream& out, const CertificateFile& file, const std::vector<std::string>& faults) {
   const planning::AuditCertificate& audit = file.certificate;
   out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
   out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(audit.verdict), file.program);
-  out << fmt::format("{:<17}{}\n", "question", question_of(audit));
+  out << fmt::format("{:<17}{}\n", "question", question_of(file));
   out << fmt::format("{:<17}{} from occupied space, {} from unknown space, {} from what moves\n",
                      "proven spans", audit.from_occupied.size(), audit.from_unknown.size(),
                      audit.from_moving.size());
@@ -89,7 +94,7 @@ bool check_certificate_file(const fs::path& certificate, const fs::path& occupan
       trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, obstacles, certificate);
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},
-                                  {"question", question_of(file.certificate)},
+                                  {"question", question_of(file)},
                                   {"verdict", name(file.certificate.verdict)},
                                   {"certified_clearance_m", file.certificate.certified_clearance_m},
                                   {"faults", faults}}

@@ -65,58 +65,68 @@ std::vector<map::LaneId> closed_by(const map::RoadMap& road_map, const std::stri
 
 }  // namespace
 
-void RouteRules::declare_speeds(Arguments& arguments) {
-  arguments.choice("--participant", participant_,
-                   {{"car", map::Participant::car},
-                    {"truck", map::Participant::truck},
-                    {"bus", map::Participant::bus},
-                    {"taxi", map::Participant::taxi},
-                    {"motorcycle", map::Participant::motorcycle},
-                    {"emergency", map::Participant::emergency},
-                    {"bicycle", map::Participant::bicycle},
-                    {"pedestrian", map::Participant::pedestrian},
-                    {"tram", map::Participant::tram},
-                    {"train", map::Participant::train}},
-                   "Who drives: lanes for others are left out");
-  arguments
-      .add("--default-speed", default_speed_kmh_,
-           "Where the map has no limit [km/h], else by lane type: 50, ramps 60")
-      .within(1.0, 400.0);
-  arguments.add("--max-speed", max_speed_kmh_, "Of the vehicle [km/h], else 130")
-      .within(1.0, 400.0);
-  arguments.add("--max-lateral", lateral_mps2_, "Lateral acceleration in bends [m/s²], else 2")
-      .within(0.1, 100.0);
+std::vector<Argument> RouteRules::declare_speeds(Arguments& arguments) {
+  const Argument participant = arguments.choice("--participant", participant_,
+                                                {{"car", map::Participant::car},
+                                                 {"truck", map::Participant::truck},
+                                                 {"bus", map::Participant::bus},
+                                                 {"taxi", map::Participant::taxi},
+                                                 {"motorcycle", map::Participant::motorcycle},
+                                                 {"emergency", map::Participant::emergency},
+                                                 {"bicycle", map::Participant::bicycle},
+                                                 {"pedestrian", map::Participant::pedestrian},
+                                                 {"tram", map::Participant::tram},
+                                                 {"train", map::Participant::train}},
+                                                "Who drives: lanes for others are left out");
+  const Argument usual =
+      arguments
+          .add("--default-speed", default_speed_kmh_,
+               "Where the map has no limit [km/h], else by lane type: 50, ramps 60")
+          .within(1.0, 400.0);
+  const Argument most =
+      arguments.add("--max-speed", max_speed_kmh_, "Of the vehicle [km/h], else 130")
+          .within(1.0, 400.0);
+  const Argument lateral =
+      arguments.add("--max-lateral", lateral_mps2_, "Lateral acceleration in bends [m/s²], else 2")
+          .within(0.1, 100.0);
+  return {participant, usual, most, lateral};
 }
 
-void RouteRules::declare_prices(Arguments& arguments) {
+std::vector<Argument> RouteRules::declare_prices(Arguments& arguments) {
+  std::vector<Argument> declared;
   const auto price = [&](const char* name, std::optional<double>& value, const char* help) {
-    arguments.add(name, value, std::string(help) + " [s, or m where distance counts]")
-        .not_negative();
+    declared.push_back(
+        arguments.add(name, value, std::string(help) + " [s, or m where distance counts]")
+            .not_negative());
   };
   price("--lane-change-cost", lane_change_, "Price of a lane change, else 5 s or 50 m");
   price("--left-turn-cost", left_turn_, "Price of a left turn, else 0");
   price("--right-turn-cost", right_turn_, "Price of a right turn, else 0");
   price("--u-turn-cost", u_turn_, "Price of a U-turn, else 20 s or 200 m");
   price("--signal-cost", signal_, "Price of a traffic light, else 0");
-  arguments
-      .add("--least-lane-change", least_lane_change_m_,
-           "Length that a lane change needs [m], else 10")
-      .not_negative();
+  declared.push_back(arguments
+                         .add("--least-lane-change", least_lane_change_m_,
+                              "Length that a lane change needs [m], else 10")
+                         .not_negative());
+  return declared;
 }
 
-void RouteRules::declare(Arguments& arguments, bool with_cost) {
-  arguments
-      .add("--avoid", avoid_,
-           "What is closed: lane:NAME, road:ID or polygon:X,Y,X,Y,X,Y; may be given again")
-      .checked(avoid_fault);
+std::vector<Argument> RouteRules::declare(Arguments& arguments, bool with_cost) {
+  std::vector<Argument> declared{
+      arguments
+          .add("--avoid", avoid_,
+               "What is closed: lane:NAME, road:ID or polygon:X,Y,X,Y,X,Y; may be given again")
+          .checked(avoid_fault)};
   if (with_cost) {
-    arguments.choice(
+    declared.push_back(arguments.choice(
         "--cost", cost_,
         {{"time", planning::RouteCost::time}, {"distance", planning::RouteCost::distance}},
-        "What is to be least");
+        "What is to be least"));
   }
-  declare_speeds(arguments);
-  declare_prices(arguments);
+  for (const auto& part : {declare_speeds(arguments), declare_prices(arguments)}) {
+    declared.insert(declared.end(), part.begin(), part.end());
+  }
+  return declared;
 }
 
 planning::RouteOptions RouteRules::on(const map::RoadMap& road_map,
@@ -142,7 +152,7 @@ planning::RouteOptions RouteRules::on(const map::RoadMap& road_map,
   return options;
 }
 
-void RouteQuestion::declare(Arguments& arguments, bool with_batch) {
+std::vector<Argument> RouteQuestion::declare(Arguments& arguments, bool with_batch) {
   const std::string syntax = kPlaceSyntax;
   Argument from = arguments.add("--from", from_, "Start: " + syntax).checked(place_syntax_fault);
   Argument to = arguments.add("--to", to_, "Goal, in the same way").checked(place_syntax_fault);
@@ -152,7 +162,7 @@ void RouteQuestion::declare(Arguments& arguments, bool with_batch) {
   }
   arguments.add("--via", via_, "Place to pass on the way; may be given again, in order")
       .checked(place_syntax_fault);
-  rules_.declare(arguments);
+  return rules_.declare(arguments);
 }
 
 std::vector<planning::RoutePlace> RouteQuestion::Asked::places() const {

@@ -14,7 +14,8 @@ namespace roadbed::tools {
 class RouteRules {
  public:
   /// @param with_cost  with the measure itself; else `on` is told it.
-  void declare(Arguments& arguments, bool with_cost = true);
+  /// @returns what was declared.
+  std::vector<Argument> declare(Arguments& arguments, bool with_cost = true);
 
   /// @throws InputError for a lane or road that is not on the map.
   planning::RouteOptions on(const map::RoadMap& road_map,
@@ -23,8 +24,8 @@ class RouteRules {
   map::Participant participant() const { return participant_; }
 
  private:
-  void declare_speeds(Arguments& arguments);
-  void declare_prices(Arguments& arguments);
+  std::vector<Argument> declare_speeds(Arguments& arguments);
+  std::vector<Argument> declare_prices(Arguments& arguments);
 
   planning::RouteCost cost_ = planning::RouteCost::time;
   map::Participant participant_ = map::Participant::car;
@@ -38,7 +39,8 @@ class RouteRules {
 class RouteQuestion {
  public:
   /// @param with_batch  start and goal may be missing, since a file names them.
-  void declare(Arguments& arguments, bool with_batch = false);
+  /// @returns the rules that were declared.
+  std::vector<Argument> declare(Arguments& arguments, bool with_batch = false);
 
   /// What they ask for on a map.
   struct Asked {
