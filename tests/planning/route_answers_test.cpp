@@ -14,6 +14,7 @@
 #include "roadbed/planning/route_area.h"
 #include "roadbed/planning/route_solver.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/mirrored_map.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::planning {
@@ -181,32 +182,11 @@ TEST(LeftHandTraffic, ChangesAndTurnsKeepTheirSides) {
   EXPECT_EQ(answer.route->legs[0].exit, LegExit::change_left);
 }
 
-// Seen in a mirror, right-hand traffic is left-hand traffic.
-map::RoadMap mirrored(map::RoadMapParts parts) {
-  const auto turn_over = [](Eigen::Vector2d point) {
-    return Eigen::Vector2d(point.x(), -point.y());
-  };
-  for (map::Lane& lane : parts.lanes) {
-    std::swap(lane.left, lane.right);
-    std::swap(lane.left_marks, lane.right_marks);
-    for (map::LaneLine* line : {&lane.left, &lane.centre, &lane.right}) {
-      auto points = line->in_map.points();
-      std::transform(points.begin(), points.end(), points.begin(), turn_over);
-      line->in_map = geometry::Polyline(std::move(points));
-    }
-    std::transform(lane.polygon.begin(), lane.polygon.end(), lane.polygon.begin(), turn_over);
-    std::reverse(lane.polygon.begin(), lane.polygon.end());
-  }
-  for (map::LaneLinks& links : parts.links) std::swap(links.left, links.right);
-  for (map::Signal& signal : parts.signals) signal.in_map = turn_over(signal.in_map);
-  return map::RoadMap(std::move(parts));
-}
-
 TEST(LeftHandTraffic, TakesTheRoutesOfTheMirroredMapWithTheirSidesSwapped) {
   RouteOptions options, swapped;
   options.prices_s.left_turn = swapped.prices_s.right_turn = 7.0;
   options.prices_s.right_turn = swapped.prices_s.left_turn = 2.0;
-  const map::RoadMap mirror = mirrored(town().parts());
+  const map::RoadMap mirror = tests::mirrored(town().parts());
   Router right_hand(town(), options), left_hand(mirror, swapped);
   const auto told = [](const map::RoadMap& road_map, const Route& route, const char* words) {
     const auto all = instructions_for(road_map, route);

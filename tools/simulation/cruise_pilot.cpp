@@ -92,7 +92,8 @@ class CruisePilot : public Pilot {
                                .speed_mps = view.measured.motion.speed_mps,
                                .path = path,
                                .ceiling = ceiling_,
-                               .traffic = traffic()});
+                               .traffic = traffic(),
+                               .acceleration_mps2 = view.measured.acceleration_mps2});
   }
 
   /// Who is beyond the place to halt at is none.

@@ -17,7 +17,6 @@ constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before foll
 constexpr double kFollowSlack_mps = 2.0;
 constexpr double kBrakes_mps2 = 0.5;  // less is no braking
 constexpr double kFar_m = 1e4;
-constexpr double kHardestHalt_mps2 = 3.0;
 
 struct Option {
   SpeedTarget now, ahead;  ///< at the station, and where the actuator will have answered
@@ -43,13 +42,10 @@ Option by_goal(const SpeedQuestion& q, double ahead_m, double deceleration) {
           fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
 }
 
-Option by_halt(const SpeedQuestion& q, const DecisionOptions& options, double ahead_m) {
+Option by_halt(const SpeedQuestion& q, double ahead_m) {
   const double distance = q.halt->s_m - q.s_m;
-  // Late word, as of a light that turns yellow, is met by braking harder.
-  const double needed = 0.5 * q.speed_mps * q.speed_mps / std::max(0.5, distance - ahead_m);
-  const double deceleration = std::clamp(needed, options.deceleration_mps2, kHardestHalt_mps2);
-  return {planning::stopping_speed(distance, deceleration),
-          planning::stopping_speed(distance - ahead_m, deceleration), Behaviour::yield,
+  return {planning::stopping_speed(distance, q.halt->deceleration_mps2),
+          planning::stopping_speed(distance - ahead_m, q.halt->deceleration_mps2), Behaviour::yield,
           q.halt->reason};
 }
 
@@ -90,7 +86,7 @@ Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
 std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
   const double ahead_m = preview_m(q, options.preview_s);
   std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
-  if (q.halt) all.push_back(by_halt(q, options, ahead_m));
+  if (q.halt) all.push_back(by_halt(q, ahead_m));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/control/cruise_design.h"
 #include "roadbed/tools/simulation/driven_way.h"
 #include "roadbed/tools/simulation/way_occupancy.h"
 
@@ -14,7 +15,9 @@ namespace {
 constexpr double kBeforeLine_m = 0.5;  // kept from a line
 constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
 constexpr double kLookAhead_m = 80.0;
-constexpr double kHardestStop_mps2 = 3.0;
+constexpr double kSamePlace_m = 0.5;
+constexpr double kShareOfBrakes = 0.9;  // the rest is left to the cruise control
+constexpr double kStopsShort_m = 0.1;   // of a line, at the latest
 constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
 constexpr double kStartsWithin_mps2 = 1.5;
 constexpr int kMostSteps = 150;
@@ -34,6 +37,12 @@ std::vector<double> drive_on(const DrivenWay& way, double speed_mps, double unti
   return ahead;
 }
 
+/// How obstacles that are no lead drive now; one entry per obstacle.
+struct Others {
+  std::vector<bool> crossing;   ///< on the way, but across it
+  std::vector<bool> following;  ///< behind the vehicle in its lane: they keep their distance
+};
+
 /// Obstacles that are on the way now, but cross it.
 std::vector<bool> crossing_now(const DrivenWay& way, const WayOccupancy& occupancy,
                                const RightOfWay::View& view) {
@@ -49,18 +58,42 @@ std::vector<bool> crossing_now(const DrivenWay& way, const WayOccupancy& occupan
   return crossing;
 }
 
+/// Whether an obstacle's centre is behind the rear axle, its body behind the vehicle's, and it
+/// heads along the line that the vehicle came along.
+bool is_following(const planning::Obstacle& obstacle, const RightOfWay::View& view,
+                  const planning::ReferenceLine& line, double vehicle_width_m) {
+  const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
+  const Eigen::Vector2d place = now.pose().position();
+  const planning::ReferencePoint foot = line.at(line.project(place).s_m);
+  const Eigen::Vector2d along(std::cos(foot.heading_rad), std::sin(foot.heading_rad));
+  const Eigen::Vector2d beyond = place - foot.in_map;  // along: before the line's first point
+  const double d_m = along.x() * beyond.y() - along.y() * beyond.x();
+  const double apart_m = std::abs(d_m - view.path.lateral_at(view.s_m).d_m);
+  return foot.s_m + along.dot(beyond) < view.s_m &&
+         apart_m < 0.5 * (vehicle_width_m + obstacle.width_m) &&
+         std::cos(now.heading_rad - foot.heading_rad) > kLeastAlong;
+}
+
+std::vector<bool> following_now(const RightOfWay::View& view, const planning::ReferenceLine& line,
+                                double vehicle_width_m) {
+  std::vector<bool> following;
+  for (const planning::Obstacle& obstacle : view.traffic.obstacles) {
+    following.push_back(is_following(obstacle, view, line, vehicle_width_m));
+  }
+  return following;
+}
+
 /// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
-std::optional<std::size_t> who_blocks(const WayOccupancy& occupancy,
-                                      const std::vector<bool>& crossing, int from, int to,
-                                      double ahead_m) {
+std::optional<std::size_t> who_blocks(const WayOccupancy& occupancy, const Others& others, int from,
+                                      int to, double ahead_m) {
   const auto is_lead = [&](std::size_t obstacle) {
-    return !crossing[obstacle] && std::ranges::any_of(occupancy.at(0), [&](const Blocked& part) {
-      return part.obstacle == obstacle;
-    });
+    return !others.crossing[obstacle] &&
+           std::ranges::any_of(occupancy.at(0),
+                               [&](const Blocked& part) { return part.obstacle == obstacle; });
   };
   for (int k = std::max(0, from); k <= to; ++k) {
     for (const Blocked& part : occupancy.at(k)) {
-      const bool is_behind = part.from_m < 0.0;
+      const bool is_behind = part.from_m < 0.0 || others.following[part.obstacle];
       if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
       if (!is_lead(part.obstacle)) return part.obstacle;
     }
@@ -94,23 +127,41 @@ void RightOfWay::pass_places(const View& view) {
   if (last.kind != WaitingKind::light && is_crossing) who_comes(last, view, kGapOnTheWay);
 }
 
+/// The deceleration to stop with before a place; none: it is too late for that. The actuator's lag
+/// lets the vehicle drive on for a while at the speed that its acceleration still leads to.
+std::optional<double> RightOfWay::stops_with_mps2(const WaitingPlace& place,
+                                                  const View& view) const {
+  if (kept_ && std::abs(kept_->s_m - place.s_m) < kSamePlace_m) return kept_->deceleration_mps2;
+  const control::CruiseOptions cruise;
+  const double hardest = kShareOfBrakes * cruise.max_command_mps2;
+  const double comfortable = scenario_.options.comfort_deceleration_mps2;
+  const double speed =
+      std::max(0.0, view.speed_mps + view.acceleration_mps2 * cruise.actuator_lag_s);
+  const double left = left_m(place, view) - view.speed_mps * cruise.actuator_lag_s;
+  const double way_m = 0.5 * speed * speed / hardest;  // to stop in
+  if (speed > kAtRest_mps && way_m > left - kStopsShort_m) return std::nullopt;
+  if (way_m >= left - kBeforeLine_m) return hardest;
+  return std::max(comfortable, 0.5 * speed * speed / (left - kBeforeLine_m));
+}
+
 std::optional<Halt> RightOfWay::look(const View& view) {
   const std::vector<WaitingPlace>& places = world_.waiting_places;
   crossing_.assign(view.traffic.obstacles.size(), false);
   pass_places(view);
   for (std::size_t i = next_; i < places.size(); ++i) {
-    const double left = left_m(places[i], view);
-    if (left > kLookAhead_m) break;
-    const double squared = view.speed_mps * view.speed_mps;
-    const bool can_stop = squared <= 2.0 * kHardestStop_mps2 * std::max(0.1, left);
-    if (!can_stop) {
+    if (left_m(places[i], view) > kLookAhead_m) break;
+    const std::optional<double> deceleration = stops_with_mps2(places[i], view);
+    if (!deceleration) {
       if (places[i].kind != WaitingKind::light) who_comes(places[i], view, kGapOnTheWay);
       continue;
     }
     if (auto why = why_wait(places[i], view)) {
-      return Halt{places[i].s_m - scenario_.vehicle.front_m() - kBeforeLine_m, *std::move(why)};
+      kept_ = {places[i].s_m, *deceleration};
+      return Halt{places[i].s_m - scenario_.vehicle.front_m() - kBeforeLine_m, *std::move(why),
+                  *deceleration};
     }
   }
+  kept_.reset();
   return std::nullopt;
 }
 
@@ -141,16 +192,17 @@ std::optional<std::string> RightOfWay::who_comes(const WaitingPlace& place, cons
   const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);
   const auto steps = static_cast<int>(ahead.size());
   const WayOccupancy occupancy(way, view.traffic, view.t_s, steps + gap.after, kSideRoom_m);
-  const std::vector<bool> crossing = crossing_now(way, occupancy, view);
+  const Others others{crossing_now(way, occupancy, view),
+                      following_now(view, world_.line, scenario_.vehicle.width_m)};
   for (int k = 0; k < steps; ++k) {
-    const auto who = who_blocks(occupancy, crossing, k - gap.before, k + gap.after,
+    const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after,
                                 ahead[static_cast<std::size_t>(k)]);
     if (!who) continue;
     const planning::Obstacle& obstacle = view.traffic.obstacles[*who];
     return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,
                        WayOccupancy::kStep_s * k);
   }
-  crossing_ = crossing;
+  crossing_ = others.crossing;
   return std::nullopt;
 }
 

@@ -14,6 +14,7 @@ namespace roadbed::tools {
 struct Halt {
   double s_m = 0.0;  ///< station of the rear axle
   std::string reason;
+  double deceleration_mps2 = 1.5;  ///< to stop with, the same as long as the halt is asked for
 };
 
 /// Looks at the waiting places of a world, one after the other: lights, signs, and gaps in the
@@ -30,12 +31,14 @@ class RightOfWay {
     const PlannedPath& path;
     const planning::SpeedCeiling& ceiling;
     Traffic traffic;
+    double acceleration_mps2 = 0.0;
   };
 
   RightOfWay(const Scenario& scenario, const World& world);
 
-  /// The nearest place that is not to be passed now; none: drive on. A place that can no longer be
-  /// stopped at with 3 m/s² is passed.
+  /// The nearest place that is not to be passed now; none: drive on. A place that cannot be stopped
+  /// at with 0.9 of what the cruise control may ask for, when that is first wanted, is passed; a
+  /// halt that was asked for stays until the place is free or passed.
   std::optional<Halt> look(const View& view);
 
   /// Per obstacle, whether it is on the path, but only crosses it, and will be gone in time: it is
@@ -53,12 +56,17 @@ class RightOfWay {
   std::optional<std::string> who_comes(const WaitingPlace& place, const View& view, Gap gap);
   void pass_places(const View& view);
   double left_m(const WaitingPlace& place, const View& view) const;
+  std::optional<double> stops_with_mps2(const WaitingPlace& place, const View& view) const;
 
   const Scenario& scenario_;
   const World& world_;
   std::size_t next_ = 0;      ///< the first place that is not passed
   bool has_stopped_ = false;  ///< at that one
   std::vector<bool> crossing_;
+  struct Kept {
+    double s_m, deceleration_mps2;
+  };
+  std::optional<Kept> kept_;  ///< the place that the last look asked to wait at
 };
 
 }  // namespace roadbed::tools

@@ -22,6 +22,7 @@ using planning::RouteLeg;
 constexpr std::array<std::string_view, 4> kStopSigns{"206", "de206", "r1-1", "usr1-1"};
 constexpr std::array<std::string_view, 4> kGiveWaySigns{"205", "de205", "r1-2", "usr1-2"};
 constexpr double kOncoming_rad = 2.4;  // headings this far apart meet
+constexpr double kTurns_rad = 0.8;     // by less a lane goes straight on
 constexpr double kBeforeConflict_m = 0.5;
 constexpr double kSamePlace_m = 0.5;
 
@@ -64,8 +65,8 @@ class Finder {
       }
     }
     look_at_regulations();
-    const bool turns_left = leg().turn == planning::Turn::left;
-    if (turns_left && road_map_.lane(leg().lane).junction) look_at_left_turn();
+    const bool turns = leg().turn == planning::Turn::left || leg().turn == planning::Turn::right;
+    if (turns && road_map_.lane(leg().lane).junction) look_at_turn();
   }
 
   /// A stop line stands for its signals, wherever those are.
@@ -80,8 +81,7 @@ class Finder {
   void look_at_signal(const map::Signal& signal, double s_m) {
     if (!seen_.insert(signal.source_id).second) return;
     if (const std::optional<std::size_t> light = light_of(signal)) {
-      add(WaitingKind::light, s_m, "light " + signal.source_id);
-      if (!places_.empty()) places_.back().light = light;
+      add(WaitingKind::light, s_m, "light " + signal.source_id, light);
     } else if (is_one_of(signal, kStopSigns)) {
       add(WaitingKind::stop_sign, s_m, "stop sign " + signal.source_id);
     } else if (is_one_of(signal, kGiveWaySigns)) {
@@ -118,7 +118,7 @@ class Finder {
     return centre.length_m();
   }
 
-  void look_at_left_turn() {
+  void look_at_turn() {
     if (conflicts_.empty()) conflicts_ = map::find_conflicts(road_map_);
     const LaneId turn = leg().lane;
     std::optional<map::StationRange> crossed;
@@ -126,12 +126,14 @@ class Finder {
       if (conflict.kind != map::ConflictKind::crossing) continue;
       if (conflict.one != turn && conflict.other != turn) continue;
       const bool is_one = conflict.one == turn;
-      if (!comes_towards(turn, is_one ? conflict.other : conflict.one)) continue;
+      const LaneId other = is_one ? conflict.other : conflict.one;
+      if (!comes_towards(turn, other) || gives_way(other, turn)) continue;
       const map::StationRange& range = is_one ? conflict.on_one : conflict.on_other;
       if (!crossed || range.from_s_m < crossed->from_s_m) crossed = range;
     }
     if (!crossed) return;
-    add(WaitingKind::left_turn, crossed->from_s_m - kBeforeConflict_m, "left turn");
+    add(WaitingKind::turn, crossed->from_s_m - kBeforeConflict_m,
+        leg().turn == planning::Turn::left ? "left turn" : "right turn");
   }
 
   /// Whether two lanes begin in opposite directions.
@@ -139,6 +141,18 @@ class Finder {
     const double turned = geometry::wrap_angle(road_map_.lane(lane).pose_at(0.0).heading_rad -
                                                road_map_.lane(other).pose_at(0.0).heading_rad);
     return std::abs(turned) > kOncoming_rad;
+  }
+
+  /// Of two that turn to opposite sides, into the same road, the one with the wider turn gives way.
+  bool gives_way(LaneId lane, LaneId other) const {
+    return turned_rad(lane) * turned_rad(other) < 0.0 && std::abs(turned_rad(lane)) > kTurns_rad &&
+           road_map_.lane(lane).length_m() > road_map_.lane(other).length_m();
+  }
+
+  double turned_rad(LaneId id) const {
+    const map::Lane& lane = road_map_.lane(id);
+    return geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad -
+                                lane.pose_at(0.0).heading_rad);
   }
 
   double station(LaneId lane, double s_m) const {
@@ -153,15 +167,19 @@ class Finder {
     return station(route_.legs[i].lane, route_.legs[i].to_s_m);
   }
 
-  void add(WaitingKind kind, double lane_s_m, std::string name) {
+  /// Lights at one line are places of their own: each of them can be red.
+  void add(WaitingKind kind, double lane_s_m, std::string name,
+           std::optional<std::size_t> light = {}) {
     const double s_m = station(leg().lane, lane_s_m);
     const bool known = std::ranges::any_of(places_, [&](const WaitingPlace& place) {
-      return place.kind == kind && std::abs(place.s_m - s_m) < kSamePlace_m;
+      return place.kind == kind && place.light == light && std::abs(place.s_m - s_m) < kSamePlace_m;
     });
-    if (!known) {
-      places_.push_back(
-          {.kind = kind, .s_m = s_m, .clear_s_m = clear_s_m(), .name = std::move(name)});
-    }
+    if (known) return;
+    places_.push_back({.kind = kind,
+                       .s_m = s_m,
+                       .clear_s_m = clear_s_m(),
+                       .name = std::move(name),
+                       .light = light});
   }
 
   const map::RoadMap& road_map_;

@@ -16,7 +16,7 @@ enum class WaitingKind {
   light,      ///< of the scenario
   stop_sign,  ///< come to rest, then as give_way
   give_way,   ///< to everybody whose way crosses
-  left_turn,  ///< across the lane of those who come the other way
+  turn,       ///< across the lane of those who come the other way
 };
 
 /// A place on a reference line before which the vehicle may have to wait, and for what.
@@ -30,10 +30,12 @@ struct WaitingPlace {
 
 /// All places on a route, by station, as far as the map says so:
 /// - signals that change, if the scenario says what they show; at their stop line if they have one;
+///   several at one line are several places, and all have to be green;
 /// - signs "stop" and "give way" (German 206 and 205, R1-1 and R1-2 of the Vienna convention's
 ///   American counterpart), and regulations "right_of_way" by which a lane yields;
-/// - left turns in a junction, where they cross the lane of somebody who comes the other way.
-/// O(legs · rules of a lane), and the map's conflicts once if there is a left turn.
+/// - turns in a junction, where they cross the lane of somebody who comes the other way: to the
+///   left where one drives on the right, to the right where one drives on the left.
+/// O(legs · rules of a lane), and the map's conflicts once if there is a turn.
 std::vector<WaitingPlace> waiting_places(const map::RoadMap& road_map, const planning::Route& route,
                                          const planning::ReferenceLine& line,
                                          std::span<const ScenarioLight> lights);

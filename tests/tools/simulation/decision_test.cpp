@@ -77,6 +77,14 @@ TEST(Decision, WaitsBehindAStandingLeadAndFollowsWhenItLeaves) {
   EXPECT_FALSE(ask(question).hold);
 }
 
+TEST(Decision, HaltIsStoppedAtWithItsOwnDeceleration) {
+  SpeedQuestion question = free_road(10.0);
+  question.halt = Halt{.s_m = 24.0, .reason = "light 1 is yellow", .deceleration_mps2 = 2.1};
+  const SpeedAnswer answer = ask(question);
+  EXPECT_EQ(answer.behaviour, Behaviour::yield);
+  EXPECT_NEAR(answer.set.acceleration_mps2, -2.1, 1e-12);
+}
+
 TEST(Decision, StopsBeforeTheLastPathEndsWhenNothingIsFeasible) {
   SpeedQuestion question = free_road(8.0);
   question.path_left_m = 16.0;

@@ -64,12 +64,63 @@ TEST_F(WaitingAtAPlace, LightStopsBeforeItsLineUnlessItIsGreen) {
   EXPECT_FALSE(look(rules, 20.1, 30.0, 10.0)) << "the phases begin anew";
 }
 
+// 0.9 of a quarter of g stop 10 m/s within 22.65 m; the actuator's lag of 0.45 s takes 4.5 m
+// before.
 TEST_F(WaitingAtAPlace, LightThatTurnsYellowTooLateIsPassed) {
   scenario_.lights = {{.signals = {"1"}, .pointer = "", .phases = {{LightColour::yellow, 5.0}}}};
   place(WaitingKind::light);
+  RightOfWay in_time(scenario_, world_), too_late(scenario_, world_);
+  EXPECT_TRUE(look(in_time, 0.0, 27.4, 10.0));
+  EXPECT_FALSE(look(too_late, 0.0, 27.1, 10.0));
+}
+
+TEST_F(WaitingAtAPlace, HaltOnceGivenStaysWithItsDeceleration) {
+  scenario_.lights = {{.signals = {"1"}, .pointer = "", .phases = {{LightColour::yellow, 5.0}}}};
+  place(WaitingKind::light);
   RightOfWay rules(scenario_, world_);
-  EXPECT_TRUE(look(rules, 0.0, 17.0, 10.0));   // 2.94 m/s² stop it
-  EXPECT_FALSE(look(rules, 0.1, 16.0, 10.0));  // 3.13 m/s² would
+  const auto first = look(rules, 0.0, 30.0, 10.0);
+  ASSERT_TRUE(first);
+  EXPECT_NEAR(first->deceleration_mps2, 100.0 / (2.0 * (30.0 - 0.5 - 4.5)), 1e-9);
+  const auto later = look(rules, 0.1, 16.0, 10.0);  // nobody who came from there would stop
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->deceleration_mps2, first->deceleration_mps2);
+}
+
+TEST_F(WaitingAtAPlace, EveryLightOfALineHasToBeGreen) {
+  scenario_.lights = {{.signals = {"1"}, .pointer = "", .phases = {{LightColour::green, 5.0}}},
+                      {.signals = {"2"},
+                       .pointer = "",
+                       .phases = {{LightColour::red, 1.0}, {LightColour::green, 4.0}}}};
+  place(WaitingKind::light);
+  for (const std::size_t first : {0U, 1U}) {
+    world_.waiting_places.resize(1);
+    world_.waiting_places.push_back(world_.waiting_places.front());
+    world_.waiting_places[0].light = first;
+    world_.waiting_places[1].light = 1 - first;
+    RightOfWay rules(scenario_, world_);
+    EXPECT_TRUE(look(rules, 0.5, 40.0, 10.0)) << first;
+    EXPECT_FALSE(look(rules, 1.5, 30.0, 10.0)) << first;
+  }
+}
+
+/// A car at 10 m/s that is beside the line, and `behind_m` behind the vehicle's rear axle when its
+/// front bumper is 20 m before the place; from 2 s on it drives on the line.
+planning::Obstacle coming_from_behind(double behind_m, double beside_m, double rear_axle_s_m) {
+  const double x_m = 10.0 + rear_axle_s_m - behind_m;
+  return {.id = "other",
+          .motion = drive_through({{0.0, {x_m, beside_m, 0.0}},
+                                   {2.0, {x_m + 20.0, 0.0, 0.0}},
+                                   {30.0, {x_m + 300.0, 0.0, 0.0}}})};
+}
+
+TEST_F(WaitingAtAPlace, WhoFollowsIsNotWaitedForButWhoComesFromTheNextLaneIs) {
+  place(WaitingKind::give_way);
+  const double s_m = kPlace_m - 20.0 - scenario_.vehicle.front_m();
+  for (const auto& [beside_m, must_wait] : {std::pair{0.0, false}, {0.8, false}, {3.5, true}}) {
+    world_.obstacles = {coming_from_behind(14.0, beside_m, s_m)};
+    RightOfWay rules(scenario_, world_);
+    EXPECT_EQ(look(rules, 0.0, 20.0, 8.0).has_value(), must_wait) << beside_m;
+  }
 }
 
 TEST_F(WaitingAtAPlace, LightBehindTheVehicleIsOver) {
@@ -101,7 +152,7 @@ TEST_F(WaitingAtAPlace, GapIsTakenOnlyIfNobodyComesWithinIt) {
 }
 
 TEST_F(WaitingAtAPlace, WhoIsMetIsNamed) {
-  place(WaitingKind::left_turn);
+  place(WaitingKind::turn);
   world_.obstacles = {crossing_at(3.0)};
   RightOfWay rules(scenario_, world_);
   const auto halt = look(rules, 0.0, 0.5, 0.0);

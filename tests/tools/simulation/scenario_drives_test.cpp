@@ -39,12 +39,17 @@ struct Driven {
   }
 };
 
-Driven driven(const std::string& name) {
-  const Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / (name + ".json"));
+Scenario scenario_of(const std::string& name) {
+  return read_scenario(tests::data_folder() / "scenarios" / (name + ".json"));
+}
+
+Driven driven(const Scenario& scenario) {
   World world = make_world(scenario);
   Drive drive = tools::drive(scenario, world);
   return {std::move(world), std::move(drive)};
 }
+
+Driven driven(const std::string& name) { return driven(scenario_of(name)); }
 
 /// What every one of these drives must keep.
 void expect_arrives(const Driven& driven, double clearance_m) {
@@ -65,6 +70,27 @@ TEST(ScenarioDrives, RedLightIsStoppedAtAndGreenIsDrivenOnAt) {
   EXPECT_GT(front_m, 277.0);
   EXPECT_GT(d.passes_x_at_s(279.0), 26.0);
   EXPECT_LT(d.passes_x_at_s(279.0), 30.0);
+}
+
+TEST(ScenarioDrives, LightThatTurnsYellowIsNeverPassedAtRed) {
+  Scenario scenario = scenario_of("red_light");
+  int stops = 0;
+  for (int k = 0; k < 12; ++k) {
+    const double yellow_at_s = 11.0 + 0.3 * k;
+    scenario.lights.front().phases = {{LightColour::green, yellow_at_s},
+                                      {LightColour::yellow, 3.0},
+                                      {LightColour::red, 20.0},
+                                      {LightColour::green, 60.0}};
+    const Driven d = driven(scenario);
+    expect_arrives(d, 1.0);
+    const double passes_s = d.passes_x_at_s(279.0);
+    const bool stopped = passes_s > yellow_at_s + 23.0;
+    EXPECT_TRUE(stopped || passes_s < yellow_at_s + 3.0)
+        << "yellow at " << yellow_at_s << " s, passed at " << passes_s << " s";
+    stops += stopped;
+  }
+  EXPECT_GT(stops, 3);
+  EXPECT_LT(stops, 12);
 }
 
 TEST(ScenarioDrives, LeftTurnWaitsForThoseWhoComeTheOtherWay) {
