@@ -76,10 +76,14 @@ class Check {
             mix(a.heading_rad, b.heading_rad)};
   }
 
-  DriveRow at_time(double t_s) const {
+  std::size_t segment_at(double t_s) const {
     const auto after = std::upper_bound(rows_.begin() + 1, rows_.end() - 1, t_s,
                                         [](double t, const DriveRow& row) { return t < row.t_s; });
-    const auto segment = static_cast<std::size_t>(after - rows_.begin()) - 1;
+    return static_cast<std::size_t>(after - rows_.begin()) - 1;
+  }
+
+  DriveRow at_time(double t_s) const {
+    const std::size_t segment = segment_at(t_s);
     const double whole_s = rows_[segment + 1].t_s - rows_[segment].t_s;
     return at(segment, whole_s > 0.0 ? (t_s - rows_[segment].t_s) / whole_s : 0.0);
   }
@@ -205,7 +209,7 @@ class Check {
   // How far a point of the body moves at most between two times.
   double way_m(double from_s, double to_s) const {
     double sum_m = 0.0;
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+    for (std::size_t i = segment_at(from_s); i + 1 < rows_.size() && rows_[i].t_s < to_s; ++i) {
       const DriveRow &a = rows_[i], &b = rows_[i + 1];
       const double common_s = std::min(to_s, b.t_s) - std::max(from_s, a.t_s);
       if (common_s <= 0.0 || b.t_s <= a.t_s) continue;

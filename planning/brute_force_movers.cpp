@@ -25,11 +25,19 @@ BruteForceMovers::BruteForceMovers(std::span<const MovingObstacle> obstacles) {
   }
 }
 
+// The one that a time lies in, else the first or the last.
+std::size_t BruteForceMovers::Mover::segment_at(double t_s) const {
+  const auto first = rows.begin() + 1, last = rows.end() - (rows.size() > 1 ? 1 : 0);
+  const auto after =
+      std::upper_bound(first, last, t_s, [](double t, const Row& row) { return t < row.t_s; });
+  return static_cast<std::size_t>(after - first);
+}
+
 BodyOutline::Corners BruteForceMovers::Mover::at(double t_s) const {
   Row row = rows.front();
-  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+  if (rows.size() > 1 && t_s >= row.t_s) {
+    const std::size_t i = segment_at(t_s);
     const Row &a = rows[i], &b = rows[i + 1];
-    if (t_s < a.t_s) break;
     const double share = std::min(1.0, (t_s - a.t_s) / (b.t_s - a.t_s));
     row = {t_s, a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
            a.heading_rad + share * (b.heading_rad - a.heading_rad)};
@@ -45,7 +53,7 @@ BodyOutline::Corners BruteForceMovers::Mover::at(double t_s) const {
 // How far a point of it moves at most between two times.
 double BruteForceMovers::Mover::way_m(double start_s, double end_s) const {
   double sum_m = 0.0;
-  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+  for (std::size_t i = segment_at(start_s); i + 1 < rows.size() && rows[i].t_s < end_s; ++i) {
     const Row &a = rows[i], &b = rows[i + 1];
     const double common_s = std::min(end_s, b.t_s) - std::max(start_s, a.t_s);
     if (common_s <= 0.0) continue;

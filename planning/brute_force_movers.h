@@ -42,6 +42,7 @@ class BruteForceMovers {
     double from_s, to_s, half_length_m, half_width_m;
     std::vector<Row> rows;
 
+    std::size_t segment_at(double t_s) const;
     BodyOutline::Corners at(double t_s) const;
     double way_m(double start_s, double end_s) const;
     bool is_there(const Time& time) const;

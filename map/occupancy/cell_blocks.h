@@ -54,6 +54,11 @@ class CellBlocks {
   void carve(const Eigen::Vector3f& origin, const CellKey& from, const Eigen::Vector3f& end,
              const CellKey& to);
 
+  /// What blocks and regions take of memory [bytes], without log-odds.
+  std::size_t kept_bytes() const {
+    return block_count_ * sizeof(CellBlock) + regions_.size() * sizeof(BlockRegion);
+  }
+
   std::size_t block_count() const { return block_count_; }
 
   /// Blocks that the current scan came to, in the order of its coming.

@@ -14,8 +14,8 @@
 namespace roadbed::map {
 namespace {
 
-// 208 MB, and 100 bytes a point.
-std::size_t most_blocks(std::size_t points) { return 1'000'000 + points / 2; }
+// What cells may take of memory.
+std::size_t most_bytes(std::size_t points) { return 160'000'000 + 64 * points; }
 
 // As OctoMap, in float.
 Eigen::Vector3f centre_in_tree(const CellKey& key, double resolution_m) {
@@ -61,7 +61,7 @@ CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
     : origin_in_source_(origin_in_source),
       options_(options),
       rule_(rule),
-      most_blocks_(most_blocks(points)),
+      most_bytes_(most_bytes(points)),
       blocks_(options.resolution_m) {}
 
 void CloudMeasurements::add(const PointCloud& cloud) {
@@ -77,8 +77,9 @@ void CloudMeasurements::add(const PointCloud& cloud) {
 void CloudMeasurements::add_hits(const PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     blocks_.mark_hit(checked_key(cloud, "point", cloud.in_source(i)));
-    if (i % 4096 == 0) check_room(cloud);
+    if (i % 256 == 0) check_room(cloud);
   }
+  check_room(cloud);
 }
 
 void CloudMeasurements::add_scan(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_source) {
@@ -120,7 +121,8 @@ CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what
 }
 
 void CloudMeasurements::check_room(const PointCloud& cloud) const {
-  if (blocks_.block_count() <= most_blocks_) return;
+  const std::size_t log_odds = options_.sticky_hits ? 0 : sizeof(std::array<float, 512>);
+  if (blocks_.kept_bytes() + blocks_.block_count() * log_odds <= most_bytes_) return;
   throw InputError({.file = cloud.name,
                     .place = {},
                     .element = cloud.sensor_in_source ? "rays" : "points",

@@ -31,9 +31,8 @@ class CloudMeasurements {
   CloudMeasurements(const Eigen::Vector3d& origin_in_source, const OccupancyOptions& options,
                     const LogOddsRule& rule, std::size_t points);
 
-  /// @throws InputError if a point or the sensor lies out of range, or the rays cross too many
-  /// cells
-  ///         to be kept.
+  /// @throws InputError if a point or the sensor lies out of range, or what was measured lies in
+  ///         too many places to be kept.
   void add(const PointCloud& cloud);
 
   /// Of a `.bt`; to be called once, when all clouds are there.
@@ -53,7 +52,7 @@ class CloudMeasurements {
   Eigen::Vector3d origin_in_source_;
   OccupancyOptions options_;
   LogOddsRule rule_;
-  std::size_t most_blocks_;
+  std::size_t most_bytes_;
   CellBlocks blocks_;
 };
 

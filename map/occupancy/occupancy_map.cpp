@@ -33,12 +33,6 @@ namespace {
 
 octomap::OcTreeKey octomap_key(const CellKey& key) { return {key[0], key[1], key[2]}; }
 
-Eigen::Vector3d centre_in_tree(const octomap::OcTree& octree, const octomap::OcTreeKey& key,
-                               unsigned depth) {
-  return {octree.keyToCoord(key[0], depth), octree.keyToCoord(key[1], depth),
-          octree.keyToCoord(key[2], depth)};
-}
-
 // Where the octree's range allows it, the source's own origin; else the middle of all points.
 Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolution_m) {
   Box3 all = bounds(clouds.front());
@@ -129,12 +123,14 @@ OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
   auto tree = std::make_unique<Tree>(options.resolution_m);
   tree->crs = measured.crs;
   tree->origin_in_source = measured.origin_in_source;
-  if (options.sticky_hits) {
-    std::istringstream data{measured.cells.bt().data};
-    tree->octree.readBinaryData(data);
-  } else {
-    std::istringstream data{measured.cells.ot().data};
-    tree->octree.readData(data);
+  OctreeBytes bytes = options.sticky_hits ? measured.cells.bt() : measured.cells.ot();
+  if (bytes.nodes > 0) {
+    std::istringstream data{std::move(bytes.data)};
+    if (options.sticky_hits) {
+      tree->octree.readBinaryData(data);
+    } else {
+      tree->octree.readData(data);
+    }
   }
   return OccupancyMap(std::move(tree));
 }
@@ -190,7 +186,7 @@ std::vector<OccupancyCell> OccupancyMap::cells() const {
   std::vector<OccupancyCell> cells;
   for (auto leaf = octree.begin_leafs(), end = octree.end_leafs(); leaf != end; ++leaf) {
     cells.push_back(
-        {tree_->origin_in_source + centre_in_tree(octree, leaf.getKey(), leaf.getDepth()),
+        {tree_->origin_in_source + Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()),
          leaf.getSize(), octree.isNodeOccupied(*leaf) ? CellState::occupied : CellState::free});
   }
   return cells;

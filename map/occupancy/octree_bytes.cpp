@@ -94,7 +94,7 @@ class BtWriter {
   }
 
   OctreeBytes take() {
-    ++bytes_.nodes;  // the root
+    bytes_.nodes += !bytes_.data.empty();  // the root
     return std::move(bytes_);
   }
 
