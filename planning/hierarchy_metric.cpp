@@ -139,7 +139,7 @@ void HierarchyMetric::for_each_less(const Touched& arc, BothWays bases, const Vi
           visit(Touched{other, arc.high, hierarchy_.arc_between(other, arc.high)}, over + found_[i],
                 false);
         }
-        return first <= arc.low;
+        return false;
       });
 }
 

@@ -64,7 +64,9 @@ class OccupancyBuildCommand : public Command {
         .with_default();
     arguments
         .add("--scale", scale_,
-             "Multiplies every coordinate, for clouds that are not in metres (feet: 0.3048)")
+             "Multiplies the clouds' coordinates, where they are not metres (feet: 0.3048); "
+             "--sensor "
+             "and --poses are in metres")
         .within(1e-6, 1e6);
     arguments.add("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
     arguments.flag("--force", force_, "Replace the output if it exists");
@@ -104,6 +106,7 @@ class OccupancyBuildCommand : public Command {
       const std::string bytes = map::read_file(file);
       if (map::is_occupancy_file(bytes)) return written(convert(bytes, file));
       map::PointCloud cloud = map::parse_point_cloud(bytes, file.string());
+      if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
       if (!poses.empty()) cloud = map::placed(cloud, poses[clouds.size()]);
       clouds.push_back(prepared(std::move(cloud)));
       if (!quiet) print_notes(err, clouds.back());
@@ -139,7 +142,6 @@ class OccupancyBuildCommand : public Command {
   }
 
   map::PointCloud prepared(map::PointCloud cloud) const {
-    if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
     map::check_is_in_metres(cloud);
     if (filter_.does_something()) cloud = map::filtered(cloud, filter_);
     if (!crs_.empty()) cloud.crs = crs_;

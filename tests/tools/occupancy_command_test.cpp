@@ -144,6 +144,21 @@ TEST_F(OccupancyCommands, AuditDrawsAPictureAndKeepsAnOldOne) {
   EXPECT_EQ(bytes_of(picture), svg);
 }
 
+TEST_F(OccupancyCommands, ScaleIsThatOfTheCloudsNotOfTheirPoses) {
+  const std::string metres = folder_.write("metres.xyz", "3 1 0.5\n5 2 0.5\n");
+  const std::string millimetres = folder_.write("mm.xyz", "3000 1000 500\n5000 2000 500\n");
+  const std::string poses = folder_.write("poses.txt", "0 10 20 1 0 0 0 1\n");
+  const auto built = [&](const std::string& cloud, std::vector<std::string> more) {
+    const std::string out = folder_ / (cloud.ends_with("mm.xyz") ? "mm.bt" : "metres.bt");
+    more.insert(more.begin(),
+                {"occupancy", "build", cloud, "--poses", poses, "--quiet", "-o", out});
+    const ProgramRun run = run_roadbed(more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return bytes_of(out);
+  };
+  EXPECT_EQ(built(millimetres, {"--scale", "0.001"}), built(metres, {}));
+}
+
 TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   const std::string out = folder_ / "out.bt";
   const auto expect_refused = [&](const std::vector<std::string>& arguments, const char* reason) {

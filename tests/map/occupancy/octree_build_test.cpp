@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 
 namespace roadbed::map {
@@ -126,6 +127,37 @@ TEST(OctreeBuild, WithStickyHitsEveryCellIsWhatItsRaysAndPointsSay) {
     const auto tree = read_with_octomap(ours.to_ot());
     ASSERT_TRUE(tree);
     expect_equal_nodes(*tree, expected);
+  }
+}
+
+TEST(OctreeBuild, WhatMeasuredNothingIsAnEmptyFileThatIsReadAsOne) {
+  PointCloud cloud;
+  cloud.sensor_in_source = Eigen::Vector3d(0.0, 0.0, 0.0);
+  cloud.points.emplace_back(1.0f, 0.0f, 0.0f);  // beyond the range, which lies in one cell
+  const OccupancyOptions options{.carve_range_m = 0.01, .sticky_hits = false};
+  const OccupancyMap ours = OccupancyMap::build(std::vector{cloud}, options);
+  EXPECT_TRUE(ours.cells().empty());
+  const auto file = OccupancyMap::build_bt(std::vector{cloud}, options);
+  EXPECT_EQ(file.nodes, 0u);
+  EXPECT_EQ(file.bytes, ours.to_bt());
+  for (const std::string& bytes : {file.bytes, ours.to_ot()}) {
+    EXPECT_TRUE(OccupancyMap::parse(bytes, "empty").cells().empty());
+  }
+}
+
+TEST(OctreeBuild, PointsInMorePlacesThanMemoryIsForAreRefused) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-300.0f, 300.0f);
+  for (const bool sticky : {true, false}) {
+    PointCloud cloud;
+    for (int i = 0; i < 60'000; ++i) {
+      cloud.points.emplace_back(place(random), place(random), place(random));
+    }
+    EXPECT_THROW(
+        OccupancyMap::build_bt(std::vector{cloud}, {.resolution_m = 0.01, .sticky_hits = sticky}),
+        InputError);
+    EXPECT_NO_THROW(
+        OccupancyMap::build_bt(std::vector{cloud}, {.resolution_m = 0.5, .sticky_hits = true}));
   }
 }
 
