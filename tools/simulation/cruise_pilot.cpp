@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "roadbed/planning/speed_ceiling.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/decision.h"
+#include "roadbed/tools/simulation/follower.h"
 #include "roadbed/tools/simulation/pilot.h"
 #include "roadbed/tools/simulation/right_of_way.h"
 #include "roadbed/tools/simulation/safety.h"
@@ -54,12 +56,13 @@ class CruisePilot : public Pilot {
   PilotCommand decide(const PilotView& view) override {
     const double speed = view.measured.motion.speed_mps;
     if (predicts_) foreseen_.emplace(true_traffic(world_), view.t_s);
+    const std::vector<planning::Obstacle> ahead = obstacles_to_plan_for(view);
     keeper_.plan({.t_s = view.t_s,
                   .measured = view.measured,
                   .speed = {.speed_mps = speed,
                             .acceleration_mps2 = view.measured.acceleration_mps2,
                             .target_mps = set_speed_mps_},
-                  .obstacles = foreseen_ ? foreseen_->obstacles() : world_.obstacles});
+                  .obstacles = ahead});
     const std::optional<Halt> halt = halt_ahead(view);
     const std::optional<Lead> truth = lead_ahead(view, halt);
     const bool is_blind = truth && !view.sensors.sees(view.t_s);
@@ -85,6 +88,18 @@ class CruisePilot : public Pilot {
   }
 
  private:
+  /// Who follows keeps its own distance: no path is given up for it.
+  std::vector<planning::Obstacle> obstacles_to_plan_for(const PilotView& view) const {
+    std::vector<planning::Obstacle> ahead = foreseen_ ? foreseen_->obstacles() : world_.obstacles;
+    const geometry::LinePosition at =
+        world_.line.project(view.measured.motion.pose.position(), keeper_.s_m());
+    const VehicleOnLine vehicle{world_.line, at.s_m, at.d_m, scenario_.vehicle.width_m};
+    std::erase_if(ahead, [&](const planning::Obstacle& obstacle) {
+      return !obstacle.is_static() && is_following(obstacle, view.t_s, vehicle);
+    });
+    return ahead;
+  }
+
   std::optional<Halt> halt_ahead(const PilotView& view) {
     const PlannedPath path = keeper_.expected_path();
     return right_of_way_.look({.t_s = view.t_s,

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "roadbed/control/cruise_design.h"
 #include "roadbed/tools/simulation/driven_way.h"
+#include "roadbed/tools/simulation/follower.h"
 #include "roadbed/tools/simulation/way_occupancy.h"
 
 namespace roadbed::tools {
@@ -56,31 +58,6 @@ std::vector<bool> crossing_now(const DrivenWay& way, const WayOccupancy& occupan
     crossing[part.obstacle] = at.speed_mps > kMovingOther_mps && along.dot(way_along) < kLeastAlong;
   }
   return crossing;
-}
-
-/// Whether an obstacle's centre is behind the rear axle, its body behind the vehicle's, and it
-/// heads along the line that the vehicle came along.
-bool is_following(const planning::Obstacle& obstacle, const RightOfWay::View& view,
-                  const planning::ReferenceLine& line, double vehicle_width_m) {
-  const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
-  const Eigen::Vector2d place = now.pose().position();
-  const planning::ReferencePoint foot = line.at(line.project(place).s_m);
-  const Eigen::Vector2d along(std::cos(foot.heading_rad), std::sin(foot.heading_rad));
-  const Eigen::Vector2d beyond = place - foot.in_map;  // along: before the line's first point
-  const double d_m = along.x() * beyond.y() - along.y() * beyond.x();
-  const double apart_m = std::abs(d_m - view.path.lateral_at(view.s_m).d_m);
-  return foot.s_m + along.dot(beyond) < view.s_m &&
-         apart_m < 0.5 * (vehicle_width_m + obstacle.width_m) &&
-         std::cos(now.heading_rad - foot.heading_rad) > kLeastAlong;
-}
-
-std::vector<bool> following_now(const RightOfWay::View& view, const planning::ReferenceLine& line,
-                                double vehicle_width_m) {
-  std::vector<bool> following;
-  for (const planning::Obstacle& obstacle : view.traffic.obstacles) {
-    following.push_back(is_following(obstacle, view, line, vehicle_width_m));
-  }
-  return following;
 }
 
 /// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
@@ -192,8 +169,13 @@ std::optional<std::string> RightOfWay::who_comes(const WaitingPlace& place, cons
   const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);
   const auto steps = static_cast<int>(ahead.size());
   const WayOccupancy occupancy(way, view.traffic, view.t_s, steps + gap.after, kSideRoom_m);
-  const Others others{crossing_now(way, occupancy, view),
-                      following_now(view, world_.line, scenario_.vehicle.width_m)};
+  const VehicleOnLine vehicle{world_.line, view.s_m, view.path.lateral_at(view.s_m).d_m,
+                              scenario_.vehicle.width_m};
+  std::vector<bool> following;
+  for (const planning::Obstacle& obstacle : view.traffic.obstacles) {
+    following.push_back(is_following(obstacle, view.t_s, vehicle));
+  }
+  const Others others{crossing_now(way, occupancy, view), std::move(following)};
   for (int k = 0; k < steps; ++k) {
     const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after,
                                 ahead[static_cast<std::size_t>(k)]);

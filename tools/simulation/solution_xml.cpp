@@ -4,24 +4,10 @@
 
 #include <cmath>
 
+#include "roadbed/map/formats/svg_canvas.h"
+
 namespace roadbed::tools {
 namespace {
-
-std::string escaped_xml(const std::string& text) {
-  std::string safe;
-  for (const char sign : text) {
-    if (sign == '&') {
-      safe += "&amp;";
-    } else if (sign == '<') {
-      safe += "&lt;";
-    } else if (sign == '"') {
-      safe += "&quot;";
-    } else {
-      safe += sign;
-    }
-  }
-  return safe;
-}
 
 std::string state_xml(const geometry::TrajectoryPoint& row, long step, double ahead_m) {
   const Eigen::Vector2d centre = row.pose() * Eigen::Vector2d(ahead_m, 0.0);
@@ -42,8 +28,8 @@ std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<CommonRoadSolution benchmark_id=\"KS2:SM1:{}:{}\">\n"
       "  <ksTrajectory planningProblem=\"{}\">\n",
-      escaped_xml(problem.benchmark_id), escaped_xml(problem.version),
-      escaped_xml(problem.problem_id));
+      map::xml_text(problem.benchmark_id), map::xml_text(problem.version),
+      map::xml_text(problem.problem_id));
   const auto steps = static_cast<long>(std::floor(drive.trajectory.end_s() / step_s + 1e-6));
   for (long k = 0; k <= steps; ++k) {
     const auto row = drive.trajectory.at(step_s * static_cast<double>(k));

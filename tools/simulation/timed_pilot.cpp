@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "roadbed/tools/simulation/attempt.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/driven_way.h"
 #include "roadbed/tools/simulation/pilot.h"
@@ -23,19 +24,6 @@ constexpr double kTimedPassOffset_m = 0.5, kFollow_m = 20.0;
 constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
 constexpr double kNoEnd_m = 1e9;
 
-/// How much is dared: room to obstacles, and braking.
-struct Daring {
-  double margin_m;
-  SpeedSearchOptions speed;
-  bool is_emergency;
-};
-
-constexpr std::array<Daring, 3> kDarings{{
-    {.margin_m = 0.4, .speed = {}, .is_emergency = false},
-    {.margin_m = 0.4, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
-    {.margin_m = 0.1, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
-}};
-
 /// What is tried beside the planner's own choice where that is not good enough: ends to the right
 /// and left of the reference line.
 constexpr std::array<PathKeeper::Offsets, 6> kBeside{
@@ -43,48 +31,7 @@ constexpr std::array<PathKeeper::Offsets, 6> kBeside{
 constexpr std::array<PathKeeper::Offsets, 2> kOtherLanes{{{-3.5, -2.6}, {2.6, 3.5}}};
 constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
 constexpr double kBesideCost = 0.3;     // per metre of the end's offset
-constexpr double kBearable_mps = 0.3;   // beyond what a bend allows
 constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
-
-/// One line to the goal, and the path that is kept along it.
-struct Course {
-  const planning::ReferenceLine& line;
-  planning::SpeedCeiling ceiling;
-  std::vector<GoalStretch> stretches;
-  PathKeeper keeper;
-};
-
-/// One path, the way along it, and the best drive found on it.
-struct Attempt {
-  const Course* course;
-  std::optional<PathKeeper::Proposal> proposal;  ///< none: the path that is being driven
-  DrivenWay way;
-  double on_road_m;  ///< how far along the way the body keeps to the road
-  SpeedSearchAnswer answer;
-  const Daring* daring = nullptr;
-  double cost = 0.0;
-  std::optional<DriveLead> lead;
-};
-
-/// How far beside the reference line the path ends.
-double beside_m(const Attempt& attempt) {
-  return attempt.proposal ? std::abs(attempt.proposal->plan.chosen->end_d_m) : 0.0;
-}
-
-bool is_good(const Attempt& attempt) {
-  return attempt.answer.is_free && attempt.answer.bend_excess_mps <= kBearable_mps &&
-         !attempt.answer.misses_goal;
-}
-
-/// Free before not free; then by cost, or by how long it is free and how slow it is by then.
-bool is_better(const Attempt& a, const Attempt& b) {
-  if (a.answer.is_free != b.answer.is_free) return a.answer.is_free;
-  if (a.answer.is_free) return a.cost < b.cost;
-  if (a.answer.free_until_s != b.answer.free_until_s) {
-    return a.answer.free_until_s > b.answer.free_until_s;
-  }
-  return a.answer.plan.back().speed_mps < b.answer.plan.back().speed_mps;
-}
 
 class TimedPilot : public Pilot {
  public:
@@ -164,9 +111,7 @@ class TimedPilot : public Pilot {
 
   void add_others(const PilotView& view, const PathKeeper::Question& question,
                   std::vector<Attempt>& all, Attempt& best) {
-    if (!best.answer.is_free || best.answer.bend_excess_mps > kBearable_mps) {
-      add_paths_beside(view, question, kBeside, all, best);
-    }
+    if (!is_drivable(best)) add_paths_beside(view, question, kBeside, all, best);
     if (best.answer.misses_goal) add_paths_beside(view, question, kOtherLanes, all, best);
     if (!is_good(best)) add_other_courses(view, question, all, best);
   }

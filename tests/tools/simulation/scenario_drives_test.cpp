@@ -6,6 +6,7 @@
 
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {
 namespace {
@@ -91,6 +92,36 @@ TEST(ScenarioDrives, LightThatTurnsYellowIsNeverPassedAtRed) {
   }
   EXPECT_GT(stops, 3);
   EXPECT_LT(stops, 12);
+}
+
+/// An obstacle that does what a drive did, some time later, but for the drive's last 10 s; before,
+/// it comes straight on.
+planning::Obstacle follower(const Driven& ahead, double later_s) {
+  const auto& rows = ahead.drive.trajectory.points();
+  const double to_centre_m =
+      geometry::VehicleShape{}.front_m() - 0.5 * geometry::VehicleShape{}.length_m;
+  const auto centre = [&](const geometry::Pose2& rear, double by_m) {
+    const Eigen::Vector2d place = rear * Eigen::Vector2d(to_centre_m + by_m, 0.0);
+    return geometry::Pose2{place.x(), place.y(), rear.heading_rad};
+  };
+  std::vector<TimedPose> poses{
+      {0.0, centre(rows.front().pose(), -later_s * rows.front().speed_mps)}};
+  for (const auto& row : rows) {
+    if (row.t_s < rows.back().t_s - 10.0)
+      poses.push_back({row.t_s + later_s, centre(row.pose(), 0.0)});
+  }
+  return {.id = "tail", .motion = drive_through(poses)};
+}
+
+TEST(ScenarioDrives, WhoFollowsIntoTheRoundaboutIsNotGivenWayTo) {
+  const Scenario scenario = scenario_of("roundabout");
+  Driven d{make_world(scenario), {}};
+  d.world.obstacles.clear();
+  d.drive = drive(scenario, d.world);
+  d.world.obstacles = {follower(d, 1.8)};
+  d.drive = drive(scenario, d.world);
+  expect_arrives(d, 1.0);
+  EXPECT_EQ(d.first(Behaviour::yield), nullptr);
 }
 
 TEST(ScenarioDrives, LeftTurnWaitsForThoseWhoComeTheOtherWay) {

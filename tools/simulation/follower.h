@@ -1,0 +1,19 @@
+#pragma once
+
+#include "roadbed/planning/obstacle.h"
+#include "roadbed/planning/reference_line.h"
+
+namespace roadbed::tools {
+
+/// Where the vehicle is: station and lateral offset of its rear axle.
+struct VehicleOnLine {
+  const planning::ReferenceLine& line;
+  double s_m, d_m, width_m;
+};
+
+/// Whether an obstacle drives behind the vehicle in its lane, and so has to keep its distance: its
+/// centre is behind the rear axle, its body behind the vehicle's, and it heads along the line (up
+/// to 37 degrees). O(N) in the line's points.
+bool is_following(const planning::Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle);
+
+}  // namespace roadbed::tools
