@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RoadMap road_map =
         parse_map(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
     if (road_map.format() == "Lanelet2") {
-      parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632"}).bytes, "written");
+      parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
+                "written");
     }
   } catch (const InputError&) {
     return 0;  // refused, as it should be
