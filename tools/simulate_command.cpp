@@ -3,18 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/drive_files.h"
+#include "roadbed/tools/support/in_threads.h"
 #include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/support/progress_bar.h"
 
 namespace roadbed::tools {
 namespace {
@@ -86,47 +85,17 @@ void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
   }
 }
 
-class Progress {
- public:
-  Progress(std::ostream& err, std::size_t all, bool is_shown)
-      : err_(err), all_(all), is_shown_(is_shown) {}
-
-  void done_one() {
-    const std::scoped_lock lock(mutex_);
-    ++done_;
-    if (!is_shown_) return;
-    constexpr std::size_t width = 40;
-    const std::size_t full = width * done_ / all_;
-    fmt::print(err_, "\r[{:#<{}}{:.<{}}] {}/{}{}", "", full, "", width - full, done_, all_,
-               done_ == all_ ? "\n" : "");
-    err_.flush();
-  }
-
- private:
-  std::ostream& err_;
-  std::size_t all_, done_ = 0;
-  bool is_shown_;
-  std::mutex mutex_;
-};
-
 struct DriveOptions {
   fs::path output;
   DriveChoice choice;
   int threads;
 };
 
-void drive_all(std::vector<Row>& rows, const DriveOptions& options, Progress& progress) {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < rows.size(); i = next++) {
-      drive_row(options.output, options.choice, rows[i]);
-      progress.done_one();
-    }
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < options.threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+void drive_all(std::vector<Row>& rows, const DriveOptions& options, ProgressBar& progress) {
+  in_threads(rows.size(), options.threads, [&](std::size_t i) {
+    drive_row(options.output, options.choice, rows[i]);
+    progress.done_one();
+  });
 }
 
 std::string table_csv(const std::vector<Row>& rows) {
@@ -196,7 +165,7 @@ class SimulateCommand : public Command {
                              .remedy = "give another folder"});
     }
     make_output_folder(folder_, force_);
-    Progress progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    ProgressBar progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     drive_all(rows, {folder_, choice_, common.threads}, progress);
     write_output(folder_ / "drives.csv", table_csv(rows));
     if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));

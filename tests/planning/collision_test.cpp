@@ -112,6 +112,19 @@ double least_slack_m(const std::vector<TrajectoryPoint>& drive,
   return slack_m;
 }
 
+// Whether it is found free, which dense sampling has to bear out.
+bool is_free_as_sampled(const std::vector<TrajectoryPoint>& drive,
+                        const std::vector<Obstacle>& obstacles, int scene) {
+  const double slack_m = least_slack_m(drive, obstacles);
+  const bool found_free = is_free(drive, obstacles);
+  if (found_free) {
+    EXPECT_GE(slack_m, -1e-9) << "scene " << scene;
+  } else {
+    EXPECT_LE(slack_m, 0.02 + 0.01) << "scene " << scene;
+  }
+  return found_free;
+}
+
 TEST(CollisionChecker, AgreesWithDenseSamplingOnRandomScenes) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -139,15 +152,7 @@ TEST(CollisionChecker, AgreesWithDenseSamplingOnRandomScenes) {
       obstacles.push_back(
           {.id = "random", .motion = i == 0 ? Trajectory({from, to}) : Trajectory({from})});
     }
-    const double slack_m = least_slack_m(drive, obstacles);
-    const bool found_free = is_free(drive, obstacles);
-    if (found_free) {
-      EXPECT_GE(slack_m, -1e-9) << "scene " << scene;
-      ++free;
-    } else {
-      EXPECT_LE(slack_m, 0.02 + 0.01) << "scene " << scene;
-      ++colliding;
-    }
+    ++(is_free_as_sampled(drive, obstacles, scene) ? free : colliding);
   }
   EXPECT_GT(free, 50);
   EXPECT_GT(colliding, 50);
@@ -182,15 +187,7 @@ TEST(CollisionChecker, KeepsTheClearanceToWhatABendPassesClosely) {
       drive.push_back(next);
     }
     const std::vector<Obstacle> posts{post_beside(drive, random)};
-    const double slack_m = least_slack_m(drive, posts);
-    const bool found_free = is_free(drive, posts);
-    if (found_free) {
-      EXPECT_GE(slack_m, -1e-9) << "scene " << scene;
-      ++free;
-    } else {
-      EXPECT_LE(slack_m, 0.02 + 0.01) << "scene " << scene;
-      ++colliding;
-    }
+    ++(is_free_as_sampled(drive, posts, scene) ? free : colliding);
   }
   EXPECT_GT(free, 50);
   EXPECT_GT(colliding, 50);
