@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tools/support/od_csv.h"
+#include "roadbed/tools/support/csv.h"
 
 namespace roadbed::tests {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "roadbed/tools/report/escape.h"
 #include "roadbed/tools/report/svg.h"
-#include "roadbed/tools/support/od_csv.h"
+#include "roadbed/tools/support/csv.h"
 
 namespace roadbed::tools {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +19,5 @@ struct OdRow {
 /// or fewer fields than the header has get a fault.
 /// @throws InputError if there is no such header or no row at all.
 std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name);
-
-/// Fields of a line of CSV (RFC 4180 without line breaks in fields).
-std::vector<std::string> csv_fields(std::string_view line);
-
-/// A field as CSV writes it: in quotes where it holds commas or quotes.
-std::string csv_field(const std::string& text);
 
 }  // namespace roadbed::tools

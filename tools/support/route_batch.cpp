@@ -11,6 +11,7 @@
 #include "roadbed/planning/hierarchy_search.h"
 #include "roadbed/planning/route_obstacle.h"
 #include "roadbed/planning/route_solver.h"
+#include "roadbed/tools/support/csv.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/route_output.h"
