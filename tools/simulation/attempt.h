@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "roadbed/tools/simulation/path_keeper.h"
 #include "roadbed/tools/simulation/speed_search.h"
 #include "roadbed/tools/simulation/timed_goal.h"
+#include "roadbed/tools/simulation/way_occupancy.h"
 
 namespace roadbed::tools {
 
@@ -44,6 +46,7 @@ struct Attempt {
   double on_road_m;  ///< how far along the way the body keeps to the road
   SpeedSearchAnswer answer;
   const Daring* daring = nullptr;
+  std::shared_ptr<const WayOccupancy> occupancy = nullptr;  ///< with that room
   double cost = 0.0;
   std::optional<DriveLead> lead;
 };

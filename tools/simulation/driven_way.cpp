@@ -42,15 +42,15 @@ DrivenWay sample_way(const PlannedPath& path, double from_s_m, double length_m,
   std::vector<double> curvature;
   Eigen::Vector2d last(0.0, 0.0);
   for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kWayStep_m) {
-    const geometry::Pose2 pose = path.pose_at(from_s_m + l_m);
-    const double ahead_m =
-        way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (pose.position() - last).norm();
-    last = pose.position();
+    const PlannedPath::Place place = path.place_at(from_s_m + l_m);
+    const Eigen::Vector2d here = place.pose.position();
+    const double ahead_m = way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (here - last).norm();
+    last = here;
     way.ahead_m.push_back(ahead_m);
     way.station_m.push_back(from_s_m + l_m);
-    way.body.push_back(geometry::body_at(pose, vehicle));
+    way.body.push_back(geometry::body_at(place.pose, vehicle));
     way.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
-    curvature.push_back(path.curvature_per_m(from_s_m + l_m));
+    curvature.push_back(place.curvature_per_m);
   }
   for (std::size_t i = 0; i < curvature.size(); ++i) {
     const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, curvature.size() - 1);

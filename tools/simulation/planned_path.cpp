@@ -44,45 +44,43 @@ double lateral_curvature(const FrameMotion& m, double kappa, double k) {
          kappa * m.along;
 }
 
+geometry::Pose2 front_of(const PlannedPath::Place& rear, double wheelbase_m) {
+  const Eigen::Vector2d front = rear.pose * Eigen::Vector2d(wheelbase_m, 0.0);
+  return {.x_m = front.x(),
+          .y_m = front.y(),
+          .heading_rad = rear.pose.heading_rad + std::atan(wheelbase_m * rear.curvature_per_m)};
+}
+
 }  // namespace
 
 PlannedPath::PlannedPath(const planning::ReferenceLine& line, Lateral lateral)
     : line_(&line), lateral_(std::move(lateral)) {}
 
-geometry::Pose2 PlannedPath::pose_at(double s_m) const {
+PlannedPath::Place PlannedPath::place_at(double s_m) const {
   const ReferencePoint at = line_->at(s_m);
   const LateralState lateral = lateral_(s_m);
   const FrameMotion motion = frame_motion(at, lateral);
   const Eigen::Vector2d left{-std::sin(at.heading_rad), std::cos(at.heading_rad)};
   const Eigen::Vector2d place = at.in_map + lateral.d_m * left;
-  return {.x_m = place.x(),
-          .y_m = place.y(),
-          .heading_rad = at.heading_rad + std::atan2(motion.across, motion.along)};
-}
-
-double PlannedPath::curvature_per_m(double s_m) const {
-  const ReferencePoint at = line_->at(s_m);
-  return curvature_of(frame_motion(at, lateral_(s_m)), at.curvature_per_m);
+  return {.pose = {.x_m = place.x(),
+                   .y_m = place.y(),
+                   .heading_rad = at.heading_rad + std::atan2(motion.across, motion.along)},
+          .curvature_per_m = curvature_of(motion, at.curvature_per_m),
+          .stretch = std::hypot(motion.along, motion.across)};
 }
 
 geometry::Pose2 PlannedPath::front_pose_at(double s_m, double wheelbase_m) const {
-  const geometry::Pose2 rear = pose_at(s_m);
-  const Eigen::Vector2d front = rear * Eigen::Vector2d(wheelbase_m, 0.0);
-  return {.x_m = front.x(),
-          .y_m = front.y(),
-          .heading_rad = rear.heading_rad + std::atan(wheelbase_m * curvature_per_m(s_m))};
+  return front_of(place_at(s_m), wheelbase_m);
 }
 
 double PlannedPath::nearest_front_s_m(const Eigen::Vector2d& front_in_map, double wheelbase_m,
                                       double near_s_m) const {
   double s = near_s_m;
   for (int i = 0; i < kNewtonSteps; ++i) {
-    const geometry::Pose2 front = front_pose_at(s, wheelbase_m);
-    const Eigen::Vector2d offset_in_front = front.inverse() * front_in_map;
-    const FrameMotion motion = frame_motion(line_->at(s), lateral_(s));
-    const double turn = wheelbase_m * curvature_per_m(s);
-    const double stretch =  // of the front axle's path against the line
-        std::hypot(motion.along, motion.across) * std::hypot(1.0, turn);
+    const Place rear = place_at(s);
+    const Eigen::Vector2d offset_in_front = front_of(rear, wheelbase_m).inverse() * front_in_map;
+    const double turn = wheelbase_m * rear.curvature_per_m;
+    const double stretch = rear.stretch * std::hypot(1.0, turn);  // of the front axle's path
     const double step = std::clamp(offset_in_front.x() / stretch, -kLongestStep_m, kLongestStep_m);
     s += step;
     if (std::abs(step) < 1e-9) break;

@@ -21,9 +21,17 @@ class PlannedPath {
   planning::LateralState lateral_at(double s_m) const { return lateral_(s_m); }
 
   /// Pose of the rear axle.
-  geometry::Pose2 pose_at(double s_m) const;
+  geometry::Pose2 pose_at(double s_m) const { return place_at(s_m).pose; }
 
-  double curvature_per_m(double s_m) const;
+  double curvature_per_m(double s_m) const { return place_at(s_m).curvature_per_m; }
+
+  /// Both at once.
+  struct Place {
+    geometry::Pose2 pose;
+    double curvature_per_m;
+    double stretch;  ///< metres of the path per metre of the line
+  };
+  Place place_at(double s_m) const;
 
   /// Pose of the front axle's centre on the path that it draws while the rear axle follows this
   /// one: position p + L t, heading ψ + atan(L k).

@@ -50,6 +50,7 @@ class TimedPilot : public Pilot {
 
   PilotCommand decide(const PilotView& view) override {
     look_around(view.t_s);
+    bodies_.emplace(traffic_, view.t_s, steps(view.t_s));
     const std::vector<planning::Obstacle> standing = standing_at(view.t_s);
     course().keeper.locate(view.measured);
     const PathKeeper::Question question{.t_s = view.t_s,
@@ -185,7 +186,11 @@ class TimedPilot : public Pilot {
   }
 
   void search(const PilotView& view, const Daring& daring, Attempt& attempt) const {
-    const WayOccupancy occupancy(attempt.way, traffic_, view.t_s, steps(view.t_s), daring.margin_m);
+    if (!attempt.occupancy || attempt.daring->margin_m != daring.margin_m) {
+      attempt.occupancy =
+          std::make_shared<const WayOccupancy>(attempt.way, *bodies_, daring.margin_m);
+    }
+    const WayOccupancy& occupancy = *attempt.occupancy;
     attempt.answer = search_speed(question_of(view, attempt, occupancy), daring.speed);
     attempt.daring = &daring;
     attempt.cost = attempt.answer.cost + kBesideCost * beside_m(attempt);
@@ -340,9 +345,10 @@ class TimedPilot : public Pilot {
   const World& world_;
   bool predicts_;
   std::optional<ForeseenTraffic> foreseen_;
-  Traffic traffic_;              ///< what is planned against; of the world, or of what is foreseen
-  std::vector<Course> courses_;  ///< the world's line first
-  std::size_t current_ = 0;      ///< that is driven
+  Traffic traffic_;  ///< what is planned against; of the world, or of what is foreseen
+  std::optional<TrafficBodies> bodies_;  ///< of the present cycle
+  std::vector<Course> courses_;          ///< the world's line first
+  std::size_t current_ = 0;              ///< that is driven
   double last_command_mps2_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };

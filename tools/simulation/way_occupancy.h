@@ -14,24 +14,64 @@ struct Blocked {
   std::size_t obstacle = 0;         ///< index in the world
 };
 
+/// Where obstacles are from one time on, every 0.1 s: found once for all ways of a planning cycle.
+class TrafficBodies {
+ public:
+  static constexpr double kStep_s = 0.1;
+
+  /// @param steps  of 0.1 s from `start_s` on; obstacles move as the world knows.
+  TrafficBodies(const Traffic& traffic, double start_s, int steps);
+
+  struct Body {
+    std::size_t obstacle = 0, step = 0;
+    geometry::Rectangle at;
+    double radius_m = 0.0;
+  };
+  /// Those that are there, one obstacle after the other, by time.
+  const std::vector<Body>& all() const { return all_; }
+  std::size_t times() const { return times_; }  ///< one more than steps
+
+ private:
+  std::vector<Body> all_;
+  std::size_t times_;
+};
+
 /// Which parts of a way are blocked when: the s–t graph of the obstacles. Parts of one time are in
 /// no order; those of different obstacles may overlap.
 class WayOccupancy {
  public:
-  static constexpr double kStep_s = 0.1;
+  static constexpr double kStep_s = TrafficBodies::kStep_s;
 
-  /// @param steps     of 0.1 s from `start_s` on; obstacles move as the world knows.
   /// @param margin_m  an obstacle this near to the body counts as touched.
+  WayOccupancy(const DrivenWay& way, const TrafficBodies& bodies, double margin_m);
   WayOccupancy(const DrivenWay& way, const Traffic& traffic, double start_s, int steps,
-               double margin_m);
+               double margin_m)
+      : WayOccupancy(way, TrafficBodies(traffic, start_s, steps), margin_m) {}
 
   /// At `step` · 0.1 s after the start, clamped to the last one.
-  const std::vector<Blocked>& at(int step) const;
+  const std::vector<Blocked>& at(int step) const { return of(step).parts; }
 
   bool is_blocked(int step, double distance_m) const;
 
+  /// From a distance to where the next part begins, and back to where the last one ends; infinite
+  /// if there is none.
+  double gap_ahead_m(int step, double distance_m) const;
+  double gap_behind_m(int step, double distance_m) const;
+
  private:
-  std::vector<std::vector<Blocked>> blocked_;
+  struct Interval {
+    double from_m, to_m;
+  };
+  struct Moment {
+    std::vector<Blocked> parts;
+    std::vector<Interval> blocked;         // their union, ascending and disjoint
+    std::vector<double> begins_m, ends_m;  // of the parts, ascending
+  };
+
+  const Moment& of(int step) const;
+  static void set_lists(Moment& moment);
+
+  std::vector<Moment> moments_;
 };
 
 }  // namespace roadbed::tools
