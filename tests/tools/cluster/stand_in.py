@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Stands in for `roadbed batch` in tests of faults: speaks its protocol, misbehaves when told to.
+
+A job's options say what it does: {"do": "sleep", "seconds": 0.1}; `do` is one of
+answer, no, sleep, hang, crash, exit, eat, kill-worker, chatter, or write (a file below DIR/files).
+"""
+
+import hashlib
+import json
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+
+def hash_of(line: str) -> str:
+    """Return the hash of a job: of its line and of what its inputs hold."""
+    digest = hashlib.sha256(b"stand-in 1\n" + line.encode())
+    for path in json.loads(line).get("inputs", []):
+        digest.update(Path(path).read_bytes() if Path(path).is_file() else b"missing")
+    return digest.hexdigest()[:32]
+
+
+def answer(line: str, output: Path) -> dict[str, object]:
+    """Return the result of a job, if its options let it."""
+    job = json.loads(line)
+    options = job["options"]
+    do, hash_ = options["do"], hash_of(line)
+    status, exit_, reason, result, files = "done", 0, "", {"least_clearance_m": 0.5}, []
+    time.sleep(options.get("seconds", 0.0))
+    if do == "no":
+        status, exit_, reason = "no", 1, "conflict"
+    elif do == "hang":
+        signal.pause()
+    elif do == "crash":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    elif do == "exit":
+        os._exit(3)
+    elif do == "eat":
+        held = []
+        while True:
+            held.append(b"\1" * 10_000_000)
+            time.sleep(0.005)
+    elif do == "kill-worker":
+        os.kill(os.getppid(), signal.SIGKILL)
+        signal.pause()
+    elif do == "chatter":
+        sys.stderr.write("words\n" * 100_000)
+    missing = [path for path in job.get("inputs", []) if not Path(path).is_file()]
+    if missing:
+        status, exit_, reason = "failed", 1, f"{missing[0]}: no such file"
+    elif do == "write":
+        name = f"files/{hash_[:2]}/{hash_}.bin"
+        try:
+            path = output / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(hash_.encode() * options["lines"])
+            files = [name]
+        except OSError as error:
+            path.unlink(missing_ok=True)
+            status, exit_, reason = "failed", 1, f"{name}: {error.strerror}"
+    return {
+        "hash": hash_,
+        "job": job["job"],
+        "status": status,
+        "exit": exit_,
+        "reason": reason,
+        "cause": None if status != "failed" else "disk" if do == "write" else "input",
+        "inputs": job.get("inputs", []),
+        "options": options,
+        "outputs": [],
+        "result": result if status != "failed" else None,
+        "files": files,
+    }
+
+
+def serve(output: Path) -> None:
+    """Answer jobs until the input ends."""
+    for line in sys.stdin:
+        print(json.dumps(answer(line.rstrip("\n"), output)), flush=True)
+
+
+def journal(output: Path) -> dict[str, str]:
+    """Return the finished results by hash; a hash that is there twice is a fault of the test."""
+    results: dict[str, str] = {}
+    for path in sorted((output / "journal").glob("*.jsonl")):
+        for line in path.read_bytes().split(b"\n")[:-1]:
+            text = line.decode()
+            hash_ = json.loads(text)["hash"]
+            assert hash_ not in results, f"{hash_} is in the journal twice"
+            results[hash_] = text
+    return results
+
+
+def main() -> int:
+    """Run `batch JOBS -o DIR`, with --list-missing, or `batch --serve -o DIR`."""
+    arguments = [argument for argument in sys.argv[2:] if argument != "--quiet"]
+    output = Path(arguments[arguments.index("-o") + 1])
+    if arguments[0] == "--serve":
+        serve(output)
+        return 0
+    lines = Path(arguments[0]).read_text(encoding="utf-8").splitlines()
+    for number, line in enumerate(lines, 1):
+        if not line.startswith("{"):
+            print(f"{arguments[0]}:{number}: not a job", file=sys.stderr)
+            return 1
+    done = journal(output)
+    if "--retry-failed" in arguments:
+        done = {h: line for h, line in done.items() if json.loads(line)["status"] != "failed"}
+    if "--list-missing" in arguments:
+        seen = set(done)
+        for line in lines:
+            hash_ = hash_of(line)
+            if hash_ not in seen:
+                print(f"{hash_}\t{line}")
+                seen.add(hash_)
+        return 0
+    output.mkdir(parents=True, exist_ok=True)
+    for line in lines:  # sequentially, what is missing
+        hash_ = hash_of(line)
+        if hash_ not in done:
+            done[hash_] = json.dumps(answer(line, output))
+            path = output / "journal" / "batch.jsonl"
+            path.parent.mkdir(exist_ok=True)
+            with path.open("a", encoding="utf-8") as file:
+                file.write(done[hash_] + "\n")
+    results = [json.dumps(json.loads(done[hash_of(line)]), sort_keys=True) for line in lines]
+    (output / "results.jsonl").write_text("".join(f"{r}\n" for r in results), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

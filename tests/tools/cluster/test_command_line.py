@@ -1,0 +1,54 @@
+"""What users type, and what they read when it cannot be used."""
+
+from pathlib import Path
+
+import pytest
+
+from batches import job, run, write_jobs
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--chunk", "nan"], "--chunk: nan is not 0.01 or more"),
+        (["--time-limit", "0"], "--time-limit: 0 is not 0.001 or more"),
+        (["--workers", "1.5"], "--workers: '1.5' is not a number"),
+        (["--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "--workers is for a cluster of"),
+        (["--tls-ca", "ca.pem"], "--tls-ca needs --scheduler tls://HOST:PORT"),
+        (["--scheduler", "tls://127.0.0.1:1"], "tls://127.0.0.1:1 needs --tls-ca FILE"),
+        (["--roadbed", "no-such-program"], "--roadbed: no-such-program: no such program"),
+        (["--schedule", "tcp://127.0.0.1:1"], "unrecognized arguments"),
+    ],
+)
+def test_wrong_usage_is_told_with_status_2(tmp_path: Path, arguments: list[str], said: str) -> None:
+    jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
+    ended = run(jobs, "-o", tmp_path / "out", *arguments)
+    assert ended.returncode == 2
+    assert said in ended.stderr.splitlines()[-1]
+    assert not (tmp_path / "out").exists()
+
+
+def test_unusable_jobs_are_told_with_status_1_and_leave_nothing(tmp_path: Path) -> None:
+    gone = run(tmp_path / "jobs.jsonl", "-o", tmp_path / "out")
+    assert (gone.returncode, gone.stderr) == (
+        1,
+        f"roadbed-cluster: {tmp_path}/jobs.jsonl: no such file\n",
+    )
+    jobs = write_jobs(tmp_path / "jobs.jsonl", ["no job"])
+    bad = run(jobs, "-o", tmp_path / "out")
+    assert (bad.returncode, bad.stderr) == (1, f"{jobs}:1: not a job\n")
+    assert not (tmp_path / "out").exists()
+
+
+def test_help_ends_with_an_example(tmp_path: Path) -> None:
+    for arguments in (["--help"], ["tables", "--help"]):
+        shown = run(*arguments)
+        assert shown.returncode == 0
+        assert "example:\n  roadbed-cluster " in shown.stdout
+
+
+def test_nothing_missing_starts_no_cluster(tmp_path: Path) -> None:
+    jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
+    assert run(jobs, "-o", tmp_path / "out", "--workers", 1).returncode == 0
+    again = run(jobs, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1")
+    assert (again.returncode, again.stderr) == (0, "")

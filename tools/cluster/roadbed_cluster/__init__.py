@@ -1,0 +1,1 @@
+"""Runs roadbed's batches on a Dask cluster, and their results as Parquet tables."""

@@ -1,0 +1,43 @@
+"""Where a cluster is, and the files that prove who one is there."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadbed_cluster.errors import UsageError
+
+
+@dataclass(frozen=True)
+class ClusterOptions:
+    """Where the cluster is, and who may talk to it."""
+
+    scheduler: str | None = None  #: address; None: a cluster of its own
+    workers: int | None = None  #: of a cluster of its own; None: one per core
+    tls_ca: Path | None = None
+    tls_cert: Path | None = None
+    tls_key: Path | None = None
+
+    @property
+    def is_encrypted(self) -> bool:
+        """Whether the scheduler's address asks for TLS."""
+        return self.scheduler is not None and self.scheduler.startswith("tls://")
+
+    def check(self) -> None:
+        """Check that the options fit each other.
+
+        Raises:
+            UsageError: if they do not, or a file of TLS is not there.
+        """
+        files = {
+            "--tls-ca": self.tls_ca,
+            "--tls-cert": self.tls_cert,
+            "--tls-key": self.tls_key,
+        }
+        if self.workers is not None and self.scheduler is not None:
+            raise UsageError("--workers is for a cluster of its own, not with --scheduler")
+        for name, file in files.items():
+            if self.is_encrypted and file is None:
+                raise UsageError(f"{self.scheduler} needs {name} FILE")
+            if not self.is_encrypted and file is not None:
+                raise UsageError(f"{name} needs --scheduler tls://HOST:PORT")
+            if file is not None and not file.is_file():
+                raise UsageError(f"{name}: {file}: no such file")

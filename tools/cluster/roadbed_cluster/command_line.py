@@ -1,0 +1,224 @@
+"""The command `roadbed-cluster`: its options, its messages, its exit status."""
+
+import argparse
+import math
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadbed_cluster.batch import Batch, BatchFailed
+from roadbed_cluster.cluster_options import ClusterOptions
+from roadbed_cluster.errors import RunStopped, UnusableResults, UsageError
+from roadbed_cluster.run import RunOptions, run
+
+_RUN_EXAMPLE = """\
+example:
+  roadbed-cluster audits.jsonl -o audits --workers 4 --time-limit 60
+  roadbed-cluster audits.jsonl -o audits --scheduler tls://10.0.0.1:8786 \\
+      --tls-ca ca.pem --tls-cert me.pem --tls-key me.key
+  roadbed-cluster tables audits
+"""
+_TABLES_EXAMPLE = """\
+example:
+  roadbed-cluster tables audits
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; return 0 done, 1 the answer is bad or the run stopped, 2 wrong usage."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        if given[:1] == ["tables"]:
+            return _tables(_tables_parser().parse_args(given[1:]))
+        return _run(_run_parser().parse_args(given))
+    except BatchFailed as failed:
+        return failed.status
+    except (RunStopped, UnusableResults) as stopped:
+        return _say(str(stopped), 1)
+    except UsageError as error:
+        return _say(str(error), 2)
+    except BrokenPipeError:
+        return 1
+    except KeyboardInterrupt:
+        return _say("interrupted; what is finished is kept, the same command goes on", 1)
+
+
+def _run(options: argparse.Namespace) -> int:
+    if not options.jobs.is_file():
+        raise RunStopped(f"{options.jobs}: no such file")
+    batch = Batch(
+        program=_program(options.roadbed),
+        jobs=options.jobs.resolve(),
+        output=options.output.resolve(),
+        retry_failed=options.retry_failed,
+    )
+    cluster = ClusterOptions(
+        scheduler=options.scheduler,
+        workers=options.workers,
+        tls_ca=options.tls_ca,
+        tls_cert=options.tls_cert,
+        tls_key=options.tls_key,
+    )
+    cluster.check()
+    return run(
+        batch,
+        cluster,
+        RunOptions(
+            time_limit_s=options.time_limit,
+            memory_limit_mb=options.memory_limit,
+            tries=options.tries,
+            chunk_s=options.chunk,
+            wait_for_workers_s=options.wait,
+            tables=not options.no_tables,
+            quiet=options.quiet,
+        ),
+    )
+
+
+def _tables(options: argparse.Namespace) -> int:
+    # Only here: Parquet and Dask take a second to import, and help needs neither.
+    from roadbed_cluster.tables import write_tables
+
+    for path in write_tables(options.folder):
+        print(path)
+    return 0
+
+
+def _program(given: str) -> tuple[str, ...]:
+    """Return the program's absolute path, as workers on other hosts must find it too."""
+    found = shutil.which(given)
+    if found is None:
+        raise UsageError(f"--roadbed: {given}: no such program; build roadbed and name it here")
+    return (str(Path(found).resolve()),)
+
+
+def _say(message: str, status: int) -> int:
+    print(f"roadbed-cluster: {' '.join(message.split())}", file=sys.stderr)
+    return status
+
+
+@dataclass(frozen=True)
+class _Number:
+    """A number option's type: finite, within bounds, whole if `whole`."""
+
+    least: float
+    whole: bool = False
+
+    def __call__(self, text: str) -> float | int:
+        try:
+            value = int(text) if self.whole else float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+        if not (math.isfinite(value) and value >= self.least):
+            raise argparse.ArgumentTypeError(f"{text} is not {self.least:g} or more")
+        return value
+
+
+def _run_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="roadbed-cluster",
+        description="Run a batch of roadbed jobs on a Dask cluster. Running it again does only "
+        "what is missing. `roadbed-cluster tables DIR` writes the Parquet tables of a folder.",
+        epilog=_RUN_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("jobs", metavar="JOBS.jsonl", type=Path, help="one job a line")
+    parser.add_argument(
+        "-o",
+        dest="output",
+        metavar="DIR",
+        type=Path,
+        required=True,
+        help="folder of the results, seen by every worker under this path",
+    )
+    _add_cluster_options(parser)
+    _add_job_options(parser)
+    parser.add_argument("--no-tables", action="store_true", help="write no Parquet tables")
+    parser.add_argument("--quiet", action="store_true", help="no progress and no notes")
+    return parser
+
+
+def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("cluster")
+    group.add_argument(
+        "--scheduler",
+        metavar="tcp://HOST:PORT",
+        help="Dask scheduler; default: a cluster of its own on 127.0.0.1",
+    )
+    group.add_argument(
+        "--workers",
+        metavar="N",
+        type=_Number(1, whole=True),
+        help="workers of a cluster of its own; default: one per core",
+    )
+    group.add_argument(
+        "--wait",
+        metavar="S",
+        type=_Number(0),
+        default=60.0,
+        help="stop when no worker is there for this long (default 60 s)",
+    )
+    group.add_argument(
+        "--tls-ca",
+        metavar="FILE",
+        type=Path,
+        help="certificate of who signed the cluster's certificates (.pem)",
+    )
+    group.add_argument(
+        "--tls-cert", metavar="FILE", type=Path, help="this client's certificate (.pem)"
+    )
+    group.add_argument("--tls-key", metavar="FILE", type=Path, help="this client's key (.pem)")
+
+
+def _add_job_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("jobs")
+    group.add_argument(
+        "--roadbed",
+        metavar="PROGRAM",
+        default=os.environ.get("ROADBED", "roadbed"),
+        help="the program, at this path on every worker too (default: $ROADBED, else roadbed)",
+    )
+    group.add_argument(
+        "--time-limit",
+        metavar="S",
+        type=_Number(0.001),
+        help="seconds a job may take; past it, it has failed",
+    )
+    group.add_argument(
+        "--memory-limit",
+        metavar="MB",
+        type=_Number(1),
+        help="memory a job may take; past it, it has failed",
+    )
+    group.add_argument(
+        "--tries",
+        metavar="N",
+        type=_Number(1, whole=True),
+        default=3,
+        help="tries of a job that crashes (default 3)",
+    )
+    group.add_argument("--retry-failed", action="store_true", help="do failed jobs again")
+    group.add_argument(
+        "--chunk",
+        metavar="S",
+        type=_Number(0.01),
+        default=1.5,
+        help="work that goes to a worker at once (default 1.5 s)",
+    )
+
+
+def _tables_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="roadbed-cluster tables",
+        description="Write a Parquet table per kind of job from DIR/results.jsonl to DIR/tables; "
+        "a GeoParquet table where the kind has geometry.",
+        epilog=_TABLES_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of a batch's results")
+    return parser

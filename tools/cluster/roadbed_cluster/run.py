@@ -1,0 +1,83 @@
+"""A whole run: what is missing, done on the cluster, merged into tables."""
+
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+
+from roadbed_cluster.batch import Batch
+from roadbed_cluster.chunks import Chunks
+from roadbed_cluster.cluster_options import ClusterOptions
+from roadbed_cluster.job import Job
+from roadbed_cluster.journal import Journal
+from roadbed_cluster.progress import Progress
+from roadbed_cluster.serve import ServeOptions
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """How far a job may go, and what is said and written."""
+
+    time_limit_s: float | None = None
+    memory_limit_mb: float | None = None
+    tries: int = 3
+    chunk_s: float = 1.5
+    wait_for_workers_s: float = 60.0
+    tables: bool = True
+    quiet: bool = False
+
+
+def run(batch: Batch, cluster: ClusterOptions, options: RunOptions) -> int:
+    """Do what is missing, merge, write the tables; return the exit status of the merge.
+
+    Raises:
+        RunStopped: if it cannot go on; what is finished is kept.
+        UsageError: if an option cannot be used.
+        BatchFailed: if `roadbed batch` cannot use the jobs.
+    """
+    missing = batch.missing()
+    first = next(missing, None)
+    if first is not None:
+        _run_missing(chain([first], missing), batch, cluster, options)
+    status = batch.merge()
+    if options.tables:
+        from roadbed_cluster.tables import write_tables
+
+        write_tables(batch.output)
+    return status
+
+
+def _run_missing(
+    missing: Iterator[Job], batch: Batch, cluster: ClusterOptions, options: RunOptions
+) -> None:
+    # Only now: Dask takes a second to import, and where nothing is missing none is needed.
+    from roadbed_cluster.connection import connect
+    from roadbed_cluster.dispatch import Dispatcher
+
+    serve = ServeOptions(
+        command=batch.serve_command(),
+        folder=str(Path.cwd()),
+        time_limit_s=options.time_limit_s,
+        memory_limit_mb=options.memory_limit_mb,
+        tries=options.tries,
+    )
+    begin = time.monotonic()
+    progress = Progress(options.quiet)
+    with Journal(batch.output) as journal, connect(cluster) as client:
+        chunks = Chunks(missing, options.chunk_s)
+        dispatcher = Dispatcher(
+            client, chunks, journal, serve, progress, options.wait_for_workers_s
+        )
+        try:
+            dispatcher.run()
+        finally:
+            progress.clear()
+    if not options.quiet:
+        _say(dispatcher.by_status, time.monotonic() - begin)
+
+
+def _say(by_status: dict[str, int], seconds: float) -> None:
+    parts = ", ".join(f"{count} {status}" for status, count in sorted(by_status.items()))
+    print(f"{sum(by_status.values())} jobs in {seconds:.1f} s: {parts}", file=sys.stderr)
