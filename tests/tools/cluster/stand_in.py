@@ -8,6 +8,7 @@ answer, no, sleep, hang, crash, exit, eat, kill-worker, chatter, or write (a fil
 import hashlib
 import json
 import os
+import resource
 import signal
 import sys
 import time
@@ -27,7 +28,8 @@ def answer(line: str, output: Path) -> dict[str, object]:
     job = json.loads(line)
     options = job["options"]
     do, hash_ = options["do"], hash_of(line)
-    status, exit_, reason, result, files = "done", 0, "", {"least_clearance_m": 0.5}, []
+    status, exit_, reason, cause = "done", 0, "", None
+    result, files = {"least_clearance_m": 0.5}, []
     time.sleep(options.get("seconds", 0.0))
     if do == "no":
         status, exit_, reason = "no", 1, "conflict"
@@ -38,10 +40,12 @@ def answer(line: str, output: Path) -> dict[str, object]:
     elif do == "exit":
         os._exit(3)
     elif do == "eat":
-        held = []
-        while True:
-            held.append(b"\1" * 10_000_000)
-            time.sleep(0.005)
+        try:
+            held = b""
+            while True:
+                held += b"\1" * 10_000_000
+        except MemoryError:
+            status, exit_, reason, cause = "failed", 1, "out of memory", "memory"
     elif do == "kill-worker":
         os.kill(os.getppid(), signal.SIGKILL)
         signal.pause()
@@ -49,7 +53,7 @@ def answer(line: str, output: Path) -> dict[str, object]:
         sys.stderr.write("words\n" * 100_000)
     missing = [path for path in job.get("inputs", []) if not Path(path).is_file()]
     if missing:
-        status, exit_, reason = "failed", 1, f"{missing[0]}: no such file"
+        status, exit_, reason, cause = "failed", 1, f"{missing[0]}: no such file", "input"
     elif do == "write":
         name = f"files/{hash_[:2]}/{hash_}.bin"
         try:
@@ -59,14 +63,14 @@ def answer(line: str, output: Path) -> dict[str, object]:
             files = [name]
         except OSError as error:
             path.unlink(missing_ok=True)
-            status, exit_, reason = "failed", 1, f"{name}: {error.strerror}"
+            status, exit_, reason, cause = "failed", 1, f"{name}: {error.strerror}", "disk"
     return {
         "hash": hash_,
         "job": job["job"],
         "status": status,
         "exit": exit_,
         "reason": reason,
-        "cause": None if status != "failed" else "disk" if do == "write" else "input",
+        "cause": cause,
         "inputs": job.get("inputs", []),
         "options": options,
         "outputs": [],
@@ -82,21 +86,46 @@ def serve(output: Path) -> None:
 
 
 def journal(output: Path) -> dict[str, str]:
-    """Return the finished results by hash; a hash that is there twice is a fault of the test."""
+    """Return the results by hash; an answer that is there twice is a fault of the test."""
     results: dict[str, str] = {}
+    answered = set()
     for path in sorted((output / "journal").glob("*.jsonl")):
         for line in path.read_bytes().split(b"\n")[:-1]:
-            text = line.decode()
-            hash_ = json.loads(text)["hash"]
-            assert hash_ not in results, f"{hash_} is in the journal twice"
-            results[hash_] = text
+            result = json.loads(line)
+            assert result["hash"] not in answered, f"{result['hash']} is in the journal twice"
+            if result["status"] != "failed":
+                answered.add(result["hash"])
+            results[result["hash"]] = line.decode()
     return results
 
 
+def stands(line: str) -> bool:
+    """Return whether the same job would come to this result again."""
+    return json.loads(line)["cause"] in (None, "input")
+
+
+def run_missing(lines: list[str], done: dict[str, str], output: Path) -> None:
+    """Run one job after another."""
+    for line in lines:
+        hash_ = hash_of(line)
+        if hash_ not in done:
+            done[hash_] = json.dumps(answer(line, output))
+            path = output / "journal" / "batch.jsonl"
+            path.parent.mkdir(exist_ok=True)
+            with path.open("a", encoding="utf-8") as file:
+                file.write(done[hash_] + "\n")
+
+
 def main() -> int:
-    """Run `batch JOBS -o DIR`, with --list-missing, or `batch --serve -o DIR`."""
+    """Run `batch JOBS -o DIR`, with --list-missing or --merge, or `batch --serve -o DIR`."""
+    if sys.argv[1] == "--version":
+        print("stand-in 1")
+        return 0
     arguments = [argument for argument in sys.argv[2:] if argument != "--quiet"]
     output = Path(arguments[arguments.index("-o") + 1])
+    if "--job-memory" in arguments:
+        megabytes = int(arguments[arguments.index("--job-memory") + 1].removesuffix("MB"))
+        resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1_000_000, megabytes * 1_000_000))
     if arguments[0] == "--serve":
         serve(output)
         return 0
@@ -106,10 +135,8 @@ def main() -> int:
             print(f"{arguments[0]}:{number}: not a job", file=sys.stderr)
             return 1
     done = journal(output)
-    if "--retry-failed" in arguments:
-        done = {h: line for h, line in done.items() if json.loads(line)["status"] != "failed"}
     if "--list-missing" in arguments:
-        seen = set(done)
+        seen = {hash_ for hash_, line in done.items() if stands(line)}
         for line in lines:
             hash_ = hash_of(line)
             if hash_ not in seen:
@@ -117,15 +144,12 @@ def main() -> int:
                 seen.add(hash_)
         return 0
     output.mkdir(parents=True, exist_ok=True)
-    for line in lines:  # sequentially, what is missing
-        hash_ = hash_of(line)
-        if hash_ not in done:
-            done[hash_] = json.dumps(answer(line, output))
-            path = output / "journal" / "batch.jsonl"
-            path.parent.mkdir(exist_ok=True)
-            with path.open("a", encoding="utf-8") as file:
-                file.write(done[hash_] + "\n")
-    results = [json.dumps(json.loads(done[hash_of(line)]), sort_keys=True) for line in lines]
+    if "--merge" not in arguments:
+        run_missing(lines, done, output)
+    results = [
+        json.dumps({"line": number, **json.loads(done[hash_of(line)])})
+        for number, line in enumerate(lines, 1)
+    ]
     (output / "results.jsonl").write_text("".join(f"{r}\n" for r in results), encoding="utf-8")
     return 0
 

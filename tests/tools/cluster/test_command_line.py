@@ -12,6 +12,7 @@ from batches import job, run, write_jobs
     [
         (["--chunk", "nan"], "--chunk: nan is not 0.01 or more"),
         (["--time-limit", "0"], "--time-limit: 0 is not 0.001 or more"),
+        (["--job-memory", "much"], "--job-memory: 'much' is no size such as 4GB or 512MB"),
         (["--workers", "1.5"], "--workers: '1.5' is not a number"),
         (["--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "--workers is for a cluster of"),
         (["--tls-ca", "ca.pem"], "--tls-ca needs --scheduler tls://HOST:PORT"),

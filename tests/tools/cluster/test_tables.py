@@ -21,7 +21,8 @@ CRS = "+proj=tmerc +lat_0=48.5 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m
 def result(kind: str | None, number: int, document: object, **changes: object) -> dict[str, Any]:
     """Return a result as `roadbed batch` writes it."""
     return {
-        "hash": f"{number:032x}", "job": kind, "status": "done", "exit": 0, "reason": "",
+        "line": number, "hash": f"{number:032x}", "job": kind,
+        "status": "done", "exit": 0, "reason": "",
         "cause": None, "inputs": ["a.xodr"], "options": {"inflate": 0.2}, "outputs": [],
         "result": document, "files": [], **changes,
     }  # fmt: skip
@@ -71,7 +72,7 @@ def test_every_result_is_a_row_of_its_kinds_table_in_order(tmp_path: Path) -> No
     written = tables.write_tables(mixed(tmp_path))
     assert [path.stem for path in written] == sorted(KINDS)
     rows = pq.read_table(tmp_path / "tables/audit.parquet").to_pylist()
-    assert [row["row"] for row in rows] == [0, 2, 7]
+    assert [row["line"] for row in rows] == [0, 2, 7]
     assert [row["status"] for row in rows] == ["no", "failed", "done"]
     assert rows[0]["least_clearance_m"] == 0.0
     assert rows[0]["conflicts"][0]["at_heading_rad"] == 0.25
@@ -139,7 +140,7 @@ def test_row_groups_end_by_size_and_keep_every_row(
     folder = write_results(tmp_path, [result("audit", i, audit(i, i)) for i in range(50)])
     (path,) = tables.write_tables(folder)
     assert pq.read_metadata(path).num_row_groups == 8
-    assert [row["row"] for row in pq.read_table(path).to_pylist()] == list(range(50))
+    assert [row["line"] for row in pq.read_table(path).to_pylist()] == list(range(50))
 
 
 @pytest.mark.parametrize("bad", ["not json", '{"job":"audit"}', "[]", '{"job":"audit","options":1'])

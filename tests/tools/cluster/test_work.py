@@ -1,19 +1,23 @@
 """A chunk's process: kept for the next job, replaced when it dies."""
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from batches import STAND_IN, job
+from roadbed_cluster import serve
 from roadbed_cluster.job import Job
-from roadbed_cluster.serve import ServeOptions
-from roadbed_cluster.work import WrongHash, end_idle_processes, run_chunk
+from roadbed_cluster.serve import ServeOptions, WrongWorker
+from roadbed_cluster.work import end_idle_processes, run_chunk
 from stand_in import hash_of
 
 
-def options(folder: Path, **limits: float) -> ServeOptions:
+def options(folder: Path, program: Path = STAND_IN, **limits: str) -> ServeOptions:
     """Return options that start the stand-in."""
-    return ServeOptions((str(STAND_IN), "batch", "--serve", "-o", str(folder)), **limits)
+    (folder / "unfinished").write_text("mark")
+    return ServeOptions((str(program),), "stand-in 1", str(folder), "mark", str(folder), **limits)
 
 
 def asked(*lines: str) -> list[Job]:
@@ -32,29 +36,53 @@ def test_a_chunk_answers_in_order_around_crashes(tmp_path: Path) -> None:
 
 
 def test_memory_held_from_jobs_before_is_not_blamed_on_the_next(tmp_path: Path) -> None:
-    # The second job fits a process of its own, not one that still holds the first's memory.
-    keeper = tmp_path / "keeper.py"
+    keeper = tmp_path / "keeper"  # has room for one job, and lets go of nothing
     keeper.write_text(
-        "import json, sys, time\n"
-        "held = []\n"
-        "for line in sys.stdin:\n"
-        "    held.append(b'\\1' * 60_000_000)\n"
-        "    time.sleep(0.3)\n"
-        "    h = json.loads(line)['hash']\n"
-        "    print(json.dumps({'hash': h, 'status': 'done'}), flush=True)\n"
+        "#!/usr/bin/env python3\n"
+        "import json, sys\n"
+        "if sys.argv[1] == '--version': print('stand-in 1'), sys.exit()\n"
+        "for count, line in enumerate(sys.stdin):\n"
+        "    answer = {'hash': json.loads(line)['hash'], 'status': 'done'}\n"
+        "    if count: answer |= {'status': 'failed', 'cause': 'memory'}\n"
+        "    print(json.dumps(answer), flush=True)\n"
     )
+    keeper.chmod(0o755)
     jobs = [Job(h, f'{{"job":"audit","hash":"{h}"}}') for h in "abc"]
-    found = run_chunk(jobs, ServeOptions(("python3", str(keeper)), memory_limit_mb=100.0))
+    found = run_chunk(jobs, options(tmp_path, keeper))
     end_idle_processes()
     assert [result.status for result in found] == ["done"] * 3
 
 
-def test_an_answer_to_another_job_stops_the_run(tmp_path: Path) -> None:
-    with pytest.raises(WrongHash, match="another roadbed there"):
-        run_chunk([Job("0" * 32, job(1))], options(tmp_path))
+def test_a_job_that_changed_meanwhile_has_failed(tmp_path: Path) -> None:
+    (found,) = run_chunk([Job("0" * 32, job(1))], options(tmp_path))
     end_idle_processes()
+    assert (found.status, json.loads(found.line)["cause"]) == ("failed", "changed")
 
 
-def test_a_program_that_is_not_there_stops_the_run(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="no-such-program: no such program"):
-        run_chunk(asked(job(1)), ServeOptions(("no-such-program",)))
+def test_files_of_a_job_that_died_are_removed(tmp_path: Path) -> None:
+    (asked_job,) = asked(job(1, "crash"))
+    folder = tmp_path / "files" / asked_job.hash[:2]
+    (folder / asked_job.hash).mkdir(parents=True)
+    for name in (f"{asked_job.hash}.json", f".{asked_job.hash}.part", "another.json"):
+        (folder / name).touch()
+    run_chunk([asked_job], options(tmp_path))
+    end_idle_processes()
+    assert [path.name for path in folder.iterdir()] == ["another.json"]
+
+
+def test_another_folder_under_the_same_path_stops_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(serve, "_SEEN_S", 0.0)
+    mine = options(tmp_path)
+    (tmp_path / "unfinished").write_text("of another run")
+    with pytest.raises(WrongWorker, match="is not the same folder on a worker as here"):
+        run_chunk(asked(job(1)), mine)
+
+
+def test_another_program_on_a_worker_stops_the_run(tmp_path: Path) -> None:
+    with pytest.raises(WrongWorker, match="no-such-program cannot be run"):
+        run_chunk(asked(job(1)), options(tmp_path, Path("no-such-program")))
+    other = replace(options(tmp_path), version="stand-in 2")
+    with pytest.raises(WrongWorker, match="is 'stand-in 1' on a worker, 'stand-in 2' here"):
+        run_chunk(asked(job(1)), other)

@@ -25,18 +25,14 @@ class Batch:
     program: tuple[str, ...]  #: `roadbed`, or an interpreter and a script
     jobs: Path
     output: Path
-    retry_failed: bool = False  #: failed results count as missing
 
     def missing(self) -> Iterator[Job]:
-        """Yield the jobs without a result, each hash once, in the order of the file, streamed.
+        """Yield the jobs without a result that stands, in order, each hash once, streamed.
 
         Raises:
             BatchFailed: at the end, if the file cannot be used.
         """
-        command = [*self.program, "batch", str(self.jobs), "-o", str(self.output), "--list-missing"]
-        if self.retry_failed:
-            command.append("--retry-failed")
-        with _start(command) as process:
+        with _start(self._command("--list-missing")) as process:
             assert process.stdout is not None
             try:
                 for row in process.stdout:
@@ -48,19 +44,23 @@ class Batch:
         if process.returncode != 0:
             raise BatchFailed(process.returncode)
 
-    def serve_command(self) -> tuple[str, ...]:
-        """Return the command of a process that answers jobs, to be run on any host."""
-        return (*self.program, "batch", "--serve", "-o", str(self.output))
-
     def merge(self) -> int:
-        """Write the tables of all results in the order of the jobs; return the exit status."""
-        command = [*self.program, "batch", str(self.jobs), "-o", str(self.output), "--quiet"]
-        with _start(command, stdout=None) as process:
+        """Write what all results come to, in the order of the jobs; return the exit status."""
+        with _start(self._command("--merge", "--quiet"), stdout=None) as process:
             return process.wait()
+
+    def _command(self, *options: str) -> list[str]:
+        return [*self.program, "batch", str(self.jobs), "-o", str(self.output), *options]
 
 
 def _start(command: list[str], stdout: int | None = subprocess.PIPE) -> subprocess.Popen[str]:
     try:
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, encoding="utf-8")
+        return subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            encoding="utf-8",
+            errors="surrogateescape",
+        )
     except OSError as error:
         raise UsageError(f"--roadbed: {command[0]}: {error.strerror}") from error

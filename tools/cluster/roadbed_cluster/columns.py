@@ -83,9 +83,9 @@ def cast(value: Value, type_: pa.DataType) -> Value:
 
 _TEXT, _WHOLE, _NUMBER, _FLAG = pa.string(), pa.int64(), pa.float64(), pa.bool_()
 
-#: What every table begins with; `row` is the job's place in the batch, from 0.
+#: What every table begins with; `line` is the job's in the file of jobs, from 1.
 COMMON = [
-    ("row", _WHOLE),
+    ("line", _WHOLE),
     ("hash", _TEXT),
     ("status", _TEXT),
     ("exit", _WHOLE),

@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import re
 import shutil
 import sys
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ from roadbed_cluster.run import RunOptions, run
 
 _RUN_EXAMPLE = """\
 example:
-  roadbed-cluster audits.jsonl -o audits --workers 4 --time-limit 60
+  roadbed-cluster audits.jsonl -o audits --workers 4 --time-limit 60 --job-memory 2GB
   roadbed-cluster audits.jsonl -o audits --scheduler tls://10.0.0.1:8786 \\
       --tls-ca ca.pem --tls-cert me.pem --tls-key me.key
   roadbed-cluster tables audits
@@ -53,7 +54,6 @@ def _run(options: argparse.Namespace) -> int:
         program=_program(options.roadbed),
         jobs=options.jobs.resolve(),
         output=options.output.resolve(),
-        retry_failed=options.retry_failed,
     )
     cluster = ClusterOptions(
         scheduler=options.scheduler,
@@ -68,7 +68,7 @@ def _run(options: argparse.Namespace) -> int:
         cluster,
         RunOptions(
             time_limit_s=options.time_limit,
-            memory_limit_mb=options.memory_limit,
+            job_memory=options.job_memory,
             tries=options.tries,
             chunk_s=options.chunk,
             wait_for_workers_s=options.wait,
@@ -115,6 +115,13 @@ class _Number:
         if not (math.isfinite(value) and value >= self.least):
             raise argparse.ArgumentTypeError(f"{text} is not {self.least:g} or more")
         return value
+
+
+def _size(text: str) -> str:
+    """Check an amount of memory as `roadbed batch --job-memory` takes it."""
+    if not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?(TB|GB|MB|kB|B)?", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is no size such as 4GB or 512MB")
+    return text
 
 
 def _run_parser() -> argparse.ArgumentParser:
@@ -189,10 +196,10 @@ def _add_job_options(parser: argparse.ArgumentParser) -> None:
         help="seconds a job may take; past it, it has failed",
     )
     group.add_argument(
-        "--memory-limit",
-        metavar="MB",
-        type=_Number(1),
-        help="memory a job may take; past it, it has failed",
+        "--job-memory",
+        metavar="SIZE",
+        type=_size,
+        help="memory a job may take, such as 2GB; past it, it has failed",
     )
     group.add_argument(
         "--tries",
@@ -201,7 +208,6 @@ def _add_job_options(parser: argparse.ArgumentParser) -> None:
         default=3,
         help="tries of a job that crashes (default 3)",
     )
-    group.add_argument("--retry-failed", action="store_true", help="do failed jobs again")
     group.add_argument(
         "--chunk",
         metavar="S",

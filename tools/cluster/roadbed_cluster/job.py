@@ -1,7 +1,7 @@
 """A job as `roadbed batch` names it, and the line that says it failed."""
 
 import json
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Job(NamedTuple):
@@ -21,18 +21,24 @@ class Result(NamedTuple):
 
 def kind_of(job: Job) -> str:
     """Return the job's kind (`import`, `validate`, ...), the empty string where it has none."""
+    return str(_members(job).get("job", ""))
+
+
+def _members(job: Job) -> dict[str, Any]:
+    """Return what the line holds; nothing where it is no job, which `--serve` then says."""
     try:
-        return str(json.loads(job.line).get("job", ""))
-    except (ValueError, AttributeError):
-        return ""
+        members = json.loads(job.line)
+    except ValueError:
+        return {}
+    return members if isinstance(members, dict) else {}
 
 
 def failed_line(job: Job, reason: str, cause: str) -> str:
     """Return the result line of a job whose process could not answer; keys as in `--serve`.
 
-    `cause` is `crash`, `time` or `memory`.
+    `cause` is `crash`, `time` or `changed`.
     """
-    asked = json.loads(job.line)
+    asked = _members(job)
     options = {
         name: value for name, value in asked.get("options", {}).items() if value is not False
     }

@@ -2,44 +2,54 @@
 
 import fcntl
 import os
+import secrets
 from collections.abc import Iterable
 from pathlib import Path
 from types import TracebackType
 
 from roadbed_cluster.errors import RunStopped
 
+#: A file in the folder of results while a run is at work, or was when it died.
+MARK = "unfinished"
 _BLOCK = 1 << 16
 
 
 class Journal:
-    """Appends whole lines to `DIR/journal/cluster.jsonl`, the only writer of that file.
+    """Appends whole lines to `DIR/journal/cluster.jsonl`, as the only run at work in `DIR`.
 
     A run that died in the middle of a write leaves a torn last line; opening cuts it off. A write
     that fails (full disk) leaves the file as it was before.
     """
 
     def __init__(self, output: Path) -> None:
-        """Open the journal below `output`.
+        """Lock `output` as `roadbed batch` does, and open the journal in it.
 
         Raises:
-            RunStopped: if another run holds it, or it cannot be written.
+            RunStopped: if another run has it, or it cannot be written.
         """
         self._path = output / "journal" / "cluster.jsonl"
+        self._files: list[int] = []
+        #: What stands in the folder's `MARK` during this run, so that workers know the folder.
+        self.mark = secrets.token_hex(16)
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
-        except OSError as error:
-            raise RunStopped(f"{self._path}: {error.strerror}") from error
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock = self._open(output / "lock")
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # The file also tells `roadbed batch` to sweep away half-written files of killed runs.
+            (output / MARK).write_text(self.mark, encoding="ascii")
+            self._file = self._open(self._path)
             self._end = _end_of_lines(self._file)
             os.ftruncate(self._file, self._end)
         except BlockingIOError:
             self.close()
-            raise RunStopped(f"{self._path}: another run is writing to {output}") from None
+            raise RunStopped(f"{output}: another run is at work in it") from None
         except OSError as error:
             self.close()
-            raise RunStopped(f"{self._path}: {error.strerror}") from error
+            raise RunStopped(f"{error.filename or self._path}: {error.strerror}") from error
+
+    def _open(self, path: Path) -> int:
+        self._files.append(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666))
+        return self._files[-1]
 
     def append(self, lines: Iterable[str]) -> None:
         """Append `lines` in one write.
@@ -47,7 +57,7 @@ class Journal:
         Raises:
             RunStopped: if they cannot be written, as on a full disk; none of them is kept then.
         """
-        data = "".join(f"{line}\n" for line in lines).encode()
+        data = "".join(f"{line}\n" for line in lines).encode(errors="surrogateescape")
         try:
             written = 0
             while written < len(data):
@@ -60,8 +70,9 @@ class Journal:
         self._end += len(data)
 
     def close(self) -> None:
-        """Let go of the file."""
-        os.close(self._file)
+        """Let go of the folder."""
+        for file in self._files:
+            os.close(file)
 
     def __enter__(self) -> "Journal":
         """Return the journal itself."""

@@ -10,10 +10,11 @@ from pathlib import Path
 from roadbed_cluster.batch import Batch
 from roadbed_cluster.chunks import Chunks
 from roadbed_cluster.cluster_options import ClusterOptions
+from roadbed_cluster.errors import UsageError
 from roadbed_cluster.job import Job
 from roadbed_cluster.journal import Journal
 from roadbed_cluster.progress import Progress
-from roadbed_cluster.serve import ServeOptions
+from roadbed_cluster.serve import ServeOptions, WrongWorker, version_of
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,7 @@ class RunOptions:
     """How far a job may go, and what is said and written."""
 
     time_limit_s: float | None = None
-    memory_limit_mb: float | None = None
+    job_memory: str | None = None
     tries: int = 3
     chunk_s: float = 1.5
     wait_for_workers_s: float = 60.0
@@ -37,10 +38,14 @@ def run(batch: Batch, cluster: ClusterOptions, options: RunOptions) -> int:
         UsageError: if an option cannot be used.
         BatchFailed: if `roadbed batch` cannot use the jobs.
     """
+    try:
+        version = version_of(batch.program)
+    except WrongWorker as error:
+        raise UsageError(f"--roadbed: {error}") from error
     missing = batch.missing()
     first = next(missing, None)
     if first is not None:
-        _run_missing(chain([first], missing), batch, cluster, options)
+        _run_missing(chain([first], missing), batch, version, cluster, options)
     status = batch.merge()
     if options.tables:
         from roadbed_cluster.tables import write_tables
@@ -50,22 +55,29 @@ def run(batch: Batch, cluster: ClusterOptions, options: RunOptions) -> int:
 
 
 def _run_missing(
-    missing: Iterator[Job], batch: Batch, cluster: ClusterOptions, options: RunOptions
+    missing: Iterator[Job],
+    batch: Batch,
+    version: str,
+    cluster: ClusterOptions,
+    options: RunOptions,
 ) -> None:
     # Only now: Dask takes a second to import, and where nothing is missing none is needed.
     from roadbed_cluster.connection import connect
     from roadbed_cluster.dispatch import Dispatcher
 
-    serve = ServeOptions(
-        command=batch.serve_command(),
-        folder=str(Path.cwd()),
-        time_limit_s=options.time_limit_s,
-        memory_limit_mb=options.memory_limit_mb,
-        tries=options.tries,
-    )
     begin = time.monotonic()
     progress = Progress(options.quiet)
     with Journal(batch.output) as journal, connect(cluster) as client:
+        serve = ServeOptions(
+            program=batch.program,
+            version=version,
+            output=str(batch.output),
+            mark=journal.mark,
+            folder=str(Path.cwd()),
+            time_limit_s=options.time_limit_s,
+            job_memory=options.job_memory,
+            tries=options.tries,
+        )
         chunks = Chunks(missing, options.chunk_s)
         dispatcher = Dispatcher(
             client, chunks, journal, serve, progress, options.wait_for_workers_s

@@ -1,5 +1,6 @@
 """One `roadbed batch --serve` process, asked one job at a time, within limits."""
 
+import math
 import os
 import select
 import shutil
@@ -7,35 +8,76 @@ import signal
 import subprocess
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
-_PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
-#: How often the memory of a process at work is looked at.
-_LOOK_S = 0.05
+from roadbed_cluster.journal import MARK
+
 _READ_BYTES = 1 << 20
+#: A network file system may take so long to show a file to other hosts.
+_SEEN_S = 10.0
 
 
 @dataclass(frozen=True)
 class ServeOptions:
     """What a worker starts, and how far it may go."""
 
-    command: tuple[str, ...]  #: the program and its arguments
-    folder: str | None = None  #: where it runs, so that inputs mean the same on every worker
+    program: tuple[str, ...]  #: `roadbed`, or an interpreter and a script
+    version: str  #: what `roadbed --version` begins with where the run was started
+    output: str  #: folder of the results
+    mark: str  #: what its file `unfinished` holds during the run
+    folder: str  #: where the program runs, so that inputs mean the same on every worker
     time_limit_s: float | None = None  #: per job; None: no limit
-    memory_limit_mb: float | None = (
-        None  #: of the process, without the files it maps; None: no limit
-    )
+    job_memory: str | None = None  #: per job, such as `2GB`; None: no limit
     tries: int = 3  #: how often a job is tried whose process dies
+
+    def command(self) -> list[str]:
+        """Return the command of the process that serves."""
+        words = [*self.program, "batch", "--serve", "-o", self.output]
+        return words if self.job_memory is None else [*words, "--job-memory", self.job_memory]
+
+
+class WrongWorker(Exception):
+    """A worker that has not what the client has: the program, its version, the folder."""
+
+
+def version_of(program: tuple[str, ...]) -> str:
+    """Return the first line of `roadbed --version`.
+
+    Raises:
+        WrongWorker: if it cannot be run.
+    """
+    try:
+        shown = subprocess.run(
+            [*program, "--version"], capture_output=True, text=True, check=True, timeout=60
+        )
+    except (OSError, subprocess.SubprocessError) as error:
+        raise WrongWorker(f"{program[0]} cannot be run: {error}") from error
+    return shown.stdout.partition("\n")[0]
+
+
+def _check(options: ServeOptions) -> None:
+    """Refuse a worker whose program or folder is not that of the run."""
+    found = version_of(options.program)
+    if found != options.version:
+        raise WrongWorker(
+            f"{options.program[0]} is {found!r} on a worker, {options.version!r} here"
+        )
+    mark = Path(options.output) / MARK
+    end = time.monotonic() + _SEEN_S
+    while not mark.is_file() or mark.read_text(encoding="ascii") != options.mark:
+        if time.monotonic() > end:
+            raise WrongWorker(f"{options.output} is not the same folder on a worker as here")
+        time.sleep(0.1)
 
 
 class NoAnswer(Exception):
     """The process ended, or was ended, before it answered."""
 
-    def __init__(self, reason: str, cause: str, may_differ: bool) -> None:
-        """Say why in `reason` and `cause`; `may_differ`: trying again may end otherwise."""
+    def __init__(self, reason: str, cause: str) -> None:
+        """Say why in `reason`, a sentence, and `cause`, `crash` or `time`."""
         super().__init__(reason)
         self.reason = reason
         self.cause = cause
-        self.may_differ = may_differ
 
 
 class ServeProcess:
@@ -45,18 +87,17 @@ class ServeProcess:
         """Start the process.
 
         Raises:
-            OSError: if the program cannot be started.
+            WrongWorker: if there is no program of the right version, or another folder of results.
         """
+        _check(options)
         self._options = options
         self._answers = 0
         self._unread = b""
         # A killed owner's pipe ends a waiting process; this also ends one that is at work.
         setpriv = shutil.which("setpriv")
         die_with_owner = [setpriv, "--pdeathsig", "KILL", "--"] if setpriv else []
-        if shutil.which(options.command[0]) is None:
-            raise FileNotFoundError(f"{options.command[0]}: no such program")
         self._process = subprocess.Popen(
-            [*die_with_owner, *options.command],
+            [*die_with_owner, *options.command()],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,
@@ -76,7 +117,7 @@ class ServeProcess:
         """
         assert self._process.stdin is not None
         try:
-            self._process.stdin.write(line.encode() + b"\n")
+            self._process.stdin.write(line.encode(errors="surrogateescape") + b"\n")
         except BrokenPipeError:
             raise self._end() from None
         answer = self._read_line()
@@ -101,49 +142,29 @@ class ServeProcess:
         deadline = None if limit_s is None else time.monotonic() + limit_s
         poll = select.poll()
         poll.register(output, select.POLLIN)
-        while True:
-            end = self._unread.find(b"\n")
-            if end >= 0:
-                answer, self._unread = self._unread[:end], self._unread[end + 1 :]
-                return answer.decode()
-            if poll.poll(1000 * _LOOK_S):
-                data = os.read(output, _READ_BYTES)
-                if not data:
-                    raise self._end()
-                self._unread += data
-            else:
-                self._check_memory()
-            if deadline is not None and time.monotonic() > deadline:
-                reason = f"took longer than the time limit of {limit_s:g} s"
-                raise self._kill(reason, "time", False)
+        while (end := self._unread.find(b"\n")) < 0:
+            left_s = None if deadline is None else max(0.0, deadline - time.monotonic())
+            if not poll.poll(None if left_s is None else math.ceil(1000 * left_s)):
+                limit = repr(float(limit_s or 0.0)).removesuffix(".0")
+                raise self._kill(f"took longer than {limit} s", "time")
+            data = os.read(output, _READ_BYTES)
+            if not data:
+                raise self._end()
+            self._unread += data
+        answer, self._unread = self._unread[:end], self._unread[end + 1 :]
+        return answer.decode(errors="surrogateescape")
 
-    def _check_memory(self) -> None:
-        limit_mb = self._options.memory_limit_mb
-        if limit_mb is not None and _private_mb(self._process.pid) > limit_mb:
-            reason = f"took more memory than the limit of {limit_mb:g} MB"
-            raise self._kill(reason, "memory", not self.is_fresh)
-
-    def _kill(self, reason: str, cause: str, may_differ: bool) -> NoAnswer:
+    def _kill(self, reason: str, cause: str) -> NoAnswer:
         self._process.kill()
         self._process.wait()
-        return NoAnswer(reason, cause, may_differ)
+        return NoAnswer(reason, cause)
 
     def _end(self) -> NoAnswer:
         """Collect a process that closed its output."""
         try:
             status = self._process.wait(timeout=1.0)
         except subprocess.TimeoutExpired:
-            return self._kill("crashed: closed its output", "crash", True)
-        if status < 0:
-            return NoAnswer(f"crashed: {signal.Signals(-status).name}", "crash", True)
-        return NoAnswer(f"crashed: exit status {status}", "crash", True)
-
-
-def _private_mb(pid: int) -> float:
-    """Return the resident memory of a process that is not a file's, in MB; 0 once it is gone."""
-    try:
-        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:  # noqa: PTH123
-            _, resident, shared, *_ = statm.read().split()
-    except (OSError, ValueError):
-        return 0.0
-    return (int(resident) - int(shared)) * _PAGE_BYTES / 1e6
+            return self._kill("its process closed its output", "crash")
+        if status >= 0:
+            return NoAnswer(f"its process ended with exit status {status}", "crash")
+        return NoAnswer(f"killed by signal {-status} ({signal.Signals(-status).name})", "crash")

@@ -55,7 +55,7 @@ def _read_into(tables: "dict[str, _Table]", output: Path, folder: Path) -> None:
     path = output / "results.jsonl"
     with path.open(encoding="utf-8") as lines:
         folder.mkdir(exist_ok=True)
-        for number, line in enumerate(lines):
+        for number, line in enumerate(lines, 1):
             try:
                 result = json.loads(line)
                 kind = result["job"]
@@ -63,11 +63,9 @@ def _read_into(tables: "dict[str, _Table]", output: Path, folder: Path) -> None:
                     continue  # a line that was no job
                 if kind not in tables:
                     tables[kind] = _Table(kind, folder)
-                tables[kind].add(number, result, output, len(line))
+                tables[kind].add(result, output, len(line))
             except (ValueError, KeyError, TypeError, AttributeError) as error:
-                raise UnusableResults(
-                    f"{path}:{number + 1}: no result of a job: {error}"
-                ) from error
+                raise UnusableResults(f"{path}:{number}: no result of a job: {error}") from error
 
 
 @dataclass
@@ -122,10 +120,9 @@ class _Table:
         self._bytes = 0
         self._bounds = _Bounds()
 
-    def add(self, number: int, result: dict[str, Any], output: Path, size: int) -> None:
+    def add(self, result: dict[str, Any], output: Path, size: int) -> None:
         """Add the row of a result that took `size` bytes as JSON."""
         row = {name: cast(result.get(name), type_) for name, type_ in COMMON}
-        row["row"] = number
         row["options"] = _text(result["options"])
         document = result["result"] if isinstance(result["result"], dict) else {}
         for column in self._columns:

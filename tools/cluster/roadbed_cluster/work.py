@@ -1,8 +1,10 @@
 """What runs on a Dask worker: a chunk of jobs, one after another, in one process kept for them."""
 
 import json
+import shutil
 import threading
 import time
+from pathlib import Path
 
 from roadbed_cluster.job import Job, Result, failed_line
 from roadbed_cluster.serve import NoAnswer, ServeOptions, ServeProcess
@@ -15,43 +17,14 @@ _idle: list[tuple[ServeOptions, ServeProcess, float]] = []
 _sweeper: threading.Timer | None = None
 
 
-class WrongHash(Exception):
-    """A worker's program, or a job's input there, is not the one that the run began with."""
-
-
 def run_chunk(jobs: list[Job], options: ServeOptions) -> list[Result]:
     """Return the results of `jobs`, in order.
 
-    A job whose process dies is tried again in a new one, `options.tries` times in all, and is then
-    one failed result; a job past a limit is one at once. The jobs beside it do not notice.
-
     Raises:
-        OSError: if the program cannot be started.
-        WrongHash: if an answer is to another hash than was asked for.
+        WrongWorker: if the worker has not what the client has.
     """
-    process: ServeProcess | None = None
-    results = []
-    try:
-        for job in jobs:
-            begin = time.monotonic()
-            line = None
-            for attempt in range(1, options.tries + 1):
-                process = process or _take(options)
-                try:
-                    line = process.ask(job.line)
-                    break
-                except NoAnswer as none:
-                    process.close()
-                    process = None
-                    if attempt == options.tries or not none.may_differ:
-                        line = failed_line(job, none.reason, none.cause)
-                        break
-            assert line is not None
-            results.append(Result(line, _status(job, line), time.monotonic() - begin))
-    finally:
-        if process is not None:
-            _give_back(options, process)
-    return results
+    with _Slot(options) as slot:
+        return [slot.bring(job) for job in jobs]
 
 
 def end_idle_processes(idle_s: float = 0.0) -> None:
@@ -64,14 +37,66 @@ def end_idle_processes(idle_s: float = 0.0) -> None:
         process.close()
 
 
-def _status(job: Job, line: str) -> str:
-    answer = json.loads(line)
-    if answer["hash"] != job.hash:
-        raise WrongHash(
-            f"a worker answered with hash {answer['hash']} where {job.hash} was asked for: another "
-            f"roadbed there, or an input that changed since; the job: {job.line}"
-        )
-    return str(answer["status"])
+class _Slot:
+    """Brings jobs to their results in a process that is replaced when it dies."""
+
+    def __init__(self, options: ServeOptions) -> None:
+        self._options = options
+        self._process: ServeProcess | None = None
+
+    def __enter__(self) -> "_Slot":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._process is not None:
+            _give_back(self._options, self._process)
+
+    def bring(self, job: Job) -> Result:
+        """Return a job's result.
+
+        A job whose process dies is tried again in a new one, `tries` times in all, and has then
+        failed; one past its time has failed at once. The jobs beside it do not notice.
+        """
+        begin = time.monotonic()
+        for _ in range(self._options.tries):
+            try:
+                line = self._ask(job)
+                break
+            except NoAnswer as none:
+                self._end_process()
+                remove_files_of(job, self._options.output)
+                line = failed_line(job, none.reason, none.cause)
+                if none.cause == "time":
+                    break
+        return Result(line, str(json.loads(line)["status"]), time.monotonic() - begin)
+
+    def _ask(self, job: Job) -> str:
+        """Return the answer of a process; of a new one where it may depend on jobs before."""
+        process = self._process = self._process or _take(self._options)
+        was_fresh = process.is_fresh
+        line = process.ask(job.line)
+        answer = json.loads(line)
+        if answer["hash"] != job.hash:
+            return failed_line(job, "an input changed while the job ran", "changed")
+        if answer.get("cause") != "memory":
+            return line
+        self._end_process()  # its heap may be in pieces
+        return line if was_fresh else self._ask(job)
+
+    def _end_process(self) -> None:
+        if self._process is not None:
+            self._process.close()
+            self._process = None
+
+
+def remove_files_of(job: Job, output: str) -> None:
+    """Remove whatever a job left below the folder of results, half-written files too."""
+    folder = Path(output) / "files" / job.hash[:2]
+    for path in [*folder.glob(f"{job.hash}*"), *folder.glob(f".{job.hash}*")]:
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
 
 
 def _take(options: ServeOptions) -> ServeProcess:
