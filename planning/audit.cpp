@@ -21,8 +21,8 @@ namespace {
 using map::ObstacleKind;
 
 void check(const map::ClearanceField& field, const geometry::Trajectory& drive,
-           const geometry::VehicleShape& vehicle, const AuditOptions& options) {
-  vehicle.check();
+           const geometry::BodyPart& part, const AuditOptions& options) {
+  part.check();
   if (drive.empty()) throw std::invalid_argument("audit: the drive needs at least 1 point, got 0");
   const auto refuse = [](const char* option, double value) {
     throw std::invalid_argument(fmt::format("audit: {} is out of range, got {} m", option, value));
@@ -41,17 +41,17 @@ std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
 
 // Poses half a metre of motion apart, and at least one for each stand.
 double mean_unknown_share(const map::ClearanceField& field, const Probe& probe,
-                          const geometry::VehicleShape& body) {
+                          const geometry::BodyPart& body) {
   constexpr double least_apart_m = 0.5, most_poses = 20'000;
   double whole_m = 0.0;
   for (std::size_t i = 0; i < probe.segments(); ++i) whole_m += probe.motion_bound_m({i, 0.0, 1.0});
   const double apart_m = std::max(least_apart_m, 2.0 * whole_m / most_poses);
-  double sum = field.unknown_share(probe.state_at(0, 0.0).pose(), body), moved_m = 0.0;
+  double sum = field.unknown_share(body.box_at(probe.state_at(0, 0.0).pose())), moved_m = 0.0;
   std::size_t poses = 1;
   for (std::size_t segment = 0; segment < probe.segments(); ++segment) {
     const double motion_m = 2.0 * probe.motion_bound_m({segment, 0.0, 1.0});
     for (double at_m = apart_m - moved_m; at_m <= motion_m; at_m += apart_m) {
-      sum += field.unknown_share(probe.state_at(segment, at_m / motion_m).pose(), body);
+      sum += field.unknown_share(body.box_at(probe.state_at(segment, at_m / motion_m).pose()));
       ++poses;
     }
     moved_m = std::fmod(moved_m + motion_m, apart_m);
@@ -86,8 +86,8 @@ std::vector<AuditReport::Sample> clearance_at_rows(const Probe& probe,
 
 // Times that cannot be proven to be over measured space count as unknown.
 std::vector<Stretch> near_unknown(const map::ClearanceField& field,
-                                  const geometry::Trajectory& drive,
-                                  const geometry::VehicleShape& body, const AuditOptions& options) {
+                                  const geometry::Trajectory& drive, const geometry::BodyPart& body,
+                                  const AuditOptions& options) {
   const BodyProbe probe(field, drive, body, {ObstacleKind::unknown});
   const NearStretches found = find_near_stretches(probe, options.clearance_m, options.tolerance_m);
   std::vector<Stretch> stretches = found.undecided;
@@ -97,25 +97,24 @@ std::vector<Stretch> near_unknown(const map::ClearanceField& field,
   return stretches;
 }
 
-std::string part_at(const geometry::TrajectoryPoint& at, const map::Box2& witness,
-                    const geometry::VehicleShape& body) {
+geometry::Rectangle thing_at(double t_s, const map::Box2& witness, const std::string& id,
+                             std::span<const MovingObstacle> moving) {
+  for (const MovingObstacle& mover : moving) {
+    if (id.empty() || mover.obstacle.id != id) continue;
+    const geometry::Pose2 centre = mover.obstacle.motion.at(t_s).pose();
+    return body_around(centre, mover.obstacle.length_m, mover.obstacle.width_m);
+  }
   const Eigen::Vector2d half = 0.5 * (witness.max_in_source - witness.min_in_source);
-  const geometry::Rectangle thing{.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
-                                  .half_length_m = half.x(),
-                                  .half_width_m = half.y()};
-  return std::string(side_towards(thing, at.pose(), body));
+  return {.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
+          .half_length_m = half.x(),
+          .half_width_m = half.y()};
 }
 
 std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witness,
                     const std::string& id, std::span<const MovingObstacle> moving,
-                    const geometry::VehicleShape& body) {
-  for (const MovingObstacle& mover : moving) {
-    if (id.empty() || mover.obstacle.id != id) continue;
-    const geometry::Pose2 centre = mover.obstacle.motion.at(at.t_s).pose();
-    const auto thing = body_around(centre, mover.obstacle.length_m, mover.obstacle.width_m);
-    return std::string(side_towards(thing, at.pose(), body));
-  }
-  return part_at(at, witness, body);
+                    const geometry::BodyPart& body) {
+  if (body.is_circle()) return body.name;
+  return std::string(side_towards(thing_at(at.t_s, witness, id, moving), body.core_at(at.pose())));
 }
 
 /// What is asked of both kinds of obstacles, and the answer for both.
@@ -168,12 +167,6 @@ class Auditor {
   bool is_asked_ = false;
 };
 
-Verdict judge(const AuditReport& report) {
-  if (!report.conflicts.empty()) return Verdict::conflict;
-  if (!report.unknown.empty()) return Verdict::unknown;
-  return report.undecided.empty() ? Verdict::clear : Verdict::undecided;
-}
-
 }  // namespace
 
 std::string_view name(UnknownPolicy policy) {
@@ -186,20 +179,21 @@ std::string_view name(Verdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double margin_m) {
-  geometry::VehicleShape grown = vehicle;
-  grown.length_m += 2.0 * margin_m;
-  grown.width_m += 2.0 * margin_m;
-  grown.rear_overhang_m += margin_m;
-  return grown;
+Verdict judge(const AuditReport& report) {
+  if (!report.conflicts.empty()) return Verdict::conflict;
+  if (!report.unknown.empty()) return Verdict::unknown;
+  return report.undecided.empty() ? Verdict::clear : Verdict::undecided;
 }
 
 map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
-                                const geometry::VehicleShape& vehicle,
+                                std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options) {
   constexpr double least_horizon_m = 50.0;
-  const Eigen::Vector2d reach_m =
-      Eigen::Vector2d::Constant(inflated(vehicle, options.inflate_m).reach_m());
+  double farthest_m = 0.0;
+  for (const geometry::BodyPart& part : parts) {
+    farthest_m = std::max(farthest_m, geometry::inflated(part, options.inflate_m).reach_m());
+  }
+  const Eigen::Vector2d reach_m = Eigen::Vector2d::Constant(farthest_m);
   const Eigen::Vector2d start = drive_in_source.points().front().pose().position();
   map::Box2 around{start, start};
   for (const geometry::TrajectoryPoint& point : drive_in_source.points()) {
@@ -212,10 +206,10 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
 }
 
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
-                  const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                  const geometry::BodyPart& part, const AuditOptions& options,
                   std::span<const MovingObstacle> moving_in_source) {
-  check(field, drive_in_source, vehicle, options);
-  const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
+  check(field, drive_in_source, part, options);
+  const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
   const geometry::Trajectory drive = with_rows_at_changes(drive_in_source, moving_in_source);
   const BodyProbe probe(field, drive, body, obstacles(options.unknown));
 

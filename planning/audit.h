@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/moving_obstacle.h"
 
@@ -40,7 +40,9 @@ struct Conflict {
   geometry::TrajectoryPoint at;    ///< state at the least clearance; of equal ones, the first
   map::Box2 witness;               ///< the nearest cell then, or the box around what moves
   std::string obstacle = {};       ///< id of what moves; empty: a cell
-  std::string part = {};  ///< of the vehicle that is nearest then: "front left corner", …
+  /// Of the vehicle that is nearest then: "front left corner", of one with more than its body
+  /// "left mirror, front left corner"; a circle's name.
+  std::string part = {};
 };
 
 struct AuditReport {
@@ -67,9 +69,10 @@ struct AuditReport {
   std::vector<Sample> profile;  ///< clearance at rows; beyond 5 m a lower bound of it
 };
 
-/// Whether a drive keeps clear of occupied space, at every time between its rows too: x, y and the
-/// unwrapped heading are linear between rows, and a motion bound (planning/README.md, "Audit")
-/// covers every point of the body. A `clear` is a proof; there is no sampling step.
+/// Whether a part of a vehicle keeps clear of occupied space on a drive, at every time between its
+/// rows too: x, y and the unwrapped heading are linear between rows, and a motion bound
+/// (planning/README.md, "Audit") covers every point of the body. A `clear` is a proof; there is no
+/// sampling step.
 ///
 /// Obstacles that move are linear between their rows as well. They are told from occupied cells in
 /// conflicts, which may overlap in time.
@@ -78,15 +81,32 @@ struct AuditReport {
 /// @throws std::invalid_argument if the drive is empty, an option is negative or not finite, or the
 ///         vehicle leaves the region that the field was made for.
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
-                  const geometry::VehicleShape& vehicle, const AuditOptions& options = {},
+                  const geometry::BodyPart& part, const AuditOptions& options = {},
                   std::span<const MovingObstacle> moving_in_source = {});
 
-/// The part of an occupancy that matters to the audit of a drive: wherever the inflated body may
+/// The same for a vehicle's rectangle.
+inline AuditReport audit(const map::ClearanceField& field,
+                         const geometry::Trajectory& drive_in_source,
+                         const geometry::VehicleShape& vehicle, const AuditOptions& options = {},
+                         std::span<const MovingObstacle> moving_in_source = {}) {
+  return audit(field, drive_in_source, geometry::body_of(vehicle), options, moving_in_source);
+}
+
+/// The part of an occupancy that matters to the audit of a drive: wherever the inflated parts may
 /// be, with a horizon of 50 m, or more where the clearance asks for it.
 map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
-                                const geometry::VehicleShape& vehicle, const AuditOptions& options);
+                                std::span<const geometry::BodyPart> parts,
+                                const AuditOptions& options);
 
-/// The vehicle's rectangle grown by a margin on every side.
-geometry::VehicleShape inflated(const geometry::VehicleShape& vehicle, double margin_m);
+/// The same for a vehicle's rectangle.
+inline map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
+                                       const geometry::VehicleShape& vehicle,
+                                       const AuditOptions& options) {
+  const geometry::BodyPart body = geometry::body_of(vehicle);
+  return audited_region(drive_in_source, {&body, 1}, options);
+}
+
+/// The verdict that conflicts, unknown and undecided stretches lead to.
+Verdict judge(const AuditReport& report);
 
 }  // namespace roadbed::planning

@@ -131,15 +131,15 @@ Verdict verdict_of(const AuditCertificate& certificate) {
 
 AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
                          const geometry::Trajectory& drive_in_source,
-                         const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                         const geometry::BodyPart& part, const AuditOptions& options,
                          const AuditReport& report,
                          std::span<const MovingObstacle> moving_in_source) {
-  const geometry::VehicleShape body = inflated(vehicle, options.inflate_m);
+  const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
   const auto cover = [&](ObstacleKind kind, double goal_m, const std::vector<Stretch>& left_out) {
     const BodyProbe probe(field, drive_in_source, body, {kind});
     return Prover(probe, goal_m, left_out).run();
   };
-  AuditCertificate certificate{.vehicle = vehicle,
+  AuditCertificate certificate{.part = part,
                                .band = band,
                                .clearance_m = options.clearance_m,
                                .inflate_m = options.inflate_m,

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/audit.h"
 
@@ -27,7 +27,7 @@ struct ProvenTime {
 /// a proven span the distance is so large that the body cannot come nearer than `at_least_m` while
 /// it moves through the span. What the spans leave out is in the stretches.
 struct AuditCertificate {
-  geometry::VehicleShape vehicle;  ///< without the margin
+  geometry::BodyPart part;  ///< of the vehicle, without the margin
   map::HeightBand band;
   double clearance_m = 0.0, inflate_m = 0.0;
   UnknownPolicy unknown_policy = UnknownPolicy::report;
@@ -45,11 +45,21 @@ struct AuditCertificate {
 
 /// The certificate of an audit's report. Spans reach up to 0.02 m below the least clearance, so
 /// that they are few.
-/// @pre `report` is what `audit` says of the same field, drive, vehicle, options and obstacles.
+/// @pre `report` is what `audit` says of the same field, drive, part, options and obstacles.
 AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
                          const geometry::Trajectory& drive_in_source,
-                         const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                         const geometry::BodyPart& part, const AuditOptions& options,
                          const AuditReport& report,
                          std::span<const MovingObstacle> moving_in_source = {});
+
+/// The same for a vehicle's rectangle.
+inline AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
+                                const geometry::Trajectory& drive_in_source,
+                                const geometry::VehicleShape& vehicle, const AuditOptions& options,
+                                const AuditReport& report,
+                                std::span<const MovingObstacle> moving_in_source = {}) {
+  return certify(field, band, drive_in_source, geometry::body_of(vehicle), options, report,
+                 moving_in_source);
+}
 
 }  // namespace roadbed::planning

@@ -29,9 +29,7 @@ class Check {
   Check(const AuditCertificate& certificate, const std::vector<map::OccupancyCell>& cells,
         double resolution_m, const geometry::Trajectory& drive,
         std::span<const MovingObstacle> moving)
-      : certificate_(certificate),
-        movers_(moving),
-        body_(certificate.vehicle, certificate.inflate_m) {
+      : certificate_(certificate), movers_(moving), body_(certificate.part, certificate.inflate_m) {
     for (const auto& point : drive.points()) {
       rows_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
     }

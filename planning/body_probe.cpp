@@ -8,21 +8,30 @@ namespace roadbed::planning {
 namespace {
 
 // About as long as wide: then the circles stick out least for their number.
-int circle_count(const geometry::VehicleShape& body) {
-  return std::clamp(static_cast<int>(std::ceil(1.5 * body.length_m / body.width_m)), 1, 16);
+geometry::CoveringCircles circles_over(const geometry::BodyPart& part) {
+  const double length_m = part.length_m(), width_m = part.width_m();
+  const int count =
+      width_m > 0.0 ? std::clamp(static_cast<int>(std::ceil(1.5 * length_m / width_m)), 1, 16) : 1;
+  const double section_m = length_m / count;
+  geometry::CoveringCircles circles{
+      .centres_x_m = {}, .radius_m = 0.5 * std::hypot(section_m, width_m) + part.radius_m};
+  for (int i = 0; i < count; ++i) {
+    circles.centres_x_m.push_back(part.rear_m + (i + 0.5) * section_m);
+  }
+  return circles;
 }
 
 }  // namespace
 
 BodyProbe::BodyProbe(const map::ClearanceField& field, const geometry::Trajectory& drive,
-                     const geometry::VehicleShape& body, std::vector<map::ObstacleKind> kinds)
-    : Probe(drive, body.reach_m()),
+                     const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds)
+    : Probe(drive, part.reach_m()),
       field_(field),
-      body_(body),
+      part_(part),
       kinds_(std::move(kinds)),
-      middle_x_m_(0.5 * body.length_m - body.rear_overhang_m),
-      radius_m_(0.5 * std::hypot(body.length_m, body.width_m)),
-      circles_(geometry::covering_circles(body, circle_count(body))) {}
+      middle_in_vehicle_(part.middle_in_vehicle()),
+      radius_m_(part.circumradius_m()),
+      circles_(circles_over(part)) {}
 
 double BodyProbe::field_bound_m(const Eigen::Vector2d& point) const {
   double least_m = field_.horizon_m();
@@ -35,23 +44,25 @@ double BodyProbe::field_bound_m(const Eigen::Vector2d& point) const {
 double BodyProbe::lower_bound_m(const Span& span, double enough_m) const {
   const geometry::Pose2 pose = middle_pose_of(span);
   const Eigen::Vector2d forward(std::cos(pose.heading_rad), std::sin(pose.heading_rad));
-  const double around_m = field_bound_m(pose.position() + middle_x_m_ * forward) - radius_m_;
+  const Eigen::Vector2d left(-forward.y(), forward.x());
+  const Eigen::Vector2d beside = pose.position() + middle_in_vehicle_.y() * left;
+  const double around_m = field_bound_m(beside + middle_in_vehicle_.x() * forward) - radius_m_;
   if (around_m >= enough_m) return around_m;
   double least_m = field_.horizon_m();
   for (const double x_m : circles_.centres_x_m) {
-    least_m = std::min(least_m, field_bound_m(pose.position() + x_m * forward));
+    least_m = std::min(least_m, field_bound_m(beside + x_m * forward));
   }
   return std::max({0.0, around_m, least_m - circles_.radius_m});
 }
 
 std::optional<Probe::Near> BodyProbe::nearest(const Span& span, double within_m) const {
-  const geometry::Pose2 pose = middle_pose_of(span);
+  const geometry::Rectangle core = part_.core_at(middle_pose_of(span));
   std::optional<Near> least;
   for (const map::ObstacleKind kind : kinds_) {
-    const auto found = field_.nearest(pose, body_, within_m, kind);
-    if (found && (!least || found->distance_m < least->distance_m)) {
-      least = Near{found->distance_m, found->witness};
-    }
+    const auto found = field_.nearest(core, within_m + part_.radius_m, kind);
+    if (!found) continue;
+    const double distance_m = std::max(0.0, found->distance_m - part_.radius_m);
+    if (!least || distance_m < least->distance_m) least = Near{distance_m, found->witness};
   }
   return least;
 }

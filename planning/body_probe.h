@@ -5,32 +5,33 @@
 #include <optional>
 #include <vector>
 
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/probe.h"
 
 namespace roadbed::planning {
 
-/// Distances from a body that drives along a trajectory to obstacles of given kinds.
+/// Distances from a part of a vehicle that drives along a trajectory to obstacles of given kinds.
 class BodyProbe : public Probe {
  public:
   BodyProbe(const map::ClearanceField& field, const geometry::Trajectory& drive,
-            const geometry::VehicleShape& body, std::vector<map::ObstacleKind> kinds);
+            const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds);
 
-  /// By a circle around the body, then by several that cover it. O(1).
+  /// By a circle around the part, then by several that cover it. O(1).
   double lower_bound_m(const Span& span, double enough_m) const override;
   std::optional<Near> nearest(const Span& span, double within_m) const override;
-  double horizon_m() const override { return field_.horizon_m(); }
+  double horizon_m() const override { return field_.horizon_m() - part_.radius_m; }
 
  private:
   double field_bound_m(const Eigen::Vector2d& point) const;
 
   const map::ClearanceField& field_;
-  geometry::VehicleShape body_;
+  geometry::BodyPart part_;
   std::vector<map::ObstacleKind> kinds_;
-  double middle_x_m_, radius_m_;  // of the circle around the body
-  geometry::CoveringCircles circles_;
+  Eigen::Vector2d middle_in_vehicle_;  // of the circle around the part
+  double radius_m_;
+  geometry::CoveringCircles circles_;  // along x, beside its middle line
 };
 
 }  // namespace roadbed::planning

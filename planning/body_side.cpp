@@ -44,10 +44,8 @@ Vector2d nearest_to(const Rectangle& body, const Rectangle& thing) {
 
 }  // namespace
 
-std::string_view side_towards(const Rectangle& thing, const geometry::Pose2& pose,
-                              const geometry::VehicleShape& shape) {
+std::string_view side_towards(const Rectangle& thing, const Rectangle& body) {
   constexpr double same_m = 1e-6;
-  const Rectangle body = geometry::body_at(pose, shape);
   const Vector2d at = in_frame_of(body, nearest_to(body, thing));
   const double ahead_m = std::abs(at.x()) - body.half_length_m;
   const double aside_m = std::abs(at.y()) - body.half_width_m;

@@ -4,16 +4,13 @@
 
 #include <string_view>
 
-#include "roadbed/geometry/pose2.h"
 #include "roadbed/geometry/rectangle.h"
-#include "roadbed/geometry/vehicle_shape.h"
 
 namespace roadbed::planning {
 
-/// The side or corner of a vehicle's rectangle that is nearest to a thing: "front", "rear", "left
-/// side", "right side", "front left corner" and so on; of a thing that overlaps it, the side that
-/// its centre is nearest to.
-std::string_view side_towards(const geometry::Rectangle& thing, const geometry::Pose2& pose,
-                              const geometry::VehicleShape& body);
+/// The side or corner of a rectangle of a vehicle that is nearest to a thing: "front", "rear",
+/// "left side", "right side", "front left corner" and so on; of a thing that overlaps it, the side
+/// that its centre is nearest to.
+std::string_view side_towards(const geometry::Rectangle& thing, const geometry::Rectangle& body);
 
 }  // namespace roadbed::planning

@@ -72,24 +72,24 @@ bool BruteForceMovers::Mover::is_there(const Time& time) const {
 }
 
 std::optional<double> BruteForceMovers::distance_m(const std::string& id, double t_s,
-                                                   const BodyOutline::Corners& body) const {
+                                                   const BodyOutline::Place& body) const {
   std::optional<double> least_m;
   for (const Mover& mover : movers_) {
     if (mover.id != id || t_s < mover.from_s - kMoment_s || t_s > mover.to_s + kMoment_s) continue;
-    const double away_m = corners_distance_m(body, mover.at(t_s));
+    const double away_m = body.distance_m(mover.at(t_s));
     if (!least_m || away_m < *least_m) least_m = away_m;
   }
   return least_m;
 }
 
-bool BruteForceMovers::keep_away(const BodyOutline::Corners& body, const Time& time,
+bool BruteForceMovers::keep_away(const BodyOutline::Place& body, const Time& time,
                                  double least_m) const {
   const double middle_s = 0.5 * (time.from_s + time.to_s);
   return std::ranges::all_of(movers_, [&](const Mover& mover) {
     if (!mover.is_there(time)) return true;
     const double way_m =
         std::max(mover.way_m(time.from_s, middle_s), mover.way_m(middle_s, time.to_s));
-    return corners_distance_m(body, mover.at(middle_s)) >= least_m + way_m;
+    return body.distance_m(mover.at(middle_s)) >= least_m + way_m;
   });
 }
 

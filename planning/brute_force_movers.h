@@ -22,7 +22,7 @@ class BruteForceMovers {
 
   /// Exact distance of one from a body; none if there is no such obstacle then.
   std::optional<double> distance_m(const std::string& id, double t_s,
-                                   const BodyOutline::Corners& body) const;
+                                   const BodyOutline::Place& body) const;
 
   /// A part of a drive that begins and ends at the given times.
   struct Time {
@@ -31,7 +31,7 @@ class BruteForceMovers {
 
   /// Whether all obstacles that are there at some time of a span are, at its middle, farther from
   /// the body than `least_m` and what they may move until either end of it.
-  bool keep_away(const BodyOutline::Corners& body, const Time& time, double least_m) const;
+  bool keep_away(const BodyOutline::Place& body, const Time& time, double least_m) const;
 
  private:
   struct Row {

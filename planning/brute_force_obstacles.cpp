@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "roadbed/map/occupancy/ground.h"
+
 namespace roadbed::planning {
 namespace {
 
@@ -37,7 +39,7 @@ bool parts(const Corners& a, const Corners& b) {
   return false;
 }
 
-double distance_m(const Corners& a, const Corners& b) {
+double corners_distance_m(const Corners& a, const Corners& b) {
   if (!parts(a, b) && !parts(b, a)) return 0.0;
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i) {
@@ -49,6 +51,19 @@ double distance_m(const Corners& a, const Corners& b) {
   return least_m;
 }
 
+// From a point to a rectangle, 0 inside.
+double to_point_m(const Corners& from, const Eigen::Vector2d& point) {
+  bool is_inside = true;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d &a = from[i], &b = from[(i + 1) % 4];
+    const Eigen::Vector2d along = b - a, there = point - a;
+    is_inside = is_inside && along.x() * there.y() - along.y() * there.x() >= 0.0;
+    least_m = std::min(least_m, point_to_edge_m(point, a, b));
+  }
+  return is_inside ? 0.0 : least_m;
+}
+
 Corners square(double x_m, double y_m, double half_m) {
   return {{{x_m - half_m, y_m - half_m},
            {x_m + half_m, y_m - half_m},
@@ -56,8 +71,9 @@ Corners square(double x_m, double y_m, double half_m) {
            {x_m - half_m, y_m + half_m}}};
 }
 
-double overlap_m(const map::OccupancyCell& cell, const map::HeightBand& band) {
-  const double z_m = cell.centre_in_source.z(), half_m = 0.5 * cell.size_m;
+// Of a cell and the band over ground at a height.
+double overlap_m(const map::OccupancyCell& cell, const map::HeightBand& band, double ground_m) {
+  const double z_m = cell.centre_in_source.z() - ground_m, half_m = 0.5 * cell.size_m;
   return std::min(z_m + half_m, band.to_m) - std::max(z_m - half_m, band.from_m);
 }
 
@@ -82,24 +98,41 @@ std::size_t place_in_tile(std::int64_t x, std::int64_t y) {
 
 }  // namespace
 
-double corners_distance_m(const Corners& a, const Corners& b) { return distance_m(a, b); }
+double BodyOutline::Place::distance_m(const Corners& from) const {
+  return radius_m > 0.0 ? std::max(0.0, to_point_m(from, corners[0]) - radius_m)
+                        : corners_distance_m(corners, from);
+}
 
-BodyOutline::BodyOutline(const geometry::VehicleShape& vehicle, double margin_m)
-    : rear_m_(-vehicle.rear_overhang_m - margin_m),
-      front_m_(vehicle.length_m - vehicle.rear_overhang_m + margin_m),
-      side_m_(0.5 * vehicle.width_m + margin_m) {}
+BodyOutline::BodyOutline(const geometry::BodyPart& part, double margin_m)
+    : rear_m_(part.rear_m),
+      front_m_(part.front_m),
+      right_m_(part.right_m),
+      left_m_(part.left_m),
+      radius_m_(part.radius_m) {
+  if (radius_m_ > 0.0) {
+    radius_m_ += margin_m;
+    return;
+  }
+  rear_m_ -= margin_m;
+  front_m_ += margin_m;
+  right_m_ -= margin_m;
+  left_m_ += margin_m;
+}
 
-Corners BodyOutline::at(double x_m, double y_m, double heading_rad) const {
+BodyOutline::Place BodyOutline::at(double x_m, double y_m, double heading_rad) const {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
   const auto corner = [&](double forward_m, double left_m) {
     return Eigen::Vector2d(x_m + c * forward_m - s * left_m, y_m + s * forward_m + c * left_m);
   };
-  return {corner(rear_m_, -side_m_), corner(front_m_, -side_m_), corner(front_m_, side_m_),
-          corner(rear_m_, side_m_)};
+  return {{corner(rear_m_, right_m_), corner(front_m_, right_m_), corner(front_m_, left_m_),
+           corner(rear_m_, left_m_)},
+          radius_m_};
 }
 
 double BodyOutline::reach_m() const {
-  return std::hypot(std::max(std::abs(rear_m_), std::abs(front_m_)), side_m_);
+  return std::hypot(std::max(std::abs(rear_m_), std::abs(front_m_)),
+                    std::max(std::abs(right_m_), std::abs(left_m_))) +
+         radius_m_;
 }
 
 BruteForceObstacles::BruteForceObstacles(const std::vector<map::OccupancyCell>& cells,
@@ -110,22 +143,67 @@ BruteForceObstacles::BruteForceObstacles(const std::vector<map::OccupancyCell>& 
     corner_ = cells.front().centre_in_source.head<2>().array() - 0.5 * cells.front().size_m;
   }
   for (const map::OccupancyCell& cell : cells) {
-    if (cell.state != map::CellState::occupied || overlap_m(cell, band) <= kTouch_m) continue;
-    x_m_.push_back(cell.centre_in_source.x());
-    y_m_.push_back(cell.centre_in_source.y());
-    half_m_.push_back(0.5 * cell.size_m);
+    if (cell.state == map::CellState::occupied) add_occupied(cell);
   }
+}
+
+// As a whole over level ground, else column by column.
+void BruteForceObstacles::add_occupied(const map::OccupancyCell& cell) {
+  const double side_m = band_.ground ? resolution_m_ : cell.size_m;
+  const auto count = static_cast<int>(std::lround(cell.size_m / side_m));
+  const Eigen::Vector2d corner = cell.centre_in_source.head<2>().array() - 0.5 * cell.size_m;
+  for (int x = 0; x < count; ++x) {
+    for (int y = 0; y < count; ++y) {
+      const double x_m = corner.x() + (x + 0.5) * side_m, y_m = corner.y() + (y + 0.5) * side_m;
+      if (overlap_m(cell, band_, ground_m(x_m, y_m)) <= kTouch_m) continue;
+      x_m_.push_back(x_m);
+      y_m_.push_back(y_m);
+      half_m_.push_back(0.5 * side_m);
+    }
+  }
+}
+
+// The nearest place is at most a tile's diagonal farther away than the one that is nearest to the
+// tile's middle.
+double BruteForceObstacles::ground_m(double x_m, double y_m) {
+  if (!band_.ground) return 0.0;
+  const auto& places = band_.ground->places();
+  constexpr double tile_m = 8.0;
+  const Eigen::Vector2d point(x_m, y_m);
+  const auto tile_x = static_cast<Column>(std::floor(x_m / tile_m));
+  const auto tile_y = static_cast<Column>(std::floor(y_m / tile_m));
+  std::vector<std::size_t>& near = places_near_[tile_key(tile_x, tile_y)];
+  if (near.empty()) {
+    const Eigen::Vector2d middle((static_cast<double>(tile_x) + 0.5) * tile_m,
+                                 (static_cast<double>(tile_y) + 0.5) * tile_m);
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const auto& place : places) {
+      least_m = std::min(least_m, (place.in_source - middle).norm());
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double away_m = (places[i].in_source - middle).norm();
+      if (away_m <= least_m + 1.5 * tile_m) near.push_back(i);
+    }
+  }
+  std::size_t nearest = near.front();
+  for (const std::size_t i : near) {
+    const double away_m = (places[i].in_source - point).squaredNorm();
+    if (away_m < (places[nearest].in_source - point).squaredNorm()) nearest = i;
+  }
+  const auto& place = places[nearest];
+  return place.z_m + place.slope.x() * (x_m - place.in_source.x()) +
+         place.slope.y() * (y_m - place.in_source.y());
 }
 
 double BruteForceObstacles::occupied_m(double x_m, double y_m, double heading_rad,
                                        double limit_m) const {
-  const Corners corners = body_.at(x_m, y_m, heading_rad);
+  const BodyOutline::Place body = body_.at(x_m, y_m, heading_rad);
   double least_m = limit_m;
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
     const double near_m = least_m + body_.reach_m() + std::sqrt(2.0) * half_m_[i];
     const double dx_m = x_m_[i] - x_m, dy_m = y_m_[i] - y_m;
     if (dx_m * dx_m + dy_m * dy_m > near_m * near_m) continue;
-    least_m = std::min(least_m, distance_m(corners, square(x_m_[i], y_m_[i], half_m_[i])));
+    least_m = std::min(least_m, body.distance_m(square(x_m_[i], y_m_[i], half_m_[i])));
   }
   return least_m;
 }
@@ -133,7 +211,7 @@ double BruteForceObstacles::occupied_m(double x_m, double y_m, double heading_ra
 double BruteForceObstacles::to_box_m(double x_m, double y_m, double heading_rad,
                                      const map::Box2& box) const {
   const Eigen::Vector2d &a = box.min_in_source, &b = box.max_in_source;
-  return distance_m(body_.at(x_m, y_m, heading_rad), {{a, {b.x(), a.y()}, b, {a.x(), b.y()}}});
+  return body_.at(x_m, y_m, heading_rad).distance_m({{a, {b.x(), a.y()}, b, {a.x(), b.y()}}});
 }
 
 bool BruteForceObstacles::is_occupied(const map::Box2& box) const {
@@ -181,15 +259,13 @@ void BruteForceObstacles::mark(double x_m, double y_m, double limit_m) {
 void BruteForceObstacles::measure() {
   for (auto& [key, tile] : measured_m_) std::fill(tile.begin(), tile.end(), 0.0f);
   for (const map::OccupancyCell& cell : cells_) {
-    if (cell.state != map::CellState::unknown && overlap_m(cell, band_) > kTouch_m) measure(cell);
+    if (cell.state == map::CellState::unknown) continue;
+    if (band_.ground || overlap_m(cell, band_, 0.0) > kTouch_m) measure(cell);
   }
 }
 
 // A measured hit makes its column known.
 void BruteForceObstacles::measure(const map::OccupancyCell& cell) {
-  const bool is_hit = cell.state == map::CellState::occupied;
-  const auto height_m =
-      static_cast<float>(is_hit ? band_.to_m - band_.from_m : overlap_m(cell, band_));
   const Eigen::Array2d least = cell.centre_in_source.head<2>().array() - 0.5 * cell.size_m;
   const Eigen::Array2d from = (least - corner_.array()) / resolution_m_;
   const auto from_x = static_cast<Column>(std::llround(from.x()));
@@ -203,27 +279,37 @@ void BruteForceObstacles::measure(const map::OccupancyCell& cell) {
   const auto tiles =
       static_cast<std::uint64_t>((tile_to_x - tile_from_x) * (tile_to_y - tile_from_y));
   if (tiles > measured_m_.size()) {
-    for (auto& [key, tile] : measured_m_) add(tile, tile_of(key), columns, height_m);
+    for (auto& [key, tile] : measured_m_) add(tile, tile_of(key), columns, cell);
     return;
   }
   for (Column y = tile_from_y; y < tile_to_y; ++y) {
     for (Column x = tile_from_x; x < tile_to_x; ++x) {
       const auto tile = measured_m_.find(tile_key(x, y));
-      if (tile != measured_m_.end()) add(tile->second, {x, y}, columns, height_m);
+      if (tile != measured_m_.end()) add(tile->second, {x, y}, columns, cell);
     }
   }
 }
 
 void BruteForceObstacles::add(std::vector<float>& tile, const std::pair<Column, Column>& at,
-                              const Window& columns, float height_m) {
+                              const Window& columns, const map::OccupancyCell& cell) {
   const Column first_x = at.first * kTileSide, first_y = at.second * kTileSide;
   const Column to_x = std::min(columns.to_x, first_x + kTileSide);
   const Column to_y = std::min(columns.to_y, first_y + kTileSide);
   for (Column y = std::max(columns.from_y, first_y); y < to_y; ++y) {
     for (Column x = std::max(columns.from_x, first_x); x < to_x; ++x) {
-      tile[place_in_tile(x, y)] += height_m;
+      tile[place_in_tile(x, y)] += measured_height_m(cell, x, y);
     }
   }
+}
+
+// Of a column, by one cell; a hit measures all of it.
+float BruteForceObstacles::measured_height_m(const map::OccupancyCell& cell, Column x, Column y) {
+  const double x_m = corner_.x() + (static_cast<double>(x) + 0.5) * resolution_m_;
+  const double y_m = corner_.y() + (static_cast<double>(y) + 0.5) * resolution_m_;
+  const double height_m = overlap_m(cell, band_, ground_m(x_m, y_m));
+  if (height_m <= kTouch_m) return 0.0f;
+  const bool is_hit = cell.state == map::CellState::occupied;
+  return static_cast<float>(is_hit ? band_.to_m - band_.from_m : height_m);
 }
 
 bool BruteForceObstacles::is_unknown_column(Column x, Column y) const {
@@ -236,7 +322,7 @@ bool BruteForceObstacles::is_unknown_column(Column x, Column y) const {
 
 double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad,
                                       double limit_m) const {
-  const Corners corners = body_.at(x_m, y_m, heading_rad);
+  const BodyOutline::Place body = body_.at(x_m, y_m, heading_rad);
   const Window around = window(x_m, y_m, limit_m);
   const double half_m = 0.5 * resolution_m_;
   double least_m = limit_m;
@@ -245,7 +331,7 @@ double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad
       if (!is_unknown_column(x, y)) continue;
       const double cx_m = corner_.x() + (static_cast<double>(x) + 0.5) * resolution_m_;
       const double cy_m = corner_.y() + (static_cast<double>(y) + 0.5) * resolution_m_;
-      least_m = std::min(least_m, distance_m(corners, square(cx_m, cy_m, half_m)));
+      least_m = std::min(least_m, body.distance_m(square(cx_m, cy_m, half_m)));
     }
   }
   return least_m;

@@ -10,27 +10,34 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 
 namespace roadbed::planning {
 
-/// A vehicle's rectangle with a margin on every side; poses are those of the rear axle's centre.
+/// A part of a vehicle, rectangle or circle, with a margin all around; poses are those of the rear
+/// axle's centre.
 class BodyOutline {
  public:
-  BodyOutline(const geometry::VehicleShape& vehicle, double margin_m);
+  BodyOutline(const geometry::BodyPart& part, double margin_m);
 
-  using Corners = std::array<Eigen::Vector2d, 4>;
-  Corners at(double x_m, double y_m, double heading_rad) const;
-  double reach_m() const;  ///< from the rear axle's centre to the farthest corner
+  using Corners = std::array<Eigen::Vector2d, 4>;  ///< counter-clockwise
+
+  /// Where it is: a circle's four corners are its middle.
+  struct Place {
+    Corners corners;
+    double radius_m;
+
+    /// Distance from a rectangle, given by its corners; 0 where they meet.
+    double distance_m(const Corners& from) const;
+  };
+  Place at(double x_m, double y_m, double heading_rad) const;
+  double reach_m() const;  ///< from the rear axle's centre to the farthest point
 
  private:
-  double rear_m_, front_m_, side_m_;
+  double rear_m_, front_m_, right_m_, left_m_, radius_m_;
 };
-
-/// Distance between two rectangles, given by their corners, 0 where they meet.
-double corners_distance_m(const BodyOutline::Corners& a, const BodyOutline::Corners& b);
 
 /// Occupied boxes of a height band, and columns of it that were not measured over all its height.
 /// Poses are those of the rear axle's centre.
@@ -66,10 +73,13 @@ class BruteForceObstacles {
     Column from_x, from_y, to_x, to_y;  // without the last
   };
 
+  void add_occupied(const map::OccupancyCell& cell);
+  double ground_m(double x_m, double y_m);
   Window window(double x_m, double y_m, double limit_m) const;
   void measure(const map::OccupancyCell& cell);
-  static void add(std::vector<float>& tile, const std::pair<Column, Column>& at,
-                  const Window& columns, float height_m);
+  void add(std::vector<float>& tile, const std::pair<Column, Column>& at, const Window& columns,
+           const map::OccupancyCell& cell);
+  float measured_height_m(const map::OccupancyCell& cell, Column x, Column y);
   bool is_unknown_column(Column x, Column y) const;
 
   const std::vector<map::OccupancyCell>& cells_;
@@ -78,6 +88,8 @@ class BruteForceObstacles {
   BodyOutline body_;
   Eigen::Vector2d corner_ = Eigen::Vector2d::Zero();  // of some cell
   std::vector<double> x_m_, y_m_, half_m_;            // of occupied boxes
+  /// Of the ground's places: those that may be the nearest of a point in a tile.
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> places_near_;
   double marked_columns_ = 0.0;
   std::unordered_map<std::int64_t, std::vector<float>> measured_m_;  // heights, by tile
 };

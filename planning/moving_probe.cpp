@@ -54,12 +54,12 @@ geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
   return geometry::Trajectory(std::move(rows));
 }
 
-MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::VehicleShape& body,
+MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
                          std::span<const MovingObstacle> obstacles, double horizon_m)
-    : Probe(drive, body.reach_m()),
-      body_(body),
+    : Probe(drive, part.reach_m()),
+      part_(part),
       horizon_m_(horizon_m),
-      body_radius_m_(0.5 * std::hypot(body.length_m, body.width_m)) {
+      body_radius_m_(part.circumradius_m()) {
   for (const MovingObstacle& from : obstacles) {
     const double radius_m = 0.5 * std::hypot(from.obstacle.length_m, from.obstacle.width_m);
     movers_.push_back({&from, radius_m, ways_m(from.obstacle.motion, radius_m)});
@@ -90,7 +90,7 @@ double MovingProbe::way_until_m(const Mover& mover, double t_s) {
 std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
   const Span whole{segment, 0.0, 1.0};
   const geometry::TrajectoryPoint middle = middle_of(whole);
-  const Eigen::Vector2d centre = geometry::body_at(middle.pose(), body_).centre;
+  const Eigen::Vector2d centre = part_.core_at(middle.pose()).centre;
   const double start_s = state_at(segment, 0.0).t_s, end_s = state_at(segment, 1.0).t_s;
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < movers_.size(); ++i) {
@@ -120,7 +120,7 @@ double MovingProbe::motion_bound_m(const Span& span) const {
 
 double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
   const geometry::TrajectoryPoint state = middle_of(span);
-  const Eigen::Vector2d centre = geometry::body_at(state.pose(), body_).centre;
+  const Eigen::Vector2d centre = part_.core_at(state.pose()).centre;
   double least_m = horizon_m_;
   for (const std::size_t i : near_[span.segment]) {
     const auto place = movers_[i].from->obstacle.motion.at(state.t_s).pose().position();
@@ -131,7 +131,7 @@ double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
 
 std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_m) const {
   const geometry::TrajectoryPoint state = middle_of(span);
-  const geometry::Rectangle body = geometry::body_at(state.pose(), body_);
+  const geometry::Rectangle body = part_.core_at(state.pose());
   double least_m = std::min(within_m, horizon_m_);
   const MovingObstacle* nearest = nullptr;
   for (const std::size_t i : near_[span.segment]) {
@@ -139,7 +139,7 @@ std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_
     if ((thing.centre - body.centre).norm() - body_radius_m_ - movers_[i].radius_m > least_m) {
       continue;
     }
-    const double distance_m = geometry::distance_m(body, thing);
+    const double distance_m = std::max(0.0, geometry::distance_m(body, thing) - part_.radius_m);
     if (distance_m > least_m || (distance_m == least_m && nearest != nullptr)) continue;
     least_m = distance_m;
     nearest = movers_[i].from;

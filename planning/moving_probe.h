@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/planning/moving_obstacle.h"
 #include "roadbed/planning/probe.h"
 
@@ -20,12 +20,12 @@ namespace roadbed::planning {
 geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
                                           std::span<const MovingObstacle> obstacles);
 
-/// Distances from a body that drives along a trajectory to rectangles that move: linear between
-/// their rows, at rest before the first and after the last.
+/// Distances from a part of a vehicle that drives along a trajectory to rectangles that move:
+/// linear between their rows, at rest before the first and after the last.
 class MovingProbe : public Probe {
  public:
   /// @param drive  of `with_rows_at_changes`.
-  MovingProbe(const geometry::Trajectory& drive, const geometry::VehicleShape& body,
+  MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
               std::span<const MovingObstacle> obstacles, double horizon_m);
 
   /// Also the way of the fastest of the obstacles there.
@@ -45,7 +45,7 @@ class MovingProbe : public Probe {
   static double way_until_m(const Mover& mover, double t_s);
   std::vector<std::size_t> near_segment(std::size_t segment) const;
 
-  geometry::VehicleShape body_;
+  geometry::BodyPart part_;
   double horizon_m_, body_radius_m_;
   std::vector<Mover> movers_;
   std::vector<std::vector<std::size_t>> near_;  // of each segment: what may be within the horizon

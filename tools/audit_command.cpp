@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -15,9 +17,11 @@
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit.h"
-#include "roadbed/planning/audit_certificate.h"
+#include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/report/audit_index.h"
 #include "roadbed/tools/report/audit_svg.h"
+#include "roadbed/tools/report/close_up.h"
 #include "roadbed/tools/report/from_audit.h"
 #include "roadbed/tools/report/from_map.h"
 #include "roadbed/tools/report/from_occupancy.h"
@@ -76,9 +80,10 @@ class AuditCommand : public Command {
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
       if (!output.empty()) check_writable(output, force_);
     }
-    const AuditQuestion question = asked();
+    AuditQuestion question = asked();
     std::optional<map::RoadMap> road_map;
     if (!map_.empty()) road_map = map::load_map(map_);
+    question.ground = ground_rule(road_map ? &*road_map : nullptr);
     const std::vector<AuditSubject> subjects = subjects_.list(road_map ? &*road_map : nullptr);
     const Scene scene = make_scene(road_map, streams, common);
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
@@ -107,11 +112,16 @@ class AuditCommand : public Command {
                       {"report", UnknownPolicy::report}},
                      "What space counts as that was not measured: free, occupied, or report: no "
                      "obstacle, but a drive over it is not clear");
-    arguments.add("--ground", ground_m_, "Height of the ground in the occupancy's frame [m]")
-        .with_default();
+    arguments
+        .add("--ground", ground_,
+             "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
+             "road's surface of --map, which the band follows; measured: the lowest surface that "
+             "was measured along the drive. Default: map with --map, else 0")
+        .checked(ground_fault);
     arguments
         .add("--from-height", from_height_m_,
              "The vehicle's underside above the ground [m]; its top is the vehicle's height")
+        .within(-100.0, 100.0)
         .with_default();
   }
 
@@ -119,8 +129,10 @@ class AuditCommand : public Command {
     arguments.flag("--json", json_, "Print one JSON document");
     const Argument svg =
         arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)");
-    const Argument page = arguments.add("--report", report_,
-                                        "Write a page that plays the audit of one drive (.html)");
+    const Argument page =
+        arguments.add("--report", report_,
+                      "Write a page that plays the audit of one drive, or lists those of a "
+                      "folder, with close-ups (.html)");
     const Argument certificate = arguments.add(
         "--certificate", certificate_,
         "Write the proof of one drive (.json): spans of time, what holds in them, witnesses, "
@@ -141,8 +153,32 @@ class AuditCommand : public Command {
     arguments.flag("--force", force_, "Replace outputs that exist");
   }
 
+  static std::string ground_fault(const std::string& text) {
+    if (text == "map" || text == "measured") return {};
+    constexpr double farthest_m = 1e5;
+    const auto height_m = number_of(text);
+    const bool is_height = height_m && std::abs(*height_m) <= farthest_m;
+    return is_height ? "" : "is neither a height nor map nor measured";
+  }
+
+  static std::optional<double> number_of(const std::string& text) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return number;
+  }
+
+  GroundRule ground_rule(const map::RoadMap* road_map) const {
+    using Kind = GroundRule::Kind;
+    if (const auto level_m = number_of(ground_)) return {.kind = Kind::level, .level_m = *level_m};
+    if (ground_ == "measured") return {.kind = Kind::measured};
+    if (road_map == nullptr) return {};
+    return {.kind = Kind::map, .road_map = road_map};
+  }
+
   std::string missing() const {
     if (!check_.empty()) return {};
+    if (ground_ == "map" && map_.empty()) return "--map, for --ground map";
     if (occupancy_.empty()) return "--occupancy";
     if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
     if (!subjects_.is_swept()) {
@@ -153,23 +189,13 @@ class AuditCommand : public Command {
   }
 
   AuditQuestion asked() const {
-    AuditQuestion question{.vehicle = {}, .band = {}, .options = options_};
-    if (!vehicle_.empty()) question.vehicle = read_vehicle_json(vehicle_);
-    question.band = height_band(question.vehicle);
+    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
+    AuditQuestion question{.shape = vehicle.shape,
+                           .parts = vehicle.parts(from_height_m_),
+                           .ground = {},
+                           .options = options_};
     if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_);
     return question;
-  }
-
-  map::HeightBand height_band(const geometry::VehicleShape& vehicle) const {
-    if (from_height_m_ < vehicle.height_m) {
-      return {ground_m_ + from_height_m_, ground_m_ + vehicle.height_m};
-    }
-    throw map::InputError({.file = vehicle_.empty() ? "vehicle" : vehicle_.string(),
-                           .place = {},
-                           .element = "height_m",
-                           .found = fmt::format("is {} m", vehicle.height_m),
-                           .needed = fmt::format("more than --from-height, {} m", from_height_m_),
-                           .remedy = "lower --from-height"});
   }
 
   Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
@@ -189,8 +215,8 @@ class AuditCommand : public Command {
 
   Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditQuestion& question,
                   const Scene& scene, const Streams& streams, const CommonOptions& common) const {
-    if (!svg_.empty() || !certificate_.empty() || !report_.empty()) {
-      throw map::InputError({.file = "--svg, --report or --certificate",
+    if (!svg_.empty() || !certificate_.empty()) {
+      throw map::InputError({.file = "--svg or --certificate",
                              .place = {},
                              .element = {},
                              .found = "is about one drive, and --trajectory is a folder",
@@ -200,6 +226,7 @@ class AuditCommand : public Command {
     ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits = audit_all(
         scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+    write_index(audits, question, scene);
     write_files(audits, question, scene);
     if (json_) {
       streams.out << text_of_json(audits_json(audits));
@@ -212,19 +239,24 @@ class AuditCommand : public Command {
   Exit run_one(const AuditSubject& subject, const AuditQuestion& question, const Scene& scene,
                const Streams& streams, const CommonOptions& common) const {
     AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
-    const map::FieldRegion region =
-        planning::audited_region(audited.drive, question.vehicle, options_);
-    if (!common.quiet && (!scene.measured || !overlap(*scene.measured, region.around))) {
+    const map::Box2 around =
+        planning::audited_region(audited.drive, question.parts, options_).around;
+    if (!common.quiet && (!scene.measured || !overlap(*scene.measured, around))) {
       fmt::print(streams.err, "note: the drive ({}) lies outside the measured space ({})\n",
-                 text_of(region.around), scene.measured ? text_of(*scene.measured) : "none");
+                 text_of(around), scene.measured ? text_of(*scene.measured) : "none");
     }
-    const map::ClearanceField field(scene.occupancy, question.band, region);
-    audited.report =
-        planning::audit(field, audited.drive, question.vehicle, options_, question.moving);
+    audited.ground = ground_under(scene.occupancy, audited.drive, question.ground);
+    const planning::GroundUnder& ground = audited.ground;
+    if (!common.quiet) print_ground(streams.err, ground, question, scene.occupancy.resolution_m());
+    const planning::VehicleSurroundings surrounded =
+        surroundings(scene.occupancy, audited.drive, ground, question);
+    const planning::VehicleAudit audit =
+        planning::audit_vehicle(surrounded, audited.drive, options_, question.moving);
+    audited.report = audit.whole;
     if (!saved_drive_.empty()) write_output(saved_drive_, write_trajectory_csv(audited.drive));
-    write_picture(audited, question, scene);
-    write_report(audited, question, scene);
-    write_certificate(audited, question, field);
+    write_picture(audited, question, scene, question.heights(ground));
+    write_report(audited, question, scene, question.heights(ground));
+    write_certificate(audited, question, surrounded, audit, ground);
     write_files({audited}, question, scene);
     if (json_) {
       streams.out << text_of_json(audit_json(audited));
@@ -239,26 +271,44 @@ class AuditCommand : public Command {
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   }
 
-  void write_picture(const AuditedDrive& audited, const AuditQuestion& question,
-                     const Scene& scene) const {
-    if (svg_.empty()) return;
-    write_output(
-        svg_,
-        audit_svg({audited.drive, planning::inflated(question.vehicle, options_.inflate_m),
-                   audited.report, occupied_boxes(scene.occupancy, question.band), scene.lanes}));
+  // With cells as high as the vehicle's underside the ground itself reaches into the band.
+  static void print_ground(std::ostream& err, const planning::GroundUnder& ground,
+                           const AuditQuestion& question, double cell_m) {
+    if (question.ground.kind == GroundRule::Kind::level) return;
+    const bool is_map = question.ground.kind == GroundRule::Kind::map;
+    const double low_m = ground.surface ? ground.surface->lowest_m() : ground.level_m;
+    const double high_m = ground.surface ? ground.surface->highest_m() : ground.level_m;
+    fmt::print(err, "note: heights are above the {}, z {:.2f} m to {:.2f} m along the drive\n",
+               is_map ? "map's road" : "measured ground", low_m, high_m);
+    const double underside_m =
+        std::ranges::min(question.parts, {}, &geometry::BodyPart::from_height_m).from_height_m;
+    if (!ground.surface || underside_m > cell_m) return;
+    fmt::print(err,
+               "note: cells of {} m: the ground's own reach up to the vehicle's underside, {} m; "
+               "raise --from-height, or build finer cells\n",
+               cell_m, underside_m);
   }
 
-  void write_report(const AuditedDrive& audited, const AuditQuestion& question,
-                    const Scene& scene) const {
+  void write_picture(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
+                     const map::HeightBand& heights) const {
+    if (svg_.empty()) return;
+    write_output(
+        svg_, audit_svg({audited.drive, inflated_parts(question), audited.report,
+                         occupied_boxes(scene.occupancy, heights), scene.lanes, question.moving}));
+  }
+
+  void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
+                    const map::HeightBand& heights) const {
     if (report_.empty()) return;
     const map::Box2 around =
-        planning::audited_region(audited.drive, question.vehicle, options_).around;
+        planning::audited_region(audited.drive, question.parts, options_).around;
     const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
     const Eigen::AlignedBox2d box(around.min_in_source - margin_m, around.max_in_source + margin_m);
     AuditSurroundings page{.name = audited.name,
-                           .body = planning::inflated(question.vehicle, options_.inflate_m),
+                           .body = inflated_shape(question),
+                           .parts = inflated_parts(question),
                            .clearance_m = options_.clearance_m,
-                           .occupied = occupied_in(scene.occupancy, question.band, box),
+                           .occupied = occupied_in(scene.occupancy, heights, box),
                            .lanes = {},
                            .moving = question.moving,
                            .command = "roadbed audit --occupancy " + occupancy_.string(),
@@ -270,22 +320,38 @@ class AuditCommand : public Command {
     write_output(report_, drive_report_html(report_of_audit(audited.drive, audited.report, page)));
   }
 
+  void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
+                   const Scene& scene) const {
+    if (report_.empty()) return;
+    const std::vector<geometry::BodyPart> parts = inflated_parts(question);
+    std::vector<IndexedAudit> index;
+    for (const AuditedDrive& audited : audits) {
+      index.push_back(indexed(audited));
+      if (!audited.fault.empty()) continue;
+      const auto occupied = occupied_boxes(scene.occupancy, question.heights(audited.ground));
+      index.back().pictures =
+          close_ups(audited.report, {audited.drive, parts, occupied, scene.lanes, question.moving});
+    }
+    write_output(report_, audit_index_html(index, occupancy_.string(), "roadbed " ROADBED_VERSION));
+  }
+
   static ReportSource source(const char* role, const std::filesystem::path& file) {
     const CertifiedFile certified = certified_file(file);
     return {.role = role, .name = certified.name, .xxhash = certified.xxhash};
   }
 
   void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
-                         const map::ClearanceField& field) const {
+                         const planning::VehicleSurroundings& surrounded,
+                         const planning::VehicleAudit& audit,
+                         const planning::GroundUnder& ground) const {
     if (certificate_.empty()) return;
-    const auto certificate =
-        planning::certify(field, question.band, audited.drive, question.vehicle, options_,
-                          audited.report, question.moving);
     const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
     CertificateFile file{.program = "roadbed " ROADBED_VERSION,
                          .occupancy = certified_file(occupancy_),
                          .trajectory = certified_file(drive),
-                         .certificate = certificate};
+                         .ground = ground.surface,
+                         .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
+                                                            audit, question.moving)};
     if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
     write_output(certificate_, write_certificate_json(file));
   }
@@ -302,7 +368,8 @@ class AuditCommand : public Command {
       geojson_, saved_drive_, check_;
   AuditSubjects subjects_;
   planning::AuditOptions options_;
-  double ground_m_ = 0.0, from_height_m_ = map::HeightBand{}.from_m;
+  std::string ground_;
+  double from_height_m_ = map::HeightBand{}.from_m;
   bool json_ = false, force_ = false;
 };
 

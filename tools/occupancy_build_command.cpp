@@ -30,7 +30,11 @@ class OccupancyBuildCommand : public Command {
              "(.bt .ot) to convert")
         .required();
     arguments.add("-o,--output", output_, "OctoMap file to write (.bt, or .ot with log-odds)")
-        .required();
+        .required()
+        .checked([](const std::string& text) {
+          const std::string suffix = std::filesystem::path(text).extension().string();
+          return suffix == ".bt" || suffix == ".ot" ? "" : "ends neither in .bt nor in .ot";
+        });
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
         .with_default();

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/ground.h"
+#include "roadbed/map/occupancy/levelled_slabs.h"
 #include "roadbed/map/occupancy/plan_grid.h"
 #include "roadbed/map/occupancy/rectangle_on_grid.h"
 
@@ -86,6 +88,18 @@ struct Slices {
   CellRange range;  // of all slabs
 };
 
+// Over ground that is not level every column has layers of its own.
+Slices slice_levelled(const OccupancyMap& occupancy, const HeightBand& band, const Slicer& slicer,
+                      const FieldRegion& region) {
+  const CellRange range = slicer.range(region.around, region.horizon_m);
+  check_size(range, kLevelledLayers, occupancy.resolution_m());
+  Slices slices{levelled_slabs(occupancy.cells(), band, occupancy.origin_in_source(),
+                               occupancy.resolution_m(), range),
+                {}};
+  for (const Slab& slab : slices.slabs) slices.range = slices.range.joined(slab.cells);
+  return slices;
+}
+
 Slices slice_all(const OccupancyMap& occupancy, const Slicer& slicer,
                  const std::optional<FieldRegion>& region) {
   Slices slices;
@@ -113,10 +127,9 @@ struct ClearanceField::Grid {
     return in_source - corner_in_source;
   }
 
-  geometry::Rectangle in_grid(const geometry::Pose2& pose,
-                              const geometry::VehicleShape& shape) const {
-    const Eigen::Vector2d position = in_grid(pose.position());
-    return geometry::body_at({position.x(), position.y(), pose.heading_rad}, shape);
+  geometry::Rectangle in_grid(geometry::Rectangle rectangle) const {
+    rectangle.centre = in_grid(rectangle.centre);
+    return rectangle;
   }
 
   // How far a point lies outside the region that queries should stay in.
@@ -144,17 +157,27 @@ struct ClearanceField::Grid {
   }
 };
 
+bool HeightBand::holds(const Eigen::Vector2d& in_source, double low_m, double height_m) const {
+  const double above_m = ground ? low_m - ground->height_m(in_source) : low_m;
+  return std::min(above_m + height_m, to_m) - std::max(above_m, from_m) > kTouch_m;
+}
+
 ClearanceField::ClearanceField(const OccupancyMap& occupancy, const HeightBand& band,
                                const std::optional<FieldRegion>& region) {
   check(band);
   const Slicer slicer(occupancy, band);
-  const Slices slices = slice_all(occupancy, slicer, region);
+  if (band.ground && !region) {
+    throw std::invalid_argument("ClearanceField: a band over a ground needs a region");
+  }
+  const Slices slices = band.ground ? slice_levelled(occupancy, band, slicer, *region)
+                                    : slice_all(occupancy, slicer, region);
+  const std::int64_t layers = band.ground ? kLevelledLayers : slicer.layers();
   const double cell_m = occupancy.resolution_m();
-  check_size(slices.range, slicer.layers(), cell_m);
+  check_size(slices.range, layers, cell_m);
   const Eigen::Vector2d first_cell(static_cast<double>(slices.range.from_x),
                                    static_cast<double>(slices.range.from_y));
   grid_.reset(new Grid{
-      .plan = PlanGrid(slices.slabs, slices.range, slicer.layers(), cell_m),
+      .plan = PlanGrid(slices.slabs, slices.range, layers, cell_m),
       .corner_in_source = occupancy.origin_in_source().head<2>() + cell_m * first_cell,
       .horizon_m = region ? std::min(region->horizon_m, kHorizon_m) : kHorizon_m,
       .around = region ? std::optional(region->around) : std::nullopt,
@@ -176,19 +199,18 @@ double ClearanceField::distance_bound_m(const Eigen::Vector2d& point_in_source,
   return std::min(seen_m, grid_->plan.lower_bound_m(grid_->in_grid(point_in_source), kind));
 }
 
-std::optional<ClearanceField::Nearest> ClearanceField::nearest(
-    const geometry::Pose2& source_from_vehicle, const geometry::VehicleShape& shape,
-    double within_m, ObstacleKind kind) const {
-  const geometry::Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
+std::optional<ClearanceField::Nearest> ClearanceField::nearest(const geometry::Rectangle& in_source,
+                                                               double within_m,
+                                                               ObstacleKind kind) const {
+  const geometry::Rectangle rectangle = grid_->in_grid(in_source);
   grid_->check_inside(rectangle);
   const auto nearest = grid_->plan.nearest(rectangle, std::min(within_m, grid_->horizon_m), kind);
   if (!nearest) return std::nullopt;
   return Nearest{nearest->distance_m, grid_->box_of(nearest->cell)};
 }
 
-double ClearanceField::unknown_share(const geometry::Pose2& source_from_vehicle,
-                                     const geometry::VehicleShape& shape) const {
-  const geometry::Rectangle rectangle = grid_->in_grid(source_from_vehicle, shape);
+double ClearanceField::unknown_share(const geometry::Rectangle& in_source) const {
+  const geometry::Rectangle rectangle = grid_->in_grid(in_source);
   if (grid_->plan.lower_bound_m(rectangle.centre, ObstacleKind::unknown) > rectangle.radius_m()) {
     return 0.0;
   }

@@ -5,16 +5,25 @@
 #include <optional>
 
 #include "roadbed/geometry/pose2.h"
+#include "roadbed/geometry/rectangle.h"
 #include "roadbed/geometry/vehicle_shape.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 
 namespace roadbed::map {
 
-/// The heights that a vehicle's body takes, in source coordinates; what is above or below, or only
-/// touches the band's end, does not count. Over ground at height g it is g + 0.2 … g + height.
+class Ground;
+
+/// The heights that a vehicle's body takes; what is above or below, or only touches the band's end,
+/// does not count. With a ground they are above that, column by column, else in source coordinates:
+/// over level ground at height g they are g + 0.2 … g + height.
 struct HeightBand {
   double from_m = 0.2;
   double to_m = 1.5;
+  const Ground* ground = nullptr;  ///< not owned
+
+  /// Whether a box that begins at a height and is so high reaches into the band, by more than a
+  /// touch, in the column of a point.
+  bool holds(const Eigen::Vector2d& in_source, double low_m, double height_m) const;
 };
 
 /// An axis-aligned box in plan view, in source coordinates.
@@ -70,17 +79,28 @@ class ClearanceField {
     Box2 witness;       ///< the nearest box, of one cell; of equally near ones, the lower left
   };
 
-  /// Exact distance between the vehicle's rectangle at a pose and the nearest box; none where no
-  /// box is within `within_m` (or within the horizon, if that is less).
+  /// Exact distance between a rectangle, or a point, and the nearest box; none where no box is
+  /// within `within_m` (or within the horizon, if that is less).
   /// @throws std::invalid_argument if the rectangle leaves the field's region.
-  std::optional<Nearest> nearest(const geometry::Pose2& source_from_vehicle,
-                                 const geometry::VehicleShape& shape, double within_m,
+  std::optional<Nearest> nearest(const geometry::Rectangle& in_source, double within_m,
                                  ObstacleKind kind = ObstacleKind::occupied) const;
 
-  /// Share of the space that the vehicle's rectangle at a pose takes in the band that was never
-  /// measured, 0 … 1. Exactly 0 only where nothing of it is unknown.
+  /// The same for the vehicle's rectangle at a pose.
+  std::optional<Nearest> nearest(const geometry::Pose2& source_from_vehicle,
+                                 const geometry::VehicleShape& shape, double within_m,
+                                 ObstacleKind kind = ObstacleKind::occupied) const {
+    return nearest(geometry::body_at(source_from_vehicle, shape), within_m, kind);
+  }
+
+  /// Share of the space over a rectangle in the band that was never measured, 0 … 1. Exactly 0 only
+  /// where nothing of it is unknown.
+  double unknown_share(const geometry::Rectangle& in_source) const;
+
+  /// The same for the vehicle's rectangle at a pose.
   double unknown_share(const geometry::Pose2& source_from_vehicle,
-                       const geometry::VehicleShape& shape) const;
+                       const geometry::VehicleShape& shape) const {
+    return unknown_share(geometry::body_at(source_from_vehicle, shape));
+  }
 
  private:
   struct Grid;

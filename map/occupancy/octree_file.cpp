@@ -45,7 +45,7 @@ class OctreeParser {
   [[noreturn]] void refuse_header(const std::string& element, const std::string& found,
                                   const std::string& needed) const {
     refuse(std::to_string(lines_.line_number()), element, found, needed,
-           "check that the file is a whole OctoMap file");
+           "get the whole file; of a point cloud make an octree with roadbed occupancy build");
   }
 
   [[noreturn]] void refuse_data(const std::string& found, const std::string& needed) const {

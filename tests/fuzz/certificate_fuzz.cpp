@@ -18,7 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                               {{5, 0, 1}, 1.6, map::CellState::free}};
   try {
     const auto file = tools::parse_certificate_json(bytes, "fuzz.json");
-    planning::check_certificate(file.certificate, cells, 0.4, drive);
+    for (const auto& part : file.parts) {
+      planning::check_certificate(part, cells, 0.4, drive);
+    }
   } catch (const map::InputError&) {
   } catch (const std::length_error&) {
   }

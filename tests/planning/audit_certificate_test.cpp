@@ -214,7 +214,7 @@ TEST(AuditCertificate, HoldsInLargeFreeSpaceToo) {
     }
   }
   const Trajectory drive({{.t_s = 0, .x_m = -20, .y_m = -30}, {.t_s = 9, .x_m = 20, .y_m = 30}});
-  AuditCertificate certificate{.vehicle = {},
+  AuditCertificate certificate{.part = geometry::body_of({}),
                                .band = kLowBand,
                                .verdict = Verdict::clear,
                                .from_occupied = {{0, 0.0, 1.0, 5.0}},

@@ -17,8 +17,9 @@ constexpr VehicleShape kCar{.length_m = 4.0, .width_m = 2.0, .rear_overhang_m = 
 // A small square at a place of the vehicle's frame, the vehicle anywhere.
 std::string side_of(double x_m, double y_m, const Pose2& pose, double half_m = 0.05) {
   const Eigen::Vector2d at = pose * Eigen::Vector2d(x_m, y_m);
-  return std::string(side_towards(
-      Rectangle{.centre = at, .half_length_m = half_m, .half_width_m = half_m}, pose, kCar));
+  return std::string(
+      side_towards(Rectangle{.centre = at, .half_length_m = half_m, .half_width_m = half_m},
+                   geometry::body_at(pose, kCar)));
 }
 
 TEST(BodySide, NamesSidesAndCornersWhereverTheVehicleStands) {
@@ -42,7 +43,7 @@ TEST(BodySide, NamesSidesAndCornersWhereverTheVehicleStands) {
 TEST(BodySide, OfALongThingTheNearestPlaceCounts) {
   // A lorry alongside: its middle is far ahead, yet it is nearest to the side.
   const Rectangle lorry{.centre = {10.0, 2.5}, .half_length_m = 9.0, .half_width_m = 1.0};
-  EXPECT_EQ(side_towards(lorry, {0, 0, 0}, kCar), "left side");
+  EXPECT_EQ(side_towards(lorry, geometry::body_at({0, 0, 0}, kCar)), "left side");
 }
 
 }  // namespace

@@ -103,6 +103,42 @@ TEST_F(AuditCommand, NamesTimePlaceAndPartOfTheFirstConflictAndTheVerdictOfEachS
   EXPECT_THAT(near.at("part").get<std::string>(), HasSubstr("left"));
 }
 
+TEST_F(AuditCommand, NamesThePartOfTheVehicleAndProvesEachAtItsHeights) {
+  // The post at y 1.0 to 1.1 stands 0.195 m beside the body, and in the way of a mirror of 0.25 m.
+  const std::string high =
+      folder_.write("high.json", R"({"mirrors":{"beyond_m":0.25,"rear_m":1.7,"front_m":1.9,)"
+                                 R"("from_height_m":2.1,"to_height_m":2.3}})");
+  const std::string low =
+      folder_.write("low.json", R"({"mirrors":{"beyond_m":0.25,"rear_m":1.7,"front_m":1.9,)"
+                                R"("from_height_m":0.9,"to_height_m":1.2}})");
+  const std::string drive = folder_ / "drives/near.csv", proof = folder_ / "parts.json";
+  const ProgramRun over =
+      audit({"--trajectory", drive, "--vehicle", high, "--certificate", proof, "--json"});
+  EXPECT_EQ(over.status, 0) << over.err;
+  EXPECT_THAT(Json::parse(over.out).at("part").get<std::string>(), HasSubstr("body, "));
+  const ProgramRun holds = run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
+  EXPECT_THAT(holds.out, HasSubstr("left mirror 0.2"));
+
+  const ProgramRun hit =
+      audit({"--trajectory", drive, "--vehicle", low, "--certificate", proof, "--json", "--force",
+             "--geojson", folder_ / "parts.geojson", "--svg", folder_ / "parts.svg"});
+  EXPECT_EQ(hit.status, 1);
+  const Json conflict = Json::parse(hit.out).at("conflicts").at(0);
+  EXPECT_THAT(conflict.at("part").get<std::string>(), HasSubstr("left mirror, front"));
+  // Its front, 1.9 m ahead of the axle, meets the post at 10 m.
+  EXPECT_NEAR(conflict.at("from_s").get<double>(), (10.0 - 1.9) / 2.0, 0.025);
+  EXPECT_THAT(bytes_of(folder_ / "parts.geojson"), HasSubstr("MultiPolygon"));
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+  // A proof of another mirror proves nothing of this one.
+  Json forged = Json::parse(bytes_of(proof));
+  forged.at("parts").at(1).at("vehicle").at("middle_m") = 0.9;
+  const ProgramRun refuted =
+      run_roadbed({"audit", "--check", folder_.write("forged.json", forged.dump())});
+  EXPECT_EQ(refuted.status, 1);
+  EXPECT_THAT(refuted.out, HasSubstr("right mirror: "));
+}
+
 TEST_F(AuditCommand, WritesATestCasePerDrive) {
   const std::string junit = folder_ / "audit.xml";
   EXPECT_EQ(audit({"--trajectory", drives_, "--junit", junit}).status, 1);
@@ -264,6 +300,92 @@ TEST_F(AuditCommand, WritesAPageThatPlaysTheAudit) {
   EXPECT_THAT(html, HasSubstr("conflict: least clearance 0.00 m"));
   EXPECT_THAT(html, HasSubstr("conflict begins: occupied space, front"));
   EXPECT_THAT(html, HasSubstr("proven clearance"));
+}
+
+TEST_F(AuditCommand, DrawsACloseUpOfEachConflictWithALinkToItsTime) {
+  const std::string page = folder_ / "near.html";
+  const std::string drive = folder_ / "drives/near.csv";
+  EXPECT_EQ(audit({"--trajectory", drive, "--report", page, "--clearance", "0.5"}).status, 1);
+  const std::string html = bytes_of(page);
+  EXPECT_THAT(html, HasSubstr("<h2>Close-ups</h2>"));
+  EXPECT_THAT(html, HasSubstr("class=\"up-witness\""));
+  EXPECT_THAT(html, HasSubstr("class=\"up-arrow\""));
+  EXPECT_THAT(html, HasSubstr("0.195 m from occupied space"));
+  EXPECT_THAT(html, testing::ContainsRegex("<figcaption><a href=\"#t=[0-9.]+\""));
+}
+
+TEST_F(AuditCommand, ListsTheDrivesOfAFolderOnOnePage) {
+  const std::string page = folder_ / "all.html";
+  EXPECT_EQ(audit({"--trajectory", drives_, "--report", page}).status, 1);
+  const std::string html = bytes_of(page);
+  EXPECT_THAT(html, HasSubstr("<h1>Audit of 4 drives</h1>"));
+  EXPECT_THAT(html, HasSubstr("1 unusable, 2 clear, 1 conflict"));
+  EXPECT_THAT(html, HasSubstr("<a href=\"#drive-3\">hit.csv</a></td><td class=\"bad\">conflict"));
+  EXPECT_THAT(html, HasSubstr("class=\"up-witness\""));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+}
+
+/// The post again, on a road that climbs by 10 % along x, 3 m high at x = 10 m.
+TEST_F(AuditCommand, FollowsTheGroundOfAMapOrOfTheMeasuredRoad) {
+  std::string points;
+  for (double x = -2.0; x < 26.0; x += 0.09) {
+    for (double y = -4.0; y < 4.0; y += 0.09) {
+      points +=
+          std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(2.0 + 0.1 * x) + "\n";
+    }
+  }
+  for (double z = 3.0; z < 4.0; z += 0.05) points += "10.05 1.05 " + std::to_string(z) + "\n";
+  const std::string cloud = folder_.write("slope.xyz", points), octree = folder_ / "slope.bt";
+  ASSERT_EQ(run_roadbed({"occupancy", "build", cloud, "-o", octree, "--quiet"}).status, 0);
+  const std::string map = folder_.write(
+      "slope.xodr",
+      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"40\" id=\"1\" "
+      "junction=\"-1\"><planView><geometry s=\"0\" x=\"-10\" y=\"4\" hdg=\"0\" length=\"40\">"
+      "<line/></geometry></planView><elevationProfile><elevation s=\"0\" a=\"1\" b=\"0.1\" "
+      "c=\"0\" d=\"0\"/></elevationProfile><lanes><laneSection s=\"0\"><center><lane id=\"0\" "
+      "type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" "
+      "a=\"8\" b=\"0\" c=\"0\" d=\"0\"/></lane></right></laneSection></lanes></road></OpenDRIVE>");
+  const auto audit_on = [&](const char* drive, std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {"audit", "--occupancy", octree, "--trajectory", folder_ / "drives" / drive,
+                 "--unknown", "free", "--from-height", "0.25", "--json", "--force"});
+    return run_roadbed(more);
+  };
+  const std::string proof = folder_ / "slope.json";
+  for (const std::vector<std::string>& ground :
+       {std::vector<std::string>{"--map", map}, {"--ground", "measured"}}) {
+    std::vector<std::string> with_proof = ground;
+    with_proof.insert(with_proof.end(), {"--certificate", proof});
+    const ProgramRun near = audit_on("near.csv", with_proof);
+    ASSERT_EQ(near.status, 0) << near.out << near.err;
+    EXPECT_THAT(near.err, HasSubstr("note: heights are above the"));
+    EXPECT_NEAR(Json::parse(near.out).at("least_clearance_m").get<double>(), 1.0 - 0.805, 0.02);
+    const ProgramRun holds = run_roadbed({"audit", "--check", proof});
+    EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
+    EXPECT_THAT(holds.out, HasSubstr("above ground at z 2.00 m"));
+    EXPECT_EQ(audit_on("hit.csv", ground).status, 1);
+  }
+  // On the level of its start the road itself is in the way, further up.
+  const ProgramRun level = audit_on("near.csv", {"--ground", "2"});
+  EXPECT_EQ(level.status, 1);
+  EXPECT_EQ(Json::parse(level.out).at("verdict"), "conflict");
+}
+
+TEST_F(AuditCommand, RefusesHeightsThatAreNone) {
+  const std::string one = folder_ / "drives/near.csv";
+  for (const char* ground : {"nan", "inf", "1e9", "up", "3m", ""}) {
+    EXPECT_EQ(audit({"--trajectory", one, "--ground", ground}).status, 2) << ground;
+  }
+  EXPECT_EQ(audit({"--trajectory", one, "--ground", "map"}).status, 2);
+  EXPECT_EQ(audit({"--trajectory", one, "--from-height", "nan"}).status, 2);
+  EXPECT_EQ(audit({"--trajectory", one, "--clearance", "nan"}).status, 2);
+  EXPECT_EQ(audit({"--trajectory", one, "--inflate", "nan"}).status, 2);
+  const ProgramRun high = audit({"--trajectory", one, "--from-height", "5"});
+  EXPECT_EQ(high.status, 1);
+  EXPECT_THAT(high.err, HasSubstr("lower --from-height"));
+  const ProgramRun bare = audit({"--trajectory", one, "--ground", "measured"});
+  EXPECT_EQ(bare.status, 1);
+  EXPECT_THAT(bare.err, HasSubstr("no surface was measured there"));
 }
 
 TEST_F(AuditCommand, TakesWhatMovesFromScenarios) {

@@ -183,6 +183,21 @@ TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   expect_refused({"occupancy", "info", cut}, "ends after");
   expect_refused({"audit", "--occupancy", cut, "--trajectory", drive}, "cut.bt");
   expect_refused({"audit", "--occupancy", octree_, "--trajectory", backwards}, "back.csv:3");
+  expect_refused({"audit", "--occupancy", nan, "--trajectory", drive}, "roadbed occupancy build");
+  const std::string post = folder_.write("post.xyz", "1 2 3\n");
+  const auto expect_wrong_usage = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"occupancy", "build", post});
+    const ProgramRun run = run_roadbed(more);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  for (const char* resolution : {"0", "nan", "1e-9", "-1", "inf", "fine"}) {
+    expect_wrong_usage({"-o", out, "--resolution", resolution});
+  }
+  for (const char* option : {"--voxel", "--carve-range", "--scale"}) {
+    expect_wrong_usage({"-o", out, option, "nan"});
+  }
+  expect_wrong_usage({"-o", folder_ / "out.txt"});
   EXPECT_EQ(run_roadbed({"occupancy", "build"}).status, 2);
   EXPECT_EQ(run_roadbed({"audit", "--unknown", "maybe"}).status, 2);
 }

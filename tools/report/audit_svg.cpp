@@ -10,6 +10,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "roadbed/tools/report/close_up.h"
 #include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools {
@@ -20,7 +21,8 @@ using geometry::Ring;
 using Box = Eigen::AlignedBox2d;
 
 constexpr double kWidth_px = 900.0, kHeader_px = 34.0, kMargin_px = 20.0;
-constexpr double kLeastHeight_px = 240.0, kMostHeight_px = 900.0, kMostScale_px_per_m = 60.0;
+constexpr double kPanelHeight_px = 200.0, kPlotWidth_px = 560.0;
+constexpr double kLeastHeight_px = 110.0, kMostHeight_px = 900.0, kMostScale_px_per_m = 60.0;
 constexpr std::size_t kMostFootprints = 400;
 
 constexpr std::string_view kStyle = R"(<style>
@@ -31,6 +33,9 @@ constexpr std::string_view kStyle = R"(<style>
 .worst{fill:none;stroke:#b01417;stroke-width:2.2}.witness{fill:#ffd400;stroke:#b01417;stroke-width:1}
 .axle{fill:none;stroke:#1b2029;stroke-width:1;stroke-dasharray:5 3}.rule{fill:none;stroke:#1b2029;stroke-width:1.4}
 .head{fill:#fff}text{font:13px system-ui,-apple-system,"Segoe UI","DejaVu Sans",sans-serif;fill:#1b2029}
+.plot{fill:#2f9be0;fill-opacity:.22;stroke:#2f7fb8;stroke-width:1.2}.least{fill:#b01417}.grid{fill:none;stroke:#d5d8dc;stroke-width:1}.small{font-size:11px}
+.up-ground{fill:#f4f4f1}.up-lane{fill:#dcdfe3}.up-occupied{fill:#4b3f33}.up-other{fill:#2f9be0;fill-opacity:.2;stroke:#2f7fb8}.up-part{fill:#2f9be0;fill-opacity:.45;stroke:#1b2029;stroke-width:1.5}
+.up-witness{fill:#ffd400;stroke:#b01417;stroke-width:1.5}.up-arrow,.up-rule{fill:none;stroke:#b01417;stroke-width:2}.up-label{font-size:17px;font-weight:600}.up-mid{text-anchor:middle}
 .mid{text-anchor:middle}.over{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}
 </style>
 )";
@@ -46,11 +51,12 @@ struct View {
   }
 };
 
-Ring body_ring(const AuditPicture& picture, double t_s) {
-  const geometry::Pose2 pose = picture.drive.at(t_s).pose();
-  Ring ring;
-  for (const Vector2d& corner : picture.body.corners_in_vehicle()) ring.push_back(pose * corner);
-  return ring;
+std::string body_svg(const AuditPicture& picture, const PictureFrame& frame, double t_s) {
+  std::string data;
+  for (const geometry::BodyPart& part : picture.parts) {
+    data += svg_ring(frame, part.outline_at(picture.drive.at(t_s).pose()));
+  }
+  return data;
 }
 
 Ring box_ring(const map::Box2& box) {
@@ -61,7 +67,9 @@ Ring box_ring(const map::Box2& box) {
 View look_at(const AuditPicture& picture) {
   Box box;
   for (const auto& point : picture.drive.points()) {
-    for (const Vector2d& corner : body_ring(picture, point.t_s)) box.extend(corner);
+    for (const geometry::BodyPart& part : picture.parts) {
+      for (const Vector2d& corner : part.outline_at(point.pose())) box.extend(corner);
+    }
   }
   const Vector2d around = Vector2d::Constant(std::max(3.0, 0.04 * box.sizes().maxCoeff()));
   box = Box(box.min() - around, box.max() + around);
@@ -117,7 +125,8 @@ std::vector<double> footprint_times(const AuditPicture& picture) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     way_m += (rows[i].pose().position() - rows[i - 1].pose().position()).norm();
   }
-  const double wanted = way_m / (0.25 * picture.body.length_m);
+  const geometry::BodyPart& first = picture.parts.front();
+  const double wanted = way_m / (0.25 * (first.length_m() + 2.0 * first.radius_m));
   const std::size_t count =
       std::clamp(static_cast<std::size_t>(wanted), std::size_t{2}, kMostFootprints);
   std::vector<double> times;
@@ -133,7 +142,7 @@ std::string drive_svg(const AuditPicture& picture, const View& view) {
   for (const double t_s : footprint_times(picture)) {
     const std::string_view look = look_at_time(picture.report, t_s);
     std::string& data = look == "conflict" ? conflict : look == "unknown" ? unknown : body;
-    data += svg_ring(view.frame, body_ring(picture, t_s));
+    data += body_svg(picture, view.frame, t_s);
   }
   Ring axle;
   for (const auto& point : picture.drive.points()) axle.push_back(point.pose().position());
@@ -144,14 +153,14 @@ std::string drive_svg(const AuditPicture& picture, const View& view) {
 std::string conflicts_svg(const AuditPicture& picture, const View& view) {
   std::string worst, witness, labels;
   for (const planning::Conflict& conflict : picture.report.conflicts) {
-    worst += svg_ring(view.frame, body_ring(picture, conflict.at.t_s));
+    worst += body_svg(picture, view.frame, conflict.at.t_s);
     witness += svg_ring(view.frame, box_ring(conflict.witness));
     labels +=
         svg_text("over", view.frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
                  fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s));
   }
   if (picture.report.conflicts.empty() && picture.report.witness) {
-    worst += svg_ring(view.frame, body_ring(picture, picture.report.least_clearance_at_s));
+    worst += body_svg(picture, view.frame, picture.report.least_clearance_at_s);
     witness += svg_ring(view.frame, box_ring(*picture.report.witness));
   }
   return svg_path("witness", witness) + svg_path("worst", worst) + labels;
@@ -182,18 +191,70 @@ std::string header_svg(const AuditPicture& picture, const View& view) {
          svg_path("rule", fmt::format("M{} 20v5H{}v-5", svg_number(start_px), svg_number(end_px)));
 }
 
+constexpr double kShownClearance_m = 5.0;
+
+// A gap in the plot where there is more room than it shows.
+std::string clearance_svg(const AuditPicture& picture, double top_px) {
+  const planning::AuditReport& report = picture.report;
+  const double start_s = picture.drive.start_s();
+  const double duration_s = std::max(1e-9, picture.drive.end_s() - start_s);
+  const double left_px = kMargin_px + 24.0, base_px = top_px + kPanelHeight_px - 26.0;
+  const double high_px = kPanelHeight_px - 56.0, wide_px = kPlotWidth_px - left_px;
+  const auto x_px = [&](double t_s) { return left_px + wide_px * (t_s - start_s) / duration_s; };
+  const auto y_px = [&](double clearance_m) {
+    return base_px - high_px * std::min(1.0, clearance_m / kShownClearance_m);
+  };
+  std::string grid, labels, curve;
+  for (int metres = 0; metres <= 5; ++metres) {
+    grid += fmt::format("M{} {}h{}", svg_number(left_px), svg_number(y_px(metres)),
+                        svg_number(wide_px));
+    labels += svg_text("small", {kMargin_px, y_px(metres) + 4.0}, fmt::format("{} m", metres));
+  }
+  curve = fmt::format("M{} {}", svg_number(left_px), svg_number(base_px));
+  for (const planning::AuditReport::Sample& sample : report.profile) {
+    curve +=
+        fmt::format("L{} {}", svg_number(x_px(sample.t_s)), svg_number(y_px(sample.clearance_m)));
+  }
+  curve += fmt::format("V{}Z", svg_number(base_px));
+  for (const double t_s : {start_s, picture.drive.end_s()}) {
+    labels += svg_text("small mid", {x_px(t_s), base_px + 17.0}, fmt::format("{:.1f} s", t_s));
+  }
+  const double least_px = x_px(report.least_clearance_at_s);
+  return svg_path("grid", grid) + svg_path("plot", curve) +
+         fmt::format("<circle class=\"least\" cx=\"{}\" cy=\"{}\" r=\"4\"/>\n",
+                     svg_number(least_px), svg_number(y_px(report.least_clearance_m))) +
+         labels + svg_text("", {left_px, top_px + 18.0}, "Clearance along the drive");
+}
+
+std::string close_up_of(const AuditPicture& picture, double top_px) {
+  const std::vector<ReportPicture> pictures =
+      close_ups(picture.report,
+                {picture.drive, picture.parts, picture.occupied, picture.lanes, picture.moving});
+  if (pictures.empty()) return {};
+  return fmt::format("<g transform=\"translate({} {}) scale(.78)\">{}</g>\n",
+                     svg_number(kPlotWidth_px + 2.0 * kMargin_px), svg_number(top_px + 6.0),
+                     pictures.front().svg);
+}
+
+std::string panel_svg(const AuditPicture& picture, double top_px) {
+  return fmt::format("<rect class=\"head\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
+                     svg_number(top_px), kWidth_px, kPanelHeight_px) +
+         clearance_svg(picture, top_px) + close_up_of(picture, top_px);
+}
+
 }  // namespace
 
 std::string audit_svg(const AuditPicture& picture) {
   const View view = look_at(picture);
-  const std::string height = svg_number(view.height_px);
+  const std::string height = svg_number(view.height_px + kPanelHeight_px);
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
              "viewBox=\"0 0 {0} {1}\" role=\"img\">\n<title>Audit of a drive</title>\n{2}"
              "<rect class=\"ground\" width=\"{0}\" height=\"{1}\"/>\n",
              kWidth_px, height, kStyle) +
          lanes_svg(picture, view) + occupied_svg(picture, view) + drive_svg(picture, view) +
-         conflicts_svg(picture, view) + header_svg(picture, view) + "</svg>\n";
+         conflicts_svg(picture, view) + header_svg(picture, view) +
+         panel_svg(picture, view.height_px) + "</svg>\n";
 }
 
 }  // namespace roadbed::tools

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "roadbed/planning/judged_stretches.h"
+#include "roadbed/tools/report/close_up.h"
 
 namespace roadbed::tools {
 namespace {
@@ -80,6 +81,16 @@ std::vector<ReportEvent> events_of_audit(const AuditReport& report) {
   return events;
 }
 
+std::vector<geometry::Ring> rings_of(const std::vector<ReportLane>& lanes) {
+  std::vector<geometry::Ring> rings;
+  for (const ReportLane& lane : lanes) {
+    geometry::Ring ring = lane.right;
+    ring.insert(ring.end(), lane.left.rbegin(), lane.left.rend());
+    rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
 std::string reason_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::clear:
@@ -126,6 +137,11 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   input.lanes = around.lanes;
   input.occupied = around.occupied;
   input.vehicle = around.body;
+  if (around.parts.size() > 1) {
+    for (const geometry::BodyPart& part : around.parts) {
+      input.parts_in_vehicle.push_back(part.outline_at({0.0, 0.0, 0.0}));
+    }
+  }
   input.drive = drive;
   for (const planning::MovingObstacle& moving : around.moving) {
     input.obstacles.push_back(moving.obstacle);
@@ -137,6 +153,8 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
                                reason_of(stretch.verdict)});
   }
   input.checks = checks_of(report, around.clearance_m);
+  input.pictures = close_ups(
+      report, {drive, around.parts, around.occupied, rings_of(around.lanes), around.moving});
   input.command = around.command;
   input.version = around.version;
   input.crs = around.crs;

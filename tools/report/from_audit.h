@@ -13,9 +13,10 @@ namespace roadbed::tools {
 
 /// What the page of an audit shows besides the audit itself, all in source coordinates.
 struct AuditSurroundings {
-  std::string name;             ///< of the drive
-  geometry::VehicleShape body;  ///< as audited, with its margin
-  double clearance_m = 0.0;     ///< asked for
+  std::string name;                       ///< of the drive
+  geometry::VehicleShape body;            ///< the rectangle of the vehicle, with its margin
+  std::vector<geometry::BodyPart> parts;  ///< as audited, with the margin
+  double clearance_m = 0.0;               ///< asked for
   std::vector<map::Box2> occupied;
   std::vector<ReportLane> lanes;
   std::vector<planning::MovingObstacle> moving;

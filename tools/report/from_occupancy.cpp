@@ -51,8 +51,8 @@ std::vector<Box2> occupied_in(const map::OccupancyMap& occupancy, const map::Hei
   for (const map::OccupancyCell& cell : occupancy.cells()) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
     if (cell.state != map::CellState::occupied) continue;
-    if (z_m + half_m <= band.from_m + kSame_m || z_m - half_m >= band.to_m - kSame_m) continue;
     const Eigen::Vector2d centre = cell.centre_in_source.head<2>();
+    if (!band.holds(centre, z_m - half_m, 2.0 * half_m)) continue;
     const Eigen::Vector2d corner(half_m, half_m);
     if (!box_in_source.intersects(Eigen::AlignedBox2d(centre - corner, centre + corner))) continue;
     boxes.push_back({centre - corner, centre + corner});

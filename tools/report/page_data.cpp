@@ -159,11 +159,19 @@ std::string_view severity_name(Severity severity) {
   return "info";
 }
 
-Json coded_vehicle(const geometry::VehicleShape& vehicle) {
+Json coded_vehicle(const ReportInput& input) {
+  const geometry::VehicleShape& vehicle = input.vehicle;
+  Json parts = Json::array();
+  for (const LineInSource& outline : input.parts_in_vehicle) {
+    Json ring = Json::array();
+    for (const Eigen::Vector2d& point : outline) ring.push_back({point.x(), point.y()});
+    parts.push_back(std::move(ring));
+  }
   return {{"back", -vehicle.rear_overhang_m},
           {"front", vehicle.front_m()},
           {"width", vehicle.width_m},
-          {"wheelbase", vehicle.wheelbase_m}};
+          {"wheelbase", vehicle.wheelbase_m},
+          {"parts", std::move(parts)}};
 }
 
 // Costs in thousandths.
@@ -235,7 +243,7 @@ std::string page_data_json(const ReportInput& input) {
   };
   const Json data = {
       {"origin", {origin.x(), origin.y()}},
-      {"vehicle", coded_vehicle(input.vehicle)},
+      {"vehicle", coded_vehicle(input)},
       {"lanes", coded_lanes(input, origin)},
       {"route", list_of(input.route, line)},
       {"reference", line(input.reference)},

@@ -178,6 +178,17 @@ std::string page_checks(const ReportInput& input) {
   return html + "</tbody></table></section>";
 }
 
+std::string page_pictures(const ReportInput& input) {
+  if (input.pictures.empty()) return {};
+  std::string html = "<section class=\"tables\"><section class=\"card\"><h2>Close-ups</h2>\n";
+  html += "<div class=\"pictures\">\n";
+  for (const ReportPicture& picture : input.pictures) {
+    html += fmt::format("<figure>{}<figcaption>{} <span>{}</span></figcaption></figure>\n",
+                        picture.svg, moment_link(picture.t_s), escape_markup(picture.text));
+  }
+  return html + "</div></section></section>";
+}
+
 std::string page_events(const ReportInput& input) {
   std::string html = "<section class=\"card\"><h2>What happened</h2>\n";
   if (input.events.empty()) return html + "<p class=\"none\">Nothing of note.</p></section>";

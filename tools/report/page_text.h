@@ -14,6 +14,9 @@ std::string page_head(const ReportInput& input);
 /// Table of what was checked, in the order of the input; values are rounded to three decimals.
 std::string page_checks(const ReportInput& input);
 
+/// Drawings of moments, each with a link to it; nothing if there are none.
+std::string page_pictures(const ReportInput& input);
+
 /// What happened when; a click goes to the moment.
 std::string page_events(const ReportInput& input);
 

@@ -36,6 +36,7 @@ std::string drive_report_html(const ReportInput& input) {
                                 {"head", page_head(input)},
                                 {"checks", page_checks(input)},
                                 {"events", page_events(input)},
+                                {"pictures", page_pictures(input)},
                                 {"foot", page_foot(input)},
                                 {"data", escape_json_for_script(page_data_json(input))},
                                 {"page_css", std::string(kPageCss)},

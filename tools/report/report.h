@@ -103,6 +103,13 @@ struct ReportSource {
   std::string xxhash;  ///< XXH3 of its bytes, hexadecimal
 };
 
+/// A drawing of a moment.
+struct ReportPicture {
+  double t_s = 0.0;
+  std::string text;  ///< what it shows
+  std::string svg;   ///< markup, put into the page as it is
+};
+
 enum class Tone { good, open, bad };
 
 /// One line that says how it went.
@@ -123,7 +130,8 @@ struct ReportInput {
   std::vector<map::Box2> occupied;  ///< cells near the drive, in plan
 
   geometry::VehicleShape vehicle;
-  geometry::Trajectory drive;  ///< may be empty
+  std::vector<LineInSource> parts_in_vehicle;  ///< outlines to draw besides its rectangle
+  geometry::Trajectory drive;                  ///< may be empty
   std::vector<planning::Obstacle> obstacles;
   std::vector<ReportPlan> plans;                     ///< by time, one per cycle; may be empty
   std::vector<std::string> cost_names, cause_names;  ///< of the plans' candidates
@@ -132,7 +140,8 @@ struct ReportInput {
   std::vector<ReportEvent> events;        ///< by time
   std::vector<ReportDecision> decisions;  ///< by time, not overlapping
   std::vector<ReportCheck> checks;
-  std::optional<ReportVerdict> audit;  ///< none: no occupancy was given
+  std::vector<ReportPicture> pictures;  ///< by time
+  std::optional<ReportVerdict> audit;   ///< none: no occupancy was given
 
   std::string command;  ///< line that makes the drive again
   std::string version;  ///< "roadbed 0.1.0"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/tools/simulation/planned_path.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/traffic.h"
 #include "roadbed/tools/simulation/world.h"

@@ -205,7 +205,7 @@ ScenarioOptions options(const JsonNode& node) {
 }
 
 geometry::VehicleShape vehicle(const JsonNode& node) {
-  return parse_vehicle_json(node.value().dump(), node.file() + ":" + node.pointer());
+  return parse_vehicle_shape_json(node.value().dump(), node.file() + ":" + node.pointer());
 }
 
 std::uint64_t seed(const JsonNode& node) {

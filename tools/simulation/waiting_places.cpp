@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 4> kGiveWaySigns{"205", "de205", "r1-2", 
 constexpr double kOncoming_rad = 2.4;  // headings this far apart meet
 constexpr double kTurns_rad = 0.8;     // by less a lane goes straight on
 constexpr double kBeforeConflict_m = 0.5;
-constexpr double kSamePlace_m = 0.5;
+constexpr double kSameWaitingPlace_m = 0.5;
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char letter) {
@@ -172,7 +172,8 @@ class Finder {
            std::optional<std::size_t> light = {}) {
     const double s_m = station(leg().lane, lane_s_m);
     const bool known = std::ranges::any_of(places_, [&](const WaitingPlace& place) {
-      return place.kind == kind && place.light == light && std::abs(place.s_m - s_m) < kSamePlace_m;
+      return place.kind == kind && place.light == light &&
+             std::abs(place.s_m - s_m) < kSameWaitingPlace_m;
     });
     if (known) return;
     places_.push_back({.kind = kind,

@@ -5,8 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 
 namespace roadbed::tools {
+namespace {
+
+std::string refuse_nan(const std::string& text) {
+  double number = 0.0;
+  const bool is_nan = CLI::detail::lexical_cast(text, number) && std::isnan(number);
+  return is_nan ? "is not a number" : "";
+}
+
+}  // namespace
 
 Argument& Argument::required() {
   option_->required();
@@ -19,16 +29,19 @@ Argument& Argument::with_default() {
 }
 
 Argument& Argument::within(double least, double most) {
+  option_->check(refuse_nan);  // which is neither below a range nor above it
   option_->check(CLI::Range(least, most));
   return *this;
 }
 
 Argument& Argument::positive() {
+  option_->check(refuse_nan);
   option_->check(CLI::PositiveNumber);
   return *this;
 }
 
 Argument& Argument::not_negative() {
+  option_->check(refuse_nan);
   option_->check(CLI::NonNegativeNumber);
   return *this;
 }

@@ -70,12 +70,18 @@ geometry::Ring box_outline(const map::Box2& box) {
   return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
 }
 
-void add_conflict(Json& features, const AuditedDrive& audited, const planning::Conflict& conflict,
-                  const geometry::VehicleShape& body) {
-  geometry::Ring ring;
-  for (const Vector2d& corner : body.corners_in_vehicle()) {
-    ring.push_back(conflict.at.pose() * corner);
+// The outlines of all parts; one polygon where there is one part.
+Json outlines(const std::vector<geometry::BodyPart>& parts, const geometry::Pose2& pose) {
+  if (parts.size() == 1) return polygon(parts.front().outline_at(pose));
+  Json polygons = Json::array();
+  for (const geometry::BodyPart& part : parts) {
+    polygons.push_back(polygon(part.outline_at(pose)).at("coordinates"));
   }
+  return {{"type", "MultiPolygon"}, {"coordinates", std::move(polygons)}};
+}
+
+void add_conflict(Json& features, const AuditedDrive& audited, const planning::Conflict& conflict,
+                  const std::vector<geometry::BodyPart>& parts) {
   const Json about = {{"drive", audited.name},
                       {"kind", "conflict"},
                       {"from_s", conflict.from_s},
@@ -84,7 +90,7 @@ void add_conflict(Json& features, const AuditedDrive& audited, const planning::C
                       {"clearance_m", conflict.least_clearance_m},
                       {"part", conflict.part},
                       {"obstacle", conflict.obstacle.empty() ? Json() : Json(conflict.obstacle)}};
-  features.push_back(feature(polygon(ring), about));
+  features.push_back(feature(outlines(parts, conflict.at.pose()), about));
   Json witness = about;
   witness["kind"] = "witness";
   features.push_back(feature(polygon(box_outline(conflict.witness)), std::move(witness)));
@@ -106,8 +112,7 @@ std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::str
 
 std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                            const std::string& crs) {
-  const geometry::VehicleShape body =
-      planning::inflated(question.vehicle, question.options.inflate_m);
+  const std::vector<geometry::BodyPart> parts = inflated_parts(question);
   Json features = Json::array();
   for (const AuditedDrive& audited : audits) {
     if (!audited.fault.empty()) continue;
@@ -116,7 +121,7 @@ std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQ
       features.push_back(stretch_feature(audited, stretch));
     }
     for (const planning::Conflict& conflict : audited.report.conflicts) {
-      add_conflict(features, audited, conflict, body);
+      add_conflict(features, audited, conflict, parts);
     }
   }
   const auto text_of = [](const Json& json) {

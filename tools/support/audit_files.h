@@ -12,7 +12,7 @@ namespace roadbed::tools {
 /// A test case per drive: failed where the drive is not clear, an error where it is unusable.
 std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& occupancy);
 
-/// A line per stretch of one verdict, and for each conflict the vehicle's rectangle (with its
+/// A line per stretch of one verdict, and for each conflict the vehicle's outline (with its
 /// margin) where it is nearest, and the witness. Coordinates are the source's; `crs` names them.
 std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                            const std::string& crs);

@@ -69,8 +69,8 @@ std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
   for (const map::OccupancyCell& cell : occupancy.cells()) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
     if (cell.state != map::CellState::occupied) continue;
-    if (z_m + half_m <= band.from_m || z_m - half_m >= band.to_m) continue;
     const Eigen::Array2d centre = cell.centre_in_source.head<2>();
+    if (!band.holds(centre.matrix(), z_m - half_m, 2.0 * half_m)) continue;
     boxes.push_back({centre - half_m, centre + half_m});
   }
   return boxes;

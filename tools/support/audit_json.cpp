@@ -179,6 +179,22 @@ Json audits_json(const std::vector<AuditedDrive>& audits) {
   return json;
 }
 
+IndexedAudit indexed(const AuditedDrive& audited) {
+  IndexedAudit index{.name = audited.name,
+                     .tone = audited.is_clear() ? Tone::good : Tone::bad,
+                     .outcome = std::string(audited.outcome()),
+                     .least = {},
+                     .text = audited.fault,
+                     .pictures = {}};
+  if (!audited.fault.empty()) return index;
+  const bool is_open = audited.report.verdict == planning::Verdict::unknown ||
+                       audited.report.verdict == planning::Verdict::undecided;
+  if (is_open) index.tone = Tone::open;
+  index.least = least_text(audited.report);
+  index.text = audit_text(audited.report);
+  return index;
+}
+
 std::string audits_table(const std::vector<AuditedDrive>& audits) {
   std::size_t width = 5;
   for (const AuditedDrive& audited : audits) width = std::max(width, audited.name.size());

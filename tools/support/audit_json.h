@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadbed/planning/audit.h"
+#include "roadbed/tools/report/audit_index.h"
 #include "roadbed/tools/support/audited_drive.h"
 
 namespace roadbed::tools {
@@ -19,6 +20,9 @@ std::string audit_text(const planning::AuditReport& report);
 /// `{"verdict":…,"counts":{…},"audits":[…]}`: each audit as above with the name of its drive, or
 /// why there is none. The verdict is the gravest.
 nlohmann::ordered_json audits_json(const std::vector<AuditedDrive>& audits);
+
+/// What a page of many audits says of one, without pictures.
+IndexedAudit indexed(const AuditedDrive& audited);
 
 /// A line per drive, and one with the counts.
 std::string audits_table(const std::vector<AuditedDrive>& audits);

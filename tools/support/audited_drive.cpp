@@ -1,7 +1,15 @@
 #include "roadbed/tools/support/audited_drive.h"
 
-#include <exception>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/planning/drive_ground.h"
 #include "roadbed/tools/support/in_threads.h"
 
 namespace roadbed::tools {
@@ -12,18 +20,81 @@ AuditedDrive audit_one(const map::OccupancyMap& occupancy, const AuditSubject& s
   AuditedDrive audited{.name = subject.name};
   try {
     audited.drive = subject.drive();
-    const map::ClearanceField field(
-        occupancy, question.band,
-        planning::audited_region(audited.drive, question.vehicle, question.options));
+    audited.ground = ground_under(occupancy, audited.drive, question.ground);
     audited.report =
-        planning::audit(field, audited.drive, question.vehicle, question.options, question.moving);
+        planning::audit_vehicle(surroundings(occupancy, audited.drive, audited.ground, question),
+                                audited.drive, question.options, question.moving)
+            .whole;
   } catch (const std::exception& error) {
     audited.fault = error.what();
   }
   return audited;
 }
 
+// A map and a cloud whose heights are apart cannot be meant for each other.
+void check_heights(const map::OccupancyMap& occupancy, const map::Ground& ground) {
+  constexpr double near_m = 5.0;
+  double least_m = std::numeric_limits<double>::infinity(), most_m = -least_m;
+  for (const map::OccupancyCell& cell : occupancy.cells()) {
+    least_m = std::min(least_m, cell.centre_in_source.z() - 0.5 * cell.size_m);
+    most_m = std::max(most_m, cell.centre_in_source.z() + 0.5 * cell.size_m);
+  }
+  if (least_m > most_m) return;
+  if (ground.highest_m() > least_m - near_m && ground.lowest_m() < most_m + near_m) return;
+  throw map::InputError(
+      {.file = "ground",
+       .place = {},
+       .element = {},
+       .found = fmt::format("the map's roads lie at z {:.1f} m to {:.1f} m", ground.lowest_m(),
+                            ground.highest_m()),
+       .needed = fmt::format("the occupancy's {:.1f} m to {:.1f} m", least_m, most_m),
+       .remedy = "bring both into one frame, or give --ground Z"});
+}
+
 }  // namespace
+
+planning::GroundUnder ground_under(const map::OccupancyMap& occupancy,
+                                   const geometry::Trajectory& drive, const GroundRule& rule) {
+  if (rule.kind == GroundRule::Kind::level) return {.level_m = rule.level_m};
+  auto ground = std::make_shared<const map::Ground>(
+      rule.kind == GroundRule::Kind::map ? planning::road_under(*rule.road_map, drive)
+                                         : planning::measured_under(occupancy, drive));
+  if (rule.kind == GroundRule::Kind::map) check_heights(occupancy, *ground);
+  if (ground->is_level()) return {.level_m = ground->lowest_m()};
+  return {.level_m = ground->lowest_m(), .surface = std::move(ground)};
+}
+
+planning::VehicleSurroundings surroundings(const map::OccupancyMap& occupancy,
+                                           const geometry::Trajectory& drive,
+                                           const planning::GroundUnder& ground,
+                                           const AuditQuestion& question) {
+  return {occupancy, ground, question.parts,
+          planning::audited_region(drive, question.parts, question.options)};
+}
+
+map::HeightBand AuditQuestion::heights(const planning::GroundUnder& under) const {
+  map::HeightBand all{parts.front().from_height_m, parts.front().to_height_m};
+  for (const geometry::BodyPart& part : parts) {
+    all = {std::min(all.from_m, part.from_height_m), std::max(all.to_m, part.to_height_m)};
+  }
+  return under.band(all.from_m, all.to_m);
+}
+
+geometry::VehicleShape inflated_shape(const AuditQuestion& question) {
+  geometry::VehicleShape grown = question.shape;
+  grown.length_m += 2.0 * question.options.inflate_m;
+  grown.width_m += 2.0 * question.options.inflate_m;
+  grown.rear_overhang_m += question.options.inflate_m;
+  return grown;
+}
+
+std::vector<geometry::BodyPart> inflated_parts(const AuditQuestion& question) {
+  std::vector<geometry::BodyPart> parts;
+  for (const geometry::BodyPart& part : question.parts) {
+    parts.push_back(geometry::inflated(part, question.options.inflate_m));
+  }
+  return parts;
+}
 
 std::vector<AuditedDrive> audit_all(const map::OccupancyMap& occupancy,
                                     const std::vector<AuditSubject>& subjects,

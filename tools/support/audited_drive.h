@@ -4,28 +4,58 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/planning/audit.h"
+#include "roadbed/map/road_map.h"
+#include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tools/support/audit_subjects.h"
 
 namespace roadbed::tools {
 
+/// What the heights of a vehicle are above: a level, the lanes of a map, or what was measured.
+struct GroundRule {
+  enum class Kind { level, map, measured };
+  Kind kind = Kind::level;
+  double level_m = 0.0;
+  const map::RoadMap* road_map = nullptr;  ///< of Kind::map
+};
+
 /// What is asked of every drive.
 struct AuditQuestion {
-  geometry::VehicleShape vehicle;
-  map::HeightBand band;
+  geometry::VehicleShape shape;
+  std::vector<geometry::BodyPart> parts;  ///< of the vehicle, without the margin
+  GroundRule ground;
   planning::AuditOptions options;
   std::vector<planning::MovingObstacle> moving = {};  ///< in source coordinates
+
+  /// From the lowest part's underside to the highest top.
+  map::HeightBand heights(const planning::GroundUnder& under) const;
 };
+
+/// What the vehicle of a question meets on a drive.
+planning::VehicleSurroundings surroundings(const map::OccupancyMap& occupancy,
+                                           const geometry::Trajectory& drive,
+                                           const planning::GroundUnder& ground,
+                                           const AuditQuestion& question);
+
+/// The ground under a drive by a question's rule.
+/// @throws InputError if it cannot be told, or lies apart from all that was measured.
+planning::GroundUnder ground_under(const map::OccupancyMap& occupancy,
+                                   const geometry::Trajectory& drive, const GroundRule& rule);
+
+/// The vehicle's parts as audited, with the margin.
+std::vector<geometry::BodyPart> inflated_parts(const AuditQuestion& question);
+
+/// The vehicle's rectangle grown by the margin on every side.
+geometry::VehicleShape inflated_shape(const AuditQuestion& question);
 
 /// A drive and what its audit found.
 struct AuditedDrive {
   std::string name;
   std::string fault = {};  ///< why it could not be audited; empty: it was
   geometry::Trajectory drive = {};
+  planning::GroundUnder ground = {};
   planning::AuditReport report = {};
 
   bool is_clear() const { return fault.empty() && report.verdict == planning::Verdict::clear; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/ground.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
@@ -46,8 +47,14 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
   const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_file);
   try {
-    return planning::check_certificate(file.certificate, occupancy.cells(),
-                                       occupancy.resolution_m(), drive, moving);
+    const std::vector<map::OccupancyCell> cells = occupancy.cells();
+    for (const planning::AuditCertificate& part : file.parts) {
+      for (const std::string& fault :
+           planning::check_certificate(part, cells, occupancy.resolution_m(), drive, moving)) {
+        faults.push_back(file.parts.size() == 1 ? fault : part.part.name + ": " + fault);
+      }
+    }
+    return faults;
   } catch (const std::length_error& too_long) {
     throw map::InputError({.file = name.string(),
                            .place = {},
@@ -59,26 +66,53 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
 }
 
 // What the verdict is about: a certificate of another question proves nothing of one's own.
+std::string text_of(const planning::AuditCertificate& audit) {
+  const geometry::BodyPart& part = audit.part;
+  const std::string heights =
+      fmt::format("heights {:.9g} m to {:.9g} m", audit.band.from_m, audit.band.to_m);
+  if (part.is_circle()) {
+    return fmt::format("{} of radius {:.9g} m at ({:.9g} m, {:.9g} m), {}", part.name,
+                       part.radius_m, part.front_m, part.left_m, heights);
+  }
+  const std::string aside =
+      part.left_m + part.right_m == 0.0
+          ? ""
+          : fmt::format(", its middle {:.9g} m to the left", part.middle_in_vehicle().y());
+  return fmt::format("{} {:.9g} m by {:.9g} m, {:.9g} m of it behind the rear axle{}, {}",
+                     part.name, part.length_m(), part.width_m(), -part.rear_m, aside, heights);
+}
+
 std::string question_of(const CertificateFile& file) {
-  const planning::AuditCertificate& audit = file.certificate;
-  return fmt::format(
-      "body {} m by {} m, {} m of it behind the rear axle, grown by {} m; heights {} m to {} m; "
-      "clearance {} m; unknown space counts as {}; {}",
-      audit.vehicle.length_m, audit.vehicle.width_m, audit.vehicle.rear_overhang_m, audit.inflate_m,
-      audit.band.from_m, audit.band.to_m, audit.clearance_m, planning::name(audit.unknown_policy),
-      file.obstacles ? "what moves is that of " + file.obstacles->name : "nothing moves");
+  const planning::AuditCertificate& audit = file.parts.front();
+  std::string text;
+  for (const planning::AuditCertificate& part : file.parts) text += text_of(part) + "; ";
+  if (const map::Ground* ground = audit.band.ground) {
+    text += fmt::format("above ground at z {:.2f} m to {:.2f} m; ", ground->lowest_m(),
+                        ground->highest_m());
+  }
+  return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
+                            audit.inflate_m, audit.clearance_m,
+                            planning::name(audit.unknown_policy),
+                            file.obstacles ? "what moves is that of " + file.obstacles->name
+                                           : "nothing moves");
 }
 
 void print(std::ostream& out, const CertificateFile& file, const std::vector<std::string>& faults) {
-  const planning::AuditCertificate& audit = file.certificate;
   out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
-  out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(audit.verdict), file.program);
+  out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(file.verdict()), file.program);
   out << fmt::format("{:<17}{}\n", "question", question_of(file));
+  std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
+  bool is_whole = true;
+  for (const planning::AuditCertificate& part : file.parts) {
+    from_occupied += part.from_occupied.size();
+    from_unknown += part.from_unknown.size();
+    from_moving += part.from_moving.size();
+    is_whole = is_whole && part.conflicts.empty() && part.undecided.empty();
+  }
   out << fmt::format("{:<17}{} from occupied space, {} from unknown space, {} from what moves\n",
-                     "proven spans", audit.from_occupied.size(), audit.from_unknown.size(),
-                     audit.from_moving.size());
-  if (audit.conflicts.empty() && audit.undecided.empty()) {
-    out << fmt::format("{:<17}{:.3f} m\n", "certified", audit.certified_clearance_m);
+                     "proven spans", from_occupied, from_unknown, from_moving);
+  if (is_whole) {
+    out << fmt::format("{:<17}{:.3f} m\n", "certified", file.certified_clearance_m());
   }
   for (const std::string& fault : faults) out << fmt::format("{:<17}{}\n", "fault", fault);
 }
@@ -95,8 +129,8 @@ bool check_certificate_file(const fs::path& certificate, const fs::path& occupan
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},
                                   {"question", question_of(file)},
-                                  {"verdict", name(file.certificate.verdict)},
-                                  {"certified_clearance_m", file.certificate.certified_clearance_m},
+                                  {"verdict", name(file.verdict())},
+                                  {"certified_clearance_m", file.certified_clearance_m()},
                                   {"faults", faults}}
                .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
         << '\n';

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "roadbed/map/occupancy/ground.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/obstacles_csv.h"
@@ -24,7 +28,7 @@ using planning::UnknownPolicy;
 using planning::Verdict;
 using Ordered = nlohmann::ordered_json;
 
-constexpr std::string_view kFormat = "roadbed audit certificate 1";
+constexpr std::string_view kFormat = "roadbed audit certificate 1", kBody = "body";
 constexpr Range kAny{-1e12, 1e12}, kShare{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9};
 
 constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPolicy::occupied,
@@ -36,11 +40,24 @@ Ordered file_json(const CertifiedFile& file) {
   return {{"file", file.name}, {"xxhash", file.xxhash}};
 }
 
-Ordered vehicle_json(const geometry::VehicleShape& vehicle) {
-  return {{"length_m", vehicle.length_m},
-          {"width_m", vehicle.width_m},
-          {"rear_overhang_m", vehicle.rear_overhang_m},
-          {"wheelbase_m", vehicle.wheelbase_m}};
+// A rectangle in the middle is told as a vehicle is; what differs from that is told besides.
+Ordered part_json(const geometry::BodyPart& part) {
+  Ordered json{{"length_m", part.length_m()},
+               {"width_m", part.width_m()},
+               {"rear_overhang_m", -part.rear_m}};
+  if (part.right_m + part.left_m != 0.0) json["middle_m"] = part.middle_in_vehicle().y();
+  if (part.is_circle()) json["radius_m"] = part.radius_m;
+  if (part.name != kBody) json["name"] = part.name;
+  return json;
+}
+
+Ordered ground_json(const map::Ground& ground) {
+  Ordered json = Ordered::array();
+  for (const map::GroundPlace& place : ground.places()) {
+    json.push_back(
+        {place.in_source.x(), place.in_source.y(), place.z_m, place.slope.x(), place.slope.y()});
+  }
+  return json;
 }
 
 Ordered spans_json(const std::vector<ProvenSpan>& spans) {
@@ -117,30 +134,53 @@ CertifiedFile read_file_entry(const JsonNode& node) {
   return {.name = node.at("file").text(), .xxhash = node.at("xxhash").text()};
 }
 
-geometry::VehicleShape read_vehicle(const JsonNode& node) {
-  node.require_object({"length_m", "width_m", "rear_overhang_m", "wheelbase_m"});
-  constexpr Range measure{0.0, 1000.0};
-  geometry::VehicleShape shape;
-  shape.length_m = node.at("length_m").number(measure);
-  shape.width_m = node.at("width_m").number(measure);
-  shape.rear_overhang_m = node.at("rear_overhang_m").number(measure);
-  shape.wheelbase_m = node.at("wheelbase_m").number(measure);
+geometry::BodyPart read_part(const JsonNode& node) {
+  node.require_object(
+      {"length_m", "width_m", "rear_overhang_m", "wheelbase_m", "middle_m", "radius_m", "name"});
+  constexpr Range measure{0.0, 2000.0}, place{-1000.0, 1000.0};
+  const double length_m = node.at("length_m").number(measure);
+  const double width_m = node.at("width_m").number(measure);
+  const double rear_m = -node.at("rear_overhang_m").number(place);
+  const double middle_m = node.number_or("middle_m", 0.0, place);
+  geometry::BodyPart part{.rear_m = rear_m,
+                          .front_m = rear_m + length_m,
+                          .right_m = middle_m - 0.5 * width_m,
+                          .left_m = middle_m + 0.5 * width_m,
+                          .radius_m = node.number_or("radius_m", 0.0, measure)};
+  if (const auto name = node.find("name")) part.name = name->text();
   try {
-    shape.check();
+    part.check();
   } catch (const std::invalid_argument& fault) {
     node.refuse(fault.what(), "a vehicle", "write the certificate anew");
   }
-  return shape;
+  return part;
 }
 
 map::HeightBand read_band(const JsonNode& node) {
   constexpr Range height{-1e6, 1e6};
   const std::vector<JsonNode> ends = numbers(node, 2);
-  const map::HeightBand band{ends[0].number(height), ends[1].number(height)};
+  const map::HeightBand band{ends[0].number(height), ends[1].number(height), nullptr};
   if (!(band.from_m < band.to_m)) {
     node.refuse("is empty", "a lower and a higher end", "write the certificate anew");
   }
   return band;
+}
+
+std::shared_ptr<const map::Ground> read_ground(const JsonNode& node) {
+  const auto ground = node.find("ground");
+  if (!ground) return nullptr;
+  constexpr Range slope{-10.0, 10.0}, height{-1e6, 1e6}, place{-1e9, 1e9};
+  std::vector<map::GroundPlace> places;
+  for (const JsonNode& element : ground->elements()) {
+    const std::vector<JsonNode> values = numbers(element, 5);
+    places.push_back({{values[0].number(place), values[1].number(place)},
+                      values[2].number(height),
+                      {values[3].number(slope), values[4].number(slope)}});
+  }
+  if (places.empty()) {
+    ground->refuse("is empty", "a place at least", "write the certificate anew");
+  }
+  return std::make_shared<const map::Ground>(std::move(places));
 }
 
 std::vector<ProvenSpan> read_spans(const JsonNode& node) {
@@ -192,6 +232,30 @@ std::vector<Conflict> read_conflicts(const JsonNode& node) {
   return conflicts;
 }
 
+void add_claims(Ordered& json, const AuditCertificate& audit, bool has_moving) {
+  json["verdict"] = planning::name(audit.verdict);
+  json["certified_clearance_m"] = audit.certified_clearance_m;
+  json["conflicts"] = conflicts_json(audit.conflicts);
+  json["unknown"] = stretches_json(audit.unknown);
+  json["undecided"] = stretches_json(audit.undecided);
+  json["from_occupied"] = spans_json(audit.from_occupied);
+  json["from_unknown"] = spans_json(audit.from_unknown);
+  if (has_moving) json["from_moving"] = times_json(audit.from_moving);
+}
+
+void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit) {
+  audit.part = read_part(node.at("vehicle"));
+  audit.band = read_band(node.at("heights_m"));
+  audit.verdict = one_of(node.at("verdict"), kVerdicts);
+  audit.certified_clearance_m = node.at("certified_clearance_m").number(kLength_m);
+  audit.conflicts = read_conflicts(node.at("conflicts"));
+  audit.unknown = read_stretches(node.at("unknown"));
+  audit.undecided = read_stretches(node.at("undecided"));
+  audit.from_occupied = read_spans(node.at("from_occupied"));
+  audit.from_unknown = read_spans(node.at("from_unknown"));
+  if (has_moving) audit.from_moving = read_times(node.at("from_moving"));
+}
+
 }  // namespace
 
 CertifiedFile certified_file(const std::filesystem::path& file) {
@@ -207,37 +271,67 @@ CertifiedFile certified_obstacles(const std::filesystem::path& file,
           .xxhash = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()))};
 }
 
+Verdict CertificateFile::verdict() const {
+  for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
+    if (std::ranges::count(parts, grave, &AuditCertificate::verdict) > 0) return grave;
+  }
+  return Verdict::clear;
+}
+
+double CertificateFile::certified_clearance_m() const {
+  return std::ranges::min(parts, {}, &AuditCertificate::certified_clearance_m)
+      .certified_clearance_m;
+}
+
 std::string write_certificate_json(const CertificateFile& file) {
-  const AuditCertificate& audit = file.certificate;
+  const AuditCertificate& body = file.parts.front();
+  const bool has_moving = file.obstacles.has_value();
   Ordered json;
   json["format"] = kFormat;
   json["program"] = file.program;
   json["occupancy"] = file_json(file.occupancy);
   json["trajectory"] = file_json(file.trajectory);
-  if (file.obstacles) json["obstacles"] = file_json(*file.obstacles);
-  json["vehicle"] = vehicle_json(audit.vehicle);
-  json["heights_m"] = {audit.band.from_m, audit.band.to_m};
-  json["clearance_m"] = audit.clearance_m;
-  json["inflate_m"] = audit.inflate_m;
-  json["unknown_counts_as"] = planning::name(audit.unknown_policy);
-  json["verdict"] = planning::name(audit.verdict);
-  json["certified_clearance_m"] = audit.certified_clearance_m;
-  json["conflicts"] = conflicts_json(audit.conflicts);
-  json["unknown"] = stretches_json(audit.unknown);
-  json["undecided"] = stretches_json(audit.undecided);
-  json["from_occupied"] = spans_json(audit.from_occupied);
-  json["from_unknown"] = spans_json(audit.from_unknown);
-  if (file.obstacles) json["from_moving"] = times_json(audit.from_moving);
+  if (has_moving) json["obstacles"] = file_json(*file.obstacles);
+  json["vehicle"] = part_json(body.part);
+  json["heights_m"] = {body.band.from_m, body.band.to_m};
+  if (file.ground) json["ground"] = ground_json(*file.ground);
+  json["clearance_m"] = body.clearance_m;
+  json["inflate_m"] = body.inflate_m;
+  json["unknown_counts_as"] = planning::name(body.unknown_policy);
+  add_claims(json, body, has_moving);
+  for (std::size_t i = 1; i < file.parts.size(); ++i) {
+    const AuditCertificate& audit = file.parts[i];
+    Ordered part{{"vehicle", part_json(audit.part)},
+                 {"heights_m", {audit.band.from_m, audit.band.to_m}}};
+    add_claims(part, audit, has_moving);
+    json["parts"].push_back(std::move(part));
+  }
   return text_of(json);
 }
 
 CertificateFile parse_certificate_json(std::string_view bytes, const std::string& name) {
   const nlohmann::json document = parse_json_strictly(bytes, name);
   const JsonNode node(document, name);
-  node.require_object({"format", "program", "occupancy", "trajectory", "vehicle", "heights_m",
-                       "clearance_m", "inflate_m", "unknown_counts_as", "verdict",
-                       "certified_clearance_m", "conflicts", "unknown", "undecided",
-                       "from_occupied", "from_unknown", "obstacles", "from_moving"});
+  node.require_object({"format",
+                       "program",
+                       "occupancy",
+                       "trajectory",
+                       "vehicle",
+                       "heights_m",
+                       "clearance_m",
+                       "inflate_m",
+                       "unknown_counts_as",
+                       "verdict",
+                       "certified_clearance_m",
+                       "conflicts",
+                       "unknown",
+                       "undecided",
+                       "from_occupied",
+                       "from_unknown",
+                       "obstacles",
+                       "from_moving",
+                       "parts",
+                       "ground"});
   if (const JsonNode format = node.at("format"); format.text() != kFormat) {
     format.refuse(fmt::format("is \"{}\"", format.text()), fmt::format("\"{}\"", kFormat),
                   "write the certificate with this version of roadbed");
@@ -245,23 +339,25 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   CertificateFile file{.program = node.at("program").text(),
                        .occupancy = read_file_entry(node.at("occupancy")),
                        .trajectory = read_file_entry(node.at("trajectory")),
-                       .certificate = {}};
-  AuditCertificate& audit = file.certificate;
-  audit.vehicle = read_vehicle(node.at("vehicle"));
-  audit.band = read_band(node.at("heights_m"));
+                       .parts = {}};
+  if (const auto obstacles = node.find("obstacles")) file.obstacles = read_file_entry(*obstacles);
+  const bool has_moving = file.obstacles.has_value();
+  AuditCertificate audit;
   audit.clearance_m = node.at("clearance_m").number(kLength_m);
   audit.inflate_m = node.at("inflate_m").number(kLength_m);
   audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
-  audit.verdict = one_of(node.at("verdict"), kVerdicts);
-  audit.certified_clearance_m = node.at("certified_clearance_m").number(kLength_m);
-  audit.conflicts = read_conflicts(node.at("conflicts"));
-  audit.unknown = read_stretches(node.at("unknown"));
-  audit.undecided = read_stretches(node.at("undecided"));
-  audit.from_occupied = read_spans(node.at("from_occupied"));
-  audit.from_unknown = read_spans(node.at("from_unknown"));
-  if (const auto obstacles = node.find("obstacles")) {
-    file.obstacles = read_file_entry(*obstacles);
-    audit.from_moving = read_times(node.at("from_moving"));
+  file.ground = read_ground(node);
+  read_claims(node, has_moving, audit);
+  audit.band.ground = file.ground.get();
+  file.parts.push_back(audit);
+  if (const auto parts = node.find("parts")) {
+    for (const JsonNode& part : parts->elements()) {
+      part.require_object({"vehicle", "heights_m", "verdict", "certified_clearance_m", "conflicts",
+                           "unknown", "undecided", "from_occupied", "from_unknown", "from_moving"});
+      read_claims(part, has_moving, audit);
+      audit.band.ground = file.ground.get();
+      file.parts.push_back(audit);
+    }
   }
   return file;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/occupancy/ground.h"
 #include "roadbed/planning/audit_certificate.h"
 
 namespace roadbed::tools {
@@ -25,14 +27,21 @@ struct CertificateFile {
   /// Of what moves, if anything does; the hash is that of the obstacles, not of the file's bytes,
   /// since a scenario names other files.
   std::optional<CertifiedFile> obstacles = {};
-  planning::AuditCertificate certificate;
+  std::shared_ptr<const map::Ground> ground = nullptr;  ///< of the parts' bands, if not level
+  /// One for each part of the vehicle, the body first; all of one question but for their heights.
+  std::vector<planning::AuditCertificate> parts;
+
+  planning::Verdict verdict() const;  ///< the gravest
+  /// The least of all; 0 if that of one is not certified.
+  double certified_clearance_m() const;
 };
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
                                   const std::vector<planning::MovingObstacle>& obstacles);
 
 /// The JSON of a certificate; reading it gives the same numbers, bit for bit. A span is written as
-/// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`.
+/// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`. What is said of the first part
+/// stands in the document itself, that of others in its list "parts".
 std::string write_certificate_json(const CertificateFile& file);
 
 /// @throws InputError naming the place of what is wrong.

@@ -92,7 +92,7 @@ std::string WayPointLine::fault() const {
 
 std::optional<geometry::VehicleShape> WayPointLine::vehicle() const {
   if (vehicle_file_.empty()) return std::nullopt;
-  return read_vehicle_json(vehicle_file_);
+  return read_vehicle_json(vehicle_file_).shape;
 }
 
 planning::ReferenceLine WayPointLine::smoothed(const std::vector<Eigen::Vector2d>& points,

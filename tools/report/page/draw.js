@@ -152,6 +152,7 @@ function drawVehicleAt(pen, t, ghost) {
   pen.ctx.globalAlpha = ghost ? 0.45 : 1;
   fillRing(pen, rectangle(state.x, state.y, state.h, vehicle.back, vehicle.front, vehicle.width),
            pen.ink("ego"), pen.ink("edge"));
+  for (const part of vehicle.parts) fillRing(pen, placed(state, part), pen.ink("ego"), pen.ink("edge"));
   if (pen.view.scale > 8) drawWheels(pen, state);
   drawNose(pen, state, vehicle.front, vehicle.width, pen.ink("edge"));
   pen.ctx.globalAlpha = 1;

@@ -37,6 +37,13 @@ function rectangle(x, y, heading, back, front, width) {
       .map(([along, across]) => [x + c * along - s * across, y + s * along + c * across]);
 }
 
+/** Points of a vehicle's frame, where it stands in a state. */
+function placed(state, points) {
+  const c = Math.cos(state.h), s = Math.sin(state.h);
+  return points.map(([along, across]) =>
+      [state.x + c * along - s * across, state.y + s * along + c * across]);
+}
+
 /** Points of a motion between two times, both ends interpolated. */
 function pathBetween(motion, from, to) {
   const points = [];

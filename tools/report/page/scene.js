@@ -66,6 +66,7 @@ function footprintsOf(drive, vehicle) {
   for (let t = drive.t[0]; t <= drive.t[drive.t.length - 1]; t += 1) {
     const state = stateAt(drive, t);
     addRing(path, rectangle(state.x, state.y, state.h, vehicle.back, vehicle.front, vehicle.width));
+    for (const part of vehicle.parts) addRing(path, placed(state, part));
   }
   return path;
 }

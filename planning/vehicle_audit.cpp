@@ -1,0 +1,133 @@
+#include "roadbed/planning/vehicle_audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::BodyPart;
+
+std::string named(const BodyPart& part, const std::string& side) {
+  if (side.empty() || part.is_circle()) return side;
+  return fmt::format("{}, {}", part.name, side);
+}
+
+// Stretches in order of time; those that meet become one.
+std::vector<Stretch> joined(std::vector<Stretch> stretches) {
+  std::ranges::stable_sort(stretches, {}, &Stretch::from_s);
+  std::vector<Stretch> apart;
+  for (const Stretch& next : stretches) {
+    if (apart.empty() || next.from_s > apart.back().to_s) {
+      apart.push_back(next);
+    } else {
+      apart.back().to_s = std::max(apart.back().to_s, next.to_s);
+    }
+  }
+  return apart;
+}
+
+double volume_m3(const BodyPart& part) {
+  const double side_m = 2.0 * part.radius_m;
+  return (part.length_m() + side_m) * (part.width_m() + side_m) *
+         (part.to_height_m - part.from_height_m);
+}
+
+void take_least(AuditReport& whole, const AuditReport& part) {
+  whole.proven_clearance_m = std::min(whole.proven_clearance_m, part.proven_clearance_m);
+  if (!(part.least_clearance_m < whole.least_clearance_m)) return;
+  whole.least_clearance_m = part.least_clearance_m;
+  whole.least_clearance_at_s = part.least_clearance_at_s;
+  whole.witness = part.witness;
+  whole.obstacle = part.obstacle;
+  whole.part = part.part;
+  whole.beyond_horizon = part.beyond_horizon;
+}
+
+void add(AuditReport& whole, const AuditReport& part) {
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(whole.conflicts, part.conflicts);
+  append(whole.unknown, part.unknown);
+  append(whole.undecided, part.undecided);
+  for (std::size_t i = 0; i < whole.profile.size(); ++i) {
+    whole.profile[i].clearance_m =
+        std::min(whole.profile[i].clearance_m, part.profile[i].clearance_m);
+  }
+}
+
+AuditReport with_name(AuditReport report, const BodyPart& part) {
+  report.part = named(part, report.part);
+  for (Conflict& conflict : report.conflicts) conflict.part = named(part, conflict.part);
+  return report;
+}
+
+AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditReport>& reports) {
+  if (parts.size() == 1) return reports.front();
+  AuditReport whole = with_name(reports.front(), parts.front());
+  double unknown_m3 = whole.unknown_share * volume_m3(parts.front());
+  double all_m3 = volume_m3(parts.front());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const AuditReport report = with_name(reports[i], parts[i]);
+    take_least(whole, report);
+    add(whole, report);
+    unknown_m3 += report.unknown_share * volume_m3(parts[i]);
+    all_m3 += volume_m3(parts[i]);
+  }
+  whole.unknown_share = unknown_m3 / all_m3;
+  std::ranges::stable_sort(whole.conflicts, {}, &Conflict::from_s);
+  whole.unknown = joined(std::move(whole.unknown));
+  whole.undecided = joined(std::move(whole.undecided));
+  whole.verdict = judge(whole);
+  return whole;
+}
+
+}  // namespace
+
+VehicleSurroundings::VehicleSurroundings(const map::OccupancyMap& occupancy,
+                                         const GroundUnder& ground, std::vector<BodyPart> parts,
+                                         const map::FieldRegion& region)
+    : surface_(ground.surface), parts_(std::move(parts)) {
+  for (const BodyPart& part : parts_) {
+    bands_.push_back(ground.band(part.from_height_m, part.to_height_m));
+    const auto same = std::ranges::find_if(bands_, [&](const map::HeightBand& band) {
+      return band.from_m == bands_.back().from_m && band.to_m == bands_.back().to_m;
+    });
+    const auto at = static_cast<std::size_t>(same - bands_.begin());
+    fields_.push_back(at < fields_.size() ? fields_[at]
+                                          : std::make_shared<const map::ClearanceField>(
+                                                occupancy, bands_.back(), region));
+  }
+}
+
+VehicleAudit audit_vehicle(const VehicleSurroundings& around,
+                           const geometry::Trajectory& drive_in_source, const AuditOptions& options,
+                           std::span<const MovingObstacle> moving_in_source) {
+  VehicleAudit result;
+  for (std::size_t i = 0; i < around.parts().size(); ++i) {
+    result.of_parts.push_back(
+        audit(around.field_of(i), drive_in_source, around.parts()[i], options, moving_in_source));
+  }
+  result.whole = merged(around.parts(), result.of_parts);
+  return result;
+}
+
+std::vector<AuditCertificate> certify_vehicle(const VehicleSurroundings& around,
+                                              const geometry::Trajectory& drive_in_source,
+                                              const AuditOptions& options,
+                                              const VehicleAudit& audit,
+                                              std::span<const MovingObstacle> moving_in_source) {
+  std::vector<AuditCertificate> certificates;
+  for (std::size_t i = 0; i < around.parts().size(); ++i) {
+    certificates.push_back(certify(around.field_of(i), around.band_of(i), drive_in_source,
+                                   around.parts()[i], options, audit.of_parts[i],
+                                   moving_in_source));
+  }
+  return certificates;
+}
+
+}  // namespace roadbed::planning

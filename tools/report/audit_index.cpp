@@ -1,0 +1,93 @@
+#include "roadbed/tools/report/audit_index.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "roadbed/tools/report/escape.h"
+#include "roadbed/tools/report/page_parts.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr std::string_view kIndexCss = R"(
+main { display: block; }
+pre { white-space: pre-wrap; overflow-wrap: anywhere; }
+.index td, .index th { padding: 4px 10px; text-align: left; }
+.index .good { color: var(--good); } .index .bad { color: var(--bad); }
+.index .open { color: var(--open); }
+article { margin: 14px 0; }
+)";
+
+std::string_view css_of(Tone tone) {
+  constexpr std::array<std::string_view, 3> names{"good", "open", "bad"};
+  return names[static_cast<std::size_t>(tone)];
+}
+
+std::string row(const IndexedAudit& audit, std::size_t number) {
+  return fmt::format(
+      "<tr><td><a href=\"#drive-{}\">{}</a></td><td class=\"{}\">{}</td><td>{}</td></tr>\n", number,
+      escape_markup(audit.name), css_of(audit.tone), escape_markup(audit.outcome),
+      escape_markup(audit.least));
+}
+
+std::string article(const IndexedAudit& audit, std::size_t number) {
+  std::string html =
+      fmt::format("<article class=\"card\" id=\"drive-{}\"><h2>{}</h2>\n<pre>{}</pre>\n", number,
+                  escape_markup(audit.name), escape_markup(audit.text));
+  if (!audit.pictures.empty()) html += "<div class=\"pictures\">\n";
+  for (const ReportPicture& picture : audit.pictures) {
+    html += fmt::format("<figure>{}<figcaption>{:.2f} s <span>{}</span></figcaption></figure>\n",
+                        picture.svg, picture.t_s, escape_markup(picture.text));
+  }
+  if (!audit.pictures.empty()) html += "</div>\n";
+  return html + "</article>\n";
+}
+
+// "5 clear, 2 conflict": in order of their first drive.
+std::string counts_text(const std::vector<IndexedAudit>& audits) {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  for (const IndexedAudit& audit : audits) {
+    const auto known =
+        std::ranges::find(counts, audit.outcome, &std::pair<std::string, std::size_t>::first);
+    if (known == counts.end()) {
+      counts.emplace_back(audit.outcome, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  std::string text;
+  for (const auto& [outcome, count] : counts) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, outcome);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std::string& occupancy,
+                             const std::string& version) {
+  const std::string title = fmt::format("Audit of {} drives", audits.size());
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "style-src 'unsafe-inline'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{0}</title>\n"
+      "<style>\n{1}{2}</style>\n</head>\n<body>\n<header><div class=\"name\"><h1>{0}</h1>"
+      "<p class=\"scenario\">against {3}: {4}</p></div></header>\n<main>\n",
+      title, kPageCss, kIndexCss, escape_markup(occupancy), escape_markup(counts_text(audits)));
+  html +=
+      "<section class=\"card\"><table class=\"index\"><thead><tr><th>drive</th><th>verdict</th>"
+      "<th>least clearance</th></tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < audits.size(); ++i) html += row(audits[i], i + 1);
+  html += "</tbody></table></section>\n";
+  for (std::size_t i = 0; i < audits.size(); ++i) html += article(audits[i], i + 1);
+  return html + fmt::format("</main>\n<footer><p>Made by {}</p></footer>\n</body>\n</html>\n",
+                            escape_markup(version));
+}
+
+}  // namespace roadbed::tools

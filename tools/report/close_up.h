@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/body_part.h"
+#include "roadbed/geometry/polygon.h"
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/planning/audit.h"
+#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/tools/report/report.h"
+
+namespace roadbed::tools {
+
+/// What the close-ups of an audit show, all in source coordinates.
+struct CloseUpScene {
+  const geometry::Trajectory& drive;
+  const std::vector<geometry::BodyPart>& parts;  ///< of the vehicle as audited, with the margin
+  const std::vector<map::Box2>& occupied;        ///< of the heights of the vehicle
+  const std::vector<geometry::Ring>& lanes;      ///< of a map; may be empty
+  const std::vector<planning::MovingObstacle>& moving;
+};
+
+/// A picture for each conflict, at its least clearance: the vehicle with the part that is nearest,
+/// the cell or moving thing that is in its way, and an arrow of their distance. Without a conflict
+/// that of the least clearance of the drive; none where nothing is near. At most 24, in order of
+/// time. Same input, same bytes.
+std::vector<ReportPicture> close_ups(const planning::AuditReport& report,
+                                     const CloseUpScene& scene);
+
+}  // namespace roadbed::tools
