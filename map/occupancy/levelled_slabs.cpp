@@ -10,8 +10,8 @@
 namespace roadbed::map {
 namespace {
 
-constexpr double kTouchesOver_m = 1e-6;     // cells that overlap the band by less only touch it
-constexpr double kRounding_m = 5e-5;  // of some dozens of heights added up
+constexpr double kTouchesOver_m = 1e-6;  // cells that overlap the band by less only touch it
+constexpr double kRounding_m = 5e-5;     // of some dozens of heights added up
 
 class Columns {
  public:
