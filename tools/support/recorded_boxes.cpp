@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -18,6 +20,7 @@ using geometry::Pose2;
 using geometry::TrajectoryPoint;
 using map::common_road::Obstacle;
 using map::common_road::ObstacleRole;
+using map::common_road::PolygonShape;
 using map::common_road::RectangleShape;
 using map::common_road::Shape;
 using map::common_road::State;
@@ -31,7 +34,37 @@ struct StandingBox {
   double length_m, width_m;
 };
 
+// The rectangle along a direction that just holds all corners.
+StandingBox box_along(const Eigen::Vector2d& ahead, const geometry::Ring& corners) {
+  const Eigen::Vector2d left(-ahead.y(), ahead.x());
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : corners) {
+    box.extend(Eigen::Vector2d(corner.dot(ahead), corner.dot(left)));
+  }
+  const Eigen::Vector2d middle = box.center().x() * ahead + box.center().y() * left;
+  return {
+      {middle.x(), middle.y(), std::atan2(ahead.y(), ahead.x())}, box.sizes().x(), box.sizes().y()};
+}
+
+// The least rectangle around a convex polygon has a side along one of its edges [Freeman & Shapira
+// 1975, doi:10.1145/360881.360919]; around another it is at least no larger than the one along x.
+StandingBox tightest_box(const geometry::Ring& corners) {
+  StandingBox best = box_along({1.0, 0.0}, corners);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
+    constexpr double shortest_m = 1e-3;
+    if (edge.norm() < shortest_m) continue;
+    const StandingBox box = box_along(edge.normalized(), corners);
+    constexpr double less = 1.0 - 1e-9;  // whatever the rounding
+    if (box.length_m * box.width_m < less * best.length_m * best.width_m) best = box;
+  }
+  return best;
+}
+
 StandingBox box_of(const Shape::value_type& part) {
+  if (const auto* polygon = std::get_if<PolygonShape>(&part)) {
+    return tightest_box(polygon->corners_m);
+  }
   if (const auto* rectangle = std::get_if<RectangleShape>(&part)) {
     const Eigen::Vector2d& centre = rectangle->centre_m;
     return {

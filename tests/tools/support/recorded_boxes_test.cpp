@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -151,6 +152,44 @@ TEST(RecordedBoxes, WhatNoBoxHoldsForSureIsRefused) {
       refusal_of("<staticObstacle id=\"7\">" + kShape + kStart + "<trajectory>" +
                  state("state", kPoint, exact("0"), exact("1")) + "</trajectory></staticObstacle>"),
       HasSubstr("it is static, and has a prediction"));
+}
+
+std::string polygon(const std::vector<Eigen::Vector2d>& corners) {
+  std::string points;
+  for (const Eigen::Vector2d& corner : corners) {
+    points += "<point><x>" + std::to_string(corner.x()) + "</x><y>" + std::to_string(corner.y()) +
+              "</y></point>";
+  }
+  return "<polygon>" + points + "</polygon>";
+}
+
+TEST(RecordedBoxes, OfAPolygonHoldItTightly) {
+  std::mt19937 random(33);
+  std::uniform_real_distribution<double> angle(0.0, 6.28), size(1.0, 9.0), place(-50.0, 50.0);
+  for (int round = 0; round < 200; ++round) {
+    // A turned rectangle with a corner cut off, which its least rectangle is not smaller for.
+    const geometry::Pose2 pose{place(random), place(random), angle(random)};
+    const double length_m = size(random), width_m = 0.5 * size(random);
+    std::vector<Eigen::Vector2d> corners;
+    for (const Eigen::Vector2d& corner :
+         {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(length_m, 0.0),
+          Eigen::Vector2d(length_m, 0.9 * width_m), Eigen::Vector2d(0.95 * length_m, width_m),
+          Eigen::Vector2d(0.0, width_m)}) {
+      corners.push_back(pose * corner);
+    }
+    const auto boxes = boxes_of("<environmentObstacle id=\"8\"><type>building</type><shape>" +
+                                polygon(corners) + "</shape></environmentObstacle>");
+    ASSERT_EQ(boxes.size(), 1u);
+    const planning::Obstacle& box = boxes.front().obstacle;
+    EXPECT_NEAR(box.length_m * box.width_m, length_m * width_m, 1e-3);
+    const geometry::Pose2 centre = box.motion.points().front().pose();
+    for (const Eigen::Vector2d& corner : corners) {
+      const Eigen::Vector2d off = corner - centre.position();
+      const Eigen::Vector2d ahead(std::cos(centre.heading_rad), std::sin(centre.heading_rad));
+      EXPECT_LE(std::abs(off.dot(ahead)), 0.5 * box.length_m + 1e-5);
+      EXPECT_LE(std::abs(ahead.x() * off.y() - ahead.y() * off.x()), 0.5 * box.width_m + 1e-5);
+    }
+  }
 }
 
 }  // namespace
