@@ -115,19 +115,19 @@ TEST(DriveGround, OnTheBridgeIsThatOfTheBridge) {
   EXPECT_NEAR(road_under(road_map, over).height_m({201.0, 0.0}), 16.0, 1e-6);
 }
 
-struct Audited {
+struct HillAudit {
   Verdict verdict;
   std::vector<Conflict> conflicts;
   std::vector<std::string> faults;
 };
 
-Audited audited(const OccupancyMap& occupancy, const map::Ground& ground, const Trajectory& drive,
-                const std::vector<geometry::BodyPart>& parts) {
+HillAudit hill_audit(const OccupancyMap& occupancy, const map::Ground& ground,
+                     const Trajectory& drive, const std::vector<geometry::BodyPart>& parts) {
   const AuditOptions options{.clearance_m = 0.1, .unknown = UnknownPolicy::free};
   const GroundUnder under{.surface = std::make_shared<const map::Ground>(ground.places())};
   const VehicleSurroundings around(occupancy, under, parts, audited_region(drive, parts, options));
   const VehicleAudit audit = audit_vehicle(around, drive, options);
-  Audited result{audit.whole.verdict, audit.whole.conflicts, {}};
+  HillAudit result{audit.whole.verdict, audit.whole.conflicts, {}};
   for (const auto& certificate : certify_vehicle(around, drive, options, audit)) {
     for (const std::string& fault : check_certificate(certificate, occupancy.cells(), 0.1, drive)) {
       result.faults.push_back(fault);
@@ -143,7 +143,7 @@ TEST(DriveGround, ABoxOnTheHillIsFoundAndNeitherTheRoadNorTheBridgeIsAConflict) 
   const OccupancyMap free_road = hilly_cloud(std::nullopt);
   for (const map::Ground& ground :
        {road_under(road_map, drive), measured_under(free_road, drive)}) {
-    const Audited free = audited(free_road, ground, drive, car);
+    const HillAudit free = hill_audit(free_road, ground, drive, car);
     EXPECT_EQ(free.verdict, Verdict::clear);
     EXPECT_THAT(free.faults, IsEmpty());
   }
@@ -151,7 +151,7 @@ TEST(DriveGround, ABoxOnTheHillIsFoundAndNeitherTheRoadNorTheBridgeIsAConflict) 
     const OccupancyMap blocked = hilly_cloud(Eigen::Vector2d(box_m, -1.6));
     for (const map::Ground& ground :
          {road_under(road_map, drive), measured_under(blocked, drive)}) {
-      const Audited hit = audited(blocked, ground, drive, car);
+      const HillAudit hit = hill_audit(blocked, ground, drive, car);
       ASSERT_EQ(hit.verdict, Verdict::conflict);
       EXPECT_NEAR(hit.conflicts.front().witness.min_in_source.x(), box_m, 0.3);
       EXPECT_THAT(hit.faults, IsEmpty());

@@ -24,7 +24,7 @@ using testing::IsEmpty;
 using testing::Not;
 using tests::Quad;
 
-constexpr double kSide_m = 0.1;
+constexpr double kCellSide_m = 0.1;
 
 /// A car, its mirrors, a load that hangs over behind, and a round lamp on the roof.
 std::vector<BodyPart> car_with_parts() {
@@ -36,16 +36,16 @@ std::vector<BodyPart> car_with_parts() {
   return parts;
 }
 
-OccupancyMap world_of(std::mt19937& random, int posts) {
+OccupancyMap posts_at_random(std::mt19937& random, int posts) {
   std::uniform_real_distribution<float> place(-9.0f, 9.0f), height(0.0f, 3.0f);
   map::PointCloud cloud;
   for (int i = 0; i < posts; ++i) {
     cloud.points.emplace_back(place(random), place(random), height(random));
   }
-  return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kSide_m});
+  return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kCellSide_m});
 }
 
-Trajectory any_drive(std::mt19937& random) {
+Trajectory drive_of_parts(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-6.0, 6.0), turn(-1.2, 1.2), way(-3.0, 3.0);
   std::vector<TrajectoryPoint> rows{
       {.t_s = 0, .x_m = place(random), .y_m = place(random), .heading_rad = 3.0 * turn(random)}};
@@ -59,8 +59,8 @@ Trajectory any_drive(std::mt19937& random) {
   return Trajectory(std::move(rows));
 }
 
-double to_box_m(const BodyPart& part, double margin_m, const Pose2& pose,
-                const map::OccupancyCell& cell) {
+double part_to_box_m(const BodyPart& part, double margin_m, const Pose2& pose,
+                     const map::OccupancyCell& cell) {
   const Eigen::Vector2d middle = cell.centre_in_source.head<2>();
   const Eigen::Array2d half = Eigen::Array2d::Constant(0.5 * cell.size_m);
   if (part.radius_m > 0.0) {
@@ -76,35 +76,35 @@ double to_box_m(const BodyPart& part, double margin_m, const Pose2& pose,
 }
 
 /// Least distance of any part from any cell at its heights, and of which part.
-std::pair<double, std::size_t> least_at(const std::vector<BodyPart>& parts, double margin_m,
-                                        const std::vector<map::OccupancyCell>& cells,
-                                        const Pose2& pose) {
+std::pair<double, std::size_t> least_of_parts(const std::vector<BodyPart>& parts, double margin_m,
+                                              const std::vector<map::OccupancyCell>& cells,
+                                              const Pose2& pose) {
   std::pair<double, std::size_t> least{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (const map::OccupancyCell& cell : cells) {
       const double low_m = cell.centre_in_source.z() - 0.5 * cell.size_m;
       if (low_m + cell.size_m <= parts[i].from_height_m + 1e-6) continue;
       if (low_m >= parts[i].to_height_m - 1e-6) continue;
-      least = std::min(least, {to_box_m(parts[i], margin_m, pose, cell), i});
+      least = std::min(least, {part_to_box_m(parts[i], margin_m, pose, cell), i});
     }
   }
   return least;
 }
 
-struct Asked {
+struct AskedOfParts {
   Trajectory drive;
   AuditOptions options;
   VehicleSurroundings around;
   VehicleAudit audit;
 };
 
-Asked asked(const OccupancyMap& occupancy, const std::vector<BodyPart>& parts,
-            std::mt19937& random) {
+AskedOfParts ask_parts(const OccupancyMap& occupancy, const std::vector<BodyPart>& parts,
+                       std::mt19937& random) {
   std::uniform_real_distribution<double> margin(0.0, 0.4);
   const AuditOptions options{.clearance_m = random() % 2 == 0 ? 0.0 : margin(random),
                              .inflate_m = random() % 2 == 0 ? 0.0 : margin(random),
                              .unknown = UnknownPolicy::free};
-  Trajectory drive = any_drive(random);
+  Trajectory drive = drive_of_parts(random);
   VehicleSurroundings around(occupancy, {}, parts, audited_region(drive, parts, options));
   VehicleAudit audit = audit_vehicle(around, drive, options);
   return {std::move(drive), options, std::move(around), std::move(audit)};
@@ -116,16 +116,16 @@ TEST(VehicleAudit, AgreesWithADenseSweepOfEveryPart) {
   std::vector<int> conflicts_of(parts.size());
   int clear = 0;
   for (int round = 0; round < 40; ++round) {
-    const OccupancyMap occupancy = world_of(random, 25);
+    const OccupancyMap occupancy = posts_at_random(random, 25);
     const auto cells = occupancy.cells();
     for (int i = 0; i < 5; ++i) {
-      const Asked made = asked(occupancy, parts, random);
+      const AskedOfParts made = ask_parts(occupancy, parts, random);
       const AuditReport& whole = made.audit.whole;
       double least_m = std::numeric_limits<double>::infinity();
       const double step_s = 0.004;  // under 3 cm of motion
       for (double t_s = 0.0; t_s <= made.drive.end_s(); t_s += step_s) {
         const auto [distance_m, part] =
-            least_at(parts, made.options.inflate_m, cells, made.drive.at(t_s).pose());
+            least_of_parts(parts, made.options.inflate_m, cells, made.drive.at(t_s).pose());
         least_m = std::min(least_m, distance_m);
         if (distance_m > 0.0 && distance_m >= made.options.clearance_m) continue;
         ASSERT_EQ(whole.verdict, Verdict::conflict);
@@ -142,8 +142,8 @@ TEST(VehicleAudit, AgreesWithADenseSweepOfEveryPart) {
       const double horizon_m = made.around.field_of(0).horizon_m();
       ASSERT_LE(whole.proven_clearance_m, least_m + 1e-6);
       ASSERT_NEAR(whole.least_clearance_m, std::min(least_m, horizon_m), 0.04);
-      ASSERT_NEAR(least_at(parts, made.options.inflate_m, cells,
-                           made.drive.at(whole.least_clearance_at_s).pose())
+      ASSERT_NEAR(least_of_parts(parts, made.options.inflate_m, cells,
+                                 made.drive.at(whole.least_clearance_at_s).pose())
                       .first,
                   whole.least_clearance_m, 1e-6);
       clear += whole.verdict == Verdict::clear;
@@ -158,12 +158,12 @@ TEST(VehicleAudit, CertificatesOfAllPartsHoldAndNoneSurvivesAnObstacleAtItsHeigh
   std::mt19937 random(9);
   int refuted = 0;
   for (int round = 0; round < 40; ++round) {
-    const OccupancyMap occupancy = world_of(random, 5);
-    const Asked made = asked(occupancy, parts, random);
+    const OccupancyMap occupancy = posts_at_random(random, 5);
+    const AskedOfParts made = ask_parts(occupancy, parts, random);
     const auto certificates = certify_vehicle(made.around, made.drive, made.options, made.audit);
     auto cells = occupancy.cells();
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      EXPECT_THAT(check_certificate(certificates[i], cells, kSide_m, made.drive), IsEmpty())
+      EXPECT_THAT(check_certificate(certificates[i], cells, kCellSide_m, made.drive), IsEmpty())
           << parts[i].name;
     }
     if (made.audit.whole.verdict != Verdict::clear) continue;
@@ -172,8 +172,9 @@ TEST(VehicleAudit, CertificatesOfAllPartsHoldAndNoneSurvivesAnObstacleAtItsHeigh
     const Pose2 pose = made.drive.at(0.33 * made.drive.end_s()).pose();
     const Eigen::Vector2d there = pose * parts[part].middle_in_vehicle();
     const double height_m = 0.5 * (parts[part].from_height_m + parts[part].to_height_m);
-    cells.push_back({{there.x(), there.y(), height_m}, kSide_m, map::CellState::occupied});
-    EXPECT_THAT(check_certificate(certificates[part], cells, kSide_m, made.drive), Not(IsEmpty()))
+    cells.push_back({{there.x(), there.y(), height_m}, kCellSide_m, map::CellState::occupied});
+    EXPECT_THAT(check_certificate(certificates[part], cells, kCellSide_m, made.drive),
+                Not(IsEmpty()))
         << parts[part].name;
     ++refuted;
   }
@@ -184,8 +185,8 @@ TEST(VehicleAudit, OfOnePartIsTheAuditOfTheVehiclesRectangle) {
   std::mt19937 random(10);
   const std::vector<BodyPart> body{geometry::body_of({})};
   for (int round = 0; round < 20; ++round) {
-    const OccupancyMap occupancy = world_of(random, 12);
-    const Asked made = asked(occupancy, body, random);
+    const OccupancyMap occupancy = posts_at_random(random, 12);
+    const AskedOfParts made = ask_parts(occupancy, body, random);
     const map::ClearanceField field(occupancy, {0.2, 1.5},
                                     audited_region(made.drive, body, made.options));
     const AuditReport plain = audit(field, made.drive, geometry::VehicleShape{}, made.options);
@@ -201,7 +202,7 @@ TEST(VehicleAudit, EachPartKeepsItsDistanceFromWhatMoves) {
   const OccupancyMap far_away = [] {
     map::PointCloud cloud;
     cloud.points.emplace_back(500.0f, 500.0f, 1.0f);
-    return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kSide_m});
+    return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kCellSide_m});
   }();
   // A bicycle of 1.8 m by 0.6 m rides 1.4 m to the left of the car's axis: 0.05 m off the mirror.
   const auto along = [](double y_m, double from_m, double to_m) {

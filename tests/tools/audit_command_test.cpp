@@ -414,6 +414,7 @@ TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
   expect(audit({"--trajectory", one, "--signal-cost", "3"}), 2, "--signal-cost");
   expect(audit({"--lane", "lane:1/0/-1", "--map", map, "--certificate", folder_ / "c.json"}), 2,
          "--save-drive");
+  expect(audit({"--lane", "lane:1/0/-1", "--map", map, "--avoid", "lane:1/0/-1"}), 2, "--avoid");
   expect(audit({"--trajectory", drives_, "--svg", folder_ / "x.svg"}), 1, "one drive");
   std::filesystem::create_directories(folder_ / "empty");
   expect(audit({"--trajectory", folder_ / "empty"}), 1, "no drive");

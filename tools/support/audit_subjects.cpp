@@ -51,11 +51,12 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
       "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
       "the body is covered. Or a folder: its .csv files, and each trajectory.csv below");
   std::vector<Argument> of_sweeps = question_.declare(arguments, true);
-  arguments
-      .add("--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]")
-      .checked([](const std::string& text) {
-        return text.starts_with("lane:") ? place_syntax_fault(text) : "is not lane:NAME[@S]";
-      });
+  Argument lane = arguments.add(
+      "--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]");
+  for (const Argument& rule : of_sweeps) lane.excludes(rule);  // they are about finding a route
+  lane.checked([](const std::string& text) {
+    return text.starts_with("lane:") ? place_syntax_fault(text) : "is not lane:NAME[@S]";
+  });
   of_sweeps.push_back(
       arguments.add("--speed", speed_kmh_, "Of a drive along a route or lane [km/h]")
           .within(0.1, 1000.0)

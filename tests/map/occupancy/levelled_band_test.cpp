@@ -50,7 +50,7 @@ TEST(Ground, IsThePlaneOfTheNearestPlace) {
 }
 
 /// Hits and rays at all heights, so that columns are measured in part.
-OccupancyMap any_world(std::mt19937& random) {
+OccupancyMap half_measured_world(std::mt19937& random) {
   std::uniform_real_distribution<float> place(-5.0f, 5.0f), height(-1.0f, 2.5f);
   std::vector<PointCloud> clouds;
   for (int i = 0; i < 30; ++i) {
@@ -65,15 +65,15 @@ OccupancyMap any_world(std::mt19937& random) {
   return OccupancyMap::build(clouds, {.resolution_m = 0.2});
 }
 
-struct Column {
+struct PlainColumn {
   double measured_m = 0.0;
   bool occupied = false;
 };
 
 // One cell of the octree after another, whatever it is for.
-Column column_at(const std::vector<OccupancyCell>& cells, const HeightBand& band,
-                 const Vector2d& middle) {
-  Column column;
+PlainColumn plain_column_at(const std::vector<OccupancyCell>& cells, const HeightBand& band,
+                            const Vector2d& middle) {
+  PlainColumn column;
   for (const OccupancyCell& cell : cells) {
     const Vector2d off = cell.centre_in_source.head<2>() - middle;
     if (off.cwiseAbs().maxCoeff() > 0.5 * cell.size_m) continue;
@@ -92,14 +92,14 @@ TEST(LevelledBand, SeesInEachColumnWhatReachesIntoTheBandOverItsGround) {
   std::mt19937 random(5);
   int occupied = 0, whole = 0, partly = 0;
   for (int round = 0; round < 8; ++round) {
-    const OccupancyMap world = any_world(random);
+    const OccupancyMap world = half_measured_world(random);
     const auto cells = world.cells();
     const Ground ground = any_ground(random, 12);
     const HeightBand band{0.25, 1.3, &ground};
     const ClearanceField field(world, band, FieldRegion{{{-6, -6}, {6, 6}}, 3.0});
     for (double x = -4.9; x < 5.0; x += 0.2) {
       for (double y = -4.9; y < 5.0; y += 0.2) {
-        const Column column = column_at(cells, band, {x, y});
+        const PlainColumn column = plain_column_at(cells, band, {x, y});
         const geometry::Rectangle point{.centre = {x, y}};
         const auto near = field.nearest(point, 0.01);
         EXPECT_EQ(near.has_value() && near->distance_m == 0.0, column.occupied);
@@ -121,7 +121,7 @@ TEST(LevelledBand, SeesInEachColumnWhatReachesIntoTheBandOverItsGround) {
 
 TEST(LevelledBand, OverLevelGroundIsTheBandItself) {
   std::mt19937 random(6);
-  const OccupancyMap world = any_world(random);
+  const OccupancyMap world = half_measured_world(random);
   const Ground ground({{{0, 0}, 0.4, {0, 0}}});
   const FieldRegion region{{{-6, -6}, {6, 6}}, 5.0};
   const ClearanceField levelled(world, {0.2, 1.2, &ground}, region);
