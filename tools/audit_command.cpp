@@ -25,6 +25,7 @@
 #include "roadbed/tools/report/from_audit.h"
 #include "roadbed/tools/report/from_map.h"
 #include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/audit_files.h"
 #include "roadbed/tools/support/audit_frames.h"
 #include "roadbed/tools/support/audit_json.h"
@@ -48,17 +49,21 @@ class AuditCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Prove that drives keep clear of occupied space, or show where they do not");
-    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)");
+    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)").reads();
     std::vector<Argument> not_with_check = subjects_.declare(arguments);
     const Argument vehicle =
-        arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2");
-    const Argument map = arguments.add(
-        "--map", map_, "Map of the roads: checks that the frames agree, and is drawn");
-    arguments.add("--obstacles", obstacles_,
-                  "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
-                  "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
-                  "centre; an id of one row stands for ever, one of several is there from its "
-                  "first to its last), in the drive's time and coordinates");
+        arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
+            .reads();
+    const Argument map =
+        arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
+            .reads();
+    arguments
+        .add("--obstacles", obstacles_,
+             "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
+             "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
+             "centre; an id of one row stands for ever, one of several is there from its "
+             "first to its last), in the drive's time and coordinates")
+        .reads(files_named_by_scenario);
     declare_question(arguments);
     not_with_check.insert(not_with_check.end(), {vehicle, map});
     declare_outputs(arguments, not_with_check);
@@ -128,25 +133,37 @@ class AuditCommand : public Command {
   void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
     arguments.flag("--json", json_, "Print one JSON document");
     const Argument svg =
-        arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)");
+        arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")
+            .writes(".svg");
     const Argument page =
-        arguments.add("--report", report_,
-                      "Write a page that plays the audit of one drive, or lists those of a "
-                      "folder, with close-ups (.html)");
-    const Argument certificate = arguments.add(
-        "--certificate", certificate_,
-        "Write the proof of one drive (.json): spans of time, what holds in them, witnesses, "
-        "hashes of the inputs");
-    const Argument junit = arguments.add("--junit", junit_, "Write a test case per drive (.xml)");
-    const Argument geojson = arguments.add(
-        "--geojson", geojson_,
-        "Write stretches, conflicts and witnesses (.geojson), in the occupancy's coordinates");
+        arguments
+            .add("--report", report_,
+                 "Write a page that plays the audit of one drive, or lists those of a folder, with "
+                 "close-ups (.html)")
+            .writes(".html");
+    const Argument certificate =
+        arguments
+            .add("--certificate", certificate_,
+                 "Write the proof of one drive (.json): spans of time, what holds in them, "
+                 "witnesses, hashes of the inputs")
+            .writes(".json");
+    const Argument junit =
+        arguments.add("--junit", junit_, "Write a test case per drive (.xml)").writes(".xml");
+    const Argument geojson =
+        arguments
+            .add("--geojson", geojson_,
+                 "Write stretches, conflicts and witnesses (.geojson), in the occupancy's "
+                 "coordinates")
+            .writes(".geojson");
     const Argument saved =
-        arguments.add("--save-drive", saved_drive_, "Write the drive along a route or lane (.csv)");
-    Argument check = arguments.add(
-        "--check", check_,
-        "Verify a certificate by brute force instead; its inputs are the files that it names, "
-        "or --occupancy, --trajectory and --obstacles");
+        arguments.add("--save-drive", saved_drive_, "Write the drive along a route or lane (.csv)")
+            .writes(".csv");
+    Argument check =
+        arguments
+            .add("--check", check_,
+                 "Verify a certificate by brute force instead; its inputs are the files that it "
+                 "names, or --occupancy, --trajectory and --obstacles")
+            .reads(files_named_by_certificate);
     for (const Argument& other : {svg, page, certificate, junit, geojson, saved})
       check.excludes(other);
     for (const Argument& other : not_with_check) check.excludes(other);

@@ -19,6 +19,8 @@ enum class Exit {
 struct CommonOptions {
   bool quiet = false;
   int threads = 1;
+  /// Whether the process runs this command only, which may then set up its heap.
+  bool is_alone = true;
 };
 
 /// Where a command prints: results to `out`, everything else to `err`.
@@ -52,5 +54,7 @@ std::unique_ptr<Command> make_occupancy_command();
 std::unique_ptr<Command> make_audit_command();
 std::unique_ptr<Command> make_figures_command();
 std::unique_ptr<Command> make_report_command();
+std::unique_ptr<Command> make_batch_command();
+std::unique_ptr<Command> make_jobs_command();
 
 }  // namespace roadbed::tools

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "roadbed/map/compiled_map.h"
 #include "roadbed/map/load_map.h"
@@ -29,8 +30,9 @@ class ImportCommand : public Command {
     arguments.description("Read a digital road map and write it as a compiled map");
     arguments
         .add("IN", input_, "Map file: OpenDRIVE, Lanelet2, CommonRoad, GeoJSON, or a compiled one")
-        .required();
-    arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required();
+        .required()
+        .reads();
+    arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required().writes(".rbm");
     arguments.add("--crs", crs_,
                   "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
                   "the file gives none or a wrong one; nothing is reprojected");
@@ -39,28 +41,44 @@ class ImportCommand : public Command {
              "Largest distance between a sampled border and the true curve [m]")
         .within(1e-6, 1.0)
         .with_default();
+    arguments.flag("--json", json_, "Print what was imported as one JSON document");
     arguments.flag("--force", force_, "Replace the output if it exists");
     arguments.example("  roadbed import town.xodr -o town.rbm");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     check_writable(output_, force_);
-    keep_heap_in_huge_pages(input_);
+    if (common.is_alone) keep_heap_in_huge_pages(input_);
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
     OutputFile output(output_);
     map::write_compiled_map(road_map, network, output);
     output.commit();
+    if (json_) print_json(streams.out, road_map);
     if (!common.quiet) report(streams.err, road_map);
     return Exit::ok;
   }
 
  private:
+  static std::ptrdiff_t faults_of(const map::RoadMap& road_map) {
+    return std::ranges::count_if(road_map.remarks(), &map::ImportRemark::is_fault);
+  }
+
+  static void print_json(std::ostream& out, const map::RoadMap& road_map) {
+    using Json = nlohmann::ordered_json;
+    const Json json{{"format", road_map.format()},
+                    {"crs", road_map.crs().empty() ? Json() : Json(road_map.crs())},
+                    {"roads", road_map.roads().size()},
+                    {"lanes", road_map.lanes().size()},
+                    {"junctions", road_map.junctions().size()},
+                    {"signals", road_map.signals().size()},
+                    {"faults", faults_of(road_map)}};
+    out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+
   void report(std::ostream& err, const map::RoadMap& road_map) const {
-    const auto& remarks = road_map.remarks();
-    const auto faults = std::count_if(remarks.begin(), remarks.end(),
-                                      [](const map::ImportRemark& r) { return r.is_fault; });
+    const std::ptrdiff_t faults = faults_of(road_map);
     fmt::print(err, "{}: {}, {} roads, {} lanes, {} junctions, {} signals\n", output_.string(),
                road_map.format(), road_map.roads().size(), road_map.lanes().size(),
                road_map.junctions().size(), road_map.signals().size());
@@ -77,7 +95,7 @@ class ImportCommand : public Command {
   std::filesystem::path input_, output_;
   std::string crs_;
   double max_error_m_ = 1e-3;
-  bool force_ = false;
+  bool json_ = false, force_ = false;
 };
 
 }  // namespace

@@ -43,6 +43,8 @@ constexpr Entry kCommands[] = {
     {"audit", make_audit_command},
     {"figures", make_figures_command},
     {"report", make_report_command},
+    {"batch", make_batch_command},
+    {"jobs", make_jobs_command},
 };
 // clang-format on
 

@@ -38,21 +38,25 @@ class RouteCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Find the cheapest route over lanes, or say why there is none");
-    arguments.add("MAP", map_file_, "Any readable map").required();
+    arguments.add("MAP", map_file_, "Any readable map").required().reads();
     question_.declare(arguments, true);
     arguments
         .add("--alternatives", alternatives_,
              "Up to so many routes; each shares at most 70 % of its length with any before and "
              "costs at most 1.5 times the first")
         .within(1, 20);
-    arguments.add("--batch", batch_,
-                  "Pairs instead of --from and --to: CSV with the columns from and to, places in "
-                  "quotes; one row of answers each");
+    arguments
+        .add("--batch", batch_,
+             "Pairs instead of --from and --to: CSV with the columns from and to, places in "
+             "quotes; one row of answers each")
+        .reads();
     arguments.flag("--matrix", matrix_, "With --batch: from every from to every to");
     arguments.flag("--json", json_, "Print one JSON document");
-    arguments.add("-o,--output", output_,
-                  "Write too: .geojson with the corridor, .csv a row per leg, .svg a picture; with "
-                  "--batch the rows, as .csv");
+    arguments
+        .add("-o,--output", output_,
+             "Write too: .geojson with the corridor, .csv a row per leg, .svg a picture; with "
+             "--batch the rows, as .csv")
+        .writes(".geojson");
     arguments.flag("--force", force_, "Replace the output if it exists");
     arguments.require([this] { return missing(); });
     arguments.example(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "roadbed/planning/audit.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/drive_files.h"
+#include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/in_threads.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/progress_bar.h"
@@ -19,6 +21,7 @@ namespace roadbed::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using DrivenFile = decltype(DrivenScenario::files)::value_type;
 
 void write_files(const DrivenScenario& driven, const fs::path& folder) {
   for (const auto& [name, bytes] : driven.files) write_output(folder / name, bytes);
@@ -116,14 +119,18 @@ class SimulateCommand : public Command {
     arguments
         .add("SCENARIO", scenario_file_,
              "Scenario file (.json, or CommonRoad .xml), or a folder of them")
-        .required();
+        .required()
+        .reads(files_named_by_scenario);
     arguments
         .add("-o,--output", folder_,
              "Folder for trajectory.csv, metrics.json, report.html and drive.svg, for CommonRoad "
              "solution.xml too; of a folder, one for each scenario, and drives.csv")
-        .required();
-    arguments.add("--timings", timings_file_,
-                  "File for the wall clock of each planning cycle (.csv)");
+        .required()
+        .writes("/");
+    arguments
+        .add("--timings", timings_file_, "File for the wall clock of each planning cycle (.csv)")
+        .writes("");
+    arguments.flag("--json", json_, "Print the metrics as one JSON document");
     arguments.flag("--candidates", choice_.keeps_candidates,
                    "Keep what became of each candidate, for the report; takes longer");
     arguments.flag("--predict", choice_.predicts,
@@ -144,14 +151,22 @@ class SimulateCommand : public Command {
     make_output_folder(folder_, force_);
     write_files(driven, folder_);
     if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
-    fmt::print(streams.out, "{}: {}\n", driven.name, driven.verdict.text);
-    if (driven.audit) {
-      fmt::print(streams.out, "occupancy: {}\n", planning::name(driven.audit->verdict));
-    }
+    print_one(streams.out, driven);
     if (!common.quiet) {
       fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
     }
     return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::failed;
+  }
+
+  void print_one(std::ostream& out, const DrivenScenario& driven) const {
+    if (json_) {
+      out << std::ranges::find(driven.files, "metrics.json", &DrivenFile::first)->second;
+      return;
+    }
+    fmt::print(out, "{}: {}\n", driven.name, driven.verdict.text);
+    if (driven.audit) {
+      fmt::print(out, "occupancy: {}\n", planning::name(driven.audit->verdict));
+    }
   }
 
   Exit run_folder(const Streams& streams, const CommonOptions& common) const {
@@ -169,7 +184,7 @@ class SimulateCommand : public Command {
     drive_all(rows, {folder_, choice_, common.threads}, progress);
     write_output(folder_ / "drives.csv", table_csv(rows));
     if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
-    print_table(streams.out, rows);
+    json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);
     const bool all_good = std::ranges::all_of(rows, &Row::is_good);
     return all_good ? Exit::ok : Exit::failed;
   }
@@ -183,6 +198,18 @@ class SimulateCommand : public Command {
     return csv;
   }
 
+  static void print_json(std::ostream& out, const std::vector<Row>& rows) {
+    using Json = nlohmann::ordered_json;
+    Json drives = Json::array();
+    for (const Row& row : rows) {
+      drives.push_back({{"scenario", row.file.stem().string()},
+                        {"outcome", row.outcome},
+                        {"at_s", row.at_s},
+                        {"text", row.text}});
+    }
+    out << Json{{"drives", drives}}.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+
   static void print_table(std::ostream& out, const std::vector<Row>& rows) {
     for (const Row& row : rows) {
       fmt::print(out, "{:32} {:13} {}\n", row.file.stem().string(), row.outcome, row.text);
@@ -192,7 +219,7 @@ class SimulateCommand : public Command {
   }
 
   fs::path scenario_file_, folder_, timings_file_;
-  bool force_ = false;
+  bool json_ = false, force_ = false;
   DriveChoice choice_;
 };
 

@@ -24,7 +24,7 @@ class ValidateCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Report what makes a map unfit for planning");
-    arguments.add("MAP", input_, "Any readable map");
+    arguments.add("MAP", input_, "Any readable map").reads();
     arguments.flag("--rules", list_rules_,
                    "List all rules with their meaning, and do nothing else");
     arguments.flag("--json", json_, "Print one JSON document");
@@ -59,10 +59,12 @@ class ValidateCommand : public Command {
 
  private:
   void declare_outputs(Arguments& arguments) {
-    arguments.add("--junit", junit_, "Write the findings as JUnit test cases, one per rule");
-    arguments.add("--sarif", sarif_, "Write the findings as SARIF 2.1.0");
-    arguments.add("--geojson", geojson_, "Write the findings as a layer of points");
-    arguments.add("--svg", svg_, "Draw the map with its findings");
+    arguments.add("--junit", junit_, "Write the findings as JUnit test cases, one per rule")
+        .writes(".xml");
+    arguments.add("--sarif", sarif_, "Write the findings as SARIF 2.1.0").writes(".sarif");
+    arguments.add("--geojson", geojson_, "Write the findings as a layer of points")
+        .writes(".geojson");
+    arguments.add("--svg", svg_, "Draw the map with its findings").writes(".svg");
     arguments.flag("--force", force_, "Replace outputs that exist");
   }
 

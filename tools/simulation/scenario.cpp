@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -256,6 +258,25 @@ Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& fil
 
 Scenario read_scenario(const std::filesystem::path& file) {
   return parse_scenario(map::read_file(file), file);
+}
+
+std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  if (std::filesystem::is_directory(file)) {
+    for (const auto& entry : std::filesystem::directory_iterator(file)) {
+      if (entry.path().extension() != ".json" || entry.is_directory()) continue;
+      std::ranges::copy(files_named_by_scenario(entry.path()), std::back_inserter(files));
+    }
+    return files;
+  }
+  try {
+    const Scenario scenario = read_scenario(file);
+    files = scenario.occupancy_files;
+    files.push_back(scenario.map_file);
+  } catch (const map::InputError&) {
+    return {};
+  }
+  return files;
 }
 
 }  // namespace roadbed::tools

@@ -111,4 +111,8 @@ Scenario read_scenario(const std::filesystem::path& file);
 /// The same from bytes; `file` stands for the scenario in messages and gives the folder.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
 
+/// The map and the clouds that a scenario names, or those of all scenarios (.json) right in a
+/// folder. A file that is no such scenario names none, as a CommonRoad one, which holds its map.
+std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file);
+
 }  // namespace roadbed::tools

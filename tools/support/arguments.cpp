@@ -20,6 +20,7 @@ std::string refuse_nan(const std::string& text) {
 
 Argument& Argument::required() {
   option_->required();
+  info_->is_required = true;
   return *this;
 }
 
@@ -71,53 +72,65 @@ Argument& Argument::excludes(const Argument& other) {
   return *this;
 }
 
+Argument& Argument::reads(FilesNamed named) {
+  info_->use = ArgumentInfo::Use::input;
+  info_->named = std::move(named);
+  return *this;
+}
+
+Argument& Argument::writes(const std::string& suffix) {
+  info_->use = ArgumentInfo::Use::output;
+  info_->suffix = suffix;
+  return *this;
+}
+
 void Arguments::description(const std::string& text) { app_->description(text); }
 
 void Arguments::example(const std::string& lines) { app_->footer("Example:\n" + lines); }
 
 Argument Arguments::add(const std::string& names, std::string& value, const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::filesystem::path& value,
                         const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::path);
 }
 
 Argument Arguments::add(const std::string& names, double& value, const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, int& value, const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::size_t& value, const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::optional<double>& value,
                         const std::string& help) {
-  return Argument(*app_->add_option(names, value, help));
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::vector<double>& values,
                         const std::string& help) {
-  return Argument(*app_->add_option(names, values, help));
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::vector<std::string>& values,
                         const std::string& help) {
-  return Argument(*app_->add_option(names, values, help));
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::value);
 }
 
 Argument Arguments::add(const std::string& names, std::vector<std::filesystem::path>& values,
                         const std::string& help) {
-  return Argument(*app_->add_option(names, values, help));
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::path);
 }
 
 Argument Arguments::flag(const std::string& names, bool& value, const std::string& help) {
-  return Argument(*app_->add_flag(names, value, help));
+  return note(*app_->add_flag(names, value, help), ArgumentInfo::Kind::flag);
 }
 
 Arguments Arguments::part(const std::string& name) {
@@ -134,6 +147,12 @@ void Arguments::require(std::function<std::string()> fault) {
   });
 }
 
+Argument Arguments::note(CLI::Option& option, ArgumentInfo::Kind kind) {
+  declared_->push_back(
+      {.name = option.get_single_name(), .kind = kind, .is_positional = option.get_positional()});
+  return {option, declared_->back()};
+}
+
 Argument Arguments::choose(const std::string& names, const std::vector<std::string>& words,
                            const std::string& standing, std::function<void(std::size_t)> take,
                            const std::string& help) {
@@ -144,7 +163,23 @@ Argument Arguments::choose(const std::string& names, const std::vector<std::stri
   CLI::Option* option = app_->add_option_function<std::string>(names, take_word, help);
   option->check(CLI::IsMember(words, CLI::ignore_case));
   option->option_text(fmt::format("{} [{}]", fmt::join(words, "|"), standing));
-  return Argument(*option);
+  return note(*option, ArgumentInfo::Kind::value);
+}
+
+ArgumentSet::ArgumentSet() : app_(std::make_unique<CLI::App>()), arguments_(*app_) {}
+
+ArgumentSet::~ArgumentSet() = default;
+
+std::string ArgumentSet::parse(std::vector<std::string> words) {
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  try {
+    app_->parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    std::string fault = error.what();
+    std::replace(fault.begin(), fault.end(), '\n', ' ');
+    return fault.empty() ? "the options are wrong" : fault;
+  }
+  return {};
 }
 
 }  // namespace roadbed::tools

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,10 +18,28 @@ class Option;
 
 namespace roadbed::tools {
 
+/// Files that a file names in turn, so that a command which is given it reads them too; none if it
+/// cannot be read.
+using FilesNamed =
+    std::function<std::vector<std::filesystem::path>(const std::filesystem::path& file)>;
+
+/// What is known of a declared argument beside its value.
+struct ArgumentInfo {
+  enum class Kind { value, flag, path };
+  enum class Use { none, input, output };
+
+  std::string name;  ///< the long name of an option, without dashes; of a positional its own
+  Kind kind = Kind::value;
+  bool is_positional = false, is_required = false;
+  Use use = Use::none;      ///< of a path; declared by `reads` and `writes`
+  FilesNamed named = {};    ///< of an input
+  std::string suffix = {};  ///< of an output: see Argument::writes
+};
+
 /// One option or positional argument of a command; its functions narrow what is accepted.
 class Argument {
  public:
-  explicit Argument(CLI::Option& option) : option_(&option) {}
+  Argument(CLI::Option& option, ArgumentInfo& info) : option_(&option), info_(&info) {}
 
   Argument& required();
   /// Shows the value that stands now as the default in the help.
@@ -37,9 +57,16 @@ class Argument {
   Argument& checked(std::function<std::string(const std::string& text)> fault);
   /// May not stand beside another.
   Argument& excludes(const Argument& other);
+  /// Names a file or folder that the command reads, with those that `named` finds in it.
+  Argument& reads(FilesNamed named = {});
+  /// Names a file or folder that the command writes.
+  /// @param suffix  what a name ends in that is chosen for the user: ".json", or "/" for a folder;
+  ///                empty: what is written differs from run to run, and is not chosen for him.
+  Argument& writes(const std::string& suffix);
 
  private:
   CLI::Option* option_;
+  ArgumentInfo* info_;
 };
 
 /// Declares the arguments of one command. It hides CLI11, whose templates cost the compiler ten
@@ -48,7 +75,8 @@ class Argument {
 /// live until then.
 class Arguments {
  public:
-  explicit Arguments(CLI::App& app) : app_(&app) {}
+  explicit Arguments(CLI::App& app)
+      : app_(&app), declared_(std::make_shared<std::deque<ArgumentInfo>>()) {}
 
   void description(const std::string& text);
   /// Command lines that a reader of the help can copy.
@@ -89,12 +117,36 @@ class Arguments {
   /// Looks at all arguments together; `fault` says what is missing, and nothing if all is there.
   void require(std::function<std::string()> fault);
 
+  /// All that was declared, in that order, without those of parts.
+  const std::deque<ArgumentInfo>& declared() const { return *declared_; }
+
  private:
+  Argument note(CLI::Option& option, ArgumentInfo::Kind kind);
   Argument choose(const std::string& names, const std::vector<std::string>& words,
                   const std::string& standing, std::function<void(std::size_t)> take,
                   const std::string& help);
 
   CLI::App* app_;
+  std::shared_ptr<std::deque<ArgumentInfo>> declared_;  // elements stay where they are
+};
+
+/// Arguments whose words come from elsewhere than the program's command line.
+class ArgumentSet {
+ public:
+  ArgumentSet();
+  ~ArgumentSet();
+  ArgumentSet(const ArgumentSet&) = delete;
+  ArgumentSet& operator=(const ArgumentSet&) = delete;
+
+  /// To declare them on.
+  Arguments& arguments() { return arguments_; }
+
+  /// Sets the variables. Returns what is wrong with the words, in one line; nothing if all is well.
+  std::string parse(std::vector<std::string> words);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  Arguments arguments_;
 };
 
 }  // namespace roadbed::tools

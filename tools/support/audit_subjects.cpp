@@ -46,10 +46,12 @@ geometry::Trajectory AuditSubject::drive() const {
 }
 
 std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
-  Argument trajectory = arguments.add(
-      "--trajectory", trajectory_,
-      "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
-      "the body is covered. Or a folder: its .csv files, and each trajectory.csv below");
+  Argument trajectory =
+      arguments
+          .add("--trajectory", trajectory_,
+               "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
+               "the body is covered. Or a folder: its .csv files, and each trajectory.csv below")
+          .reads();
   std::vector<Argument> of_sweeps = question_.declare(arguments, true);
   Argument lane = arguments.add(
       "--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]");

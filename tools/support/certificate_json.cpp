@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/ground.h"
 #include "roadbed/map/read_file.h"
+#include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/obstacles_csv.h"
 
@@ -364,6 +366,18 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
 
 CertificateFile read_certificate_json(const std::filesystem::path& file) {
   return parse_certificate_json(map::read_file(file), file.string());
+}
+
+std::vector<std::filesystem::path> files_named_by_certificate(const std::filesystem::path& file) {
+  try {
+    const CertificateFile read = read_certificate_json(file);
+    if (!read.obstacles) return {read.occupancy.name, read.trajectory.name};
+    std::vector<std::filesystem::path> files = files_named_by_scenario(read.obstacles->name);
+    files.insert(files.end(), {read.occupancy.name, read.trajectory.name, read.obstacles->name});
+    return files;
+  } catch (const map::InputError&) {
+    return {};
+  }
 }
 
 }  // namespace roadbed::tools

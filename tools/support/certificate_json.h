@@ -47,7 +47,10 @@ std::string write_certificate_json(const CertificateFile& file);
 /// @throws InputError naming the place of what is wrong.
 CertificateFile read_certificate_json(const std::filesystem::path& file);
 
-/// The same from bytes; `name` stands for the file in messages.
+/// The inputs that a certificate names, with those that these name; none if it is unusable.
+std::vector<std::filesystem::path> files_named_by_certificate(const std::filesystem::path& file);
+
+/// The same as `read_certificate_json` from bytes; `name` stands for the file in messages.
 CertificateFile parse_certificate_json(std::string_view bytes, const std::string& name);
 
 }  // namespace roadbed::tools

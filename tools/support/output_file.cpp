@@ -1,28 +1,27 @@
 #include "roadbed/tools/support/output_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
-
 namespace roadbed::tools {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found,
                          const std::string& remedy) {
-  throw map::InputError({.file = file.string(),
-                         .place = {},
-                         .element = {},
-                         .found = found,
-                         .needed = {},
-                         .remedy = remedy});
+  throw OutputError({.file = file.string(),
+                     .place = {},
+                     .element = {},
+                     .found = found,
+                     .needed = {},
+                     .remedy = remedy});
 }
 
 [[noreturn]] void refuse_write(const std::filesystem::path& file) {
@@ -78,8 +77,14 @@ void make_output_folder(const std::filesystem::path& folder, bool force) {
 }
 
 OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
-  temporary_ = (folder_of(file_) / ("." + file_.filename().string() + ".XXXXXX")).string();
-  descriptor_ = ::mkostemp(temporary_.data(), O_CLOEXEC);
+  // Not by mkstemp: its files have rights of their own, and the process's mask, which says what
+  // they should be, can only be read by changing it under the feet of other threads.
+  static std::atomic<unsigned> next = 0;
+  const auto stem = (folder_of(file_) / ("." + file_.filename().string())).string();
+  do {
+    temporary_ = fmt::format("{}.{}-{}", stem, ::getpid(), next++);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) {
     temporary_.clear();
     refuse(file_, std::string("cannot be written: ") + std::strerror(errno),
@@ -104,10 +109,7 @@ void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
 }
 
 void OutputFile::commit() {
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  if (::fchmod(descriptor_, 0666 & ~mask) != 0 || ::fsync(descriptor_) != 0 ||
-      ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+  if (::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
     refuse_write(file_);
   }
   temporary_.clear();

@@ -6,16 +6,23 @@
 #include <string_view>
 
 #include "roadbed/map/chunked_file.h"
+#include "roadbed/map/input_error.h"
 
 namespace roadbed::tools {
 
+/// An output that cannot be written, for want of space or rights: no fault of the inputs.
+class OutputError : public map::InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// Checks before the work begins that `file` can be written later.
-/// @throws InputError if its folder is missing or not writable, or the file exists and `force` is
+/// @throws OutputError if its folder is missing or not writable, or the file exists and `force` is
 ///         not set.
 void check_writable(const std::filesystem::path& file, bool force);
 
 /// Makes the folder (with its parents) that a command writes several files to.
-/// @throws InputError if it cannot be made, or holds something and `force` is not set.
+/// @throws OutputError if it cannot be made, or holds something and `force` is not set.
 void make_output_folder(const std::filesystem::path& folder, bool force);
 
 /// A file that is written piece by piece: to a temporary file beside it, which is synced and
@@ -23,15 +30,15 @@ void make_output_folder(const std::filesystem::path& folder, bool force);
 /// `commit` nothing is left behind.
 class OutputFile : public map::ByteSink {
  public:
-  /// @throws InputError if it cannot be written.
+  /// @throws OutputError if it cannot be written.
   explicit OutputFile(std::filesystem::path file);
   ~OutputFile() override;
 
-  /// @throws InputError if it cannot be written.
+  /// @throws OutputError if it cannot be written.
   void write(std::uint64_t offset, std::string_view bytes) override;
 
   /// Puts the new file in place.
-  /// @throws InputError if it cannot be written.
+  /// @throws OutputError if it cannot be written.
   void commit();
 
  private:
@@ -41,7 +48,7 @@ class OutputFile : public map::ByteSink {
 };
 
 /// Writes a whole file in that way.
-/// @throws InputError if it cannot be written; nothing is left behind then.
+/// @throws OutputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace roadbed::tools

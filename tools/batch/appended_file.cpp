@@ -1,0 +1,70 @@
+#include "roadbed/tools/batch/appended_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+  throw OutputError({.file = file.string(),
+                     .place = {},
+                     .element = {},
+                     .found = std::string("cannot be written: ") + std::strerror(errno),
+                     .needed = {},
+                     .remedy = "free some space and run again: what is done stays done"});
+}
+
+// Returns how much of the bytes was written.
+std::size_t write_all(int descriptor, std::string_view bytes) {
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t more = ::write(descriptor, bytes.data() + written, bytes.size() - written);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) break;
+    written += static_cast<std::size_t>(more);
+  }
+  return written;
+}
+
+}  // namespace
+
+AppendedFile::AppendedFile(std::filesystem::path file) : file_(std::move(file)) {}
+
+AppendedFile::~AppendedFile() {
+  if (descriptor_ < 0) return;
+  ::fsync(descriptor_);
+  ::close(descriptor_);
+}
+
+void AppendedFile::open() {
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  struct stat status {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) refuse(file_);
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+std::uint64_t AppendedFile::append(std::string_view line) {
+  if (descriptor_ < 0) open();
+  const std::string bytes = std::string(line) + '\n';
+  const std::size_t written = write_all(descriptor_, bytes);
+  if (written < bytes.size()) {
+    const int cause = errno;
+    // What is left of it if this fails too is no whole line, and passed over by readers.
+    if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) size_ += written;
+    errno = cause;
+    refuse(file_);
+  }
+  const std::uint64_t begin = size_;
+  size_ += bytes.size();
+  return begin;
+}
+
+}  // namespace roadbed::tools

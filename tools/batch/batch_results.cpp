@@ -1,0 +1,64 @@
+#include "roadbed/tools/batch/batch_results.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "roadbed/tools/batch/batch_page.h"
+#include "roadbed/tools/batch/counted.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr std::size_t kMostListed = 500;  // of each kind
+constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+/// Collects small pieces into few writes.
+class BufferedOutput {
+ public:
+  explicit BufferedOutput(const std::filesystem::path& file) : file_(file) {}
+
+  void add(std::string_view bytes) {
+    buffer_ += bytes;
+    if (buffer_.size() >= kPiece) flush();
+  }
+
+  void commit() {
+    flush();
+    file_.commit();
+  }
+
+ private:
+  void flush() {
+    file_.write(written_, buffer_);
+    written_ += buffer_.size();
+    buffer_.clear();
+  }
+
+  OutputFile file_;
+  std::string buffer_;
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace
+
+BatchSummary write_results(const ResultStore& store, const std::vector<LineResult>& order,
+                           const std::filesystem::path& folder) {
+  BatchSummary summary(kMostListed);
+  BufferedOutput results(folder / "results.jsonl");
+  for (const LineResult& job : order) {
+    const std::string line = store.line(job.hash);
+    results.add(fmt::format("{{\"line\":{},", job.line));
+    results.add(std::string_view(line).substr(1));
+    results.add("\n");
+    summary.add(job.line, line);
+  }
+  results.commit();
+  write_output(folder / "summary.json", summary.document(kMostInSummary));
+  write_output(folder / "index.html",
+               batch_page(summary, fmt::format("{} jobs", with_commas(order.size()))));
+  return summary;
+}
+
+}  // namespace roadbed::tools

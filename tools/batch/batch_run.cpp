@@ -1,0 +1,195 @@
+#include "roadbed/tools/batch/batch_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/batch/job_files.h"
+#include "roadbed/tools/batch/job_hash.h"
+#include "roadbed/tools/batch/memory_size.h"
+#include "roadbed/tools/batch/stop_signal.h"
+
+namespace roadbed::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::ifstream open_jobs(const fs::path& file) {
+  std::error_code error;
+  std::ifstream stream;
+  if (!fs::is_directory(file, error)) stream.open(file, std::ios::binary);
+  if (stream.is_open()) return stream;
+  throw map::InputError({.file = file.string(),
+                         .place = {},
+                         .element = {},
+                         .found = fs::exists(file, error) ? "cannot be read" : "no such file",
+                         .needed = "a file with a job a line",
+                         .remedy = "check the path; roadbed jobs writes such files"});
+}
+
+std::unique_ptr<JobRunner> make_runner(const BatchOptions& options) {
+  if (options.isolates) return std::make_unique<ProcessRunner>(options.folder, options.limits);
+  return std::make_unique<ThreadRunner>(options.folder);
+}
+
+std::string too_long(const JobLines::Line& line) {
+  return fmt::format("job: is longer than {} bytes", line.text.size());
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+std::size_t count_jobs(const fs::path& jobs_file) {
+  std::ifstream stream = open_jobs(jobs_file);
+  JobLines lines(stream);
+  std::size_t count = 0;
+  while (lines.next()) ++count;
+  return count;
+}
+
+void list_missing(const BatchOptions& options, const ResultStore& store, std::ostream& out) {
+  std::ifstream stream = open_jobs(options.jobs_file);
+  JobLines lines(stream);
+  const JobKinds kinds;
+  FileHashes files;
+  std::set<JobHash> listed;
+  while (const auto line = lines.next()) {
+    try {
+      const std::string hash = hash_of(parse_job(line->text, kinds), files);
+      const JobHash key = *parse_hash(hash);
+      if (store.stands(key) || !listed.insert(key).second) continue;
+      fmt::print(out, "{}\t{}\n", hash, line->text);
+    } catch (const map::InputError&) {
+      continue;  // the batch itself says what is wrong with it
+    }
+  }
+}
+
+BatchRun::BatchRun(const BatchOptions& options, ResultStore& store, ProgressBar& progress)
+    : options_(options),
+      store_(store),
+      progress_(progress),
+      timings_(options.folder / "timings.jsonl"),
+      stream_(open_jobs(options.jobs_file)),
+      lines_(stream_),
+      gate_(options.memory_bytes, [this] { return resident(); }) {
+  for (int i = 0; i < options.threads; ++i) runners_.push_back(make_runner(options));
+}
+
+void BatchRun::run() {
+  {
+    std::vector<std::jthread> threads;
+    for (const auto& runner : runners_) threads.emplace_back([&] { work(*runner); });
+  }
+  if (error_) std::rethrow_exception(error_);
+}
+
+void BatchRun::work(JobRunner& runner) {
+  try {
+    while (const auto taken = take()) bring(*taken, runner);
+  } catch (...) {
+    fail(std::current_exception());
+  }
+  runner.finish();
+}
+
+std::optional<BatchRun::Taken> BatchRun::take() {
+  const std::scoped_lock lock(mutex_);
+  if (error_ || StopSignal::is_asked()) return {};
+  auto line = lines_.next();
+  if (!line) {
+    is_complete_ = true;
+    return {};
+  }
+  order_.push_back({.line = line->number, .hash = {}});
+  return Taken{order_.size() - 1, *std::move(line)};
+}
+
+void BatchRun::bring(const Taken& taken, JobRunner& runner) {
+  const JobLines::Line& line = taken.line;
+  const auto keep_bad = [&](const std::string& reason) {
+    if (claim(taken.index, *parse_hash(hash_of_bad_line(line.text)))) {
+      store_.add(line_of_bad_line(line.text, reason));
+      progress_.done_one();
+    }
+  };
+  if (line.is_too_long) return keep_bad(too_long(line));
+  std::optional<Job> job;
+  try {
+    job = parse_job(line.text, kinds_);
+  } catch (const map::InputError& error) {
+    return keep_bad(error.what());
+  }
+  const std::string hash = hash_of(*job, files_);
+  if (!claim(taken.index, *parse_hash(hash))) return;
+  if (options_.merges) {
+    const std::scoped_lock lock(mutex_);
+    ++missing_;
+    return;
+  }
+  run_job_of(line, *job, hash, runner);
+  progress_.done_one();
+}
+
+// Whether the job of this hash is to be run now.
+bool BatchRun::claim(std::size_t index, const JobHash& hash) {
+  const std::scoped_lock lock(mutex_);
+  order_[index].hash = hash;
+  const bool is_first = claimed_.insert(hash).second;
+  const bool stands = is_first && store_.stands(hash, options_.merges);
+  if (stands) there_.insert(hash);
+  if (there_.contains(hash)) ++were_there_;
+  if (is_first && !stands) return true;
+  progress_.skip_one();
+  return false;
+}
+
+void BatchRun::run_job_of(const JobLines::Line& line, const Job& job, const std::string& hash,
+                          JobRunner& runner) {
+  const MemoryGate::Pass pass(gate_);
+  const auto start = std::chrono::steady_clock::now();
+  std::string result = runner.run(job, hash, line.text);
+  const double wall_s = seconds_since(start);
+  if (hash_of(job, files_) != hash) {
+    remove_files_of(hash, options_.folder);
+    result = line_of(job, failure(hash, Cause::changed, {}, "an input changed while the job ran"));
+  }
+  if (!read_head(result)) {
+    remove_files_of(hash, options_.folder);
+    result = line_of(job, failure(hash, Cause::internal, {}, "what it printed is no JSON"));
+  }
+  store_.add(result);
+  keep_time(job, hash, wall_s);
+}
+
+void BatchRun::keep_time(const Job& job, const std::string& hash, double wall_s) {
+  const std::scoped_lock lock(mutex_);
+  timings_.append(
+      fmt::format(R"({{"hash":"{}","job":"{}","wall_s":{:.6f}}})", hash, job.kind->name, wall_s));
+}
+
+std::uint64_t BatchRun::resident() const {
+  std::uint64_t bytes = memory_of_process(::getpid()).resident;
+  for (const auto& runner : runners_) {
+    if (const pid_t process = runner->process(); process != 0) {
+      bytes += memory_of_process(process).resident;
+    }
+  }
+  return bytes;
+}
+
+void BatchRun::fail(std::exception_ptr error) {
+  const std::scoped_lock lock(mutex_);
+  is_complete_ = false;
+  if (!error_) error_ = std::move(error);
+}
+
+}  // namespace roadbed::tools

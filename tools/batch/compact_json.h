@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace roadbed::tools {
+
+/// A JSON document without the blanks between its parts, so on one line; all else stays as it is
+/// written, numbers too.
+/// @pre `json` is valid.
+std::string compact_json(std::string_view json);
+
+}  // namespace roadbed::tools

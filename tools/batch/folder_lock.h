@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+
+namespace roadbed::tools {
+
+/// Keeps a folder to one run at a time, by flock on the file `lock` in it: gone with the process,
+/// however it ends.
+class FolderLock {
+ public:
+  /// @throws InputError if another run has it; OutputError if the file cannot be made.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Marks a folder as being worked in, by the file `unfinished` in it. Where the mark was left
+/// behind by a run that was killed, half-written files are swept away first.
+class UnfinishedMark {
+ public:
+  /// @throws OutputError if the mark cannot be made.
+  explicit UnfinishedMark(const std::filesystem::path& folder);
+
+  /// All is finished.
+  void remove();
+
+ private:
+  std::filesystem::path mark_;
+};
+
+}  // namespace roadbed::tools

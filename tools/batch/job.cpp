@@ -1,0 +1,158 @@
+#include "roadbed/tools/batch/job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "roadbed/tools/support/json_node.h"
+
+namespace roadbed::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 4> kOwnOptions{"force", "json", "quiet", "threads"};
+
+std::string kind_names(const JobKinds& kinds) {
+  std::string names;
+  for (const JobKind& kind : kinds.all()) names += (names.empty() ? "" : ", ") + kind.name;
+  return names;
+}
+
+std::vector<std::string> texts(const JsonNode& list) {
+  std::vector<std::string> result;
+  for (const JsonNode& element : list.elements()) result.push_back(element.text());
+  return result;
+}
+
+bool is_scalar(const json& value) { return value.is_string() || value.is_number(); }
+
+void check_value(const ArgumentInfo& argument, const JsonNode& node) {
+  const json& value = node.value();
+  if (argument.kind == ArgumentInfo::Kind::flag) {
+    if (value.is_boolean()) return;
+    node.refuse(fmt::format("is {}", value.type_name()), "true or false", "it is a flag");
+  }
+  const bool is_list = value.is_array() && !value.empty() && std::ranges::all_of(value, is_scalar);
+  if (is_scalar(value) || is_list) return;
+  node.refuse(fmt::format("is {}", value.is_array() ? "an unusable list" : value.type_name()),
+              "a text, a number, or a list of them", "write one");
+}
+
+const ArgumentInfo& known_option(const JobKind& kind, const std::string& name,
+                                 const JsonNode& node) {
+  if (std::ranges::find(kOwnOptions, name) != kOwnOptions.end()) {
+    node.refuse("is set by the batch", "", "leave it out");
+  }
+  const ArgumentInfo* option = kind.option(name);
+  if (option == nullptr) {
+    node.refuse(fmt::format("is no option of {}", kind.name), "",
+                fmt::format("see: roadbed {} --help", kind.name));
+  }
+  if (option->use == ArgumentInfo::Use::output) {
+    node.refuse("names an output, and the batch chooses where they go", "",
+                "name it in \"outputs\"");
+  }
+  return *option;
+}
+
+json read_options(const JobKind& kind, const JsonNode& node) {
+  json options = json::object();
+  for (const auto& [name, value] : node.members()) {
+    check_value(known_option(kind, name, value), value);
+    if (value.value() != false) options[name] = value.value();
+  }
+  return options;
+}
+
+// "output.csv" asks for the option "output" with another suffix than its own.
+std::string_view name_of_output(std::string_view asked) { return asked.substr(0, asked.find('.')); }
+
+bool is_plain(std::string_view text) {
+  return std::ranges::all_of(text, [](char sign) {
+    return (sign >= 'a' && sign <= 'z') || (sign >= '0' && sign <= '9') || sign == '-' ||
+           sign == '.';
+  });
+}
+
+std::vector<std::string> read_outputs(const JobKind& kind, const JsonNode& node) {
+  std::vector<std::string> outputs;
+  for (const JsonNode& element : node.elements()) {
+    const std::string asked = element.text();
+    const ArgumentInfo* option = kind.option(name_of_output(asked));
+    const bool is_output = option != nullptr && option->use == ArgumentInfo::Use::output;
+    if (!is_output || option->suffix.empty() || !is_plain(asked)) {
+      element.refuse(
+          fmt::format("\"{}\" is no output of {} that a batch may ask for", asked, kind.name), "",
+          fmt::format("see: roadbed {} --help", kind.name));
+    }
+    outputs.push_back(asked);
+  }
+  std::ranges::sort(outputs);
+  const auto same = [](std::string_view a, std::string_view b) {
+    return name_of_output(a) == name_of_output(b);
+  };
+  if (std::ranges::adjacent_find(outputs, same) != outputs.end()) {
+    node.refuse("names an output twice", "", "name it once");
+  }
+  return outputs;
+}
+
+void add_word(const std::string& name, const json& value, std::vector<std::string>& words) {
+  if (value.is_boolean()) {
+    words.push_back("--" + name);
+  } else {
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    words.push_back(fmt::format("--{}={}", name, text));
+  }
+}
+
+void add_inputs(const json& value, const FilesNamed* named, std::vector<JobInput>& inputs) {
+  if (value.is_string()) inputs.push_back({value.get<std::string>(), named});
+  if (!value.is_array()) return;
+  for (const json& element : value) add_inputs(element, named, inputs);
+}
+
+}  // namespace
+
+Job parse_job(std::string_view line, const JobKinds& kinds) {
+  const json document = parse_json_strictly(line, "job");
+  const JsonNode node(document, "job");
+  node.require_object({"job", "inputs", "options", "outputs"});
+  const JsonNode name = node.at("job");
+  Job job{.kind = kinds.find(name.text()), .options = json::object()};
+  if (job.kind == nullptr) {
+    name.refuse(fmt::format("is {}", name.value().dump()), "one of " + kind_names(kinds),
+                "correct it");
+  }
+  if (const auto inputs = node.find("inputs")) job.inputs = texts(*inputs);
+  if (const auto options = node.find("options")) job.options = read_options(*job.kind, *options);
+  if (const auto outputs = node.find("outputs")) job.outputs = read_outputs(*job.kind, *outputs);
+  return job;
+}
+
+std::vector<std::string> words_of_options(const Job& job) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : job.options.items()) {
+    if (!value.is_array()) {
+      add_word(name, value, words);
+      continue;
+    }
+    for (const json& element : value) add_word(name, element, words);
+  }
+  return words;
+}
+
+std::vector<JobInput> inputs_of(const Job& job) {
+  std::vector<JobInput> inputs;
+  const ArgumentInfo& positional = job.kind->positional();
+  for (const std::string& path : job.inputs) inputs.push_back({path, &positional.named});
+  for (const auto& [name, value] : job.options.items()) {
+    const ArgumentInfo& option = *job.kind->option(name);
+    if (option.use == ArgumentInfo::Use::input) add_inputs(value, &option.named, inputs);
+  }
+  return inputs;
+}
+
+}  // namespace roadbed::tools

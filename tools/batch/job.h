@@ -1,0 +1,36 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/tools/batch/job_kinds.h"
+
+namespace roadbed::tools {
+
+/// One run of a command, as a line of JSON says it:
+/// `{"job":"audit","options":{"occupancy":"street.bt","trajectory":"a.csv"},"outputs":["report"]}`.
+struct Job {
+  const JobKind* kind = nullptr;
+  std::vector<std::string> inputs = {};   ///< positional arguments
+  nlohmann::json options = {};            ///< by long name; flags that are false are left out
+  std::vector<std::string> outputs = {};  ///< options whose files the batch names, sorted
+};
+
+/// @param kinds  lives as long as the job.
+/// @throws InputError saying what is wrong: no JSON, a key that is unknown or stands twice, a kind
+///         or an option that there is not, an option that the batch sets itself, a wrong type.
+Job parse_job(std::string_view line, const JobKinds& kinds);
+
+/// The words of the command line but for its outputs, without the command's name.
+std::vector<std::string> words_of_options(const Job& job);
+
+/// Files and folders that the job reads, as it names them, in a fixed order.
+struct JobInput {
+  std::string path;
+  const FilesNamed* named;  ///< never null, but may be empty
+};
+std::vector<JobInput> inputs_of(const Job& job);
+
+}  // namespace roadbed::tools

@@ -1,0 +1,35 @@
+#include "roadbed/tools/batch/job_hash.h"
+
+#include "roadbed/tools/batch/hash_text.h"
+
+namespace roadbed::tools {
+namespace {
+
+using nlohmann::json;
+
+std::string version() { return ROADBED_VERSION; }
+
+void add_file(const std::filesystem::path& path, FileHashes& files, json& list) {
+  list.push_back({path.generic_string(), files.of(path)});
+}
+
+}  // namespace
+
+std::string hash_of(const Job& job, FileHashes& files) {
+  json contents = json::array();
+  for (const JobInput& input : inputs_of(job)) {
+    add_file(input.path, files, contents);
+    for (const auto& path : files.named_in(input.path, *input.named)) {
+      add_file(path, files, contents);
+    }
+  }
+  const json identity = {version(),   job.kind->name, job.inputs,
+                         job.options, job.outputs,    std::move(contents)};
+  return hash_text(identity.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+std::string hash_of_bad_line(std::string_view line) {
+  return hash_text(version() + " bad line " + std::string(line));
+}
+
+}  // namespace roadbed::tools

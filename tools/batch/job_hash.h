@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "roadbed/tools/batch/file_hashes.h"
+#include "roadbed/tools/batch/job.h"
+
+namespace roadbed::tools {
+
+/// What a job is known by: 32 hexadecimal digits over the program's version, the job as its line
+/// says it (the order of options and outputs does not matter), and the contents of every file that
+/// it reads. Two jobs of one hash have one result.
+std::string hash_of(const Job& job, FileHashes& files);
+
+/// That of a line which is no job.
+std::string hash_of_bad_line(std::string_view line);
+
+}  // namespace roadbed::tools

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/tools/batch/job.h"
+
+namespace roadbed::tools {
+
+enum class JobStatus {
+  done,    ///< exit status 0
+  no,      ///< exit status 1 with an answer: conflict, no route, findings, goal not reached
+  failed,  ///< there is no answer
+};
+
+std::string_view name(JobStatus status);
+
+/// Why a job has no answer. Some of it is the job's own fault, so that it fails again.
+enum class Cause {
+  line,      ///< the line is no job
+  input,     ///< an input is unusable
+  changed,   ///< an input changed meanwhile
+  crash,     ///< its process died
+  time,      ///< it took longer than allowed
+  memory,    ///< it needed more than there was
+  disk,      ///< an output could not be written
+  internal,  ///< a fault of the program
+};
+
+std::string_view name(Cause cause);
+
+/// Whether the same job may have an answer another time.
+bool may_pass(Cause cause);
+
+/// What became of a job. Holds neither time, thread nor host.
+struct JobResult {
+  std::string hash;
+  JobStatus status = JobStatus::failed;
+  std::optional<int> exit = {};     ///< none where the process died
+  std::string reason = {};          ///< of `no` and `failed`, one line
+  std::optional<Cause> cause = {};  ///< of `failed`
+  std::string document = {};        ///< JSON that the command printed, on one line; may be empty
+  std::vector<std::string> files = {};  ///< relative to the folder of the batch
+};
+
+/// The line of a result, without its end:
+/// `{"hash":…,"job":…,"status":…,"exit":…,"reason":…,"cause":…,"inputs":…,"options":…,"outputs":…,
+/// "result":…,"files":…}`.
+std::string line_of(const Job& job, const JobResult& result);
+
+/// The line of one that is no job.
+std::string line_of_bad_line(std::string_view line, const std::string& reason);
+
+/// A job that failed.
+JobResult failure(std::string hash, Cause cause, std::optional<int> exit, std::string reason);
+
+}  // namespace roadbed::tools

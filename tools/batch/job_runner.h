@@ -1,0 +1,62 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "roadbed/tools/batch/job.h"
+#include "roadbed/tools/batch/serve_process.h"
+
+namespace roadbed::tools {
+
+/// Runs jobs, one after the other.
+class JobRunner {
+ public:
+  virtual ~JobRunner() = default;
+
+  /// @param text  the job's line.
+  /// @returns the line of its result.
+  virtual std::string run(const Job& job, const std::string& hash, const std::string& text) = 0;
+
+  /// After the last job, in the thread that ran them.
+  virtual void finish() {}
+
+  /// The process in which it runs them, if that is another one; 0 if there is none.
+  virtual pid_t process() const { return 0; }
+};
+
+/// In the thread that asks.
+class ThreadRunner : public JobRunner {
+ public:
+  explicit ThreadRunner(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::string run(const Job& job, const std::string& hash, const std::string& text) override;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// What a job may take.
+struct JobLimits {
+  std::optional<double> time_s = {};  ///< wall clock
+  std::string memory = {};            ///< a size; empty: no limit
+};
+
+/// In a process of its own, which is started anew when a job brings it down.
+class ProcessRunner : public JobRunner {
+ public:
+  ProcessRunner(std::filesystem::path folder, JobLimits limits)
+      : folder_(folder), limits_(std::move(limits)), process_(std::move(folder), limits_.memory) {}
+  std::string run(const Job& job, const std::string& hash, const std::string& text) override;
+  void finish() override { process_.end(); }
+  pid_t process() const override { return process_.process(); }
+
+ private:
+  std::filesystem::path folder_;
+  JobLimits limits_;
+  ServeProcess process_;
+};
+
+}  // namespace roadbed::tools

@@ -1,0 +1,123 @@
+#include "roadbed/tools/batch/result_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/batch/job_lines.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestResult = std::size_t{1} << 30;
+
+std::vector<fs::path> journals_in(const fs::path& folder) {
+  std::vector<fs::path> journals;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && entry.path().extension() == ".jsonl") {
+      journals.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(journals);
+  return journals;
+}
+
+// Journals of our own are numbered; others may have any name.
+fs::path next_journal(const fs::path& folder) {
+  for (unsigned number = 1;; ++number) {
+    fs::path journal = folder / fmt::format("{:06}.jsonl", number);
+    if (!fs::exists(journal)) return journal;
+  }
+}
+
+[[noreturn]] void refuse(const fs::path& journal) {
+  throw map::InputError({.file = journal.string(),
+                         .place = {},
+                         .element = {},
+                         .found = "cannot be read",
+                         .needed = {},
+                         .remedy = "check its rights, or remove it: its jobs run again"});
+}
+
+bool are_there(const std::vector<std::string>& files, const fs::path& folder) {
+  return std::ranges::all_of(files, [&](const std::string& file) {
+    std::error_code error;
+    return fs::exists(folder / file, error);
+  });
+}
+
+}  // namespace
+
+ResultStore::ResultStore(fs::path folder) : folder_(std::move(folder)) {
+  const fs::path journals = folder_ / "journal";
+  make_output_folder(journals, true);
+  journals_ = journals_in(journals);
+  for (std::uint32_t i = 0; i < journals_.size(); ++i) read_journal(i);
+  journals_.push_back(next_journal(journals));
+  own_ = std::make_unique<AppendedFile>(journals_.back());
+}
+
+void ResultStore::read_journal(std::uint32_t index) {
+  std::ifstream stream(journals_[index], std::ios::binary);
+  if (!stream) refuse(journals_[index]);
+  JobLines lines(stream, kLongestResult);
+  while (const auto line = lines.next()) {
+    if (!line->is_whole || line->is_too_long) continue;
+    const auto head = read_head(line->text);
+    if (!head || !are_there(head->files, folder_)) continue;
+    note(*head, {.journal = index,
+                 .is_answer = head->status != JobStatus::failed,
+                 .may_change = head->may_change(),
+                 .begin = line->begin,
+                 .size = line->text.size()});
+  }
+}
+
+void ResultStore::note(const ResultHead& head, const Entry& entry) {
+  const auto [found, is_new] = entries_.try_emplace(head.hash, entry);
+  if (is_new || entry.is_answer || !found->second.is_answer) found->second = entry;
+}
+
+bool ResultStore::stands(const JobHash& hash, bool keeps_failed) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = entries_.find(hash);
+  return found != entries_.end() && (keeps_failed || !found->second.may_change);
+}
+
+void ResultStore::add(std::string_view line) {
+  const auto head = read_head(line);
+  if (!head) throw std::invalid_argument("ResultStore::add: the line is no result");
+  const std::scoped_lock lock(mutex_);
+  const std::uint64_t begin = own_->append(line);
+  entries_[head->hash] = {.journal = static_cast<std::uint32_t>(journals_.size() - 1),
+                          .is_answer = head->status != JobStatus::failed,
+                          .may_change = head->may_change(),
+                          .begin = begin,
+                          .size = line.size()};
+}
+
+std::string ResultStore::line(const JobHash& hash) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = entries_.find(hash);
+  if (found == entries_.end()) {
+    throw std::invalid_argument("ResultStore::line: no result of " + text_of(hash));
+  }
+  const Entry& entry = found->second;
+  std::ifstream stream(journals_[entry.journal], std::ios::binary);
+  std::string line(entry.size, '\0');
+  stream.seekg(static_cast<std::streamoff>(entry.begin));
+  stream.read(line.data(), static_cast<std::streamsize>(line.size()));
+  if (!stream) refuse(journals_[entry.journal]);
+  return line;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,95 @@
+#include "roadbed/tools/batch/run_job.h"
+
+#include <new>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <system_error>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/tools/batch/compact_json.h"
+#include "roadbed/tools/batch/job_files.h"
+#include "roadbed/tools/batch/job_verdict.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFailed = static_cast<int>(Exit::failed), kUsage = static_cast<int>(Exit::usage);
+
+std::vector<std::string> words_of(const Job& job, const std::vector<JobOutput>& outputs) {
+  std::vector<std::string> words = words_of_options(job);
+  for (const JobOutput& output : outputs) {
+    words.push_back("--" + output.option + "=" + output.path.string());
+  }
+  for (const char* flag : {"json", "force"}) {
+    if (job.kind->option(flag) != nullptr) words.push_back(std::string("--") + flag);
+  }
+  words.emplace_back("--");
+  words.insert(words.end(), job.inputs.begin(), job.inputs.end());
+  return words;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error && !fs::is_directory(folder)) {
+    throw OutputError({.file = folder.string(),
+                       .place = {},
+                       .element = {},
+                       .found = "cannot be made: " + error.message(),
+                       .needed = {},
+                       .remedy = "free some space or choose another folder"});
+  }
+}
+
+/// Runs the command; what it throws goes on.
+JobResult run_command(const Job& job, const std::string& hash, const fs::path& folder) {
+  const std::vector<JobOutput> outputs = outputs_of(job, hash, folder);
+  ArgumentSet set;
+  const std::unique_ptr<Command> command = job.kind->make();
+  command->declare(set.arguments());
+  if (const std::string fault = set.parse(words_of(job, outputs)); !fault.empty()) {
+    return failure(hash, Cause::line, kUsage, fault);
+  }
+  if (!outputs.empty()) make_folder(folder_of_files(hash, folder));
+  std::ostringstream out, err;
+  const Exit exit = command->run({out, err}, {.quiet = true, .threads = 1, .is_alone = false});
+  if (exit != Exit::ok && out.view().empty()) {
+    return failure(hash, Cause::input, static_cast<int>(exit), err.str());
+  }
+  JobResult result{.hash = hash,
+                   .status = exit == Exit::ok ? JobStatus::done : JobStatus::no,
+                   .exit = static_cast<int>(exit),
+                   .document = compact_json(out.view()),
+                   .files = files_of(outputs, folder)};
+  if (exit != Exit::ok) {
+    result.reason = verdict_of(job.kind->name, nlohmann::json::parse(result.document)).text;
+  }
+  return result;
+}
+
+JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& folder) {
+  try {
+    return run_command(job, hash, folder);
+  } catch (const OutputError& error) {
+    return failure(hash, Cause::disk, kFailed, error.what());
+  } catch (const map::InputError& error) {
+    return failure(hash, Cause::input, kFailed, error.what());
+  } catch (const std::bad_alloc&) {
+    return failure(hash, Cause::memory, kFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return failure(hash, Cause::internal, kFailed, std::string("internal error: ") + error.what());
+  }
+}
+
+}  // namespace
+
+JobResult run_job(const Job& job, const std::string& hash, const fs::path& folder) {
+  JobResult result = run_guarded(job, hash, folder);
+  if (result.status == JobStatus::failed) remove_files_of(hash, folder);
+  return result;
+}
+
+}  // namespace roadbed::tools

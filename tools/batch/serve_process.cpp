@@ -1,0 +1,186 @@
+#include "roadbed/tools/batch/serve_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kCannotRun = 127;
+
+[[noreturn]] void refuse(const char* what) {
+  throw OutputError({.file = "a process of its own for jobs",
+                     .place = {},
+                     .element = {},
+                     .found = fmt::format("cannot be started: {}: {}", what, std::strerror(errno)),
+                     .needed = {},
+                     .remedy = "run with fewer --threads, or without --isolate"});
+}
+
+struct Pipe {
+  int read_end = -1, write_end = -1;
+};
+
+Pipe make_pipe() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) refuse("pipe");
+  return {.read_end = ends[0], .write_end = ends[1]};
+}
+
+/// Between fork and exec, where other threads' locks may be held for ever: system calls only.
+[[noreturn]] void become_server(int input, int output, pid_t parent, char* const* words) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);
+  const bool is_orphan = ::getppid() != parent;
+  if (is_orphan || ::dup2(input, STDIN_FILENO) < 0 || ::dup2(output, STDOUT_FILENO) < 0) {
+    ::_exit(kCannotRun);
+  }
+  ::execv("/proc/self/exe", words);
+  ::_exit(kCannotRun);
+}
+
+std::string death_of(int status) {
+  if (!WIFSIGNALED(status)) {
+    return fmt::format("its process ended with exit status {}", WEXITSTATUS(status));
+  }
+  const int signal = WTERMSIG(status);
+  const char* const name = ::sigabbrev_np(signal);
+  return fmt::format("killed by signal {}{}", signal,
+                     name == nullptr ? "" : fmt::format(" (SIG{})", name));
+}
+
+// Milliseconds to wait for, -1 for ever.
+int wait_ms(const std::optional<Clock::time_point>& deadline) {
+  if (!deadline) return -1;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now());
+  constexpr std::int64_t most = 1'000'000;
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, most));
+}
+
+enum class Reading { line, end, late };
+
+/// Reads up to the end of a line.
+Reading read_line(int descriptor, const std::optional<Clock::time_point>& deadline,
+                  std::string& line) {
+  std::vector<char> piece(std::size_t{1} << 16);
+  for (;;) {
+    pollfd ready{.fd = descriptor, .events = POLLIN, .revents = 0};
+    const int count = ::poll(&ready, 1, wait_ms(deadline));
+    if (count < 0 && errno == EINTR) continue;
+    if (count == 0 && deadline && Clock::now() >= *deadline) return Reading::late;
+    if (count == 0) continue;
+    const ssize_t size = ::read(descriptor, piece.data(), piece.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return Reading::end;
+    line.append(piece.data(), static_cast<std::size_t>(size));
+    if (line.back() == '\n') {
+      line.pop_back();
+      return Reading::line;
+    }
+  }
+}
+
+}  // namespace
+
+ServeProcess::ServeProcess(std::filesystem::path folder, std::string job_memory)
+    : folder_(std::move(folder)), job_memory_(std::move(job_memory)) {}
+
+ServeProcess::~ServeProcess() { end(); }
+
+void ServeProcess::start() {
+  std::vector<std::string> texts{"roadbed", "batch", "--serve", "--quiet", "-o", folder_.string()};
+  if (!job_memory_.empty()) texts.insert(texts.end(), {"--job-memory", job_memory_});
+  std::vector<char*> words;
+  for (std::string& text : texts) words.push_back(text.data());
+  words.push_back(nullptr);
+  const Pipe to_child = make_pipe(), from_child = make_pipe();
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child == 0) become_server(to_child.read_end, from_child.write_end, parent, words.data());
+  ::close(to_child.read_end);
+  ::close(from_child.write_end);
+  input_ = to_child.write_end;
+  output_ = from_child.read_end;
+  answered_ = 0;
+  process_ = std::max(child, 0);
+  if (child < 0) {
+    ::close(std::exchange(input_, -1));
+    ::close(std::exchange(output_, -1));
+    refuse("fork");
+  }
+}
+
+std::string ServeProcess::reap() {
+  ::close(std::exchange(input_, -1));
+  ::close(std::exchange(output_, -1));
+  int status = 0;
+  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = 0;
+  return death_of(status);
+}
+
+void ServeProcess::end() {
+  if (process_ == 0) return;
+  ::kill(process_, SIGKILL);
+  reap();
+}
+
+bool ServeProcess::send(const std::string& line) const {
+  std::string_view rest = line;
+  while (!rest.empty()) {
+    const ssize_t written = ::write(input_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+ServeProcess::Answer ServeProcess::ask(const std::string& line, std::optional<double> limit_s) {
+  if (process_ == 0) start();
+  if (!send(line + "\n")) {  // it died between two jobs, over none
+    end();
+    start();
+    if (!send(line + "\n")) return {.death = reap()};
+  }
+  std::optional<Clock::time_point> deadline;
+  if (limit_s) {
+    deadline = Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*limit_s));
+  }
+  Answer answer;
+  switch (read_line(output_, deadline, answer.line)) {
+    case Reading::line:
+      ++answered_;
+      break;
+    case Reading::late:
+      answer = {.is_late = true};
+      end();
+      break;
+    case Reading::end:
+      answer = {.death = reap()};
+      break;
+  }
+  return answer;
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,37 @@
+#include "roadbed/tools/batch/stop_signal.h"
+
+#include <atomic>
+
+namespace roadbed::tools {
+namespace {
+
+std::atomic<bool> asked = false;  // a handler of signals has no other place
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void ask(int) { asked = true; }
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  asked = false;
+  struct sigaction stop {};
+  stop.sa_handler = ask;
+  stop.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigaction(SIGINT, &stop, &interrupt_);
+  ::sigaction(SIGTERM, &stop, &terminate_);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  ::sigaction(SIGPIPE, &ignore, &pipe_);
+  ::sigaction(SIGXFSZ, &ignore, &file_size_);
+}
+
+StopSignal::~StopSignal() {
+  ::sigaction(SIGINT, &interrupt_, nullptr);
+  ::sigaction(SIGTERM, &terminate_, nullptr);
+  ::sigaction(SIGPIPE, &pipe_, nullptr);
+  ::sigaction(SIGXFSZ, &file_size_, nullptr);
+}
+
+bool StopSignal::is_asked() { return asked; }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <csignal>
+
+namespace roadbed::tools {
+
+/// While it lives, the first SIGINT or SIGTERM only asks to stop; a second one ends the process. A
+/// reader that has gone away is an error of writing, not the end of the process, and so is a file
+/// that may not grow.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  static bool is_asked();
+
+ private:
+  struct sigaction interrupt_ {
+  }, terminate_{}, pipe_{}, file_size_{};
+};
+
+}  // namespace roadbed::tools

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "roadbed/tools/batch/batch_results.h"
+#include "roadbed/tools/batch/batch_run.h"
+#include "roadbed/tools/batch/counted.h"
+#include "roadbed/tools/batch/folder_lock.h"
+#include "roadbed/tools/batch/memory_size.h"
+#include "roadbed/tools/batch/serve.h"
+#include "roadbed/tools/batch/stop_signal.h"
+#include "roadbed/tools/command.h"
+#include "roadbed/tools/support/output_file.h"
+
+namespace roadbed::tools {
+namespace {
+
+std::string memory_fault(const std::string& text) {
+  return parse_memory_size(text) ? "" : "is no size such as 4GB or 512MB";
+}
+
+std::uint64_t default_memory() {
+  constexpr double share = 0.8;
+  const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
+  return static_cast<std::uint64_t>(share * pages * static_cast<double>(::sysconf(_SC_PAGESIZE)));
+}
+
+class BatchCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Run many jobs, one a line of JSON, and keep what became of each");
+    arguments.add("JOBS", jobs_file_, "File of jobs (.jsonl), as roadbed jobs writes them").reads();
+    arguments
+        .add("-o,--output", folder_,
+             "Folder for results.jsonl, summary.json, index.html and the files of jobs; run again, "
+             "only what is missing or changed is done")
+        .required()
+        .writes("/");
+    arguments
+        .add("--memory", memory_,
+             "No job starts while the resident memory of the batch is above this and another one "
+             "runs, such as 4GB; default: 80 % of the machine's")
+        .checked(memory_fault);
+    arguments.flag("--isolate", isolates_,
+                   "Run jobs in processes of their own: one that crashes is one that failed");
+    arguments
+        .add("--time-limit", time_limit_s_,
+             "Wall clock that a job may take, with --isolate [s]; what takes longer has failed")
+        .positive();
+    arguments
+        .add("--job-memory", job_memory_,
+             "Memory that a job may take beyond that of the program, with --isolate, such as 2GB; "
+             "what needs more has failed")
+        .checked(memory_fault);
+    arguments.flag("--merge", merges_,
+                   "Run no job: write what the results of all come to, as others have run them");
+    arguments.flag("--list-missing", lists_,
+                   "Print hash and line of each job that has no result yet, and run none");
+    arguments.flag("--json", json_, "Print summary.json");
+    arguments.flag("--serve", serves_,
+                   "Take job lines from standard input instead, one after the other, and print the "
+                   "line of each result at once");
+    arguments.require([this] { return fault(); });
+    arguments.example(
+        "  roadbed batch jobs.jsonl -o results --threads 2\n"
+        "  roadbed batch jobs.jsonl -o results --isolate --time-limit 60 --job-memory 2GB");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (serves_) return run_server(streams);
+    count_jobs(jobs_file_);  // nothing is made where there are none to read
+    make_output_folder(folder_, true);
+    if (lists_) {
+      list_missing(options(common), ResultStore(folder_), streams.out);
+      return Exit::ok;
+    }
+    const FolderLock lock(folder_);
+    return run_jobs(streams, common);
+  }
+
+ private:
+  std::string fault() const {
+    if (serves_) {
+      const bool is_alone = jobs_file_.empty() && !isolates_ && !time_limit_s_ && memory_.empty();
+      return is_alone ? "" : "--serve takes no JOBS, --isolate, --time-limit or --memory";
+    }
+    if (jobs_file_.empty()) return "JOBS is required";
+    if (!isolates_ && (time_limit_s_ || !job_memory_.empty())) {
+      return "--time-limit and --job-memory need --isolate";
+    }
+    return "";
+  }
+
+  Exit run_server(const Streams& streams) const {
+    make_output_folder(folder_, true);
+    if (!job_memory_.empty()) limit_memory(*parse_memory_size(job_memory_));
+    serve(std::cin, streams.out, {.folder = folder_, .job_memory = job_memory_});
+    return Exit::ok;
+  }
+
+  BatchOptions options(const CommonOptions& common) const {
+    return {.jobs_file = jobs_file_,
+            .folder = folder_,
+            .threads = common.threads,
+            .memory_bytes = memory_.empty() ? default_memory() : *parse_memory_size(memory_),
+            .isolates = isolates_,
+            .limits = {.time_s = time_limit_s_, .memory = job_memory_},
+            .merges = merges_};
+  }
+
+  Exit run_jobs(const Streams& streams, const CommonOptions& common) const {
+    const StopSignal stop;
+    const BatchOptions how = options(common);
+    UnfinishedMark mark(folder_);
+    ResultStore store(folder_);
+    ProgressBar progress(streams.err, count_jobs(jobs_file_),
+                         !common.quiet && ::isatty(STDERR_FILENO) == 1);
+    BatchRun run(how, store, progress);
+    run.run();
+    if (!run.is_complete()) {
+      fmt::print(streams.err, "roadbed: stopped: {} jobs have their results; run again to go on\n",
+                 with_commas(store.size()));
+      return Exit::failed;
+    }
+    const BatchSummary summary = write_results(store, run.order(), folder_);
+    mark.remove();
+    report(streams.out, summary, run.were_there());
+    const bool is_all_done = summary.count(JobStatus::done) == summary.count();
+    return is_all_done ? Exit::ok : Exit::failed;
+  }
+
+  static void say_why(std::ostream& err, const BatchRun& run, const ResultStore& store) {
+    if (run.missing() > 0) {
+      fmt::print(err, "roadbed: {} jobs have no result; run without --merge\n",
+                 with_commas(run.missing()));
+      return;
+    }
+    fmt::print(err, "roadbed: stopped: {} jobs have their results; run again to go on\n",
+               with_commas(store.size()));
+  }
+
+  void report(std::ostream& out, const BatchSummary& summary, std::size_t were_there) const {
+    if (json_) {
+      out << summary.document(kMostInSummary);
+      return;
+    }
+    fmt::print(out, "{} jobs: {} done, {} no, {} failed; {} were there already\n",
+               with_commas(summary.count()), with_commas(summary.count(JobStatus::done)),
+               with_commas(summary.count(JobStatus::no)),
+               with_commas(summary.count(JobStatus::failed)), with_commas(were_there));
+  }
+
+  std::filesystem::path jobs_file_, folder_;
+  std::string memory_, job_memory_;
+  std::optional<double> time_limit_s_;
+  bool isolates_ = false, json_ = false, serves_ = false, merges_ = false, lists_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_batch_command() { return std::make_unique<BatchCommand>(); }
+
+}  // namespace roadbed::tools
