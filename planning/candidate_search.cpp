@@ -25,14 +25,28 @@ void CandidateSearch::add(Row row) {
   }
 }
 
-void CandidateSearch::restart(std::span<const LaneInterval> on_road) {
+void CandidateSearch::set_on_road(std::span<const LaneInterval> on_road) {
+  for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row].set_on_road(on_road[row]);
+}
+
+void CandidateSearch::restart(const LaneRange& lanes) {
+  asked_ = lanes;
   heap_.clear();
   is_heap_ = false;
   std::ranges::fill(rejection_, Rejection::none);
   for (std::size_t row = 0; row < rows_.size(); ++row) {
-    rows_[row].set_on_road(on_road[row]);
-    for (std::size_t block = 0; block < rows_[row].blocks(); ++block) enter_block(row, block);
+    for (std::size_t block = 0; block < rows_[row].blocks(); ++block) {
+      if (asked_in(row, block).count > 0) enter_block(row, block);
+    }
   }
+}
+
+// The lanes of a block that are asked for.
+LaneRange CandidateSearch::asked_in(std::size_t row, std::size_t block) const {
+  const std::size_t first = rows_[row].first_lane(block), end = first + rows_[row].lanes_in(block);
+  const std::size_t from = std::max(first, asked_.first);
+  const std::size_t to = std::min(end, asked_.first + asked_.count);
+  return {from, to > from ? to - from : 0};
 }
 
 void CandidateSearch::evaluate(std::size_t row, std::size_t block) {
@@ -55,8 +69,9 @@ void CandidateSearch::enter_block(std::size_t row, std::size_t block) {
 }
 
 void CandidateSearch::enter_candidates(std::size_t row, std::size_t block) {
-  for (std::size_t i = 0; i < rows_[row].lanes_in(block); ++i) {
-    const std::size_t lane = rows_[row].first_lane(block) + i, index = row * lanes_ + lane;
+  const LaneRange asked = asked_in(row, block);
+  for (std::size_t lane = asked.first; lane < asked.first + asked.count; ++lane) {
+    const std::size_t index = row * lanes_ + lane;
     const Rejection first = rows_[row].first_verdict(lane);
     rejection_[index] = first != Rejection::none ? first : limits_[index];
     if (rejection_[index] != Rejection::none) continue;
@@ -66,8 +81,9 @@ void CandidateSearch::enter_candidates(std::size_t row, std::size_t block) {
 }
 
 bool CandidateSearch::rejects_block(std::size_t row, std::size_t block, const Known& known) {
-  for (std::size_t i = 0; i < rows_[row].lanes_in(block); ++i) {
-    const std::size_t lane = rows_[row].first_lane(block) + i, index = row * lanes_ + lane;
+  const LaneRange asked = asked_in(row, block);
+  for (std::size_t lane = asked.first; lane < asked.first + asked.count; ++lane) {
+    const std::size_t index = row * lanes_ + lane;
     const Rejection first = rows_[row].first_verdict(lane);
     rejection_[index] = first != Rejection::none ? first : known(index);
     if (rejection_[index] == Rejection::none) return false;

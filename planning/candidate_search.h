@@ -12,6 +12,11 @@ namespace roadbed::planning {
 /// Costs that differ by less than this share are equal.
 inline constexpr double kEqualCost = 1e-12;
 
+/// Lanes of every row.
+struct LaneRange {
+  std::size_t first = 0, count = 0;
+};
+
 /// The candidates of a grid that can be driven, the cheapest first. Best first: a heap holds blocks
 /// of lanes by what they cost at least, and candidates by what they cost. A block is evaluated only
 /// when nothing cheaper is left, so the order is that of evaluating everything, for less work; in
@@ -24,13 +29,16 @@ class CandidateSearch {
   /// @param lanes  of every row.
   /// @param evaluate_all  each row as it is added; its points are not needed any more then.
   CandidateSearch(std::size_t lanes, bool evaluate_all)
-      : lanes_(lanes), evaluates_all_(evaluate_all) {}
+      : lanes_(lanes), asked_{0, lanes}, evaluates_all_(evaluate_all) {}
 
   /// The next length of the grid.
   void add(Row row);
 
-  /// Begins anew with another road for every row. What was evaluated is kept.
-  void restart(std::span<const LaneInterval> on_road);
+  /// Another road for every row. To be followed by a restart.
+  void set_on_road(std::span<const LaneInterval> on_road);
+
+  /// Begins anew with some lanes only. What was evaluated is kept.
+  void restart(const LaneRange& lanes);
 
   /// Takes out the cheapest candidate and all that cost the same, by index with d_e fastest, in no
   /// particular order. Empty: there is none left.
@@ -58,12 +66,14 @@ class CandidateSearch {
 
   void evaluate(std::size_t row, std::size_t block);
   void enter_block(std::size_t row, std::size_t block);
+  LaneRange asked_in(std::size_t row, std::size_t block) const;
   void enter_candidates(std::size_t row, std::size_t block);
   bool rejects_block(std::size_t row, std::size_t block, const Known& known);
   Entry pop(const Known& known);
 
   std::vector<Row> rows_;
   std::size_t lanes_;
+  LaneRange asked_;
   bool evaluates_all_;
   bool is_heap_ = false;
   std::vector<double> cost_;

@@ -134,6 +134,17 @@ RejectionCounts count(const std::vector<Rejection>& rejections) {
   return counts;
 }
 
+LaneRange lanes_in(const Grid& grid, const EndRange& ends) {
+  const std::vector<double>& end_d_m = grid.end_d_m();
+  const auto first = std::ranges::lower_bound(end_d_m, ends.least_d_m - kLimitSlack);
+  const auto end = std::ranges::upper_bound(end_d_m, ends.most_d_m + kLimitSlack);
+  if (first >= end) {
+    throw std::invalid_argument(fmt::format("plan: the grid has no end between {} m and {} m",
+                                            ends.least_d_m, ends.most_d_m));
+  }
+  return {static_cast<std::size_t>(first - end_d_m.begin()), static_cast<std::size_t>(end - first)};
+}
+
 // What is wrong with the start, that none of the candidates can help.
 std::string fault_of_start(const Cycle& cycle) {
   const Corridor room = cycle.input().line.corridor_at(cycle.input().start.s_m);
@@ -148,15 +159,15 @@ std::string fault_of_start(const Cycle& cycle) {
   return {};
 }
 
-std::string reason_for_none(const Cycle& cycle, const RejectionCounts& rejected) {
+std::string reason_for_none(const Cycle& cycle, std::size_t candidates,
+                            const RejectionCounts& rejected) {
   const auto of = [&](Rejection cause) { return rejected[static_cast<std::size_t>(cause)]; };
   return fmt::format(
       "{}none of {} candidates can be driven: {} leave the road, {} are beyond the curvature that "
       "can be steered, {} are beyond the lateral acceleration, {} are beyond the steering rate, {} "
       "collide",
-      fault_of_start(cycle), cycle.grid().size(), of(Rejection::off_road),
-      of(Rejection::beyond_curvature), of(Rejection::lateral_acceleration),
-      of(Rejection::steering_rate), of(Rejection::collision));
+      fault_of_start(cycle), candidates, of(Rejection::off_road), of(Rejection::beyond_curvature),
+      of(Rejection::lateral_acceleration), of(Rejection::steering_rate), of(Rejection::collision));
 }
 
 }  // namespace
@@ -168,15 +179,17 @@ struct PlanCycle::Impl {
         points(kernel_points(cycle)),
         search(search_of(cycle, points)) {}
 
-  void move_to(const Room& room) {
-    if (!is_fresh || room != cycle.room()) {
+  void move_to(const Room& room, const LaneRange& lanes) {
+    const bool is_other = room != cycle.room();
+    if (is_other) {
       cycle.set_room(room);
       std::vector<LaneInterval> on_road;
       for (std::size_t row = 0; row < cycle.grid().rows(); ++row) {
         on_road.push_back(lanes_on_road(cycle.course(), cycle.family(row), options.points));
       }
-      search.restart(on_road);
+      search.set_on_road(on_road);
     }
+    if (!is_fresh || is_other || lanes.count != cycle.grid().lanes()) search.restart(lanes);
     is_fresh = false;
   }
 
@@ -196,9 +209,10 @@ PlanCycle::PlanCycle(const PlanInput& input, const geometry::VehicleShape& vehic
 
 PlanCycle::~PlanCycle() = default;
 
-Plan PlanCycle::plan(const Room& room) {
+Plan PlanCycle::plan(const Room& room, const EndRange& ends) {
   check(room);
-  impl_->move_to(room);
+  const LaneRange lanes = lanes_in(impl_->cycle.grid(), ends);
+  impl_->move_to(room, lanes);
   Cycle& cycle = impl_->cycle;
   CandidateSearch& search = impl_->search;
   const std::optional<std::size_t> choice = choose_lazily(cycle, search);
@@ -214,7 +228,7 @@ Plan PlanCycle::plan(const Room& room) {
   if (impl_->options.keep_candidates) plan.candidates = all_candidates(cycle, search);
   if (!choice) {
     plan.rejected = count(search.rejections());
-    plan.reason = reason_for_none(cycle, plan.rejected);
+    plan.reason = reason_for_none(cycle, cycle.grid().rows() * lanes.count, plan.rejected);
   }
   return plan;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -8,8 +9,15 @@
 
 namespace roadbed::planning {
 
-/// A planning cycle that may be asked more than once, with less room to keep: what candidates cost
-/// and whether the vehicle can drive them does not depend on the room, and is found once.
+/// End offsets that are looked at, of those of the grid.
+struct EndRange {
+  double least_d_m = -std::numeric_limits<double>::infinity();
+  double most_d_m = std::numeric_limits<double>::infinity();
+};
+
+/// A planning cycle that may be asked more than once, with less room to keep or for some of its
+/// ends only: what candidates cost and whether the vehicle can drive them does not depend on that,
+/// and is found once.
 class PlanCycle {
  public:
   /// @param input, vehicle  kept by reference.
@@ -21,7 +29,9 @@ class PlanCycle {
   PlanCycle& operator=(const PlanCycle&) = delete;
 
   /// As plan_path() with the margin and the clearance of `room` instead of the options'.
-  Plan plan(const Room& room);
+  /// @param ends  as a grid that reaches so far; Plan::candidates holds the whole one.
+  /// @throws std::invalid_argument also if the grid has no such end.
+  Plan plan(const Room& room, const EndRange& ends = {});
 
  private:
   struct Impl;

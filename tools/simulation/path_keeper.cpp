@@ -1,6 +1,7 @@
 #include "roadbed/tools/simulation/path_keeper.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 using planning::LateralState;
 
 constexpr double kReturn_m = 20.0;
+constexpr double kFine_m = 0.2;
 constexpr double kCoarse_m = 0.6;  // between ends of what is tried after the first plan
 constexpr double kCrawl_mps = 1.5, kBraking_mps2 = 5.0;
 constexpr double kHoldStep_m = 1.0;
@@ -97,17 +99,24 @@ std::vector<planning::Room> PathKeeper::rooms(bool may_leave_lanes) const {
   return rooms;
 }
 
-PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets& offsets,
-                                         bool may_leave_lanes) const {
+planning::PlanOptions PathKeeper::options_for(const Question& question, const Offsets& offsets,
+                                              double l_step_m) const {
   planning::PlanOptions options;
   options.min_d_m = offsets.least_m;
   options.max_d_m = offsets.most_m;
+  options.l_step_m = l_step_m;
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
   options.keep_candidates = bounds_.keeps_candidates;
-  if (!may_leave_lanes) options.l_step_m = kCoarse_m;
+  return options;
+}
+
+PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets& offsets,
+                                         bool may_leave_lanes) const {
+  if (bounds_.squeezes_past) return squeeze(question, offsets, may_leave_lanes);
+  const planning::PlanOptions options =
+      options_for(question, offsets, may_leave_lanes ? kFine_m : kCoarse_m);
   const std::vector<planning::Room> in_turn = rooms(may_leave_lanes);
-  if (bounds_.squeezes_past) return squeeze(question, options, in_turn);
   const planning::PlanInput input = input_for(question);
   planning::PlanCycle cycle(input, scenario_.vehicle, options);
   std::vector<planning::Plan> plans = plan_in_rooms(cycle, in_turn);
@@ -115,33 +124,58 @@ PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets
   return {std::move(plans.back()), std::max(0.0, -border_m), options.max_l_m};
 }
 
-/// With less and less room, at the planned speed and while braking: a bend or a gap that is too
-/// sharp at the one may be driven at the other. After the first look a coarse grid will do.
-PathKeeper::Proposal PathKeeper::squeeze(const Question& question,
-                                         const planning::PlanOptions& options,
-                                         const std::vector<planning::Room>& rooms) const {
-  std::vector<planning::PlanInput> inputs{input_for(question)};
+/// What was evaluated from one start on, at the planned speed and while braking, on a fine grid and
+/// on coarse ones: each is made when it is asked for.
+struct PathKeeper::Cycles {
+  std::vector<planning::Obstacle> obstacles;
+  std::vector<planning::PlanInput> inputs;  ///< the first at the planned speed
+  std::unique_ptr<planning::PlanCycle> fine;
+  std::array<std::unique_ptr<planning::PlanCycle>, 2> coarse;
+};
+
+std::shared_ptr<PathKeeper::Cycles> PathKeeper::cycles_for(const Question& question) const {
+  auto cycles = std::make_shared<Cycles>();
+  cycles->obstacles = question.obstacles;
+  cycles->inputs.reserve(2);
+  cycles->inputs.push_back(input_for({.t_s = question.t_s,
+                                      .measured = question.measured,
+                                      .speed = question.speed,
+                                      .ends = question.ends,
+                                      .obstacles = cycles->obstacles}));
   if (question.speed.speed_mps > 2.0 * kCrawl_mps) {
-    inputs.push_back(inputs.front());
-    inputs.back().speed = {.speed_mps = question.speed.speed_mps,
-                           .acceleration_mps2 = -kBraking_mps2,
-                           .target_mps = kCrawl_mps};
+    cycles->inputs.push_back(cycles->inputs.front());
+    cycles->inputs.back().speed = {.speed_mps = question.speed.speed_mps,
+                                   .acceleration_mps2 = -kBraking_mps2,
+                                   .target_mps = kCrawl_mps};
   }
-  const auto proposal = [&](planning::PlanCycle& cycle, const planning::Room& room) {
-    return Proposal{cycle.plan(room), std::max(0.0, -room.border_margin_m), options.max_l_m};
-  };
-  planning::PlanCycle fine(inputs.front(), scenario_.vehicle, options);
-  Proposal last = proposal(fine, rooms.front());
-  planning::PlanOptions coarse = options;
-  coarse.l_step_m = kCoarse_m;
-  std::vector<std::unique_ptr<planning::PlanCycle>> cycles(inputs.size());
-  for (std::size_t i = 1; i < rooms.size() * inputs.size() && !last.plan.chosen; ++i) {
-    const std::size_t by_speed = i % inputs.size();
-    auto& cycle = cycles[by_speed];
+  return cycles;
+}
+
+/// With less and less room, at the planned speed and while braking: a bend or a gap that is too
+/// sharp at the one may be driven at the other. After the first look a coarse grid will do. Tries
+/// with other ends look at the same grids, unless candidates are kept: those are of one try.
+PathKeeper::Proposal PathKeeper::squeeze(const Question& question, const Offsets& offsets,
+                                         bool may_leave_lanes) const {
+  const bool shares = !bounds_.keeps_candidates;
+  if (!shares || !cycles_) cycles_ = cycles_for(question);
+  Cycles& cycles = *cycles_;
+  const std::vector<planning::Room> in_turn = rooms(may_leave_lanes);
+  const std::size_t speeds = cycles.inputs.size();
+  const auto plan = [&](std::size_t i, double l_step_m,
+                        std::unique_ptr<planning::PlanCycle>& cycle) {
     if (!cycle) {
-      cycle = std::make_unique<planning::PlanCycle>(inputs[by_speed], scenario_.vehicle, coarse);
+      const Offsets on_grid = shares ? Offsets{} : offsets;
+      cycle = std::make_unique<planning::PlanCycle>(cycles.inputs[i % speeds], scenario_.vehicle,
+                                                    options_for(question, on_grid, l_step_m));
     }
-    last = proposal(*cycle, rooms[i / inputs.size()]);
+    const planning::Room& room = in_turn[i / speeds];
+    return Proposal{cycle->plan(room, {offsets.least_m, offsets.most_m}),
+                    std::max(0.0, -room.border_margin_m), question.ends.most_m};
+  };
+  Proposal last =
+      may_leave_lanes ? plan(0, kFine_m, cycles.fine) : plan(0, kCoarse_m, cycles.coarse.front());
+  for (std::size_t i = 1; i < in_turn.size() * speeds && !last.plan.chosen; ++i) {
+    last = plan(i, kCoarse_m, cycles.coarse[i % speeds]);
   }
   return last;
 }
@@ -172,6 +206,7 @@ PlannedPath PathKeeper::path_of(const Proposal& proposal) const {
 }
 
 void PathKeeper::take(const Proposal& proposal) {
+  cycles_.reset();  // they ask for the path so far
   plan_ = proposal.plan;
   beyond_the_edge_m_ = proposal.beyond_the_edge_m;
   if (plan_.chosen) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "roadbed/planning/plan.h"
@@ -58,8 +59,12 @@ class PathKeeper {
   void plan(const Question& question);
 
   /// Where the vehicle is: the start of what is proposed until the next call.
-  void locate(const VehicleState& measured) { start_ = start_state(measured); }
+  void locate(const VehicleState& measured) {
+    start_ = start_state(measured);
+    cycles_.reset();
+  }
 
+  /// Until the next call of locate() every question but its offsets is the same one.
   /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too;
   ///                         if not, it is one of several tries, on a coarser grid.
   Proposal propose(const Question& question, const Offsets& offsets,
@@ -93,9 +98,13 @@ class PathKeeper {
 
  private:
   planning::LateralState start_state(const VehicleState& measured);
+  struct Cycles;
+
+  std::shared_ptr<Cycles> cycles_for(const Question& question) const;
   planning::PlanInput input_for(const Question& question) const;
-  Proposal squeeze(const Question& question, const planning::PlanOptions& options,
-                   const std::vector<planning::Room>& rooms) const;
+  planning::PlanOptions options_for(const Question& question, const Offsets& offsets,
+                                    double l_step_m) const;
+  Proposal squeeze(const Question& question, const Offsets& offsets, bool may_leave_lanes) const;
   std::vector<planning::Room> rooms(bool may_leave_lanes) const;
   double held_until_m(const planning::Plan& plan) const;
 
@@ -112,6 +121,7 @@ class PathKeeper {
   double s_m_ = 0.0;
   double beyond_the_edge_m_ = 0.0;
   bool from_measurement_ = false;
+  mutable std::shared_ptr<Cycles> cycles_;  ///< what was evaluated since locate()
 };
 
 }  // namespace roadbed::tools

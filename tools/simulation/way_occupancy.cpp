@@ -134,18 +134,6 @@ void WayOccupancy::set_lists(Moment& moment) {
   if (!moment.blocked.empty()) moment.blocked.resize(kept + 1);
 }
 
-const WayOccupancy::Moment& WayOccupancy::of(int step) const {
-  return moments_[std::min(static_cast<std::size_t>(step), moments_.size() - 1)];
-}
-
-bool WayOccupancy::is_blocked(int step, double distance_m) const {
-  for (const Interval& interval : of(step).blocked) {
-    if (distance_m <= interval.from_m) return false;
-    if (distance_m < interval.to_m) return true;
-  }
-  return false;
-}
-
 double WayOccupancy::gap_ahead_m(int step, double distance_m) const {
   const std::vector<double>& begins_m = of(step).begins_m;
   const auto next = std::ranges::lower_bound(begins_m, distance_m);

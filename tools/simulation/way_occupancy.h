@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -51,7 +52,13 @@ class WayOccupancy {
   /// At `step` · 0.1 s after the start, clamped to the last one.
   const std::vector<Blocked>& at(int step) const { return of(step).parts; }
 
-  bool is_blocked(int step, double distance_m) const;
+  bool is_blocked(int step, double distance_m) const {
+    for (const Interval& interval : of(step).blocked) {
+      if (distance_m <= interval.from_m) return false;
+      if (distance_m < interval.to_m) return true;
+    }
+    return false;
+  }
 
   /// From a distance to where the next part begins, and back to where the last one ends; infinite
   /// if there is none.
@@ -68,7 +75,9 @@ class WayOccupancy {
     std::vector<double> begins_m, ends_m;  // of the parts, ascending
   };
 
-  const Moment& of(int step) const;
+  const Moment& of(int step) const {
+    return moments_[std::min(static_cast<std::size_t>(step), moments_.size() - 1)];
+  }
   static void set_lists(Moment& moment);
 
   std::vector<Moment> moments_;
