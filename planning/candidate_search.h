@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,25 +18,28 @@ struct LaneRange {
   std::size_t first = 0, count = 0;
 };
 
-/// The candidates of a grid that can be driven, the cheapest first. Best first: a heap holds blocks
-/// of lanes by what they cost at least, and candidates by what they cost. A block is evaluated only
-/// when nothing cheaper is left, so the order is that of evaluating everything, for less work; in
-/// the worst case, when every candidate is asked for, everything is evaluated once.
+/// The candidates of a grid that can be driven, the cheapest first. Best first: a heap holds rows
+/// and blocks of lanes by what they cost at least, and candidates by what they cost. A row is made
+/// and a block evaluated only when nothing cheaper is left, so the order is that of evaluating
+/// everything, for less work; in the worst case, when every candidate is asked for, everything is
+/// evaluated once.
 class CandidateSearch {
  public:
   /// What is known of a candidate before it is evaluated: why it fails, or `none`.
   using Known = std::function<Rejection(std::size_t index)>;
 
-  /// @param lanes  of every row.
-  /// @param evaluate_all  each row as it is added; its points are not needed any more then.
-  CandidateSearch(std::size_t lanes, bool evaluate_all)
-      : lanes_(lanes), asked_{0, lanes}, evaluates_all_(evaluate_all) {}
+  using MakeRow = std::function<Row(std::size_t row)>;
+  using OnRoad = std::function<LaneInterval(std::size_t row)>;
 
-  /// The next length of the grid.
-  void add(Row row);
+  /// @param lanes  of every row.
+  /// @param least_cost  of each row: none of its candidates costs less.
+  /// @param make_row  is called when the row is needed, on the road as it is then.
+  /// @param evaluate_all  every row at once, each before the next is made.
+  CandidateSearch(std::size_t lanes, std::vector<double> least_cost, MakeRow make_row,
+                  bool evaluate_all);
 
   /// Another road for every row. To be followed by a restart.
-  void set_on_road(std::span<const LaneInterval> on_road);
+  void set_on_road(const OnRoad& on_road);
 
   /// Begins anew with some lanes only. What was evaluated is kept.
   void restart(const LaneRange& lanes);
@@ -57,24 +61,31 @@ class CandidateSearch {
   std::size_t evaluated() const { return evaluated_; }
 
  private:
+  enum class Kind { row, block, candidate };
   struct Entry {
-    double cost;  // of a block: at least
-    bool is_block;
-    std::size_t index;  // of the candidate, or of the block's first lane
+    double cost;  // of a row or block: at least
+    Kind kind;
+    std::size_t index;  // of the candidate, or of the first one
   };
   static bool is_later(const Entry& a, const Entry& b);
 
+  void make(std::size_t row);
+  void push(const Entry& entry);
   void evaluate(std::size_t row, std::size_t block);
+  void enter_row(std::size_t row);
   void enter_block(std::size_t row, std::size_t block);
   LaneRange asked_in(std::size_t row, std::size_t block) const;
   void enter_candidates(std::size_t row, std::size_t block);
   bool rejects_block(std::size_t row, std::size_t block, const Known& known);
   Entry pop(const Known& known);
 
-  std::vector<Row> rows_;
+  std::size_t blocks() const { return (lanes_ + kLanesPerBlock - 1) / kLanesPerBlock; }
+
+  std::vector<std::optional<Row>> rows_;  // those that were needed
   std::size_t lanes_;
+  std::vector<double> least_cost_;
+  MakeRow make_row_;
   LaneRange asked_;
-  bool evaluates_all_;
   bool is_heap_ = false;
   std::vector<double> cost_;
   std::vector<Rejection> limits_;     // verdicts of evaluate()

@@ -58,25 +58,33 @@ bool evaluates_all(const PlanOptions& options) {
   return options.exhaustive || options.keep_candidates;
 }
 
-// What rows refer to. One block for all of them: the allocator keeps it from cycle to cycle, where
-// it would give many small ones back, and have their pages cleared again. Rows that are evaluated
-// at once share their points, which then stay in the fastest cache.
-std::vector<KernelPoint> kernel_points(const Cycle& cycle) {
+// What rows refer to, in one block. Rows that are evaluated at once share their points, which then
+// stay in the fastest cache.
+std::unique_ptr<KernelPoint[]> kernel_points(const Cycle& cycle) {
   const auto count = static_cast<std::size_t>(cycle.options().points);
-  return std::vector<KernelPoint>(evaluates_all(cycle.options()) ? count
-                                                                 : cycle.grid().rows() * count);
+  const std::size_t rows = evaluates_all(cycle.options()) ? 1 : cycle.grid().rows();
+  return std::make_unique_for_overwrite<KernelPoint[]>(rows * count);
 }
 
-CandidateSearch search_of(const Cycle& cycle, std::span<KernelPoint> points) {
-  const auto count = static_cast<std::size_t>(cycle.options().points);
-  CandidateSearch search(cycle.grid().lanes(), evaluates_all(cycle.options()));
-  RowQuestion question = question_of(cycle);
+// The cost of their length is the same for all candidates of a row, and no other term is negative.
+std::vector<double> least_costs(const Cycle& cycle) {
+  std::vector<double> costs;
   for (std::size_t row = 0; row < cycle.grid().rows(); ++row) {
-    question.frame = cycle.frame(row);
-    search.add(Row(cycle.make_stations(row), cycle.family(row), question,
-                   points.subspan(points.size() == count ? 0 : row * count, count)));
+    costs.push_back((1.0 - 1e-9) * of(cycle.options().weights, CostTerm::length) *
+                    length_term(cycle.frame(row)));
   }
-  return search;
+  return costs;
+}
+
+CandidateSearch search_of(const Cycle& cycle, KernelPoint* points) {
+  const auto make_row = [&cycle, points, question = question_of(cycle)](std::size_t row) mutable {
+    const auto count = static_cast<std::size_t>(cycle.options().points);
+    const std::size_t first = evaluates_all(cycle.options()) ? 0 : row * count;
+    question.frame = cycle.frame(row);
+    return Row(cycle.make_stations(row), cycle.family(row), question,
+               std::span(points + first, count));
+  };
+  return {cycle.grid().lanes(), least_costs(cycle), make_row, evaluates_all(cycle.options())};
 }
 
 Candidate candidate_at(const Cycle& cycle, const CandidateSearch& search, std::size_t index) {
@@ -177,17 +185,15 @@ struct PlanCycle::Impl {
       : options(by_options),
         cycle(input, vehicle, options),
         points(kernel_points(cycle)),
-        search(search_of(cycle, points)) {}
+        search(search_of(cycle, points.get())) {}
 
   void move_to(const Room& room, const LaneRange& lanes) {
     const bool is_other = room != cycle.room();
     if (is_other) {
       cycle.set_room(room);
-      std::vector<LaneInterval> on_road;
-      for (std::size_t row = 0; row < cycle.grid().rows(); ++row) {
-        on_road.push_back(lanes_on_road(cycle.course(), cycle.family(row), options.points));
-      }
-      search.set_on_road(on_road);
+      search.set_on_road([this](std::size_t row) {
+        return lanes_on_road(cycle.course(), cycle.family(row), options.points);
+      });
     }
     if (!is_fresh || is_other || lanes.count != cycle.grid().lanes()) search.restart(lanes);
     is_fresh = false;
@@ -195,7 +201,7 @@ struct PlanCycle::Impl {
 
   PlanOptions options;
   Cycle cycle;
-  std::vector<KernelPoint> points;
+  std::unique_ptr<KernelPoint[]> points;
   CandidateSearch search;
   bool is_fresh = true;
 };
