@@ -15,7 +15,7 @@ namespace {
 using geometry::VehicleShape;
 using tests::AnalyticLine;
 
-struct Scene {
+struct CycleScene {
   AnalyticLine line;
   LateralState start;
   SpeedPlan speed;
@@ -26,9 +26,9 @@ struct Scene {
   }
 };
 
-Scene random_scene(std::mt19937& random) {
+CycleScene random_cycle_scene(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  Scene scene;
+  CycleScene scene;
   scene.line.curvature = {0.04 * unit(random), 1e-3 * unit(random), 0.0, 0.0, 0.0};
   scene.line.left_m = scene.line.right_m = 3.5 + 0.8 * unit(random);
   scene.start = {.s_m = 2.0, .d_m = 0.6 * unit(random), .d_slope = 0.04 * unit(random)};
@@ -46,23 +46,23 @@ Scene random_scene(std::mt19937& random) {
   return scene;
 }
 
-PlanOptions coarse_options() {
+PlanOptions coarse_cycle_options() {
   PlanOptions options;
   options.l_step_m = 1.0;
   options.points = 17;
   return options;
 }
 
-struct Question {
+struct CycleQuestion {
   Room room;
   EndRange ends;
 };
 
-Question random_question(std::mt19937& random) {
+CycleQuestion random_cycle_question(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const double least_m = 0.1 * std::floor(60.0 * unit(random)) - 3.5;
-  Question asked{.room = {0.2 - 0.4 * std::floor(2.0 * unit(random)), 0.3 * unit(random)},
-                 .ends = {}};
+  CycleQuestion asked{.room = {0.2 - 0.4 * std::floor(2.0 * unit(random)), 0.3 * unit(random)},
+                      .ends = {}};
   if (unit(random) < 0.8) asked.ends = {least_m, std::min(3.5, least_m + 0.5 + 2.0 * unit(random))};
   return asked;
 }
@@ -71,13 +71,13 @@ TEST(PlanCycle, AskedForSomeEndsItAnswersAsAGridOfThoseInWhateverOrder) {
   std::mt19937 random(21);
   int chosen = 0, none = 0;
   for (int i = 0; i < 50; ++i) {
-    const Scene scene = random_scene(random);
+    const CycleScene scene = random_cycle_scene(random);
     const PlanInput input = scene.input();
     const VehicleShape vehicle;
-    PlanCycle cycle(input, vehicle, coarse_options());
+    PlanCycle cycle(input, vehicle, coarse_cycle_options());
     for (int k = 0; k < 8; ++k) {
-      const Question asked = random_question(random);
-      PlanOptions options = coarse_options();
+      const CycleQuestion asked = random_cycle_question(random);
+      PlanOptions options = coarse_cycle_options();
       options.border_margin_m = asked.room.border_margin_m;
       options.clearance_m = asked.room.clearance_m;
       options.min_d_m = std::max(options.min_d_m, asked.ends.least_d_m);
@@ -99,10 +99,10 @@ TEST(PlanCycle, AskedForSomeEndsItAnswersAsAGridOfThoseInWhateverOrder) {
 
 TEST(PlanCycle, CountsOnlyTheCandidatesThatItWasAskedFor) {
   std::mt19937 random(22);
-  const Scene scene = random_scene(random);
+  const CycleScene scene = random_cycle_scene(random);
   const PlanInput input = scene.input();
   const VehicleShape vehicle;
-  PlanCycle cycle(input, vehicle, coarse_options());
+  PlanCycle cycle(input, vehicle, coarse_cycle_options());
   const Plan plan = cycle.plan({-0.5, 100.0}, {0.0, 0.4});  // nothing keeps 100 m
   std::size_t rejected = 0;
   for (const std::size_t count : plan.rejected) rejected += count;
@@ -112,10 +112,10 @@ TEST(PlanCycle, CountsOnlyTheCandidatesThatItWasAskedFor) {
 
 TEST(PlanCycle, RefusesEndsThatTheGridDoesNotHave) {
   std::mt19937 random(23);
-  const Scene scene = random_scene(random);
+  const CycleScene scene = random_cycle_scene(random);
   const PlanInput input = scene.input();
   const VehicleShape vehicle;
-  PlanCycle cycle(input, vehicle, coarse_options());
+  PlanCycle cycle(input, vehicle, coarse_cycle_options());
   EXPECT_THROW(cycle.plan({}, {3.6, 5.0}), std::invalid_argument);
   EXPECT_THROW(cycle.plan({}, {0.5, -0.5}), std::invalid_argument);
   EXPECT_NO_THROW(cycle.plan({}, {-0.1, 0.1}));

@@ -15,8 +15,8 @@ namespace {
 using planning::LateralState;
 
 constexpr double kReturn_m = 20.0;
-constexpr double kFine_m = 0.2;
-constexpr double kCoarse_m = 0.6;  // between ends of what is tried after the first plan
+constexpr double kFineGrid_m = 0.2;
+constexpr double kCoarseGrid_m = 0.6;  // between ends of what is tried after the first plan
 constexpr double kCrawl_mps = 1.5, kBraking_mps2 = 5.0;
 constexpr double kHoldStep_m = 1.0;
 constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
@@ -115,7 +115,7 @@ PathKeeper::Proposal PathKeeper::propose(const Question& question, const Offsets
                                          bool may_leave_lanes) const {
   if (bounds_.squeezes_past) return squeeze(question, offsets, may_leave_lanes);
   const planning::PlanOptions options =
-      options_for(question, offsets, may_leave_lanes ? kFine_m : kCoarse_m);
+      options_for(question, offsets, may_leave_lanes ? kFineGrid_m : kCoarseGrid_m);
   const std::vector<planning::Room> in_turn = rooms(may_leave_lanes);
   const planning::PlanInput input = input_for(question);
   planning::PlanCycle cycle(input, scenario_.vehicle, options);
@@ -172,10 +172,10 @@ PathKeeper::Proposal PathKeeper::squeeze(const Question& question, const Offsets
     return Proposal{cycle->plan(room, {offsets.least_m, offsets.most_m}),
                     std::max(0.0, -room.border_margin_m), question.ends.most_m};
   };
-  Proposal last =
-      may_leave_lanes ? plan(0, kFine_m, cycles.fine) : plan(0, kCoarse_m, cycles.coarse.front());
+  Proposal last = may_leave_lanes ? plan(0, kFineGrid_m, cycles.fine)
+                                  : plan(0, kCoarseGrid_m, cycles.coarse.front());
   for (std::size_t i = 1; i < in_turn.size() * speeds && !last.plan.chosen; ++i) {
-    last = plan(i, kCoarse_m, cycles.coarse[i % speeds]);
+    last = plan(i, kCoarseGrid_m, cycles.coarse[i % speeds]);
   }
   return last;
 }

@@ -20,7 +20,7 @@ struct PlainState {
   bool reached = false, touched = false;
 };
 
-double outside(const Window& window, double value) {
+double outside_window(const Window& window, double value) {
   return std::max({0.0, window.least - value, value - window.most});
 }
 
@@ -112,9 +112,9 @@ class PlainSearch {
     s.touched = s.touched || hit;
     if (s.reached) return true;
     for (const GoalAhead& goal : q_.goals) {
-      if (outside(goal.time_s, 0.1 * substep) > 0.051) continue;
-      s.miss =
-          std::min(s.miss, outside(goal.ahead_m, s.ahead) + 2.0 * outside(goal.speed_mps, s.speed));
+      if (outside_window(goal.time_s, 0.1 * substep) > 0.051) continue;
+      s.miss = std::min(s.miss, outside_window(goal.ahead_m, s.ahead) +
+                                    2.0 * outside_window(goal.speed_mps, s.speed));
     }
     s.reached = s.miss <= 0.0;
     return true;
@@ -151,7 +151,7 @@ class PlainSearch {
 };
 
 /// A straight way, with slower stretches and a bend or two.
-DrivenWay uneven_way(std::mt19937& random) {
+DrivenWay uneven_straight_way(std::mt19937& random) {
   std::uniform_real_distribution<double> speed(4.0, 16.0), bend(6.0, 25.0);
   DrivenWay way;
   double wanted = 0.0, most = 0.0;
@@ -168,7 +168,7 @@ DrivenWay uneven_way(std::mt19937& random) {
   return way;
 }
 
-planning::Obstacle random_car(std::mt19937& random) {
+planning::Obstacle random_other_car(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-20.0, 80.0), side(-9.0, 9.0), speed(0.0, 12.0);
   const double x = place(random), y = side(random), v = speed(random);
   const bool crosses = std::abs(y) > 3.0;
@@ -178,29 +178,29 @@ planning::Obstacle random_car(std::mt19937& random) {
   return car;
 }
 
-struct Scene {
+struct SearchScene {
   DrivenWay way;
   World world;
   std::vector<GoalAhead> goals;
   double speed_mps, acceleration_mps2, horizon_s;
 };
 
-Scene random_scene(std::mt19937& random, bool has_goal) {
+SearchScene random_search_scene(std::mt19937& random, bool has_goal) {
   std::uniform_real_distribution<double> speed(0.0, 15.0), acceleration(-2.0, 2.0),
       horizon(2.0, 8.0), time(1.0, 9.0), place(5.0, 90.0);
   std::vector<planning::Obstacle> cars;
-  for (int i = 0; i < 3; ++i) cars.push_back(random_car(random));
-  Scene scene{.way = uneven_way(random),
-              .world = tests::straight_world({.from_x_m = -50.0,
-                                              .to_x_m = 200.0,
-                                              .width_m = 10.0,
-                                              .start_x_m = 0.0,
-                                              .goal_x_m = 190.0},
-                                             std::move(cars)),
-              .goals = {},
-              .speed_mps = speed(random),
-              .acceleration_mps2 = acceleration(random),
-              .horizon_s = horizon(random)};
+  for (int i = 0; i < 3; ++i) cars.push_back(random_other_car(random));
+  SearchScene scene{.way = uneven_straight_way(random),
+                    .world = tests::straight_world({.from_x_m = -50.0,
+                                                    .to_x_m = 200.0,
+                                                    .width_m = 10.0,
+                                                    .start_x_m = 0.0,
+                                                    .goal_x_m = 190.0},
+                                                   std::move(cars)),
+                    .goals = {},
+                    .speed_mps = speed(random),
+                    .acceleration_mps2 = acceleration(random),
+                    .horizon_s = horizon(random)};
   const double from_s = time(random), from_m = place(random);
   if (has_goal) {
     scene.goals.push_back(
@@ -209,11 +209,11 @@ Scene random_scene(std::mt19937& random, bool has_goal) {
   return scene;
 }
 
-struct Costs {
+struct SearchCosts {
   double found, plain;
 };
 
-Costs costs_of(const Scene& scene) {
+SearchCosts search_costs_of(const SearchScene& scene) {
   const WayOccupancy occupancy(scene.way, true_traffic(scene.world), 0.0, 100, 0.3);
   const SpeedSearchQuestion question{.way = scene.way,
                                      .occupancy = occupancy,
@@ -230,7 +230,7 @@ TEST(SpeedSearchOracle, AnswerIsThatOfGoingOnWithEveryStateOfALayer) {
   std::mt19937 random(11);
   int free = 0;
   for (int i = 0; i < 60; ++i) {
-    const Costs costs = costs_of(random_scene(random, false));
+    const SearchCosts costs = search_costs_of(random_search_scene(random, false));
     if (std::isinf(costs.plain)) {
       EXPECT_TRUE(std::isinf(costs.found)) << "scene " << i;
       continue;
@@ -242,7 +242,7 @@ TEST(SpeedSearchOracle, AnswerIsThatOfGoingOnWithEveryStateOfALayer) {
 }
 
 /// What a goal costs that is missed.
-constexpr double kMissed = 40.0;
+constexpr double kGoalMissed = 40.0;
 
 // Which of two states of a cell goes on is a matter of cost alone in the plain search; here one
 // that may still meet the goal goes on first, so that a missed goal may cost a little more or less.
@@ -250,13 +250,13 @@ TEST(SpeedSearchOracle, GoalThatCanBeMetIsMetAtNoHigherCost) {
   std::mt19937 random(12);
   int met = 0, missed = 0;
   for (int i = 0; i < 60; ++i) {
-    const Costs costs = costs_of(random_scene(random, true));
+    const SearchCosts costs = search_costs_of(random_search_scene(random, true));
     if (std::isinf(costs.plain)) {
       EXPECT_TRUE(std::isinf(costs.found)) << "scene " << i;
       continue;
     }
-    ++(costs.plain < kMissed ? met : missed);
-    EXPECT_LE(costs.found, costs.plain * (costs.plain < kMissed ? 1.0 + 1e-9 : 1.02))
+    ++(costs.plain < kGoalMissed ? met : missed);
+    EXPECT_LE(costs.found, costs.plain * (costs.plain < kGoalMissed ? 1.0 + 1e-9 : 1.02))
         << "scene " << i;
   }
   EXPECT_GT(met, 5);

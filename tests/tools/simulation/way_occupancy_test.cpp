@@ -13,7 +13,7 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNoGap_m = std::numeric_limits<double>::infinity();
 
 /// A way that winds, with samples 0.3 to 1 m apart.
 DrivenWay winding_way(std::mt19937& random) {
@@ -35,16 +35,16 @@ DrivenWay winding_way(std::mt19937& random) {
   return way;
 }
 
-struct Others {
+struct OthersOnWay {
   std::vector<planning::Obstacle> obstacles;
   std::vector<Presence> presence;
 };
 
 /// Some that drive straight across or along, some that stand, some there for a while only.
-Others others_around(const DrivenWay& way, std::mt19937& random) {
+OthersOnWay others_around(const DrivenWay& way, std::mt19937& random) {
   std::uniform_real_distribution<double> place(-8.0, 8.0), turn(-3.2, 3.2), speed(0.0, 12.0);
   std::uniform_int_distribution<std::size_t> sample(0, way.body.size() - 1);
-  Others others;
+  OthersOnWay others;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector2d from =
         way.body[sample(random)].centre + Eigen::Vector2d(place(random), place(random));
@@ -64,7 +64,7 @@ TEST(WayOccupancy, PartsAreThoseOfEverySampleAndEveryTimeLookedAt) {
   int touched = 0;
   for (int scene = 0; scene < 40; ++scene) {
     const DrivenWay way = winding_way(random);
-    const Others others = others_around(way, random);
+    const OthersOnWay others = others_around(way, random);
     const Traffic traffic{others.obstacles, others.presence};
     const WayOccupancy occupancy(way, traffic, start_s, 20, margin);
     for (int step = 0; step <= 20; ++step) {
@@ -101,7 +101,7 @@ TEST(WayOccupancy, GapsAndWhatIsBlockedAreThoseOfAllParts) {
   std::uniform_real_distribution<double> anywhere(0.0, 110.0);
   for (int scene = 0; scene < 40; ++scene) {
     const DrivenWay way = winding_way(random);
-    const Others others = others_around(way, random);
+    const OthersOnWay others = others_around(way, random);
     const WayOccupancy occupancy(way, {others.obstacles, others.presence}, 0.0, 20, 0.3);
     for (int i = 0; i < 400; ++i) {
       const int step = i % 24;  // beyond the last one it is the last one
@@ -111,7 +111,7 @@ TEST(WayOccupancy, GapsAndWhatIsBlockedAreThoseOfAllParts) {
                            : i % 2 == 0 ? parts.front().from_m
                                         : parts.back().to_m;
       bool blocked = false;
-      double ahead = kInfinite, behind = kInfinite;
+      double ahead = kNoGap_m, behind = kNoGap_m;
       for (const Blocked& part : parts) {
         blocked = blocked || (place > part.from_m && place < part.to_m);
         if (part.from_m >= place) ahead = std::min(ahead, part.from_m - place);
