@@ -1,0 +1,89 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+
+namespace roadbed::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::vector<json> jobs_written(const std::string& file) {
+  std::istringstream text(bytes_of(file));
+  std::vector<json> jobs;
+  for (std::string line; std::getline(text, line);) jobs.push_back(json::parse(line));
+  return jobs;
+}
+
+TEST(JobsCommand, WritesAJobForEachFileBelowAFolderSorted) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "maps/b/c");
+  for (const char* name :
+       {"maps/z.xodr", "maps/a.osm", "maps/b/y.xodr", "maps/b/c/x.xodr", "maps/b/.hidden.xodr"}) {
+    folder.write(name, "");
+  }
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun run =
+      run_roadbed({"jobs", "import", (folder / "maps/**/*.xodr").string(), "-o", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  std::vector<std::string> inputs;
+  for (const json& job : jobs_written(out)) inputs.push_back(job["inputs"][0]);
+  EXPECT_EQ(inputs, (std::vector<std::string>{(folder / "maps/b/c/x.xodr").string(),
+                                              (folder / "maps/b/y.xodr").string(),
+                                              (folder / "maps/z.xodr").string()}));
+}
+
+TEST(JobsCommand, WritesTheProductOfAllLists) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.csv", "b.csv", "one.bt"}) folder.write(name, "");
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun run =
+      run_roadbed({"jobs", "audit", "--occupancy", (folder / "*.bt").string(), "--trajectory",
+                   (folder / "?.csv").string(), "--inflate", "1..3", "--clearance", "0.5",
+                   "--outputs", "report,certificate", "-o", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto jobs = jobs_written(out);
+  ASSERT_EQ(jobs.size(), 6U);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const json& options = jobs[i]["options"];
+    EXPECT_EQ(options["trajectory"], (folder / (i < 3 ? "a.csv" : "b.csv")).string());
+    EXPECT_EQ(options["inflate"], i % 3 + 1);
+    EXPECT_EQ(options["clearance"], "0.5");
+    EXPECT_EQ(jobs[i]["outputs"], json({"report", "certificate"}));
+  }
+}
+
+TEST(JobsCommand, WritesARouteForEachPair) {
+  const TemporaryFolder folder;
+  const std::string pairs = folder.write("od.csv", "from,to\n\"1,2\",\"3,4\"\nlane:a,lane:b\n");
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun run =
+      run_roadbed({"jobs", "route", folder.write("town.rbm", ""), "--pairs", pairs, "-o", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto jobs = jobs_written(out);
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0]["options"], json({{"from", "1,2"}, {"to", "3,4"}}));
+  EXPECT_EQ(jobs[1]["options"], json({{"from", "lane:a"}, {"to", "lane:b"}}));
+}
+
+TEST(JobsCommand, RefusesAPatternThatMatchesNothingAndAnUnknownOutput) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun none = run_roadbed({"jobs", "import", (folder / "*.xodr").string(), "-o", out});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_THAT(none.err, HasSubstr("matches no file"));
+  const ProgramRun unknown =
+      run_roadbed({"jobs", "validate", folder.write("a.xodr", ""), "--outputs", "pdf", "-o", out});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(run_roadbed({"jobs", "import", "--spped", "1", "-o", out}).status, 2);
+}
+
+}  // namespace
+}  // namespace roadbed::tests

@@ -1,0 +1,151 @@
+#include "roadbed/tools/batch/serve.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+const std::string kTownMap = (data_folder() / "town.xodr").string();
+
+std::vector<json> served(const std::string& lines, const std::filesystem::path& folder) {
+  std::istringstream in(lines);
+  std::stringstream out;
+  tools::serve(in, out, {.folder = folder});
+  std::vector<json> results;
+  for (std::string line; std::getline(out, line);) results.push_back(json::parse(line));
+  return results;
+}
+
+json route_job(const std::string& to) {
+  return {{"job", "route"},
+          {"inputs", {kTownMap}},
+          {"options", {{"from", "lane:1/0/-1@10"}, {"to", to}}}};
+}
+
+TEST(Serve, AnswersARouteJobWithTheDocumentOfTheCommand) {
+  const TemporaryFolder folder;
+  const auto results = served(route_job("lane:7/0/1@55").dump(), folder.path());
+  const ProgramRun alone = run_roadbed(
+      {"route", kTownMap, "--from", "lane:1/0/-1@10", "--to", "lane:7/0/1@55", "--json"});
+  ASSERT_EQ(results.size(), 1U);
+  EXPECT_EQ(results[0]["status"], "done");
+  EXPECT_EQ(results[0]["exit"], 0);
+  EXPECT_EQ(results[0]["result"], json::parse(alone.out));
+}
+
+TEST(Serve, WritesTheFilesOfAnImportAsTheCommandAloneDoes) {
+  const TemporaryFolder folder, other;
+  const std::string alone = (other / "town.rbm").string();
+  ASSERT_EQ(run_roadbed({"import", kTownMap, "-o", alone}).status, 0);
+  const json job = {{"job", "import"}, {"inputs", {kTownMap}}};
+  const json result = served(job.dump(), folder.path()).at(0);
+  const auto hash = result["hash"].get<std::string>();
+  ASSERT_EQ(result["files"], json({"files/" + hash.substr(0, 2) + "/" + hash + ".rbm"}));
+  EXPECT_EQ(bytes_of(folder / result["files"][0].get<std::string>()), bytes_of(alone));
+  EXPECT_GT(result["result"]["lanes"], 10);
+}
+
+TEST(Serve, TellsAnAnswerThatIsNoFromAnInputThatIsUnusable) {
+  const TemporaryFolder folder;
+  const std::string closed = "lane:1/0/-1@10";
+  json no_route = route_job("lane:7/0/1@55");
+  no_route["options"]["avoid"] = "road:7";
+  json no_map = route_job(closed);
+  no_map["inputs"] = {"nowhere.xodr"};
+  const auto results = served(no_route.dump() + "\n" + no_map.dump() + "\n", folder.path());
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0]["status"], "no");
+  EXPECT_EQ(results[0]["exit"], 1);
+  EXPECT_THAT(results[0]["reason"].get<std::string>(), HasSubstr("no route"));
+  EXPECT_EQ(results[0]["result"]["found"], false);
+  EXPECT_EQ(results[1]["status"], "failed");
+  EXPECT_EQ(results[1]["cause"], "input");
+  EXPECT_THAT(results[1]["reason"].get<std::string>(), HasSubstr("nowhere.xodr: no such file"));
+  EXPECT_TRUE(results[1]["result"].is_null());
+}
+
+TEST(Serve, AnswersEveryBadLineWithItsReasonAndGoesOn) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"{", "is not JSON"},
+      {"[1]", "object"},
+      {R"({"job":"fly"})", "one of import, validate, route, simulate, audit"},
+      {R"({"job":"audit","job":"audit"})", "twice"},
+      {R"({"job":"audit","speed":1})", "speed"},
+      {R"({"job":"audit","options":{"trajectry":"a"}})", "is no option of audit"},
+      {R"({"job":"audit","options":{"force":true}})", "is set by the batch"},
+      {R"({"job":"audit","options":{"report":"a.html"}})", "the batch chooses"},
+      {R"({"job":"audit","options":{"inflate":{"m":1}}})", "a text, a number, or a list"},
+      {R"({"job":"route","options":{"matrix":1}})", "true or false"},
+      {R"({"job":"simulate","inputs":["a"],"outputs":["timings"]})", "no output of simulate"},
+      {R"({"job":"audit","outputs":["svg","svg"]})", "twice"},
+      {R"({"job":"audit","outputs":["svg.../../x"]})", "no output of audit"},
+  };
+  std::string lines;
+  for (const auto& [line, reason] : bad) lines += line + "\n";
+  const auto results = served(lines + route_job("lane:7/0/1@55").dump(), folder.path());
+  ASSERT_EQ(results.size(), bad.size() + 1);
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    EXPECT_EQ(results[i]["status"], "failed") << bad[i].first;
+    EXPECT_EQ(results[i]["cause"], "line") << bad[i].first;
+    EXPECT_THAT(results[i]["reason"].get<std::string>(), HasSubstr(bad[i].second));
+  }
+  EXPECT_EQ(results.back()["status"], "done");
+}
+
+TEST(Serve, RefusesAnOptionOfAWrongTypeAsTheCommandDoes) {
+  const TemporaryFolder folder;
+  const json job = {{"job", "audit"},
+                    {"options", {{"occupancy", "a"}, {"trajectory", "b"}, {"inflate", "wide"}}}};
+  const json result = served(job.dump(), folder.path()).at(0);
+  EXPECT_EQ(result["status"], "failed");
+  EXPECT_EQ(result["exit"], 2);
+  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("inflate"));
+}
+
+TEST(Serve, CutsALineThatIsLongerThanAnyJobAndGoesOn) {
+  const TemporaryFolder folder;
+  const std::string endless(std::size_t{40} << 20, '[');
+  const auto results = served(endless + "\n" + route_job("lane:7/0/1@55").dump(), folder.path());
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_THAT(results[0]["reason"].get<std::string>(), HasSubstr("longer than"));
+  EXPECT_EQ(results[1]["status"], "done");
+}
+
+TEST(Serve, GivesAJobAnotherHashWhenAFileThatItReadsChanges) {
+  const TemporaryFolder folder, inputs;
+  std::filesystem::copy_file(kTownMap, inputs / "town.xodr");
+  std::filesystem::copy_file(data_folder() / "town.bt", inputs / "town.bt");
+  std::filesystem::copy_file(data_folder() / "drive.json", inputs / "drive.json");
+  const json simulate = {{"job", "simulate"}, {"inputs", {(inputs / "drive.json").string()}}};
+  const auto hash = [&] {
+    return served(simulate.dump(), folder.path()).at(0)["hash"].get<std::string>();
+  };
+  const std::string first = hash();
+  EXPECT_EQ(hash(), first);
+  const auto add_space = [&](const char* name) {
+    inputs.write(name, bytes_of(inputs / name) + " ");
+  };
+  add_space("drive.json");
+  const std::string second = hash();
+  EXPECT_NE(second, first);
+  add_space("town.xodr");  // named by the scenario, not by the job
+  EXPECT_NE(hash(), second);
+}
+
+}  // namespace
+}  // namespace roadbed::tests
