@@ -123,8 +123,7 @@ class BatchCommand : public Command {
     BatchRun run(how, store, progress);
     run.run();
     if (!run.is_complete()) {
-      fmt::print(streams.err, "roadbed: stopped: {} jobs have their results; run again to go on\n",
-                 with_commas(store.size()));
+      say_why(streams.err, run, store);
       return Exit::failed;
     }
     const BatchSummary summary = write_results(store, run.order(), folder_);
