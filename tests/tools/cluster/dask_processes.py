@@ -134,7 +134,16 @@ class DaskProcesses:
         log = self._folder / f"{arguments[0]}{self._started}.log"
         with log.open("wb") as output:
             process = subprocess.Popen(
-                [sys.executable, "-m", "dask", *arguments, "--host", "127.0.0.1"],
+                [
+                    sys.executable,
+                    "-m",
+                    "dask",
+                    *arguments,
+                    "--host",
+                    "127.0.0.1",
+                    "--dashboard-address",
+                    "127.0.0.1:0",
+                ],
                 stdout=output,
                 stderr=output,
                 env=self._environment,

@@ -2,7 +2,7 @@
 """Stands in for `roadbed batch` in tests of faults: speaks its protocol, misbehaves when told to.
 
 A job's options say what it does: {"do": "sleep", "seconds": 0.1}; `do` is one of
-answer, no, sleep, hang, crash, exit, eat, kill-worker, chatter, or write (a file below DIR/files).
+answer, no, sleep, hang, crash, exit, eat, kill-worker, babble, chatter, or write (a file).
 """
 
 import hashlib
@@ -49,6 +49,8 @@ def answer(line: str, output: Path) -> dict[str, object]:
     elif do == "kill-worker":
         os.kill(os.getppid(), signal.SIGKILL)
         signal.pause()
+    elif do == "babble":
+        print('{"many":\n"lines"}', flush=True)
     elif do == "chatter":
         sys.stderr.write("words\n" * 100_000)
     missing = [path for path in job.get("inputs", []) if not Path(path).is_file()]
@@ -145,12 +147,17 @@ def main() -> int:
         return 0
     output.mkdir(parents=True, exist_ok=True)
     if "--merge" not in arguments:
+        done = {hash_: line for hash_, line in done.items() if stands(line)}
         run_missing(lines, done, output)
+    elif any(hash_of(line) not in done for line in lines):
+        print("jobs have no result", file=sys.stderr)
+        return 1
     results = [
         json.dumps({"line": number, **json.loads(done[hash_of(line)])})
         for number, line in enumerate(lines, 1)
     ]
     (output / "results.jsonl").write_text("".join(f"{r}\n" for r in results), encoding="utf-8")
+    (output / "unfinished").unlink(missing_ok=True)
     return 0
 
 

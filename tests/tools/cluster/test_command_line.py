@@ -13,6 +13,7 @@ from batches import job, run, write_jobs
         (["--chunk", "nan"], "--chunk: nan is not 0.01 or more"),
         (["--time-limit", "0"], "--time-limit: 0 is not 0.001 or more"),
         (["--job-memory", "much"], "--job-memory: 'much' is no size such as 4GB or 512MB"),
+        (["--job-memory", "0GB"], "--job-memory: '0GB' is no size such as 4GB or 512MB"),
         (["--workers", "1.5"], "--workers: '1.5' is not a number"),
         (["--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "--workers is for a cluster of"),
         (["--tls-ca", "ca.pem"], "--tls-ca needs --scheduler tls://HOST:PORT"),
@@ -53,3 +54,14 @@ def test_nothing_missing_starts_no_cluster(tmp_path: Path) -> None:
     assert run(jobs, "-o", tmp_path / "out", "--workers", 1).returncode == 0
     again = run(jobs, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1")
     assert (again.returncode, again.stderr) == (0, "")
+
+
+def test_a_merge_that_fails_writes_no_tables(tmp_path: Path) -> None:
+    jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
+    assert run(jobs, "-o", tmp_path / "out", "--workers", 1).returncode == 0
+    (tmp_path / "out" / "tables" / "audit.parquet").unlink()
+    (tmp_path / "out" / "unfinished").touch()
+    (tmp_path / "out" / "results.jsonl").unlink()
+    (tmp_path / "out" / "results.jsonl").mkdir()  # cannot be written
+    assert run(jobs, "-o", tmp_path / "out").returncode == 1
+    assert list((tmp_path / "out" / "tables").iterdir()) == []

@@ -53,6 +53,13 @@ def test_memory_held_from_jobs_before_is_not_blamed_on_the_next(tmp_path: Path) 
     assert [result.status for result in found] == ["done"] * 3
 
 
+def test_an_answer_that_is_no_result_is_that_jobs_failed_line(tmp_path: Path) -> None:
+    found = run_chunk(asked(job(1), job(2, "babble"), job(3)), options(tmp_path))
+    end_idle_processes()
+    assert [result.status for result in found] == ["done", "failed", "done"]
+    assert json.loads(found[1].line)["cause"] == "internal"
+
+
 def test_a_job_that_changed_meanwhile_has_failed(tmp_path: Path) -> None:
     (found,) = run_chunk([Job("0" * 32, job(1))], options(tmp_path))
     end_idle_processes()

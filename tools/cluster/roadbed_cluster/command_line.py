@@ -119,7 +119,8 @@ class _Number:
 
 def _size(text: str) -> str:
     """Check an amount of memory as `roadbed batch --job-memory` takes it."""
-    if not re.fullmatch(r"[0-9]+(\.[0-9]+)? ?(TB|GB|MB|kB|B)?", text):
+    number = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?(?:TB|GB|MB|kB|B)?", text)
+    if number is None or float(number[1]) == 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} is no size such as 4GB or 512MB")
     return text
 

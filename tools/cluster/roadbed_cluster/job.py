@@ -36,7 +36,7 @@ def _members(job: Job) -> dict[str, Any]:
 def failed_line(job: Job, reason: str, cause: str) -> str:
     """Return the result line of a job whose process could not answer; keys as in `--serve`.
 
-    `cause` is `crash`, `time` or `changed`.
+    `cause` is `crash`, `time`, `changed` or `internal`.
     """
     asked = _members(job)
     options = {

@@ -2,17 +2,14 @@
 
 import sys
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 
 from roadbed_cluster.batch import Batch
 from roadbed_cluster.chunks import Chunks
 from roadbed_cluster.cluster_options import ClusterOptions
 from roadbed_cluster.errors import UsageError
-from roadbed_cluster.job import Job
-from roadbed_cluster.journal import Journal
+from roadbed_cluster.journal import MARK, Journal
 from roadbed_cluster.progress import Progress
 from roadbed_cluster.serve import ServeOptions, WrongWorker, version_of
 
@@ -42,25 +39,18 @@ def run(batch: Batch, cluster: ClusterOptions, options: RunOptions) -> int:
         version = version_of(batch.program)
     except WrongWorker as error:
         raise UsageError(f"--roadbed: {error}") from error
-    missing = batch.missing()
-    first = next(missing, None)
-    if first is not None:
-        _run_missing(chain([first], missing), batch, version, cluster, options)
+    if next(batch.missing(), None) is not None:
+        _run_missing(batch, version, cluster, options)
     status = batch.merge()
-    if options.tables:
+    is_merged = not (batch.output / MARK).exists()  # `roadbed batch` removes it when all is done
+    if options.tables and is_merged:
         from roadbed_cluster.tables import write_tables
 
         write_tables(batch.output)
     return status
 
 
-def _run_missing(
-    missing: Iterator[Job],
-    batch: Batch,
-    version: str,
-    cluster: ClusterOptions,
-    options: RunOptions,
-) -> None:
+def _run_missing(batch: Batch, version: str, cluster: ClusterOptions, options: RunOptions) -> None:
     # Only now: Dask takes a second to import, and where nothing is missing none is needed.
     from roadbed_cluster.connection import connect
     from roadbed_cluster.dispatch import Dispatcher
@@ -78,7 +68,8 @@ def _run_missing(
             job_memory=options.job_memory,
             tries=options.tries,
         )
-        chunks = Chunks(missing, options.chunk_s)
+        # Listed again, as another run may have been at work before this one had the folder.
+        chunks = Chunks(batch.missing(), options.chunk_s)
         dispatcher = Dispatcher(
             client, chunks, journal, serve, progress, options.wait_for_workers_s
         )

@@ -74,7 +74,7 @@ class NoAnswer(Exception):
     """The process ended, or was ended, before it answered."""
 
     def __init__(self, reason: str, cause: str) -> None:
-        """Say why in `reason`, a sentence, and `cause`, `crash` or `time`."""
+        """Say why in `reason`, and `cause`: `crash`, `time` or `internal`."""
         super().__init__(reason)
         self.reason = reason
         self.cause = cause

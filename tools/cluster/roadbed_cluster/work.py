@@ -5,6 +5,7 @@ import shutil
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 from roadbed_cluster.job import Job, Result, failed_line
 from roadbed_cluster.serve import NoAnswer, ServeOptions, ServeProcess
@@ -64,9 +65,9 @@ class _Slot:
                 break
             except NoAnswer as none:
                 self._end_process()
-                remove_files_of(job, self._options.output)
+                remove_files_of(job.hash, self._options.output)
                 line = failed_line(job, none.reason, none.cause)
-                if none.cause == "time":
+                if none.cause != "crash":
                     break
         return Result(line, str(json.loads(line)["status"]), time.monotonic() - begin)
 
@@ -75,8 +76,9 @@ class _Slot:
         process = self._process = self._process or _take(self._options)
         was_fresh = process.is_fresh
         line = process.ask(job.line)
-        answer = json.loads(line)
+        answer = _result_in(line)
         if answer["hash"] != job.hash:
+            remove_files_of(str(answer["hash"]), self._options.output)
             return failed_line(job, "an input changed while the job ran", "changed")
         if answer.get("cause") != "memory":
             return line
@@ -89,10 +91,25 @@ class _Slot:
             self._process = None
 
 
-def remove_files_of(job: Job, output: str) -> None:
+def _result_in(line: str) -> dict[str, Any]:
+    """Return what a line of an answer holds.
+
+    Raises:
+        NoAnswer: if it is no result; what its process says next is none either.
+    """
+    try:
+        answer = json.loads(line)
+    except ValueError:
+        answer = None
+    if not isinstance(answer, dict) or not {"hash", "status"} <= answer.keys():
+        raise NoAnswer("its process answered with no result", "internal")
+    return answer
+
+
+def remove_files_of(hash_: str, output: str) -> None:
     """Remove whatever a job left below the folder of results, half-written files too."""
-    folder = Path(output) / "files" / job.hash[:2]
-    for path in [*folder.glob(f"{job.hash}*"), *folder.glob(f".{job.hash}*")]:
+    folder = Path(output) / "files" / hash_[:2]
+    for path in [*folder.glob(f"{hash_}*"), *folder.glob(f".{hash_}*")]:
         if path.is_dir():
             shutil.rmtree(path, ignore_errors=True)
         else:
