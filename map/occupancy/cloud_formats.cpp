@@ -14,9 +14,8 @@
 namespace roadbed::map {
 
 void RawCloud::add(const Eigen::Vector3d& point) {
-  constexpr double beyond_earth = 1e9;
   // A comparison with NaN is false, so NaN is dropped too.
-  if (point.cwiseAbs().maxCoeff() < beyond_earth && point.allFinite()) {
+  if (point.cwiseAbs().maxCoeff() < kBeyondEarth && point.allFinite()) {
     points_in_source.push_back(point);
   } else {
     ++dropped_not_finite;

@@ -16,13 +16,19 @@ namespace roadbed::map {
 
 /// Points as a file holds them, before the local origin is chosen.
 struct RawCloud {
+  static constexpr double kBeyondEarth = 1e9;  // no coordinate of any Earth frame
+
   std::vector<Eigen::Vector3d> points_in_source;
+  /// Instead of these, where the file holds floats.
+  std::vector<Eigen::Vector3f> float_points_in_source = {};
   std::size_t dropped_not_finite = 0;
   std::string format;
   std::string crs;
   LengthUnit unit = LengthUnit::unknown;
   std::optional<Eigen::Vector3d> sensor_in_source;
   std::vector<std::string> notes;
+
+  bool empty() const { return points_in_source.empty() && float_points_in_source.empty(); }
 
   /// Keeps the point, or counts it where a coordinate is not finite or beyond any Earth frame.
   void add(const Eigen::Vector3d& point);

@@ -50,27 +50,74 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
                "convert it, or rename it to what it is");
 }
 
-Eigen::Vector3d choose_origin(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d least = points.front(), most = points.front();
-  for (const Eigen::Vector3d& point : points) {
-    least = least.cwiseMin(point);
-    most = most.cwiseMax(point);
+// The box around points, four at a time: their coordinates in a row are twelve places of a vector.
+Box3 box_around(const std::vector<Eigen::Vector3f>& points) {
+  constexpr std::size_t together = 12;
+  std::array<float, together> least{}, most{};
+  for (std::size_t k = 0; k < together; ++k) least[k] = most[k] = points[0].data()[k % 3];
+  const float* at = points[0].data();
+  const std::size_t whole = points.size() / 4;
+  for (std::size_t i = 0; i < whole; ++i, at += together) {
+    for (std::size_t k = 0; k < together; ++k) {
+      least[k] = std::min(least[k], at[k]);
+      most[k] = std::max(most[k], at[k]);
+    }
   }
+  Eigen::Vector3f low = points.back(), high = low;
+  for (std::size_t i = 4 * whole; i < points.size(); ++i) {
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
+  }
+  for (std::size_t k = 0; k < together; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k % 3);
+    low[axis] = std::min(low[axis], least[k]);
+    high[axis] = std::max(high[axis], most[k]);
+  }
+  return {low.cast<double>(), high.cast<double>()};
+}
+
+Box3 box_around(const std::vector<Eigen::Vector3d>& points) {
+  Box3 box{points.front(), points.front()};
+  for (const Eigen::Vector3d& point : points) {
+    box.min_in_source = box.min_in_source.cwiseMin(point);
+    box.max_in_source = box.max_in_source.cwiseMax(point);
+  }
+  return box;
+}
+
+Eigen::Vector3d choose_origin(const Box3& box) {
   Eigen::Vector3d origin(0, 0, 0);
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::max(-least[axis], most[axis]) > kNearZero) {
-      origin[axis] = std::round(0.5 * (least[axis] + most[axis]));
-    }
+    const double least = box.min_in_source[axis], most = box.max_in_source[axis];
+    if (std::max(-least, most) > kNearZero) origin[axis] = std::round(0.5 * (least + most));
   }
   return origin;
 }
 
+// Where floats stay near zero they are kept as they are.
+void take_floats(std::vector<Eigen::Vector3f> points, PointCloud& cloud) {
+  cloud.origin_in_source = choose_origin(box_around(points));
+  cloud.points = std::move(points);
+  if (cloud.origin_in_source.isZero(0.0)) return;
+  for (Eigen::Vector3f& point : cloud.points) {
+    point = (point.cast<double>() - cloud.origin_in_source).cast<float>();
+  }
+}
+
+void take_doubles(const std::vector<Eigen::Vector3d>& points, PointCloud& cloud) {
+  cloud.origin_in_source = choose_origin(box_around(points));
+  cloud.points.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    cloud.points.emplace_back((point - cloud.origin_in_source).cast<float>());
+  }
+}
+
 PointCloud relative_to_origin(RawCloud raw) {
   PointCloud cloud;
-  cloud.origin_in_source = choose_origin(raw.points_in_source);
-  cloud.points.reserve(raw.points_in_source.size());
-  for (const Eigen::Vector3d& point : raw.points_in_source) {
-    cloud.points.emplace_back((point - cloud.origin_in_source).cast<float>());
+  if (!raw.float_points_in_source.empty()) {
+    take_floats(std::move(raw.float_points_in_source), cloud);
+  } else {
+    take_doubles(raw.points_in_source, cloud);
   }
   cloud.format = std::move(raw.format);
   cloud.crs = std::move(raw.crs);
@@ -137,7 +184,7 @@ void check_is_in_metres(const PointCloud& cloud) {
 
 PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
   RawCloud raw = choose_parser(bytes, name)(bytes, name);
-  if (raw.points_in_source.empty()) {
+  if (raw.empty()) {
     refuse_cloud(name, "", "",
                  raw.dropped_not_finite == 0
                      ? "holds no point"

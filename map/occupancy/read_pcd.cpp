@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "roadbed/map/occupancy/cloud_formats.h"
+#include "roadbed/map/occupancy/float_points.h"
 #include "roadbed/map/occupancy/lzf.h"
 
 namespace roadbed::map {
@@ -270,21 +270,30 @@ class PcdParser {
   void read_binary() {
     check_body(header_.point_size, header_.body.size());
     const Field &x = field_of("x"), &y = field_of("y"), &z = field_of("z");
-    cloud_.points_in_source.reserve(*header_.points);
-    const bool is_usual = std::endian::native == std::endian::little &&
-                          x.scalar == ScalarType::f32 && y.scalar == ScalarType::f32 &&
-                          z.scalar == ScalarType::f32;
-    const auto coordinate = [is_usual](const char* at, const Field& field) {
-      if (!is_usual) return read_scalar(at + field.offset, field.scalar);
-      float value = 0.0f;  // without a look at the type of every number
-      std::memcpy(&value, at + field.offset, sizeof value);
-      return static_cast<double>(value);
-    };
-    for (std::uint64_t i = 0; i < *header_.points; ++i) {
-      const char* point = header_.body.data() + i * header_.point_size;
-      cloud_.add({coordinate(point, x), coordinate(point, y), coordinate(point, z)});
+    const bool are_floats = std::endian::native == std::endian::little &&
+                            x.scalar == ScalarType::f32 && y.scalar == ScalarType::f32 &&
+                            z.scalar == ScalarType::f32;
+    if (are_floats) {
+      add_float_points({.first = header_.body.data(),
+                        .count = *header_.points,
+                        .size = header_.point_size,
+                        .x_offset = x.offset,
+                        .y_offset = y.offset,
+                        .z_offset = z.offset},
+                       cloud_);
+    } else {
+      read_scalars(x, y, z);
     }
     note_trailing(header_.body.size() - *header_.points * header_.point_size);
+  }
+
+  void read_scalars(const Field& x, const Field& y, const Field& z) {
+    cloud_.points_in_source.reserve(*header_.points);
+    for (std::uint64_t i = 0; i < *header_.points; ++i) {
+      const char* point = header_.body.data() + i * header_.point_size;
+      cloud_.add({read_scalar(point + x.offset, x.scalar), read_scalar(point + y.offset, y.scalar),
+                  read_scalar(point + z.offset, z.scalar)});
+    }
   }
 
   // Sizes of the compressed and the plain body, then LZF of all x, then all y, and so on.
