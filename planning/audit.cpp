@@ -189,9 +189,11 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options) {
   constexpr double least_horizon_m = 50.0;
-  double farthest_m = 0.0;
+  double farthest_m = 0.0, radius_m = 0.0;
   for (const geometry::BodyPart& part : parts) {
-    farthest_m = std::max(farthest_m, geometry::inflated(part, options.inflate_m).reach_m());
+    const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
+    farthest_m = std::max(farthest_m, body.reach_m());
+    radius_m = std::max(radius_m, std::sqrt(2.0) * body.circumradius_m());  // of the box around it
   }
   const Eigen::Vector2d reach_m = Eigen::Vector2d::Constant(farthest_m);
   const Eigen::Vector2d start = drive_in_source.points().front().pose().position();
@@ -202,7 +204,9 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
   }
   around.min_in_source -= reach_m;
   around.max_in_source += reach_m;
-  return {around, std::max(least_horizon_m, 3.0 * options.clearance_m)};
+  return {.around = around,
+          .horizon_m = std::max(least_horizon_m, 3.0 * options.clearance_m),
+          .body_radius_m = radius_m};
 }
 
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,

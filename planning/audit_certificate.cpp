@@ -31,23 +31,38 @@ class Prover {
       : probe_(probe), goal_m_(goal_m), left_out_(left_out) {}
 
   Cover run() {
-    for (std::size_t segment = 0; segment < probe_.segments(); ++segment) {
-      std::vector<Span> to_come{{segment, 0.0, 1.0}};
-      while (!to_come.empty()) {
-        const Span span = to_come.back();
-        to_come.pop_back();
-        if (settle(span)) continue;
-        to_come.push_back(span.second_half());
-        to_come.push_back(span.first_half());
-      }
+    for (std::size_t segment = 0; segment < probe_.segments();) {
+      spare_m_ = -1.0;
+      cover(segment);
+      segment = cover_settled(segment, probe_.next_after(segment, spare_m_));
     }
     return std::move(cover_);
   }
 
  private:
+  void cover(std::size_t segment) {
+    to_come_.assign({{segment, 0.0, 1.0}});
+    while (!to_come_.empty()) {
+      const Span span = to_come_.back();
+      to_come_.pop_back();
+      if (settle(span)) continue;
+      to_come_.push_back(span.second_half());
+      to_come_.push_back(span.first_half());
+    }
+  }
+
+  // Spans of the segments that are settled with another one, up to `next`.
+  std::size_t cover_settled(std::size_t segment, std::size_t next) {
+    for (++segment; segment < next; ++segment) {
+      const Span span{segment, 0.0, 1.0};
+      spare_m_ -= 2.0 * probe_.motion_bound_m(span);
+      prove(span, goal_m_ + std::max(spare_m_, 0.0) + kOver_m);
+    }
+    return next;
+  }
+
   Stretch time_of(const Span& span) const {
-    return {probe_.state_at(span.segment, span.from).t_s,
-            probe_.state_at(span.segment, span.to).t_s};
+    return {probe_.time_at(span.segment, span.from), probe_.time_at(span.segment, span.to)};
   }
 
   bool is_left_out(const Stretch& time) {
@@ -62,8 +77,11 @@ class Prover {
     const Stretch time = time_of(span);
     if (is_left_out(time)) return true;
     const double motion_m = probe_.motion_bound_m(span);
-    if (prove(span, probe_.lower_bound_m(span, goal_m_ + motion_m + kOver_m) - motion_m))
+    const double bound_m = probe_.lower_bound_m(span, goal_m_ + motion_m + kOver_m) - motion_m;
+    if (prove(span, bound_m)) {
+      if (span.to - span.from == 1.0) spare_m_ = bound_m - goal_m_ - kOver_m;
       return true;
+    }
     const double within_m = std::min(goal_m_ + 2.0 * motion_m, probe_.horizon_m());
     const auto nearest = probe_.nearest(span, within_m);
     if (prove(span, (nearest ? nearest->distance_m : within_m) - motion_m)) return true;
@@ -83,6 +101,8 @@ class Prover {
   double goal_m_;
   const std::vector<Stretch>& left_out_;  // in order of time
   std::size_t next_ = 0;
+  double spare_m_ = 0.0;  // of the segment that is being covered, where one span does
+  std::vector<Span> to_come_;
   Cover cover_;
 };
 
@@ -110,8 +130,8 @@ double least_of(const std::vector<Span>& spans) {
 std::vector<ProvenTime> in_time(const Probe& probe, const std::vector<ProvenSpan>& spans) {
   std::vector<ProvenTime> times;
   for (const ProvenSpan& span : spans) {
-    times.push_back({probe.state_at(span.segment, span.from).t_s,
-                     probe.state_at(span.segment, span.to).t_s, span.at_least_m});
+    times.push_back({probe.time_at(span.segment, span.from), probe.time_at(span.segment, span.to),
+                     span.at_least_m});
   }
   return times;
 }

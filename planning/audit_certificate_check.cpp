@@ -332,4 +332,25 @@ std::vector<std::string> check_certificate(const AuditCertificate& certificate,
   return Check(certificate, cells, resolution_m, drive_in_source, moving_in_source).run();
 }
 
+double checked_distance_m(const AuditCertificate& certificate,
+                          const geometry::Trajectory& drive_in_source) {
+  const double reach_m = BodyOutline(certificate.part, certificate.inflate_m).reach_m();
+  double most_m = certificate.clearance_m;
+  for (const auto* spans : {&certificate.from_occupied, &certificate.from_unknown}) {
+    for (const ProvenSpan& span : *spans) most_m = std::max(most_m, span.at_least_m);
+  }
+  for (const Conflict& conflict : certificate.conflicts) {
+    most_m = std::max(most_m, conflict.least_clearance_m);
+  }
+  double motion_m = 0.0;
+  const auto& rows = drive_in_source.points();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    motion_m = std::max(motion_m,
+                        std::hypot(rows[i].x_m - rows[i - 1].x_m, rows[i].y_m - rows[i - 1].y_m) +
+                            reach_m * std::abs(rows[i].heading_rad - rows[i - 1].heading_rad));
+  }
+  constexpr double beyond_m = 2.0;  // how far distances are measured over what is asked for
+  return most_m + motion_m + reach_m + beyond_m;
+}
+
 }  // namespace roadbed::planning

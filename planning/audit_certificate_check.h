@@ -28,4 +28,8 @@ std::vector<std::string> check_certificate(const AuditCertificate& certificate,
                                            const geometry::Trajectory& drive_in_source,
                                            std::span<const MovingObstacle> moving_in_source = {});
 
+/// How far from the way of the vehicle's axle cells matter to the check.
+double checked_distance_m(const AuditCertificate& certificate,
+                          const geometry::Trajectory& drive_in_source);
+
 }  // namespace roadbed::planning

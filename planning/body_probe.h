@@ -22,6 +22,7 @@ class BodyProbe : public Probe {
   double lower_bound_m(const Span& span, double enough_m) const override;
   std::optional<Near> nearest(const Span& span, double within_m) const override;
   double horizon_m() const override { return field_.horizon_m() - part_.radius_m; }
+  bool is_continuous() const override { return true; }
 
  private:
   double field_bound_m(const Eigen::Vector2d& point) const;

@@ -160,7 +160,7 @@ void check_is_single(const std::vector<GroundPlace>& places) {
 /// The lowest occupied cell of each column near a drive.
 class LowestCells {
  public:
-  LowestCells(const map::OccupancyMap& occupancy, const std::vector<geometry::Pose2>& places)
+  LowestCells(const map::OccupancySource& occupancy, const std::vector<geometry::Pose2>& places)
       : cell_m_(occupancy.resolution_m()), origin_(occupancy.origin_in_source().head<2>()) {
     Vector2d least = places.front().position(), most = least;
     for (const geometry::Pose2& place : places) {
@@ -168,7 +168,10 @@ class LowestCells {
       most = most.cwiseMax(place.position());
     }
     const Vector2d margin = Vector2d::Constant(kWidest_m + cell_m_);
-    for (const map::OccupancyCell& leaf : occupancy.cells()) {
+    const Vector2d from = least - margin, to = most + margin;
+    constexpr double any_height_m = 1e6;
+    for (const map::OccupancyCell& leaf : occupancy.cells_in(
+             {{from.x(), from.y(), -any_height_m}, {to.x(), to.y(), any_height_m}})) {
       if (leaf.state == map::CellState::occupied) add(leaf, least - margin, most + margin);
     }
   }
@@ -308,7 +311,7 @@ map::Ground road_under(const map::RoadMap& road_map, const geometry::Trajectory&
   return map::Ground(std::move(places));
 }
 
-map::Ground measured_under(const map::OccupancyMap& occupancy,
+map::Ground measured_under(const map::OccupancySource& occupancy,
                            const geometry::Trajectory& drive_in_source) {
   const std::vector<geometry::Pose2> poses = places_along(drive_in_source);
   const LowestCells cells(occupancy, poses);

@@ -17,7 +17,7 @@ map::Ground road_under(const map::RoadMap& road_map, const geometry::Trajectory&
 /// column around a place, robust against things that hide the ground there [trimmed least squares,
 /// as in Rousseeuw 1984], to about half a cell. Under a bridge that is the road below.
 /// @throws InputError where there are too few such cells, or they are no plane.
-map::Ground measured_under(const map::OccupancyMap& occupancy,
+map::Ground measured_under(const map::OccupancySource& occupancy,
                            const geometry::Trajectory& drive_in_source);
 
 }  // namespace roadbed::planning

@@ -27,9 +27,21 @@ class Search {
   }
 
   LeastClearance run() {
+    // Part by part of the drive, so that what lies around it is looked at place by place.
+    constexpr std::size_t part = 1024;
     guess();
-    for (std::size_t segment = 0; segment < probe_.segments(); ++segment) {
-      open({segment, 0.0, 1.0}, 0.0);
+    for (std::size_t from = 0; from < probe_.segments(); from += part) {
+      search(from, std::min(from + part, probe_.segments()));
+    }
+    best_.proven_m = std::min(best_.proven_m, best_.found_m);
+    return best_;
+  }
+
+ private:
+  void search(std::size_t from, std::size_t to) {
+    for (std::size_t segment = from; segment < to;) {
+      const double lower_m = open({segment, 0.0, 1.0}, 0.0);
+      segment = probe_.next_after(segment, lower_m - best_.found_m);
     }
     while (!queue_.empty() && !is_settled(queue_.top().lower_m)) {
       const Open lowest = queue_.top();
@@ -37,11 +49,9 @@ class Search {
       examine(lowest);
     }
     if (!queue_.empty()) best_.proven_m = std::min(best_.proven_m, queue_.top().lower_m);
-    best_.proven_m = std::min(best_.proven_m, best_.found_m);
-    return best_;
+    queue_ = {};
   }
 
- private:
   // A low distance to begin with keeps most spans out of the queue.
   void guess() {
     constexpr std::size_t looks = 64;
@@ -72,12 +82,13 @@ class Search {
 
   bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
 
-  // Puts a span aside for good, or into the queue.
-  void open(const Span& span, double known_lower_m) {
+  // Puts a span aside for good, or into the queue; returns its bound.
+  double open(const Span& span, double known_lower_m) {
     const double motion_m = probe_.motion_bound_m(span);
     const double bound_m = probe_.lower_bound_m(span, best_.found_m + motion_m) - motion_m;
     const double lower_m = std::max({0.0, known_lower_m, bound_m});
     if (lower_m < best_.found_m) queue_.push({span, lower_m});
+    return lower_m;
   }
 
   void examine(const Open& lowest) {

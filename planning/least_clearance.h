@@ -18,9 +18,9 @@ struct LeastClearance {
   std::string obstacle = {};         ///< the witness's id, if it moves
 };
 
-/// Best first: the span that may hold the least distance is halved until its motion bound closes
-/// the bracket. Distance as a function of time is Lipschitz with the motion bound [Piyavskii 1972,
-/// doi:10.1016/0041-5553(72)90115-2].
+/// Best first in each thousand segments: the span that may hold the least distance is halved until
+/// its motion bound closes the bracket. Distance as a function of time is Lipschitz with the motion
+/// bound [Piyavskii 1972, doi:10.1016/0041-5553(72)90115-2].
 LeastClearance find_least_clearance(const Probe& probe, double tolerance_m);
 
 }  // namespace roadbed::planning

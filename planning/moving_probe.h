@@ -33,6 +33,8 @@ class MovingProbe : public Probe {
   double lower_bound_m(const Span& span, double enough_m) const override;
   std::optional<Near> nearest(const Span& span, double within_m) const override;
   double horizon_m() const override { return horizon_m_; }
+  /// Not where what moves comes and goes.
+  bool is_continuous() const override { return false; }
 
  private:
   struct Mover {

@@ -32,7 +32,13 @@ class Labeller {
   }
 
   NearStretches run() {
-    for (std::size_t segment = 0; segment < probe_.segments(); ++segment) label(segment);
+    for (std::size_t segment = 0; segment < probe_.segments();) {
+      spare_m_ = -1.0;
+      label(segment);
+      const std::size_t next = probe_.next_after(segment, spare_m_);
+      runs_.back().time.to_s = probe_.time_at(next - 1, 1.0);  // what was skipped is clear as well
+      segment = next;
+    }
     return gather();
   }
 
@@ -56,7 +62,11 @@ class Labeller {
   bool settle(const Span& span) {
     const double motion_m = probe_.motion_bound_m(span);
     const double enough_m = clearance_m_ + motion_m + kOver_m;
-    if (is_far(probe_.lower_bound_m(span, enough_m) - motion_m)) return append(span, Label::clear);
+    const double bound_m = probe_.lower_bound_m(span, enough_m) - motion_m;
+    if (is_far(bound_m)) {
+      if (span.to - span.from == 1.0) spare_m_ = bound_m - clearance_m_ - kOver_m;
+      return append(span, Label::clear);
+    }
     const double within_m = std::min(clearance_m_ + motion_m, probe_.horizon_m());
     const auto nearest = probe_.nearest(span, within_m);
     const double distance_m = nearest ? nearest->distance_m : within_m;
@@ -75,8 +85,8 @@ class Labeller {
   }
 
   bool append(const Span& span, Label label, const std::optional<Conflict>& worst = std::nullopt) {
-    const Stretch time{probe_.state_at(span.segment, span.from).t_s,
-                       probe_.state_at(span.segment, span.to).t_s};
+    const Stretch time{probe_.time_at(span.segment, span.from),
+                       probe_.time_at(span.segment, span.to)};
     if (runs_.empty() || runs_.back().label != label) {
       runs_.push_back({label, time, worst});
       return true;
@@ -123,6 +133,7 @@ class Labeller {
 
   const Probe& probe_;
   double clearance_m_, tolerance_m_;
+  double spare_m_ = 0.0;  // of the segment that is being labelled, where it is clear as a whole
   std::vector<Run> runs_;
 };
 

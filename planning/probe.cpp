@@ -12,6 +12,22 @@ geometry::TrajectoryPoint Probe::state_at(std::size_t segment, double share) con
   return geometry::interpolate(rows[segment], rows[std::min(segment + 1, rows.size() - 1)], share);
 }
 
+double Probe::time_at(std::size_t segment, double share) const {
+  const auto& rows = drive_.points();
+  const double from_s = rows[segment].t_s;
+  return from_s + share * (rows[std::min(segment + 1, rows.size() - 1)].t_s - from_s);
+}
+
+std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
+  ++segment;
+  if (!is_continuous()) return segment;
+  for (; segment < segments(); ++segment) {
+    spare_m -= 2.0 * motion_bound_m({segment, 0.0, 1.0});
+    if (!(spare_m >= 0.0)) break;
+  }
+  return segment;
+}
+
 geometry::Pose2 Probe::middle_pose_of(const Span& span) const {
   const auto& rows = drive_.points();
   const geometry::TrajectoryPoint& a = rows[span.segment];

@@ -34,6 +34,11 @@ class Probe {
   geometry::TrajectoryPoint middle_of(const Span& span) const {
     return state_at(span.segment, span.middle());
   }
+  double time_at(std::size_t segment, double share) const;
+
+  /// The first segment after `segment` that is not settled with it: where the distance is nowhere
+  /// in `segment` within `spare_m` of what counts, it needs that much of motion to come there.
+  std::size_t next_after(std::size_t segment, double spare_m) const;
 
   /// The distance changes by no more than this between the span's middle and any other time of it.
   /// Here that of things at rest: half the way of the axle plus half the turn times the body's
@@ -53,6 +58,9 @@ class Probe {
   virtual std::optional<Near> nearest(const Span& span, double within_m) const = 0;
 
   virtual double horizon_m() const = 0;
+
+  /// Whether distances at the end of a segment are those at the start of the next one.
+  virtual bool is_continuous() const = 0;
 
  protected:
   const geometry::Trajectory& drive() const { return drive_; }

@@ -88,7 +88,7 @@ AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditRe
 
 }  // namespace
 
-VehicleSurroundings::VehicleSurroundings(const map::OccupancyMap& occupancy,
+VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
                                          const GroundUnder& ground, std::vector<BodyPart> parts,
                                          const map::FieldRegion& region)
     : surface_(ground.surface), parts_(std::move(parts)) {

@@ -30,7 +30,7 @@ class VehicleSurroundings {
   /// Parts of the same heights share a field.
   /// @param ground  what the parts' heights are above.
   /// @throws InputError if a field would have too many cells.
-  VehicleSurroundings(const map::OccupancyMap& occupancy, const GroundUnder& ground,
+  VehicleSurroundings(const map::OccupancySource& occupancy, const GroundUnder& ground,
                       std::vector<geometry::BodyPart> parts, const map::FieldRegion& region);
 
   const std::vector<geometry::BodyPart>& parts() const { return parts_; }

@@ -15,7 +15,8 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/occupancy_source.h"
+#include "roadbed/map/occupancy/tiled_occupancy.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tools/command.h"
@@ -49,7 +50,11 @@ class AuditCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Prove that drives keep clear of occupied space, or show where they do not");
-    arguments.add("--occupancy", occupancy_, "Octree of obstacles (.bt .ot)").reads();
+    arguments
+        .add("--occupancy", occupancy_,
+             "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
+             "that it meets")
+        .reads();
     std::vector<Argument> not_with_check = subjects_.declare(arguments);
     const Argument vehicle =
         arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
@@ -98,7 +103,7 @@ class AuditCommand : public Command {
  private:
   /// What all drives are audited against.
   struct Scene {
-    map::OccupancyMap occupancy;
+    std::unique_ptr<const map::OccupancySource> occupancy;
     std::optional<map::Box2> measured;
     std::vector<geometry::Ring> lanes;  // of the map, if there is one
     const map::RoadMap* road_map;
@@ -217,12 +222,12 @@ class AuditCommand : public Command {
 
   Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
                    const CommonOptions& common) const {
-    Scene scene{map::OccupancyMap::load(occupancy_), {}, {}, road_map ? &*road_map : nullptr};
-    scene.measured = measured_bounds(scene.occupancy);
+    Scene scene{map::open_occupancy(occupancy_), {}, {}, road_map ? &*road_map : nullptr};
+    scene.measured = measured_bounds(*scene.occupancy);
     if (!road_map) return scene;
     scene.lanes = drivable_rings(*road_map);
     check_overlap(scene.lanes, scene.measured, occupancy_.string());
-    const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy.crs();
+    const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy->crs();
     if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
       fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
                  of_occupancy);
@@ -242,7 +247,7 @@ class AuditCommand : public Command {
     }
     ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits = audit_all(
-        scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+        *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
     write_index(audits, question, scene);
     write_files(audits, question, scene);
     if (json_) {
@@ -262,11 +267,11 @@ class AuditCommand : public Command {
       fmt::print(streams.err, "note: the drive ({}) lies outside the measured space ({})\n",
                  text_of(around), scene.measured ? text_of(*scene.measured) : "none");
     }
-    audited.ground = ground_under(scene.occupancy, audited.drive, question.ground);
+    audited.ground = ground_under(*scene.occupancy, audited.drive, question.ground);
     const planning::GroundUnder& ground = audited.ground;
-    if (!common.quiet) print_ground(streams.err, ground, question, scene.occupancy.resolution_m());
+    if (!common.quiet) print_ground(streams.err, ground, question, scene.occupancy->resolution_m());
     const planning::VehicleSurroundings surrounded =
-        surroundings(scene.occupancy, audited.drive, ground, question);
+        surroundings(*scene.occupancy, audited.drive, ground, question);
     const planning::VehicleAudit audit =
         planning::audit_vehicle(surrounded, audited.drive, options_, question.moving);
     audited.report = audit.whole;
@@ -311,7 +316,7 @@ class AuditCommand : public Command {
     if (svg_.empty()) return;
     write_output(
         svg_, audit_svg({audited.drive, inflated_parts(question), audited.report,
-                         occupied_boxes(scene.occupancy, heights), scene.lanes, question.moving}));
+                         occupied_boxes(*scene.occupancy, heights), scene.lanes, question.moving}));
   }
 
   void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
@@ -325,12 +330,12 @@ class AuditCommand : public Command {
                            .body = inflated_shape(question),
                            .parts = inflated_parts(question),
                            .clearance_m = options_.clearance_m,
-                           .occupied = occupied_in(scene.occupancy, heights, box),
+                           .occupied = occupied_in(*scene.occupancy, heights, box),
                            .lanes = {},
                            .moving = question.moving,
                            .command = "roadbed audit --occupancy " + occupancy_.string(),
                            .version = "roadbed " ROADBED_VERSION,
-                           .crs = scene.occupancy.crs(),
+                           .crs = scene.occupancy->crs(),
                            .sources = {source("occupancy", occupancy_)}};
     if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
     if (!subjects_.is_swept()) page.sources.push_back(source("trajectory", subjects_.file()));
@@ -345,7 +350,7 @@ class AuditCommand : public Command {
     for (const AuditedDrive& audited : audits) {
       index.push_back(indexed(audited));
       if (!audited.fault.empty()) continue;
-      const auto occupied = occupied_boxes(scene.occupancy, question.heights(audited.ground));
+      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground));
       index.back().pictures =
           close_ups(audited.report, {audited.drive, parts, occupied, scene.lanes, question.moving});
     }
@@ -377,7 +382,7 @@ class AuditCommand : public Command {
                    const Scene& scene) const {
     if (!junit_.empty()) write_output(junit_, audits_junit(audits, occupancy_.string()));
     if (!geojson_.empty()) {
-      write_output(geojson_, audits_geojson(audits, question, scene.occupancy.crs()));
+      write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()));
     }
   }
 

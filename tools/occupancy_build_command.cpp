@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "roadbed/map/occupancy/cloud_filter.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/map/occupancy/sensor_poses.h"
+#include "roadbed/map/occupancy/tile_builder.h"
+#include "roadbed/map/occupancy/tiles_index.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/occupancy_parts.h"
 #include "roadbed/tools/support/output_file.h"
@@ -29,11 +32,14 @@ class OccupancyBuildCommand : public Command {
              "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
              "(.bt .ot) to convert")
         .required();
-    arguments.add("-o,--output", output_, "OctoMap file to write (.bt, or .ot with log-odds)")
+    arguments
+        .add("-o,--output", output_,
+             "OctoMap file to write (.bt, or .ot with log-odds), or a folder (.tiles)")
         .required()
         .checked([](const std::string& text) {
           const std::string suffix = std::filesystem::path(text).extension().string();
-          return suffix == ".bt" || suffix == ".ot" ? "" : "ends neither in .bt nor in .ot";
+          const bool is_known = suffix == ".bt" || suffix == ".ot" || suffix == ".tiles";
+          return is_known ? "" : "ends neither in .bt nor in .ot";
         });
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
@@ -73,13 +79,25 @@ class OccupancyBuildCommand : public Command {
              "and --poses are in metres")
         .within(1e-6, 1e6);
     arguments.add("--crs", crs_, "CRS of the clouds, where the files give none or a wrong one");
+    arguments
+        .add("--tiles", tiles_m_,
+             "Write a folder of .bt tiles with sides so long [m] or little longer, and an index: "
+             "for "
+             "more than memory holds. Clouds are read one after the other, twice")
+        .within(1.0, 1e5);
+    arguments.require([this]() -> std::string {
+      if ((output_.extension() == ".tiles") == tiles_m_.has_value()) return {};
+      return tiles_m_ ? "an output .tiles, for --tiles" : "--tiles, for an output .tiles";
+    });
     arguments.flag("--force", force_, "Replace the output if it exists");
     arguments.example(
         "  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt\n"
-        "  roadbed occupancy build scans/*.pcd --poses poses.txt -o street.bt");
+        "  roadbed occupancy build scans/*.pcd --poses poses.txt -o street.bt\n"
+        "  roadbed occupancy build scans/*.pcd --tiles 100 -o city.tiles");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (tiles_m_) return build_tiles(streams, common);
     check_writable(output_, force_);
     const Made made = make(streams.err, common.quiet);
     write_output(output_, made.file.bytes);
@@ -106,19 +124,111 @@ class OccupancyBuildCommand : public Command {
   Made make(std::ostream& err, bool quiet) const {
     const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
     std::vector<map::PointCloud> clouds;
-    for (const std::filesystem::path& file : clouds_) {
-      const std::string bytes = map::read_file(file);
-      if (map::is_occupancy_file(bytes)) return written(convert(bytes, file));
-      map::PointCloud cloud = map::parse_point_cloud(bytes, file.string());
-      if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
-      if (!poses.empty()) cloud = map::placed(cloud, poses[clouds.size()]);
-      clouds.push_back(prepared(std::move(cloud)));
+    for (std::size_t i = 0; i < clouds_.size(); ++i) {
+      const std::string bytes = map::read_file(clouds_[i]);
+      if (map::is_occupancy_file(bytes)) return written(convert(bytes, clouds_[i]));
+      clouds.push_back(cloud_of(i, bytes, poses));
       if (!quiet) print_notes(err, clouds.back());
     }
     map::OccupancyOptions options{.resolution_m = resolution_m_, .sticky_hits = !no_sticky_};
     if (carve_range_m_) options.carve_range_m = *carve_range_m_;
     if (wants_log_odds()) return written(map::OccupancyMap::build(clouds, options));
     return {map::OccupancyMap::build_bt(clouds, options), resolution_m_};
+  }
+
+  // The cloud of a file, ready to be measured.
+  map::PointCloud cloud_of(std::size_t i, std::string_view bytes,
+                           const std::vector<Eigen::Isometry3d>& poses) const {
+    map::PointCloud cloud = map::parse_point_cloud(bytes, clouds_[i].string());
+    if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
+    if (!poses.empty()) cloud = map::placed(cloud, poses[i]);
+    return prepared(std::move(cloud));
+  }
+
+  map::PointCloud cloud_to_tile(std::size_t i, const std::vector<Eigen::Isometry3d>& poses) const {
+    const std::string bytes = map::read_file(clouds_[i]);
+    if (!map::is_occupancy_file(bytes)) return cloud_of(i, bytes, poses);
+    throw map::InputError({.file = clouds_[i].string(),
+                           .place = {},
+                           .element = "--tiles",
+                           .found = "is an octree",
+                           .needed = "point clouds",
+                           .remedy = "give the clouds that the octree was built from"});
+  }
+
+  // What there is to know before the first cell: where all clouds lie, and in which frame.
+  map::TileBuilder::Plan plan_of_tiles(const std::vector<Eigen::Isometry3d>& poses,
+                                       std::ostream& err, bool quiet) const {
+    map::TileBuilder::Plan plan{.folder = output_, .resolution_m = resolution_m_, .crs = {}};
+    if (carve_range_m_) plan.carve_range_m = *carve_range_m_;
+    plan.side_cells = map::tile_side_cells(*tiles_m_, resolution_m_);
+    map::Box3 all;
+    for (std::size_t i = 0; i < clouds_.size(); ++i) {
+      const map::PointCloud cloud = cloud_to_tile(i, poses);
+      if (!quiet) print_notes(err, cloud);
+      const map::Box3 box = bounds(cloud);
+      if (i == 0) all = box;
+      if (i == 0) plan.crs = cloud.crs;
+      if (cloud.crs != plan.crs) refuse_crs(cloud, plan.crs);
+      all = {all.min_in_source.cwiseMin(box.min_in_source),
+             all.max_in_source.cwiseMax(box.max_in_source)};
+      plan.most_points = std::max(plan.most_points, cloud.points.size());
+    }
+    plan.origin_in_source = map::tree_origin(all, resolution_m_);
+    return plan;
+  }
+
+  [[noreturn]] void refuse_crs(const map::PointCloud& cloud, const std::string& crs) const {
+    throw map::InputError({.file = cloud.name,
+                           .place = {},
+                           .element = "CRS",
+                           .found = fmt::format("\"{}\"", cloud.crs),
+                           .needed = fmt::format("\"{}\" as {} has", crs, clouds_[0].string()),
+                           .remedy = "bring the clouds into one frame first"});
+  }
+
+  Exit build_tiles(const Streams& streams, const CommonOptions& common) const {
+    check_is_for_tiles();
+    if (std::filesystem::exists(output_)) make_output_folder(output_, force_);
+    const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
+    const map::TileBuilder::Plan plan = plan_of_tiles(poses, streams.err, common.quiet);
+    make_output_folder(output_, force_);
+    try {
+      const map::TilesIndex index = write_tiles(plan, poses);
+      if (!common.quiet) {
+        fmt::print(streams.err, "{}: {} tiles of {} m\n", output_.string(), index.tiles.size(),
+                   index.side_m());
+      }
+    } catch (...) {
+      std::error_code ignored;
+      std::filesystem::remove(output_, ignored);  // if it is empty
+      throw;
+    }
+    return Exit::ok;
+  }
+
+  void check_is_for_tiles() const {
+    if (!no_sticky_) return;
+    throw map::InputError({.file = "--no-sticky",
+                           .place = {},
+                           .element = "--tiles",
+                           .found = "depends on the order of all clouds at every cell",
+                           .needed = {},
+                           .remedy = "leave one of the two out"});
+  }
+
+  // The index last: without it there are no tiles.
+  map::TilesIndex write_tiles(const map::TileBuilder::Plan& plan,
+                              const std::vector<Eigen::Isometry3d>& poses) const {
+    map::TileBuilder builder(plan);
+    for (std::size_t i = 0; i < clouds_.size(); ++i) builder.add(cloud_to_tile(i, poses));
+    std::error_code ignored;
+    std::filesystem::remove(map::tiles_index_file(output_), ignored);
+    map::TilesIndex index = builder.finish([this](const std::string& file, std::string_view bytes) {
+      write_output(output_ / file, bytes);
+    });
+    write_output(map::tiles_index_file(output_), map::write_tiles_index(index));
+    return index;
   }
 
   std::vector<Eigen::Isometry3d> poses_of_clouds() const {
@@ -172,7 +282,7 @@ class OccupancyBuildCommand : public Command {
   std::filesystem::path output_, poses_file_;
   double resolution_m_ = 0.1;
   std::vector<double> sensor_;
-  std::optional<double> carve_range_m_, scale_;
+  std::optional<double> carve_range_m_, scale_, tiles_m_;
   map::CloudFilter filter_;
   std::string crs_;
   bool no_carving_ = false, no_sticky_ = false, force_ = false;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/tiled_occupancy.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/occupancy_parts.h"
 
@@ -67,6 +68,26 @@ Json octree_info(const map::OccupancyMap& occupancy) {
   return info;
 }
 
+Json tiles_info(const map::TiledOccupancy& tiles) {
+  const map::TilesIndex& index = tiles.index();
+  std::size_t nodes = 0;
+  for (const map::OccupancyTile& tile : index.tiles) nodes += tile.nodes;
+  const std::optional<map::Box3> box = tiles.bounds();
+  Json info;
+  info["kind"] = "tiles";
+  info["crs"] = crs_json(index.crs);
+  info["origin"] = {{"x_m", index.origin_in_source.x()},
+                    {"y_m", index.origin_in_source.y()},
+                    {"z_m", index.origin_in_source.z()}};
+  info["resolution_m"] = index.resolution_m;
+  info["side_m"] = index.side_m();
+  info["overlap_m"] = 0.0;
+  info["tiles"] = index.tiles.size();
+  info["nodes"] = nodes;
+  info["bounds"] = box ? bounds_json(*box) : Json();
+  return info;
+}
+
 Json cloud_info(const map::PointCloud& cloud) {
   Json info;
   info["kind"] = "cloud";
@@ -116,17 +137,16 @@ class OccupancyInfoCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Say what an octree or a point cloud holds: counts, bounds, frame");
-    arguments.add("F", input_, "Octree (.bt .ot) or point cloud (.pcd .ply .las .xyz .csv)")
+    arguments
+        .add("F", input_,
+             "Octree (.bt .ot), folder of tiles, or point cloud (.pcd .ply .las .xyz .csv)")
         .required();
     arguments.flag("--json", json_, "Print one JSON document");
     arguments.example("  roadbed occupancy info street.bt --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    const std::string bytes = map::read_file(input_);
-    const Json info = map::is_occupancy_file(bytes)
-                          ? octree_info(map::OccupancyMap::parse(bytes, input_.string()))
-                          : cloud_info(map::parse_point_cloud(bytes, input_.string()));
+    const Json info = info_of_input();
     if (json_) {
       streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
@@ -138,6 +158,14 @@ class OccupancyInfoCommand : public Command {
   }
 
  private:
+  Json info_of_input() const {
+    if (map::is_tiled_occupancy(input_)) return tiles_info(map::TiledOccupancy(input_));
+    const std::string bytes = map::read_file(input_);
+    return map::is_occupancy_file(bytes)
+               ? octree_info(map::OccupancyMap::parse(bytes, input_.string()))
+               : cloud_info(map::parse_point_cloud(bytes, input_.string()));
+  }
+
   std::filesystem::path input_;
   bool json_ = false;
 };

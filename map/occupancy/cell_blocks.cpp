@@ -121,6 +121,15 @@ bool CellBlocks::add_end(const CellKey& key) {
 
 void CellBlocks::mark_hit(const CellKey& key) { set_bit(block_at(key).hit, cell_place(key)); }
 
+void CellBlocks::merge(const CellKey& first, const CellBlock::Bits& hit,
+                       const CellBlock::Bits& free) {
+  CellBlock& block = block_at(first);
+  for (std::size_t word = 0; word < hit.size(); ++word) {
+    block.hit[word] |= hit[word];
+    block.free[word] |= free[word];
+  }
+}
+
 void CellBlocks::set_out(Cursor& cursor, const CellKey& from) {
   cursor.key = packed(from);
   cursor.cell = cell_place(from);

@@ -47,6 +47,9 @@ class CellBlocks {
 
   void mark_hit(const CellKey& key);
 
+  /// Adds what was measured elsewhere to a block. @param first  key of its first cell.
+  void merge(const CellKey& first, const CellBlock::Bits& hit, const CellBlock::Bits& free);
+
   /// Marks as free what a ray crosses from its origin's cell on, without the cell that it ends in;
   /// nothing if that is the same. The cells are those of OctoMap's computeRayKeys, whose arithmetic
   /// in float and double it repeats [Amanatides & Woo 1987].

@@ -9,54 +9,17 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/band_slicer.h"
+#include "roadbed/map/occupancy/grid_tiles.h"
 #include "roadbed/map/occupancy/ground.h"
-#include "roadbed/map/occupancy/levelled_slabs.h"
 #include "roadbed/map/occupancy/plan_grid.h"
-#include "roadbed/map/occupancy/rectangle_on_grid.h"
+#include "roadbed/map/occupancy/rectangle_cover.h"
 
 namespace roadbed::map {
 namespace {
 
 constexpr double kHorizon_m = 1000.0;
 constexpr double kTouch_m = 1e-6;  // cells that overlap the band by less only touch it
-
-/// Turns the octree's leaves into slabs.
-class Slicer {
- public:
-  Slicer(const OccupancyMap& occupancy, const HeightBand& band)
-      : origin_(occupancy.origin_in_source()), cell_m_(occupancy.resolution_m()) {
-    from_layer_ = to_cells(band.from_m + kTouch_m - origin_.z());
-    to_layer_ = to_cells(band.to_m - kTouch_m - origin_.z()) + 1;
-  }
-
-  std::int64_t layers() const { return to_layer_ - from_layer_; }
-
-  std::optional<Slab> slice(const OccupancyCell& leaf) const {
-    const Eigen::Vector3d corner =
-        (leaf.centre_in_source - origin_).array() - 0.5 * (leaf.size_m - cell_m_);
-    const auto side = static_cast<std::int64_t>(std::llround(leaf.size_m / cell_m_));
-    const std::int64_t x = to_cells(corner.x()), y = to_cells(corner.y()), z = to_cells(corner.z());
-    const std::int64_t layers = std::min(z + side, to_layer_) - std::max(z, from_layer_);
-    if (layers <= 0) return std::nullopt;
-    return Slab{{x, y, x + side, y + side}, layers, leaf.state == CellState::occupied};
-  }
-
-  CellRange range(const Box2& box, double margin_m) const {
-    const auto from = [&](double at, double origin) { return to_cells(at - margin_m - origin); };
-    const auto to = [&](double at, double origin) { return to_cells(at + margin_m - origin) + 1; };
-    return {from(box.min_in_source.x(), origin_.x()), from(box.min_in_source.y(), origin_.y()),
-            to(box.max_in_source.x(), origin_.x()), to(box.max_in_source.y(), origin_.y())};
-  }
-
- private:
-  std::int64_t to_cells(double metres) const {
-    return static_cast<std::int64_t>(std::floor(metres / cell_m_));
-  }
-
-  Eigen::Vector3d origin_;
-  double cell_m_;
-  std::int64_t from_layer_, to_layer_;
-};
 
 void check(const HeightBand& band) {
   constexpr double highest_m = 1e6;
@@ -67,13 +30,16 @@ void check(const HeightBand& band) {
   }
 }
 
+bool is_small(const CellRange& range) {
+  constexpr std::int64_t longest = 65536;
+  return range.width() <= longest && range.height() <= longest &&
+         range.count() <= ClearanceField::kMostCells;
+}
+
 void check_size(const CellRange& range, std::int64_t layers, double cell_m) {
   constexpr auto most = static_cast<std::int64_t>(ClearanceField::kMostCells);
   constexpr std::int64_t longest = 65536;
-  if (range.width() <= longest && range.height() <= longest && layers < longest &&
-      range.width() * range.height() <= most) {
-    return;
-  }
+  if (is_small(range) && layers < longest) return;
   throw InputError({.file = "occupancy",
                     .place = {},
                     .element = "extent",
@@ -83,48 +49,79 @@ void check_size(const CellRange& range, std::int64_t layers, double cell_m) {
                     .remedy = "cut the occupancy, or take a coarser resolution"});
 }
 
-struct Slices {
-  std::vector<Slab> slabs;
-  CellRange range;  // of all slabs
-};
-
-// Over ground that is not level every column has layers of its own.
-Slices slice_levelled(const OccupancyMap& occupancy, const HeightBand& band, const Slicer& slicer,
-                      const FieldRegion& region) {
-  const CellRange range = slicer.range(region.around, region.horizon_m);
-  check_size(range, kLevelledLayers, occupancy.resolution_m());
-  Slices slices{levelled_slabs(occupancy.cells(), band, occupancy.origin_in_source(),
-                               occupancy.resolution_m(), range),
-                {}};
-  for (const Slab& slab : slices.slabs) slices.range = slices.range.joined(slab.cells);
-  return slices;
-}
-
-Slices slice_all(const OccupancyMap& occupancy, const Slicer& slicer,
-                 const std::optional<FieldRegion>& region) {
-  Slices slices;
-  for (const OccupancyCell& leaf : occupancy.cells()) {
-    std::optional<Slab> slab = slicer.slice(leaf);
-    if (slab && region) {
-      slab->cells = slab->cells.cut(slicer.range(region->around, region->horizon_m));
-    }
-    if (!slab || slab->cells.empty()) continue;
-    slices.range = slices.range.joined(slab->cells);
-    slices.slabs.push_back(*slab);
-  }
-  return slices;
+CellRange range_of(const std::vector<Slab>& slabs) {
+  CellRange range;
+  for (const Slab& slab : slabs) range = range.joined(slab.cells);
+  return range;
 }
 
 }  // namespace
 
+/// One grid where that is small enough, else tiles of it.
 struct ClearanceField::Grid {
-  PlanGrid plan;
-  Eigen::Vector2d corner_in_source;  // lower left of the grid's first cell
-  double horizon_m;
-  std::optional<Box2> around;
+  BandSlicer slicer;
+  double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter of a body beside tiles
+  std::optional<Box2> around = std::nullopt;
+  std::shared_ptr<const PlanGrid> whole = nullptr;
+  std::unique_ptr<const GridTiles> tiles = nullptr;
+
+  // What is more than a horizon away from a region does not matter; two cells more cover the way
+  // from points and boxes to the centres of their cells.
+  void make(const FieldRegion& region) {
+    horizon_m = std::min(region.horizon_m, kHorizon_m);
+    around = region.around;
+    const CellRange held = slicer.range(region.around, slicer.cell_m());
+    const auto margin = static_cast<std::int64_t>(std::ceil(horizon_m / slicer.cell_m())) + 3;
+    const CellRange seen = held.grown(margin);
+    if (region.tile_m == 0.0 && is_small(seen)) {
+      whole = grid_of({held, seen, false}, slicer.slabs_in(seen));
+    } else {
+      make_tiles(region);
+    }
+  }
+
+  void make_whole() {
+    const std::vector<Slab> slabs = slicer.slabs();
+    const CellRange all = range_of(slabs);
+    whole = grid_of({all, all, true}, slabs);
+  }
+
+  // A box within the horizon of a body whose centre lies in a tile has its centre at most horizon,
+  // body's radius and half a box's diagonal away from the tile.
+  void make_tiles(const FieldRegion& region) {
+    body_radius_m = region.body_radius_m;
+    const double cell_m = slicer.cell_m();
+    const auto margin =
+        static_cast<std::int64_t>(std::ceil((horizon_m + body_radius_m) / cell_m)) + 3;
+    const std::int64_t side = region.tile_m > 0.0
+                                  ? static_cast<std::int64_t>(std::ceil(region.tile_m / cell_m))
+                                  : 2 * margin;
+    const CellRange first = CellRange{0, 0, side, side}.grown(margin);
+    check_size(first, slicer.layers(), cell_m);
+    tiles = std::make_unique<const GridTiles>(
+        side, std::max<std::size_t>(1, kMostCells / first.count()), [this, margin](CellRange tile) {
+          const CellRange seen = tile.grown(margin);
+          return grid_of({tile, seen, false}, slicer.slabs_in(seen));
+        });
+  }
+
+  std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent,
+                                          const std::vector<Slab>& slabs) const {
+    check_size(extent.seen, slicer.layers(), slicer.cell_m());
+    return std::make_shared<const PlanGrid>(slabs, extent, slicer.layers(), slicer.cell_m());
+  }
+
+  // What a grid around the point says.
+  template <typename Question>
+  auto ask(const Eigen::Vector2d& point, const Question& question) const {
+    if (whole) return question(*whole);
+    const std::shared_ptr<const PlanGrid> tile = tiles->at(
+        whole_below(point.x() / slicer.cell_m()), whole_below(point.y() / slicer.cell_m()));
+    return question(*tile);
+  }
 
   Eigen::Vector2d in_grid(const Eigen::Vector2d& in_source) const {
-    return in_source - corner_in_source;
+    return in_source - slicer.origin_in_source();
   }
 
   geometry::Rectangle in_grid(geometry::Rectangle rectangle) const {
@@ -137,23 +134,32 @@ struct ClearanceField::Grid {
     if (!around) return 0.0;
     const Eigen::Vector2d inside =
         in_source.cwiseMax(around->min_in_source).cwiseMin(around->max_in_source);
-    return (in_source - inside).norm();
+    return inside == in_source ? 0.0 : (in_source - inside).norm();
   }
 
   void check_inside(const geometry::Rectangle& rectangle) const {
-    for (const Eigen::Vector2d& corner : rectangle.corners()) {
-      const Eigen::Vector2d in_source = corner + corner_in_source;
-      constexpr double rounding_m = 1e-6;
-      if (beyond_around(in_source) <= rounding_m) continue;
+    constexpr double rounding_m = 1e-6;
+    if (tiles && rectangle.radius_m() > body_radius_m + rounding_m) {
       throw std::invalid_argument(fmt::format(
-          "ClearanceField: the vehicle's corner ({}, {}) leaves the region of the field",
-          in_source.x(), in_source.y()));
+          "ClearanceField: the body's radius is {} m, the field's tiles are made for {} m",
+          rectangle.radius_m(), body_radius_m));
     }
+    if (!around) return;
+    const Eigen::Vector2d half = half_extent_m(rectangle);
+    const Eigen::Vector2d centre = rectangle.centre + slicer.origin_in_source();
+    const Eigen::Vector2d least = centre - half, most = centre + half;
+    if (beyond_around(least) <= rounding_m && beyond_around(most) <= rounding_m) return;
+    throw std::invalid_argument(fmt::format(
+        "ClearanceField: the vehicle (x {} to {}, y {} to {}) leaves the region of the field",
+        least.x(), most.x(), least.y(), most.y()));
   }
 
-  Box2 box_of(const PlanGrid::Cell& cell) const {
-    const Eigen::Array2d middle = corner_in_source + plan.centre(cell);
-    return {middle - 0.5 * plan.cell_m(), middle + 0.5 * plan.cell_m()};
+  Box2 box_of(const NearCell& cell) const {
+    const double cell_m = slicer.cell_m();
+    const Eigen::Array2d middle =
+        slicer.origin_in_source() + cell_m * Eigen::Vector2d(static_cast<double>(cell.x) + 0.5,
+                                                             static_cast<double>(cell.y) + 0.5);
+    return {middle - 0.5 * cell_m, middle + 0.5 * cell_m};
   }
 };
 
@@ -162,26 +168,18 @@ bool HeightBand::holds(const Eigen::Vector2d& in_source, double low_m, double he
   return std::min(above_m + height_m, to_m) - std::max(above_m, from_m) > kTouch_m;
 }
 
-ClearanceField::ClearanceField(const OccupancyMap& occupancy, const HeightBand& band,
+ClearanceField::ClearanceField(const OccupancySource& occupancy, const HeightBand& band,
                                const std::optional<FieldRegion>& region) {
   check(band);
-  const Slicer slicer(occupancy, band);
   if (band.ground && !region) {
     throw std::invalid_argument("ClearanceField: a band over a ground needs a region");
   }
-  const Slices slices = band.ground ? slice_levelled(occupancy, band, slicer, *region)
-                                    : slice_all(occupancy, slicer, region);
-  const std::int64_t layers = band.ground ? kLevelledLayers : slicer.layers();
-  const double cell_m = occupancy.resolution_m();
-  check_size(slices.range, layers, cell_m);
-  const Eigen::Vector2d first_cell(static_cast<double>(slices.range.from_x),
-                                   static_cast<double>(slices.range.from_y));
-  grid_.reset(new Grid{
-      .plan = PlanGrid(slices.slabs, slices.range, layers, cell_m),
-      .corner_in_source = occupancy.origin_in_source().head<2>() + cell_m * first_cell,
-      .horizon_m = region ? std::min(region->horizon_m, kHorizon_m) : kHorizon_m,
-      .around = region ? std::optional(region->around) : std::nullopt,
-  });
+  grid_.reset(new Grid{.slicer = BandSlicer(occupancy, band)});
+  if (region) {
+    grid_->make(*region);
+  } else {
+    grid_->make_whole();
+  }
 }
 
 ClearanceField::~ClearanceField() = default;
@@ -190,13 +188,14 @@ ClearanceField& ClearanceField::operator=(ClearanceField&&) noexcept = default;
 
 double ClearanceField::horizon_m() const { return grid_->horizon_m; }
 
-bool ClearanceField::has_occupied() const { return grid_->plan.has_occupied(); }
-
 // What the region left out is at least a horizon away from every point of `around`.
 double ClearanceField::distance_bound_m(const Eigen::Vector2d& point_in_source,
                                         ObstacleKind kind) const {
   const double seen_m = std::max(0.0, grid_->horizon_m - grid_->beyond_around(point_in_source));
-  return std::min(seen_m, grid_->plan.lower_bound_m(grid_->in_grid(point_in_source), kind));
+  const Eigen::Vector2d point = grid_->in_grid(point_in_source);
+  return grid_->ask(point, [&](const PlanGrid& grid) {
+    return std::min(seen_m, grid.lower_bound_m(point, kind));
+  });
 }
 
 std::optional<ClearanceField::Nearest> ClearanceField::nearest(const geometry::Rectangle& in_source,
@@ -204,32 +203,18 @@ std::optional<ClearanceField::Nearest> ClearanceField::nearest(const geometry::R
                                                                ObstacleKind kind) const {
   const geometry::Rectangle rectangle = grid_->in_grid(in_source);
   grid_->check_inside(rectangle);
-  const auto nearest = grid_->plan.nearest(rectangle, std::min(within_m, grid_->horizon_m), kind);
+  const auto nearest = grid_->ask(rectangle.centre, [&](const PlanGrid& grid) {
+    return grid.nearest(rectangle, std::min(within_m, grid_->horizon_m), kind);
+  });
   if (!nearest) return std::nullopt;
-  return Nearest{nearest->distance_m, grid_->box_of(nearest->cell)};
+  return Nearest{nearest->distance_m, grid_->box_of(*nearest)};
 }
 
 double ClearanceField::unknown_share(const geometry::Rectangle& in_source) const {
   const geometry::Rectangle rectangle = grid_->in_grid(in_source);
-  if (grid_->plan.lower_bound_m(rectangle.centre, ObstacleKind::unknown) > rectangle.radius_m()) {
-    return 0.0;
-  }
-  const double cell_m = grid_->plan.cell_m();
-  const auto cell = [&](double at_m) {
-    return static_cast<std::int64_t>(std::floor(at_m / cell_m));
-  };
-  const Eigen::Vector2d least = rectangle.centre - half_extent_m(rectangle);
-  const Eigen::Vector2d most = rectangle.centre + half_extent_m(rectangle);
-  double unknown_m2 = 0.0;
-  for (std::int64_t y = cell(least.y()); y <= cell(most.y()); ++y) {
-    for (std::int64_t x = cell(least.x()); x <= cell(most.x()); ++x) {
-      const double unmeasured = 1.0 - grid_->plan.measured_share({x, y});
-      if (unmeasured == 0.0) continue;
-      unknown_m2 +=
-          unmeasured * overlap_with_square_m2(rectangle, grid_->plan.centre({x, y}), 0.5 * cell_m);
-    }
-  }
-  return std::min(1.0, unknown_m2 / (4.0 * rectangle.half_length_m * rectangle.half_width_m));
+  grid_->check_inside(rectangle);
+  return grid_->ask(rectangle.centre,
+                    [&](const PlanGrid& grid) { return grid.unknown_share(rectangle); });
 }
 
 }  // namespace roadbed::map

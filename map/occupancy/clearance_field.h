@@ -36,6 +36,11 @@ struct Box2 {
 struct FieldRegion {
   Box2 around;
   double horizon_m = 50.0;
+
+  /// Where a grid of all that would have over `kMostCells` cells it is made in square tiles of this
+  /// side, only where queries come; 0: of a fitting side. Given, it is made in tiles in any case.
+  double tile_m = 0.0;
+  double body_radius_m = 10.0;  ///< tiles are made for rectangles within such a circle
 };
 
 /// What a distance is measured to.
@@ -52,10 +57,13 @@ enum class ObstacleKind {
 /// boxes of occupied cells.
 class ClearanceField {
  public:
-  /// Memory: 6 bytes a cell, 10 once distances to unknown space are asked for. O(leaves + cells).
-  /// @throws InputError if the grid would have more than `kMostCells` cells.
+  /// Cells within a horizon of the region take 2 bytes and a bit of memory, those of the region
+  /// itself 4 more, twice that once unknown space is asked for. O(leaves + cells). In tiles no more
+  /// than `kMostCells` cells are alive at a time, and the answers are the same, bit for bit.
+  /// @param occupancy  kept by reference, as tiles are made later.
+  /// @throws InputError if there is no region and more than `kMostCells` cells, or a tile has them.
   /// @throws std::invalid_argument if the band is empty or not finite.
-  ClearanceField(const OccupancyMap& occupancy, const HeightBand& band,
+  ClearanceField(const OccupancySource& occupancy, const HeightBand& band,
                  const std::optional<FieldRegion>& region = std::nullopt);
   ~ClearanceField();
   ClearanceField(ClearanceField&&) noexcept;
@@ -71,17 +79,15 @@ class ClearanceField {
   /// Distance beyond which the bound is not told apart.
   double horizon_m() const;
 
-  /// Whether any cell is occupied in the band.
-  bool has_occupied() const;
-
   struct Nearest {
     double distance_m;  ///< 0 on overlap or touch
-    Box2 witness;       ///< the nearest box, of one cell; of equally near ones, the lower left
+    Box2 witness;       ///< the nearest box, of one cell; of equally near ones always the same
   };
 
   /// Exact distance between a rectangle, or a point, and the nearest box; none where no box is
   /// within `within_m` (or within the horizon, if that is less).
-  /// @throws std::invalid_argument if the rectangle leaves the field's region.
+  /// @throws std::invalid_argument if the rectangle leaves the field's region, or is too large for
+  ///         its tiles.
   std::optional<Nearest> nearest(const geometry::Rectangle& in_source, double within_m,
                                  ObstacleKind kind = ObstacleKind::occupied) const;
 
@@ -104,7 +110,7 @@ class ClearanceField {
 
  private:
   struct Grid;
-  std::unique_ptr<const Grid> grid_;
+  std::unique_ptr<Grid> grid_;
 };
 
 }  // namespace roadbed::map

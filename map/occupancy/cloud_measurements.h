@@ -35,6 +35,8 @@ class CloudMeasurements {
   ///         too many places to be kept.
   void add(const PointCloud& cloud);
 
+  const CellBlocks& blocks() const { return blocks_; }
+
   /// Of a `.bt`; to be called once, when all clouds are there.
   OctreeBytes bt();
 

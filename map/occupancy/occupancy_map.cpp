@@ -13,6 +13,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree_file.h"
+#include "roadbed/map/occupancy/tile_builder.h"
 #include "roadbed/map/read_file.h"
 
 namespace roadbed::map {
@@ -33,7 +34,21 @@ namespace {
 
 octomap::OcTreeKey octomap_key(const CellKey& key) { return {key[0], key[1], key[2]}; }
 
-// Where the octree's range allows it, the source's own origin; else the middle of all points.
+// The key of a point's cell, or of the nearest one in range.
+octomap::OcTreeKey key_around(const Eigen::Vector3d& in_tree, double resolution_m) {
+  const Eigen::Array3d cells =
+      (in_tree.array() / resolution_m).floor().max(-kHalfRange).min(kHalfRange - 1.0) + kHalfRange;
+  return {static_cast<std::uint16_t>(cells.x()), static_cast<std::uint16_t>(cells.y()),
+          static_cast<std::uint16_t>(cells.z())};
+}
+
+template <typename Leaf>
+OccupancyCell cell_of(const octomap::OcTree& octree, const Leaf& leaf,
+                      const Eigen::Vector3d& origin_in_source) {
+  return {origin_in_source + Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()), leaf.getSize(),
+          octree.isNodeOccupied(*leaf) ? CellState::occupied : CellState::free};
+}
+
 Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolution_m) {
   Box3 all = bounds(clouds.front());
   for (const PointCloud& cloud : clouds.subspan(1)) {
@@ -41,14 +56,7 @@ Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolut
     all.min_in_source = all.min_in_source.cwiseMin(box.min_in_source);
     all.max_in_source = all.max_in_source.cwiseMax(box.max_in_source);
   }
-  constexpr double near_zero_m = 4096.0;  // OctoMap computes in float
-  const double range_m = std::min(near_zero_m, (kHalfRange - 1.0) * resolution_m);
-  Eigen::Vector3d origin(0, 0, 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double from = all.min_in_source[axis], to = all.max_in_source[axis];
-    if (std::max(-from, to) > range_m) origin[axis] = std::round(0.5 * (from + to));
-  }
-  return origin;
+  return tree_origin(all, resolution_m);
 }
 
 void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
@@ -185,11 +193,33 @@ std::vector<OccupancyCell> OccupancyMap::cells() const {
   const octomap::OcTree& octree = tree_->octree;
   std::vector<OccupancyCell> cells;
   for (auto leaf = octree.begin_leafs(), end = octree.end_leafs(); leaf != end; ++leaf) {
-    cells.push_back(
-        {tree_->origin_in_source + Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()),
-         leaf.getSize(), octree.isNodeOccupied(*leaf) ? CellState::occupied : CellState::free});
+    cells.push_back(cell_of(octree, leaf, tree_->origin_in_source));
   }
   return cells;
+}
+
+std::vector<OccupancyCell> OccupancyMap::cells_in(const Box3& box) const {
+  const octomap::OcTree& octree = tree_->octree;
+  std::vector<OccupancyCell> cells;
+  if (octree.size() == 0) return cells;  // its iterator needs a root
+  const auto from = key_around(box.min_in_source - tree_->origin_in_source, resolution_m());
+  const auto to = key_around(box.max_in_source - tree_->origin_in_source, resolution_m());
+  for (auto leaf = octree.begin_leafs_bbx(from, to), end = octree.end_leafs_bbx(); leaf != end;
+       ++leaf) {
+    cells.push_back(cell_of(octree, leaf, tree_->origin_in_source));
+  }
+  return cells;
+}
+
+std::optional<Box3> OccupancyMap::bounds() const {
+  std::optional<Box3> box;
+  for (const OccupancyCell& cell : cells()) {
+    const Eigen::Vector3d least = cell.centre_in_source.array() - 0.5 * cell.size_m;
+    const Eigen::Vector3d most = cell.centre_in_source.array() + 0.5 * cell.size_m;
+    if (!box) box = Box3{least, most};
+    box = Box3{box->min_in_source.cwiseMin(least), box->max_in_source.cwiseMax(most)};
+  }
+  return box;
 }
 
 std::string OccupancyMap::to_bt() const {

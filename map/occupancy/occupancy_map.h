@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/occupancy/occupancy_source.h"
 #include "roadbed/map/occupancy/point_cloud.h"
 
 namespace roadbed::map {
@@ -22,19 +23,9 @@ struct OccupancyOptions {
   bool sticky_hits = true;
 };
 
-/// Measured at a cell: nothing, a way through, or a thing.
-enum class CellState { unknown, free, occupied };
-
-/// An axis-aligned box of occupied or free space, a leaf of the octree.
-struct OccupancyCell {
-  Eigen::Vector3d centre_in_source;
-  double size_m;
-  CellState state;
-};
-
 /// Obstacle occupancy, kept as an OctoMap. A measured hit is sticky: rays never carve it away,
 /// unless the options say otherwise.
-class OccupancyMap {
+class OccupancyMap final : public OccupancySource {
  public:
   /// Clouds with a sensor position carve free space along their rays; others only mark hits.
   /// Cost: a step per cell that a ray crosses; of points in the same cell one ray is drawn.
@@ -60,20 +51,25 @@ class OccupancyMap {
   /// The same from bytes; `name` stands for the file in messages.
   static OccupancyMap parse(std::string_view bytes, const std::string& name);
 
-  ~OccupancyMap();
+  ~OccupancyMap() override;
   OccupancyMap(OccupancyMap&&) noexcept;
   OccupancyMap& operator=(OccupancyMap&&) noexcept;
 
-  double resolution_m() const;
-  const Eigen::Vector3d& origin_in_source() const;
-  const std::string& crs() const;
+  double resolution_m() const override;
+  const Eigen::Vector3d& origin_in_source() const override;
+  const std::string& crs() const override;
   std::size_t node_count() const;
+
+  std::optional<Box3> bounds() const override;
 
   /// State at a point; beyond the octree's range it is unknown. O(16).
   CellState at(const Eigen::Vector3d& in_source) const;
 
   /// All leaves with a state, in the octree's own order.
-  std::vector<OccupancyCell> cells() const;
+  std::vector<OccupancyCell> cells() const override;
+
+  /// In the same order. O(leaves in the box).
+  std::vector<OccupancyCell> cells_in(const Box3& box) const override;
 
   /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`. Log-odds of an `.ot`
   /// become free and occupied at OctoMap's threshold, 0.

@@ -5,40 +5,39 @@
 #include <limits>
 
 #include "roadbed/map/occupancy/distance_transform.h"
+#include "roadbed/map/occupancy/rectangle_cover.h"
 
 namespace roadbed::map {
+namespace {
 
-CellRange CellRange::cut(const CellRange& other) const {
-  return {std::max(from_x, other.from_x), std::max(from_y, other.from_y),
-          std::min(to_x, other.to_x), std::min(to_y, other.to_y)};
+CellWindow window_in(const CellRange& held, const CellRange& seen) {
+  return {static_cast<std::size_t>(held.from_x - seen.from_x),
+          static_cast<std::size_t>(held.from_y - seen.from_y),
+          static_cast<std::size_t>(held.to_x - seen.from_x),
+          static_cast<std::size_t>(held.to_y - seen.from_y)};
 }
 
-CellRange CellRange::joined(const CellRange& other) const {
-  if (empty()) return other;
-  return {std::min(from_x, other.from_x), std::min(from_y, other.from_y),
-          std::max(to_x, other.to_x), std::max(to_y, other.to_y)};
-}
+}  // namespace
 
-PlanGrid::PlanGrid(const std::vector<Slab>& slabs, const CellRange& range, std::int64_t layers,
+PlanGrid::PlanGrid(const std::vector<Slab>& slabs, const GridExtent& extent, std::int64_t layers,
                    double cell_m)
     : cell_m_(cell_m),
-      width_(range.width()),
-      height_(range.height()),
+      per_cell_(1.0 / cell_m),
+      extent_(extent),
       layers_(static_cast<std::uint16_t>(layers)),
-      known_layers_(static_cast<std::size_t>(width_ * height_)) {
+      known_layers_(extent.seen.count()) {
   std::vector<std::uint8_t> occupied(known_layers_.size());
-  for (const Slab& slab : slabs) paint(slab, range, occupied);
-  to_occupied_ = distances_to_set(occupied, static_cast<std::size_t>(width_),
-                                  static_cast<std::size_t>(height_));
+  for (const Slab& slab : slabs) paint(slab, occupied);
+  occupied_ = layer_of(occupied);
 }
 
 // Leaves do not overlap, so that the layers of free ones add up.
-void PlanGrid::paint(const Slab& slab, const CellRange& range,
-                     std::vector<std::uint8_t>& occupied) {
-  has_occupied_ = has_occupied_ || slab.occupied;
-  for (std::int64_t y = slab.cells.from_y; y < slab.cells.to_y; ++y) {
-    for (std::int64_t x = slab.cells.from_x; x < slab.cells.to_x; ++x) {
-      const std::size_t i = index({x - range.from_x, y - range.from_y});
+void PlanGrid::paint(const Slab& slab, std::vector<std::uint8_t>& occupied) {
+  const CellRange cells = slab.cells.cut(extent_.seen);
+  if (cells.empty()) return;
+  for (std::int64_t y = cells.from_y; y < cells.to_y; ++y) {
+    std::size_t i = extent_.seen.index(cells.from_x, y);
+    for (std::int64_t x = cells.from_x; x < cells.to_x; ++x, ++i) {
       if (slab.occupied) occupied[i] = 1;
       const auto known = static_cast<std::uint16_t>(known_layers_[i] + slab.layers);
       known_layers_[i] = occupied[i] != 0 ? layers_ : known;
@@ -46,163 +45,162 @@ void PlanGrid::paint(const Slab& slab, const CellRange& range,
   }
 }
 
-Eigen::Vector2d PlanGrid::size_m() const {
-  return {static_cast<double>(width_) * cell_m_, static_cast<double>(height_) * cell_m_};
-}
-
-Eigen::Vector2d PlanGrid::centre(const Cell& cell) const {
-  return {(static_cast<double>(cell.first) + 0.5) * cell_m_,
-          (static_cast<double>(cell.second) + 0.5) * cell_m_};
-}
-
-PlanGrid::Cell PlanGrid::cell_at(const Eigen::Vector2d& point) const {
-  return {static_cast<std::int64_t>(std::floor(point.x() / cell_m_)),
-          static_cast<std::int64_t>(std::floor(point.y() / cell_m_))};
-}
-
-PlanGrid::Cell PlanGrid::clamped(Cell cell) const {
-  return {std::clamp<std::int64_t>(cell.first, 0, width_ - 1),
-          std::clamp<std::int64_t>(cell.second, 0, height_ - 1)};
+PlanGrid::Layer PlanGrid::layer_of(const std::vector<std::uint8_t>& set) const {
+  const CellRange& seen = extent_.seen;
+  if (seen.empty()) return {};
+  return {CellBits(seen, set),
+          distances_to_set(set, static_cast<std::size_t>(seen.width()),
+                           static_cast<std::size_t>(seen.height()), window_in(extent_.held, seen))};
 }
 
 // Distances to unknown cells are made when first asked for: the planner never does.
-const std::vector<float>& PlanGrid::distances(ObstacleKind kind) const {
-  if (kind == ObstacleKind::occupied) return to_occupied_;
+const PlanGrid::Layer& PlanGrid::layer(ObstacleKind kind) const {
+  if (kind == ObstacleKind::occupied) return occupied_;
   std::call_once(unknown_once_, [this] {
     std::vector<std::uint8_t> unknown(known_layers_.size());
     for (std::size_t i = 0; i < unknown.size(); ++i) unknown[i] = known_layers_[i] < layers_;
-    to_unknown_ = distances_to_set(unknown, static_cast<std::size_t>(width_),
-                                   static_cast<std::size_t>(height_));
+    unknown_ = layer_of(unknown);
   });
-  return to_unknown_;
+  return unknown_;
+}
+
+PlanGrid::Cell PlanGrid::cell_at(const Eigen::Vector2d& point) const {
+  return {whole_below(point.x() * per_cell_), whole_below(point.y() * per_cell_)};
 }
 
 // From the point to its cell's centre, on to the obstacle's centre, and back off its corner.
-double PlanGrid::bound_inside(const Eigen::Vector2d& point, ObstacleKind kind) const {
-  const Cell cell = clamped(cell_at(point));
-  const double between_centres = static_cast<double>(distances(kind)[index(cell)]) * cell_m_;
-  return std::max(0.0, between_centres - (point - centre(cell)).norm() - cell_m_ * std::sqrt(0.5));
-}
-
-double PlanGrid::upper_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const {
-  const Cell cell = clamped(cell_at(point));
-  const double between_centres = static_cast<double>(distances(kind)[index(cell)]) * cell_m_;
-  constexpr double float_rounding = 1e-6;
-  return between_centres * (1.0 + float_rounding) + (point - centre(cell)).norm();
+double PlanGrid::bound_m(const Cell& cell, const Eigen::Vector2d& point, const Layer& layer) const {
+  const double between_m =
+      static_cast<double>(layer.distances[extent_.held.index(cell.x, cell.y)]) * cell_m_;
+  const double half_diagonal_m = cell_m_ * std::sqrt(0.5);
+  return std::max(0.0, between_m - (point - centre(cell.x, cell.y)).norm() - half_diagonal_m);
 }
 
 double PlanGrid::lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const {
-  if (empty()) {
-    return kind == ObstacleKind::unknown ? 0.0 : std::numeric_limits<double>::infinity();
-  }
-  const Eigen::Vector2d inside = point.cwiseMax(0.0).cwiseMin(size_m());
-  const double bound_m = bound_inside(inside, kind);
-  if (kind == ObstacleKind::occupied && inside == point) return bound_m;
-  if (kind == ObstacleKind::unknown) {
-    const double to_border_m = std::min(point.minCoeff(), (size_m() - point).minCoeff());
-    return std::clamp(to_border_m, 0.0, bound_m);
-  }
-  // The grid is convex: seen from outside, what lies in it is behind the nearest place of it.
-  return std::hypot((point - inside).norm(), bound_m);
+  const Cell cell = cell_at(point);
+  if (!extent_.held.holds(cell.x, cell.y)) return bound_from_outside_m(point, kind);
+  const double inside_m = bound_m(cell, point, layer(kind));
+  if (kind == ObstacleKind::occupied || !extent_.is_all) return inside_m;
+  const Eigen::Vector2d from(static_cast<double>(extent_.seen.from_x) * cell_m_,
+                             static_cast<double>(extent_.seen.from_y) * cell_m_);
+  const Eigen::Vector2d to(static_cast<double>(extent_.seen.to_x) * cell_m_,
+                           static_cast<double>(extent_.seen.to_y) * cell_m_);
+  const double to_border_m = std::min((point - from).minCoeff(), (to - point).minCoeff());
+  return std::clamp(to_border_m, 0.0, inside_m);
 }
 
-/// Goes row by row through the cells in reach, jumping as far as the distances allow.
-struct PlanGrid::Search {
-  const PlanGrid& grid;
-  const geometry::Rectangle& rectangle;
-  const Eigen::Vector2d half_extent = half_extent_m(rectangle);
-  const std::vector<float>& distance;
-  double reach_m;
-  std::optional<Cell> best;
+double PlanGrid::bound_from_outside_m(const Eigen::Vector2d& point, ObstacleKind kind) const {
+  const CellRange& held = extent_.held;
+  if (kind == ObstacleKind::unknown && extent_.is_all) return 0.0;
+  if (held.empty()) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d inside = point
+                                     .cwiseMax(Eigen::Vector2d(static_cast<double>(held.from_x),
+                                                               static_cast<double>(held.from_y)) *
+                                               cell_m_)
+                                     .cwiseMin(Eigen::Vector2d(static_cast<double>(held.to_x),
+                                                               static_cast<double>(held.to_y)) *
+                                               cell_m_);
+  const Cell at = cell_at(inside);
+  const Cell cell{std::clamp(at.x, held.from_x, held.to_x - 1),
+                  std::clamp(at.y, held.from_y, held.to_y - 1)};
+  const double inside_m = bound_m(cell, inside, layer(kind));
+  // The grid is convex: seen from outside, what lies in it is behind the nearest place of it.
+  if (extent_.is_all) return std::hypot((point - inside).norm(), inside_m);
+  return std::max(0.0, inside_m - (point - inside).norm());
+}
 
-  void run() {
-    const auto [from_y, to_y] = span(1, grid.height_);
-    for (std::int64_t y = from_y; y <= to_y; ++y) {
-      const double gap_m = std::abs(grid.centre({0, y}).y() - rectangle.centre.y()) -
-                           half_extent.y() - 0.5 * grid.cell_m_;
-      if (gap_m <= reach_m) search_row(y);
-      if (best && reach_m == 0.0) return;
+// To the nearest cell's centre, around which a circle lies in it.
+double PlanGrid::upper_bound_m(const Eigen::Vector2d& point, const Layer& layer) const {
+  const Cell cell = cell_at(point);
+  if (!extent_.held.holds(cell.x, cell.y)) return std::numeric_limits<double>::infinity();
+  const double between_m =
+      static_cast<double>(layer.distances[extent_.held.index(cell.x, cell.y)]) * cell_m_;
+  constexpr double float_rounding = 1e-6;
+  const double to_centre_m =
+      between_m * (1.0 + float_rounding) + (point - centre(cell.x, cell.y)).norm();
+  return std::max(0.0, to_centre_m - 0.5 * cell_m_ * (1.0 - float_rounding));
+}
+
+// Upper bound of the distance from the nearest cell, by points of the rectangle.
+double PlanGrid::reach_m(const geometry::Rectangle& rectangle, double within_m,
+                         const Layer& layer) const {
+  constexpr double few_rows_m = 0.5;  // where more points cost more than they save
+  double reach_m = within_m;
+  if (reach_m <= few_rows_m) return reach_m;
+  const Eigen::Vector2d ahead = rectangle.half_length_m * rectangle.axis;
+  const Eigen::Vector2d left =
+      rectangle.half_width_m * Eigen::Vector2d(-rectangle.axis.y(), rectangle.axis.x());
+  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector2d point = rectangle.centre + share * ahead + side * left;
+      reach_m = std::min(reach_m, upper_bound_m(point, layer));
     }
   }
+  return reach_m;
+}
 
-  void search_row(std::int64_t y) {
-    const auto [from_x, to_x] = span(0, grid.width_);
-    for (std::int64_t x = from_x; x <= to_x;) {
-      const float cells = distance[grid.index({x, y})];
-      if (cells > static_cast<float>(to_x - x)) return;
-      if (cells == 0.0f) consider({x, y});
-      x += std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(cells)));
-    }
+std::optional<NearCell> PlanGrid::nearest_inside(const geometry::Rectangle& rectangle,
+                                                 double within_m, ObstacleKind kind) const {
+  if (extent_.seen.empty()) return std::nullopt;
+  const Layer& cells = layer(kind);
+  const Cell cell = cell_at(rectangle.centre);
+  if (extent_.held.holds(cell.x, cell.y)) {
+    const double bound_m_ = bound_m(cell, rectangle.centre, cells);
+    if (bound_m_ > within_m + rectangle.radius_m()) return std::nullopt;
   }
-
-  void consider(const Cell& cell) {
-    const double gap_m = distance_to_square_m(rectangle, grid.centre(cell), 0.5 * grid.cell_m_);
-    if (gap_m < reach_m || (!best && gap_m <= reach_m)) {
-      reach_m = gap_m;
-      best = cell;
-    }
-  }
-
-  // Rows or columns within reach, and one more against rounding.
-  std::pair<std::int64_t, std::int64_t> span(int axis, std::int64_t count) const {
-    const auto cell = [&](double at_m) {
-      const double limit = static_cast<double>(count - 1);
-      return static_cast<std::int64_t>(std::clamp(std::floor(at_m / grid.cell_m_), 0.0, limit));
-    };
-    const double middle = rectangle.centre[axis];
-    const double half = half_extent[axis] + reach_m + grid.cell_m_;
-    return {cell(middle - half), cell(middle + half)};
-  }
-};
-
-std::optional<PlanGrid::NearestCell> PlanGrid::nearest_inside(const geometry::Rectangle& rectangle,
-                                                              double within_m,
-                                                              ObstacleKind kind) const {
-  if (empty()) return std::nullopt;
-  Search search{.grid = *this,
-                .rectangle = rectangle,
-                .distance = distances(kind),
-                .reach_m = std::min(within_m, upper_bound_m(rectangle.centre, kind)),
-                .best = std::nullopt};
-  for (const Eigen::Vector2d& corner : rectangle.corners()) {
-    search.reach_m = std::min(search.reach_m, upper_bound_m(corner, kind));
-  }
-  search.run();
-  if (!search.best) return std::nullopt;
-  return NearestCell{search.reach_m, *search.best};
+  return nearest_set_cell(cells.bits, cell_m_, rectangle, reach_m(rectangle, within_m, cells));
 }
 
 // All space around the grid is unknown; the cell beside the nearest border stands for it.
-PlanGrid::NearestCell PlanGrid::nearest_outside(const geometry::Rectangle& rectangle) const {
-  NearestCell least{std::numeric_limits<double>::infinity(), {0, 0}};
+NearCell PlanGrid::nearest_outside(const geometry::Rectangle& rectangle) const {
+  NearCell least{std::numeric_limits<double>::infinity(), 0, 0};
   const auto consider = [&](double inset_m, const Eigen::Vector2d& outside) {
     if (inset_m >= least.distance_m) return;
-    least = {std::max(inset_m, 0.0), cell_at(outside)};
+    const Cell cell = cell_at(outside);
+    least = {std::max(inset_m, 0.0), cell.x, cell.y};
   };
-  const Eigen::Vector2d end = size_m();
-  const double half = 0.5 * cell_m_;
+  const CellRange& seen = extent_.seen;
+  const double from_x = static_cast<double>(seen.from_x) * cell_m_,
+               from_y = static_cast<double>(seen.from_y) * cell_m_,
+               to_x = static_cast<double>(seen.to_x) * cell_m_,
+               to_y = static_cast<double>(seen.to_y) * cell_m_, half = 0.5 * cell_m_;
   for (const Eigen::Vector2d& corner : rectangle.corners()) {
-    consider(corner.x(), {std::min(corner.x(), -half), corner.y()});
-    consider(corner.y(), {corner.x(), std::min(corner.y(), -half)});
-    consider(end.x() - corner.x(), {std::max(corner.x(), end.x() + half), corner.y()});
-    consider(end.y() - corner.y(), {corner.x(), std::max(corner.y(), end.y() + half)});
+    const double x = corner.x(), y = corner.y();
+    consider(x - from_x, {std::min(x, from_x - half), y});
+    consider(y - from_y, {x, std::min(y, from_y - half)});
+    consider(to_x - x, {std::max(x, to_x + half), y});
+    consider(to_y - y, {x, std::max(y, to_y + half)});
   }
   return least;
 }
 
-std::optional<PlanGrid::NearestCell> PlanGrid::nearest(const geometry::Rectangle& rectangle,
-                                                       double within_m, ObstacleKind kind) const {
+std::optional<NearCell> PlanGrid::nearest(const geometry::Rectangle& rectangle, double within_m,
+                                          ObstacleKind kind) const {
   const auto inside = nearest_inside(rectangle, within_m, kind);
-  if (kind == ObstacleKind::occupied) return inside;
-  const NearestCell outside = nearest_outside(rectangle);
+  if (kind == ObstacleKind::occupied || !extent_.is_all) return inside;
+  const NearCell outside = nearest_outside(rectangle);
   if (inside && inside->distance_m <= outside.distance_m) return inside;
   if (outside.distance_m > within_m) return std::nullopt;
   return outside;
 }
 
-double PlanGrid::measured_share(const Cell& cell) const {
-  if (!holds(cell)) return 0.0;
-  return static_cast<double>(known_layers_[index(cell)]) / layers_;
+double PlanGrid::measured_share(std::int64_t x, std::int64_t y) const {
+  if (!extent_.seen.holds(x, y)) return 0.0;
+  return static_cast<double>(known_layers_[extent_.seen.index(x, y)]) / layers_;
+}
+
+double PlanGrid::unknown_share(const geometry::Rectangle& rectangle) const {
+  if (lower_bound_m(rectangle.centre, ObstacleKind::unknown) > rectangle.radius_m()) return 0.0;
+  const RectangleCover cover(rectangle, cell_m_);
+  const CellRange& cells = cover.range();
+  double unknown = 0.0;
+  for (std::int64_t y = cells.from_y; y < cells.to_y; ++y) {
+    for (std::int64_t x = cells.from_x; x < cells.to_x; ++x) {
+      unknown += (1.0 - measured_share(x, y)) * cover.share(x, y);
+    }
+  }
+  const double whole = 4.0 * rectangle.half_length_m * rectangle.half_width_m / (cell_m_ * cell_m_);
+  return std::min(1.0, unknown / whole);
 }
 
 }  // namespace roadbed::map

@@ -6,24 +6,14 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
+#include "roadbed/map/occupancy/cell_bits.h"
+#include "roadbed/map/occupancy/cell_range.h"
 #include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/rectangle_on_grid.h"
+#include "roadbed/map/occupancy/rectangle_search.h"
 
 namespace roadbed::map {
-
-/// Cells in plan view, counted from the occupancy's origin, half open.
-struct CellRange {
-  std::int64_t from_x = 0, from_y = 0, to_x = 0, to_y = 0;
-
-  std::int64_t width() const { return to_x - from_x; }
-  std::int64_t height() const { return to_y - from_y; }
-  bool empty() const { return width() <= 0 || height() <= 0; }
-  CellRange cut(const CellRange& other) const;
-  CellRange joined(const CellRange& other) const;
-};
 
 /// A leaf of the octree within a height band: its cells, and how many layers of the band it fills.
 struct Slab {
@@ -32,62 +22,67 @@ struct Slab {
   bool occupied;
 };
 
+/// Which cells a grid knows of.
+struct GridExtent {
+  CellRange held;  ///< distances are kept for these
+  CellRange seen;  ///< what they are measured to; holds all of `held`
+  bool is_all;     ///< nothing was measured outside `seen`; else what lies there does not matter
+};
+
 /// A grid in plan view: which cells are occupied, how much of each was measured, and how far away
-/// the next occupied or unknown one is. Coordinates are metres from the grid's lower left corner.
+/// the next occupied or unknown one is. Coordinates are metres from the corner of cell (0, 0), so
+/// that a cell has the same numbers in every grid that knows of it.
 class PlanGrid {
  public:
-  using Cell = std::pair<std::int64_t, std::int64_t>;
-  struct NearestCell {
-    double distance_m;
-    Cell cell;  ///< may lie just outside the grid, where all is unknown
-  };
-
-  PlanGrid(const std::vector<Slab>& slabs, const CellRange& range, std::int64_t layers,
+  PlanGrid(const std::vector<Slab>& slabs, const GridExtent& extent, std::int64_t layers,
            double cell_m);
 
   double cell_m() const { return cell_m_; }
-  bool empty() const { return width_ == 0; }
-  bool has_occupied() const { return has_occupied_; }
-  Eigen::Vector2d centre(const Cell& cell) const;
+  Eigen::Vector2d centre(std::int64_t x, std::int64_t y) const {
+    return {(static_cast<double>(x) + 0.5) * cell_m_, (static_cast<double>(y) + 0.5) * cell_m_};
+  }
 
   /// Lower bound of the distance from a point to the nearest cell of the kind.
   double lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
 
-  /// Exact distance from a rectangle; none if it is over `within_m`.
-  std::optional<NearestCell> nearest(const geometry::Rectangle& rectangle, double within_m,
-                                     ObstacleKind kind) const;
+  /// Exact distance from a rectangle; none if it is over `within_m`. The cell may lie just outside
+  /// what is seen, where all is unknown.
+  std::optional<NearCell> nearest(const geometry::Rectangle& rectangle, double within_m,
+                                  ObstacleKind kind) const;
 
-  /// Share of the cell's part of the band that was measured; 1 where a layer is occupied.
-  double measured_share(const Cell& cell) const;
+  /// Share of a rectangle's part of the band that was never measured.
+  double unknown_share(const geometry::Rectangle& rectangle) const;
 
  private:
-  struct Search;
+  struct Layer {
+    CellBits bits;                 // of cells seen
+    std::vector<float> distances;  // of cells held: in cells, from centre to centre
+  };
+  struct Cell {
+    std::int64_t x, y;
+  };
 
-  std::size_t index(const Cell& cell) const {
-    return static_cast<std::size_t>(cell.second * width_ + cell.first);
-  }
-  bool holds(const Cell& cell) const {
-    return cell.first >= 0 && cell.second >= 0 && cell.first < width_ && cell.second < height_;
-  }
-  Eigen::Vector2d size_m() const;
   Cell cell_at(const Eigen::Vector2d& point) const;
-  Cell clamped(Cell cell) const;
-  void paint(const Slab& slab, const CellRange& range, std::vector<std::uint8_t>& occupied);
-  const std::vector<float>& distances(ObstacleKind kind) const;
-  double bound_inside(const Eigen::Vector2d& point, ObstacleKind kind) const;
-  double upper_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
-  NearestCell nearest_outside(const geometry::Rectangle& rectangle) const;
-  std::optional<NearestCell> nearest_inside(const geometry::Rectangle& rectangle, double within_m,
-                                            ObstacleKind kind) const;
+  void paint(const Slab& slab, std::vector<std::uint8_t>& occupied);
+  Layer layer_of(const std::vector<std::uint8_t>& set) const;
+  const Layer& layer(ObstacleKind kind) const;
+  // Of a cell's part of the band; 1 where a layer is occupied.
+  double measured_share(std::int64_t x, std::int64_t y) const;
+  double bound_m(const Cell& cell, const Eigen::Vector2d& point, const Layer& layer) const;
+  double bound_from_outside_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
+  double upper_bound_m(const Eigen::Vector2d& point, const Layer& layer) const;
+  double reach_m(const geometry::Rectangle& rectangle, double within_m, const Layer& layer) const;
+  NearCell nearest_outside(const geometry::Rectangle& rectangle) const;
+  std::optional<NearCell> nearest_inside(const geometry::Rectangle& rectangle, double within_m,
+                                         ObstacleKind kind) const;
 
-  double cell_m_;
-  std::int64_t width_, height_;
+  double cell_m_, per_cell_;
+  GridExtent extent_;
   std::uint16_t layers_;
-  bool has_occupied_ = false;
   std::vector<std::uint16_t> known_layers_;  // all of them where one is occupied
-  std::vector<float> to_occupied_;           // in cells, from centre to centre
+  Layer occupied_;
   mutable std::once_flag unknown_once_;
-  mutable std::vector<float> to_unknown_;
+  mutable Layer unknown_;
 };
 
 }  // namespace roadbed::map

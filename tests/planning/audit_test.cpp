@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/tests/support/brute_force_distance.h"
 
 namespace roadbed::planning {

@@ -45,10 +45,13 @@ std::vector<Box2> joined(std::vector<Box2> boxes) {
   return joined_along(joined_along(std::move(boxes), 0), 1);
 }
 
-std::vector<Box2> occupied_in(const map::OccupancyMap& occupancy, const map::HeightBand& band,
+std::vector<Box2> occupied_in(const map::OccupancySource& occupancy, const map::HeightBand& band,
                               const Eigen::AlignedBox2d& box_in_source) {
   std::vector<Box2> boxes;
-  for (const map::OccupancyCell& cell : occupancy.cells()) {
+  const Eigen::Vector2d &least = box_in_source.min(), &most = box_in_source.max();
+  constexpr double any_height_m = 1e6;
+  for (const map::OccupancyCell& cell : occupancy.cells_in(
+           {{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}})) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
     if (cell.state != map::CellState::occupied) continue;
     const Eigen::Vector2d centre = cell.centre_in_source.head<2>();

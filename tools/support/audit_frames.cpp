@@ -29,13 +29,10 @@ std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map) {
   return rings;
 }
 
-std::optional<map::Box2> measured_bounds(const map::OccupancyMap& occupancy) {
-  std::optional<map::Box2> box;
-  for (const map::OccupancyCell& cell : occupancy.cells()) {
-    const Eigen::Array2d centre = cell.centre_in_source.head<2>();
-    extend(box, centre - 0.5 * cell.size_m, centre + 0.5 * cell.size_m);
-  }
-  return box;
+std::optional<map::Box2> measured_bounds(const map::OccupancySource& occupancy) {
+  const std::optional<map::Box3> bounds = occupancy.bounds();
+  if (!bounds) return std::nullopt;
+  return map::Box2{bounds->min_in_source.head<2>(), bounds->max_in_source.head<2>()};
 }
 
 bool overlap(const map::Box2& a, const map::Box2& b) {
@@ -63,7 +60,7 @@ void check_overlap(const std::vector<geometry::Ring>& lanes,
                          .remedy = "bring map and occupancy into one frame"});
 }
 
-std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
+std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
                                       const map::HeightBand& band) {
   std::vector<map::Box2> boxes;
   for (const map::OccupancyCell& cell : occupancy.cells()) {

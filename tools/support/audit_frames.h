@@ -15,7 +15,7 @@ namespace roadbed::tools {
 std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map);
 
 /// Box around all measured space in plan view; none if nothing was measured.
-std::optional<map::Box2> measured_bounds(const map::OccupancyMap& occupancy);
+std::optional<map::Box2> measured_bounds(const map::OccupancySource& occupancy);
 
 /// Whether they meet; touching counts.
 bool overlap(const map::Box2& a, const map::Box2& b);
@@ -31,7 +31,7 @@ void check_overlap(const std::vector<geometry::Ring>& lanes,
                    const std::optional<map::Box2>& measured, const std::string& occupancy);
 
 /// Occupied cells of a height band in plan view, as they are; they may lie above one another.
-std::vector<map::Box2> occupied_boxes(const map::OccupancyMap& occupancy,
+std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
                                       const map::HeightBand& band);
 
 }  // namespace roadbed::tools

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "roadbed/map/input_error.h"
@@ -15,7 +15,7 @@
 namespace roadbed::tools {
 namespace {
 
-AuditedDrive audit_one(const map::OccupancyMap& occupancy, const AuditSubject& subject,
+AuditedDrive audit_one(const map::OccupancySource& occupancy, const AuditSubject& subject,
                        const AuditQuestion& question) {
   AuditedDrive audited{.name = subject.name};
   try {
@@ -32,14 +32,11 @@ AuditedDrive audit_one(const map::OccupancyMap& occupancy, const AuditSubject& s
 }
 
 // A map and a cloud whose heights are apart cannot be meant for each other.
-void check_heights(const map::OccupancyMap& occupancy, const map::Ground& ground) {
+void check_heights(const map::OccupancySource& occupancy, const map::Ground& ground) {
   constexpr double near_m = 5.0;
-  double least_m = std::numeric_limits<double>::infinity(), most_m = -least_m;
-  for (const map::OccupancyCell& cell : occupancy.cells()) {
-    least_m = std::min(least_m, cell.centre_in_source.z() - 0.5 * cell.size_m);
-    most_m = std::max(most_m, cell.centre_in_source.z() + 0.5 * cell.size_m);
-  }
-  if (least_m > most_m) return;
+  const std::optional<map::Box3> bounds = occupancy.bounds();
+  if (!bounds) return;
+  const double least_m = bounds->min_in_source.z(), most_m = bounds->max_in_source.z();
   if (ground.highest_m() > least_m - near_m && ground.lowest_m() < most_m + near_m) return;
   throw map::InputError(
       {.file = "ground",
@@ -53,7 +50,7 @@ void check_heights(const map::OccupancyMap& occupancy, const map::Ground& ground
 
 }  // namespace
 
-planning::GroundUnder ground_under(const map::OccupancyMap& occupancy,
+planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
                                    const geometry::Trajectory& drive, const GroundRule& rule) {
   if (rule.kind == GroundRule::Kind::level) return {.level_m = rule.level_m};
   auto ground = std::make_shared<const map::Ground>(
@@ -64,7 +61,7 @@ planning::GroundUnder ground_under(const map::OccupancyMap& occupancy,
   return {.level_m = ground->lowest_m(), .surface = std::move(ground)};
 }
 
-planning::VehicleSurroundings surroundings(const map::OccupancyMap& occupancy,
+planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,
                                            const geometry::Trajectory& drive,
                                            const planning::GroundUnder& ground,
                                            const AuditQuestion& question) {
@@ -96,7 +93,7 @@ std::vector<geometry::BodyPart> inflated_parts(const AuditQuestion& question) {
   return parts;
 }
 
-std::vector<AuditedDrive> audit_all(const map::OccupancyMap& occupancy,
+std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
                                     const std::vector<AuditSubject>& subjects,
                                     const AuditQuestion& question, int threads,
                                     const std::function<void()>& done_one) {

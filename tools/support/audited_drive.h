@@ -34,14 +34,14 @@ struct AuditQuestion {
 };
 
 /// What the vehicle of a question meets on a drive.
-planning::VehicleSurroundings surroundings(const map::OccupancyMap& occupancy,
+planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,
                                            const geometry::Trajectory& drive,
                                            const planning::GroundUnder& ground,
                                            const AuditQuestion& question);
 
 /// The ground under a drive by a question's rule.
 /// @throws InputError if it cannot be told, or lies apart from all that was measured.
-planning::GroundUnder ground_under(const map::OccupancyMap& occupancy,
+planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
                                    const geometry::Trajectory& drive, const GroundRule& rule);
 
 /// The vehicle's parts as audited, with the margin.
@@ -67,7 +67,7 @@ struct AuditedDrive {
 
 /// Audits each drive by itself; one that is unusable does not stop the others. The same for any
 /// number of threads. `done_one` is called in the threads.
-std::vector<AuditedDrive> audit_all(const map::OccupancyMap& occupancy,
+std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
                                     const std::vector<AuditSubject>& subjects,
                                     const AuditQuestion& question, int threads,
                                     const std::function<void()>& done_one);

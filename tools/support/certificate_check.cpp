@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -9,7 +11,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/ground.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/tiled_occupancy.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/moving_obstacles.h"
@@ -26,6 +28,26 @@ void compare(const CertifiedFile& claimed, const CertifiedFile& found,
   if (found.xxhash == claimed.xxhash) return;
   faults.push_back(fmt::format("{} has the hash {}, the certificate is about one with {}",
                                found.name, found.xxhash, claimed.xxhash));
+}
+
+// Of a tiled occupancy only the tiles within reach of the claims.
+std::vector<map::OccupancyCell> cells_for(const map::OccupancySource& occupancy,
+                                          const CertificateFile& file,
+                                          const geometry::Trajectory& drive) {
+  const auto* tiles = dynamic_cast<const map::TiledOccupancy*>(&occupancy);
+  if (tiles == nullptr) return occupancy.cells();
+  double far_m = 0.0;
+  for (const planning::AuditCertificate& part : file.parts) {
+    far_m = std::max(far_m, planning::checked_distance_m(part, drive));
+  }
+  constexpr double any_height_m = 1e6;
+  const Eigen::Vector3d margin(far_m, far_m, any_height_m);
+  std::vector<map::Box3> boxes;
+  for (const geometry::TrajectoryPoint& row : drive.points()) {
+    const Eigen::Vector3d at(row.x_m, row.y_m, 0.0);
+    boxes.push_back({at - margin, at + margin});
+  }
+  return tiles->cells_of_tiles(boxes);
 }
 
 std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
@@ -45,12 +67,12 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
   }
   if (!faults.empty()) return faults;
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
-  const map::OccupancyMap occupancy = map::OccupancyMap::load(occupancy_file);
+  const std::unique_ptr<const map::OccupancySource> occupancy = map::open_occupancy(occupancy_file);
   try {
-    const std::vector<map::OccupancyCell> cells = occupancy.cells();
+    const std::vector<map::OccupancyCell> cells = cells_for(*occupancy, file, drive);
     for (const planning::AuditCertificate& part : file.parts) {
       for (const std::string& fault :
-           planning::check_certificate(part, cells, occupancy.resolution_m(), drive, moving)) {
+           planning::check_certificate(part, cells, occupancy->resolution_m(), drive, moving)) {
         faults.push_back(file.parts.size() == 1 ? fault : part.part.name + ": " + fault);
       }
     }

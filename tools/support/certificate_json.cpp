@@ -13,6 +13,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/ground.h"
+#include "roadbed/map/occupancy/tiles_index.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/json_node.h"
@@ -261,7 +262,9 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
 }  // namespace
 
 CertifiedFile certified_file(const std::filesystem::path& file) {
-  const std::string bytes = map::read_file(file);
+  // The index of a tiled occupancy holds the hashes of its tiles.
+  const std::string bytes =
+      map::read_file(map::is_tiled_occupancy(file) ? map::tiles_index_file(file) : file);
   return {.name = file.string(),
           .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
 }

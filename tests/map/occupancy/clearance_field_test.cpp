@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/tests/support/brute_force_distance.h"
 
 namespace roadbed::map {
@@ -152,6 +153,64 @@ TEST(ClearanceField, OfARegionAgreesWithTheWholeWithinItsHorizon) {
   EXPECT_THROW(part.nearest({5009.0, -20.0, 0.0}, shape, 1.0), std::invalid_argument);
 }
 
+/// Hits all around, with rays between some of them that leave the rest unknown.
+OccupancyMap scans_between_hits(std::mt19937& random, double extent_m) {
+  std::uniform_real_distribution<double> place(-extent_m, extent_m), height(0.0, 1.6);
+  std::vector<PointCloud> clouds;
+  for (int scan = 0; scan < 6; ++scan) {
+    PointCloud cloud;
+    cloud.origin_in_source = {5000.0, -20.0, 0.0};
+    cloud.sensor_in_source =
+        cloud.origin_in_source + Eigen::Vector3d(place(random), place(random), height(random));
+    for (int i = 0; i < 60; ++i) {
+      cloud.points.push_back(
+          Eigen::Vector3d(place(random), place(random), height(random)).cast<float>());
+    }
+    clouds.push_back(cloud);
+  }
+  return OccupancyMap::build(clouds, {.resolution_m = 0.1});
+}
+
+TEST(ClearanceField, InTilesOfAnySideSaysWhatTheWholeSaysBitForBit) {
+  std::mt19937 random(17);
+  const VehicleShape shape;
+  for (const double tile_m : {0.1, 0.7, 2.0, 5.3, 20.0, 500.0}) {
+    const OccupancyMap occupancy = scans_between_hits(random, 15.0);
+    const FieldRegion region{.around = {{4980.0, -40.0}, {5020.0, 0.0}}, .horizon_m = 6.0};
+    FieldRegion in_tiles = region;
+    in_tiles.tile_m = tile_m;
+    in_tiles.body_radius_m = 2.5;
+    const ClearanceField whole(occupancy, kBand, region), tiles(occupancy, kBand, in_tiles);
+    for (int i = 0; i < (tile_m < 1.0 ? 40 : 200); ++i) {
+      const Pose2 pose = random_pose(random, 16.0);
+      for (const ObstacleKind kind : {ObstacleKind::occupied, ObstacleKind::unknown}) {
+        ASSERT_EQ(tiles.distance_bound_m(pose.position(), kind),
+                  whole.distance_bound_m(pose.position(), kind));
+        const auto expected = whole.nearest(pose, shape, 100.0, kind);
+        const auto found = tiles.nearest(pose, shape, 100.0, kind);
+        ASSERT_EQ(found.has_value(), expected.has_value());
+        if (!found) continue;
+        ASSERT_EQ(found->distance_m, expected->distance_m);
+        ASSERT_EQ(found->witness.min_in_source, expected->witness.min_in_source);
+        ASSERT_EQ(found->witness.max_in_source, expected->witness.max_in_source);
+      }
+      ASSERT_EQ(tiles.unknown_share(pose, shape), whole.unknown_share(pose, shape));
+    }
+  }
+}
+
+TEST(ClearanceField, RefusesABodyThatItsTilesAreTooSmallFor) {
+  std::mt19937 random(18);
+  const OccupancyMap occupancy = random_occupancy(random, 0.1, 5.0);
+  const ClearanceField tiles(occupancy, kBand,
+                             FieldRegion{.around = {{4980.0, -40.0}, {5020.0, 0.0}},
+                                         .horizon_m = 6.0,
+                                         .tile_m = 4.0,
+                                         .body_radius_m = 2.0});
+  EXPECT_THROW(tiles.nearest({5000.0, -20.0, 0.0}, VehicleShape{}, 1.0), std::invalid_argument);
+  EXPECT_THROW(tiles.unknown_share({5000.0, -20.0, 0.0}, VehicleShape{}), std::invalid_argument);
+}
+
 TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
   // A box of free cells 0 ≤ x, y < 10 m, over the lower half of the band only where x < 5 m.
   PointCloud cloud;
@@ -179,7 +238,7 @@ TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
   const ClearanceField field(free, band);
   const VehicleShape box{
       .length_m = 4.0, .width_m = 2.0, .rear_overhang_m = 2.0, .wheelbase_m = 1.0};
-  EXPECT_FALSE(field.has_occupied());
+  EXPECT_FALSE(field.nearest({5.0, 5.0, 0.0}, box, 50.0));
   EXPECT_EQ(field.unknown_share({7.5, 5.0, 0.0}, box), 0.0);
   EXPECT_NEAR(field.unknown_share({2.5, 5.0, 0.7}, box), 0.5, 1e-12);
   EXPECT_NEAR(field.unknown_share({5.0, 5.0, 0.0}, box), 0.25, 1e-12);

@@ -41,9 +41,33 @@ TEST(DistanceTransform, EqualsBruteForceOnRandomGridsOfAnyDensityAndNeverExceeds
   }
 }
 
+TEST(DistanceTransform, OfAWindowIsThatPartOfTheWhole) {
+  std::mt19937 random(8);
+  for (int round = 0; round < 300; ++round) {
+    const std::size_t width = 1 + random() % 40, height = 1 + random() % 40;
+    const std::size_t one_in = 1 + random() % 200;
+    std::vector<std::uint8_t> set(width * height);
+    for (auto& cell : set) cell = random() % one_in == 0;
+    const std::vector<float> whole = distances_to_set(set, width, height);
+    CellWindow window{random() % (width + 1), random() % (height + 1), 0, 0};
+    window.to_x = window.from_x + random() % (width - window.from_x + 1);
+    window.to_y = window.from_y + random() % (height - window.from_y + 1);
+    const std::vector<float> part = distances_to_set(set, width, height, window);
+    std::size_t i = 0;
+    for (std::size_t y = window.from_y; y < window.to_y; ++y) {
+      for (std::size_t x = window.from_x; x < window.to_x; ++x) {
+        ASSERT_EQ(part[i++], whole[y * width + x]);
+      }
+    }
+    ASSERT_EQ(i, part.size());
+  }
+}
+
 TEST(DistanceTransform, RefusesASizeThatIsNotTheGrids) {
   EXPECT_THROW(distances_to_set(std::vector<std::uint8_t>(5), 2, 2), std::invalid_argument);
   EXPECT_TRUE(distances_to_set({}, 0, 0).empty());
+  EXPECT_THROW(distances_to_set(std::vector<std::uint8_t>(6), 2, 3, {0, 0, 3, 3}),
+               std::invalid_argument);
 }
 
 }  // namespace

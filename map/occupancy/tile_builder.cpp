@@ -1,0 +1,207 @@
+#include "roadbed/map/occupancy/tile_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/cell_range.h"
+#include "roadbed/map/occupancy/cloud_measurements.h"
+
+namespace roadbed::map {
+namespace {
+
+constexpr std::int64_t kBlockSide = 8, kMiddleBlock = 4096;  // of the blocks that keys can name
+
+/// A block in a file: its place in blocks from the origin, and what was measured.
+struct AsideBlock {
+  std::array<std::int32_t, 3> at;
+  std::int32_t unused = 0;
+  CellBlock::Bits hit, free;
+};
+static_assert(sizeof(AsideBlock) == 16 + 2 * sizeof(CellBlock::Bits));
+
+// Every third bit of a Morton code, from one on.
+std::int64_t axis_of(std::uint64_t code, int axis) {
+  std::int64_t value = 0;
+  for (int bit = 0; bit < 10; ++bit) {
+    value |= static_cast<std::int64_t>(code >> (3 * bit + axis) & 1u) << bit;
+  }
+  return value;
+}
+
+[[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& found) {
+  throw InputError({.file = file.string(),
+                    .place = {},
+                    .element = {},
+                    .found = found,
+                    .needed = {},
+                    .remedy = "check the disk"});
+}
+
+template <typename Visit>
+void for_each_block(const CellBlocks& blocks, const Visit& visit) {
+  for (const CellBlocks::Placed& placed : blocks.regions()) {
+    for (std::uint64_t place = 0; place < placed.region->size(); ++place) {
+      const CellBlock* block = (*placed.region)[place];
+      if (block != nullptr) visit(std::uint64_t{placed.code} << 9 | place, *block);
+    }
+  }
+}
+
+}  // namespace
+
+Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m) {
+  constexpr double near_zero_m = 4096.0;  // OctoMap computes in float
+  const double range_m = std::min(near_zero_m, (kHalfRange - 1.0) * resolution_m);
+  Eigen::Vector3d origin(0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = bounds.min_in_source[axis], to = bounds.max_in_source[axis];
+    if (std::max(-from, to) > range_m) origin[axis] = std::round(0.5 * (from + to));
+  }
+  return origin;
+}
+
+std::int64_t tile_side_cells(double side_m, double resolution_m) {
+  constexpr double least = 64.0, most = 32768.0;
+  const double cells = std::clamp(std::ceil(side_m / resolution_m - 1e-9), least, most);
+  return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(cells)));
+}
+
+TileBuilder::TileBuilder(Plan plan) : plan_(std::move(plan)) {
+  if (plan_.side_cells < kBlockSide ||
+      !std::has_single_bit(static_cast<std::uint64_t>(plan_.side_cells))) {
+    throw std::invalid_argument(fmt::format(
+        "TileBuilder: a side must be a power of two, 8 or more, got {}", plan_.side_cells));
+  }
+}
+
+TileBuilder::~TileBuilder() {
+  std::error_code ignored;
+  for (const auto& [place, blocks] : blocks_aside_) {
+    std::filesystem::remove(aside_file(place), ignored);
+  }
+}
+
+std::filesystem::path TileBuilder::aside_file(const Place& place) const {
+  return plan_.folder / fmt::format("tile_{}_{}.aside", place.second, place.first);
+}
+
+// None where the cloud lies within the range of keys; else a multiple of a quarter of it.
+TileBuilder::Shift TileBuilder::shift_of(const PointCloud& cloud) const {
+  Box3 box = bounds(cloud);
+  if (cloud.sensor_in_source) {
+    box.min_in_source = box.min_in_source.cwiseMin(*cloud.sensor_in_source);
+    box.max_in_source = box.max_in_source.cwiseMax(*cloud.sensor_in_source);
+  }
+  Shift shift{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from =
+        (box.min_in_source[axis] - plan_.origin_in_source[axis]) / plan_.resolution_m;
+    const double to = (box.max_in_source[axis] - plan_.origin_in_source[axis]) / plan_.resolution_m;
+    if (from > -kHalfRange + 1.0 && to < kHalfRange - 1.0) continue;
+    constexpr double step = 0.5 * kHalfRange;
+    shift[static_cast<std::size_t>(axis)] =
+        static_cast<std::int64_t>(step * std::round(0.5 * (from + to) / step));
+  }
+  return shift;
+}
+
+void TileBuilder::start(const Shift& shift) {
+  shift_ = shift;
+  const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
+                              static_cast<double>(shift[2]));
+  const OccupancyOptions options{.resolution_m = plan_.resolution_m,
+                                 .carve_range_m = plan_.carve_range_m};
+  measured_ = std::make_unique<CloudMeasurements>(
+      plan_.origin_in_source + plan_.resolution_m * moved, options, LogOddsRule{},
+      plan_.most_points + plan_.most_bytes / 64);
+}
+
+void TileBuilder::add(const PointCloud& cloud) {
+  const Shift shift = shift_of(cloud);
+  if (measured_ && shift != shift_) put_aside();
+  if (!measured_) start(shift);
+  measured_->add(cloud);
+  if (measured_->blocks().kept_bytes() > plan_.most_bytes) put_aside();
+}
+
+void TileBuilder::put_aside() {
+  std::map<Place, std::string> bytes;
+  for_each_block(measured_->blocks(), [&](std::uint64_t code, const CellBlock& block) {
+    AsideBlock aside{.at = {}, .hit = block.hit, .free = block.free};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t region = axis_of(code >> 9, static_cast<int>(axis));
+      const std::int64_t place = axis_of(code & 511u, static_cast<int>(axis));
+      aside.at[axis] =
+          static_cast<std::int32_t>(8 * region + place - kMiddleBlock + shift_[axis] / kBlockSide);
+    }
+    const std::int64_t blocks_a_side = plan_.side_cells / kBlockSide;
+    const Place tile{floor_div(aside.at[1], blocks_a_side), floor_div(aside.at[0], blocks_a_side)};
+    bytes[tile].append(reinterpret_cast<const char*>(&aside), sizeof aside);
+    ++blocks_aside_[tile];
+  });
+  measured_.reset();
+  for (const auto& [tile, data] : bytes) {
+    std::ofstream file(aside_file(tile), std::ios::binary | std::ios::app);
+    file.write(data.data(), static_cast<std::streamsize>(data.size()));
+    if (!file.flush()) refuse_file(aside_file(tile), "cannot be written");
+  }
+}
+
+OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) const {
+  CellBlocks blocks(plan_.resolution_m);
+  std::ifstream file(aside_file(place), std::ios::binary);
+  const std::int64_t first_x = place.second * plan_.side_cells,
+                     first_y = place.first * plan_.side_cells;
+  for (std::size_t i = 0; i < blocks_aside_.at(place); ++i) {
+    AsideBlock aside;
+    if (!file.read(reinterpret_cast<char*>(&aside), sizeof aside)) {
+      refuse_file(aside_file(place), "cannot be read");
+    }
+    const auto middle = static_cast<std::int64_t>(kHalfRange);
+    const std::array<std::int64_t, 3> key{kBlockSide * aside.at[0] - first_x + middle,
+                                          kBlockSide * aside.at[1] - first_y + middle,
+                                          kBlockSide * aside.at[2] + middle};
+    if (key[2] < 0 || key[2] >= 2 * middle) refuse_file(plan_.folder, "has more layers than keys");
+    blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
+                  static_cast<std::uint16_t>(key[2])},
+                 aside.hit, aside.free);
+  }
+  const OctreeBytes data = bt_data(blocks);
+  const Eigen::Vector3d corner(static_cast<double>(first_x), static_cast<double>(first_y), 0.0);
+  const std::string bytes =
+      octree_header(OctreeForm::bt,
+                    {.resolution_m = plan_.resolution_m,
+                     .nodes = data.nodes,
+                     .origin_in_source = plan_.origin_in_source + plan_.resolution_m * corner,
+                     .crs = plan_.crs}) +
+      data.data;
+  OccupancyTile tile{.x = place.second,
+                     .y = place.first,
+                     .file = tile_file_name(place.second, place.first),
+                     .nodes = data.nodes,
+                     .xxhash = hash_of_bytes(bytes),
+                     .bounds = {}};
+  tile.bounds = *OccupancyMap::parse(bytes, tile.file).bounds();
+  write(tile.file, bytes);
+  return tile;
+}
+
+TilesIndex TileBuilder::finish(const Write& write) {
+  if (measured_) put_aside();
+  TilesIndex index{.resolution_m = plan_.resolution_m,
+                   .origin_in_source = plan_.origin_in_source,
+                   .crs = plan_.crs,
+                   .side_cells = plan_.side_cells,
+                   .tiles = {}};
+  for (const auto& [place, blocks] : blocks_aside_) index.tiles.push_back(make_tile(place, write));
+  return index;
+}
+
+}  // namespace roadbed::map

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/tiles_index.h"
+
+namespace roadbed::map {
+
+class CloudMeasurements;
+
+/// Where the octree of clouds within such bounds has its origin: that of the source where the
+/// octree's range allows it, else the middle.
+Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m);
+
+/// Cells a side of tiles that are at least so long: a power of two, so that no node of the octree
+/// lies in two of them.
+std::int64_t tile_side_cells(double side_m, double resolution_m);
+
+/// Builds an occupancy in tiles from clouds that come one after the other. What they measure is
+/// kept up to a bound of memory, then added to a file per tile; in the end each tile is put
+/// together by itself. The cells are those of `OccupancyMap::build`; the whole may be larger than
+/// an octree's range, as every tile has an origin of its own.
+class TileBuilder {
+ public:
+  struct Plan {
+    std::filesystem::path folder;  ///< for files in between; they are removed in the end
+    double resolution_m = 0.1;
+    double carve_range_m = std::numeric_limits<double>::infinity();
+    Eigen::Vector3d origin_in_source{0, 0, 0};  ///< of `tree_origin`
+    std::string crs;
+    std::int64_t side_cells = 1024;       ///< of `tile_side_cells`
+    std::size_t most_points = 0;          ///< of one cloud
+    std::size_t most_bytes = 64'000'000;  ///< that cells take before they are put aside
+  };
+
+  explicit TileBuilder(Plan plan);
+  ~TileBuilder();
+  TileBuilder(const TileBuilder&) = delete;
+  TileBuilder& operator=(const TileBuilder&) = delete;
+
+  /// @throws InputError as `OccupancyMap::build` does, or if a file cannot be written.
+  void add(const PointCloud& cloud);
+
+  /// Hands out the bytes of each tile, in the order of the index that it returns.
+  using Write = std::function<void(const std::string& file, std::string_view bytes)>;
+  TilesIndex finish(const Write& write);
+
+ private:
+  using Place = std::pair<std::int64_t, std::int64_t>;  // y and x of a tile
+  using Shift = std::array<std::int64_t, 3>;            // of cells, from the origin
+
+  Shift shift_of(const PointCloud& cloud) const;
+  void start(const Shift& shift);
+  void put_aside();
+  std::filesystem::path aside_file(const Place& place) const;
+  OccupancyTile make_tile(const Place& place, const Write& write) const;
+
+  Plan plan_;
+  Shift shift_{};
+  std::unique_ptr<CloudMeasurements> measured_;
+  std::map<Place, std::size_t> blocks_aside_;  // how many, by tile
+};
+
+}  // namespace roadbed::map

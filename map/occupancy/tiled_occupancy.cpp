@@ -1,0 +1,95 @@
+#include "roadbed/map/occupancy/tiled_occupancy.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "roadbed/map/input_error.h"
+#include "roadbed/map/read_file.h"
+
+namespace roadbed::map {
+namespace {
+
+bool do_meet(const Box3& a, const Box3& b) {
+  return (a.min_in_source.array() <= b.max_in_source.array()).all() &&
+         (b.min_in_source.array() <= a.max_in_source.array()).all();
+}
+
+void append_to(std::vector<OccupancyCell>& cells, std::vector<OccupancyCell> more) {
+  cells.insert(cells.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+TiledOccupancy::TiledOccupancy(const std::filesystem::path& folder)
+    : folder_(folder),
+      index_(parse_tiles_index(read_file(tiles_index_file(folder)),
+                               tiles_index_file(folder).string())) {}
+
+std::optional<Box3> TiledOccupancy::bounds() const {
+  if (index_.tiles.empty()) return std::nullopt;
+  Box3 box = index_.tiles.front().bounds;
+  for (const OccupancyTile& tile : index_.tiles) {
+    box.min_in_source = box.min_in_source.cwiseMin(tile.bounds.min_in_source);
+    box.max_in_source = box.max_in_source.cwiseMax(tile.bounds.max_in_source);
+  }
+  return box;
+}
+
+std::vector<OccupancyCell> TiledOccupancy::cells() const {
+  std::vector<OccupancyCell> cells;
+  for (const OccupancyTile& tile : index_.tiles) append_to(cells, load(tile)->cells());
+  return cells;
+}
+
+std::vector<OccupancyCell> TiledOccupancy::cells_in(const Box3& box) const {
+  std::vector<OccupancyCell> cells;
+  for (const OccupancyTile& tile : index_.tiles) {
+    if (do_meet(tile.bounds, box)) append_to(cells, load(tile)->cells_in(box));
+  }
+  return cells;
+}
+
+std::vector<OccupancyCell> TiledOccupancy::cells_of_tiles(std::span<const Box3> boxes) const {
+  std::vector<OccupancyCell> cells;
+  for (const OccupancyTile& tile : index_.tiles) {
+    const auto meets = [&](const Box3& box) { return do_meet(tile.bounds, box); };
+    if (std::ranges::any_of(boxes, meets)) append_to(cells, load(tile)->cells());
+  }
+  return cells;
+}
+
+std::size_t TiledOccupancy::tiles_read() const {
+  const std::lock_guard lock(mutex_);
+  return tiles_read_;
+}
+
+std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& tile) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(alive_, &tile, &Alive::tile);
+  if (found != alive_.end()) {
+    alive_.splice(alive_.begin(), alive_, found);
+    return alive_.front().map;
+  }
+  const std::filesystem::path file = folder_ / tile.file;
+  const std::string bytes = read_file(file);
+  if (hash_of_bytes(bytes) != tile.xxhash) {
+    throw InputError({.file = file.string(),
+                      .place = {},
+                      .element = {},
+                      .found = "has the hash " + hash_of_bytes(bytes),
+                      .needed = tile.xxhash + " as the index says",
+                      .remedy = "build the tiles again"});
+  }
+  if (alive_.size() >= kMostAlive) alive_.pop_back();
+  alive_.push_front(
+      {&tile, std::make_shared<const OccupancyMap>(OccupancyMap::parse(bytes, file.string()))});
+  ++tiles_read_;
+  return alive_.front().map;
+}
+
+std::unique_ptr<OccupancySource> open_occupancy(const std::filesystem::path& path) {
+  if (is_tiled_occupancy(path)) return std::make_unique<TiledOccupancy>(path);
+  return std::make_unique<OccupancyMap>(OccupancyMap::load(path));
+}
+
+}  // namespace roadbed::map
