@@ -44,7 +44,7 @@ struct Driven {
   Drive drive;
 };
 
-Driven drive_and_describe(const Scenario& scenario, const World& world, const DriveChoice& choice) {
+Driven drive_and_describe(const Scenario& scenario, World& world, const DriveChoice& choice) {
   Driven driven;
   DrivenScenario& result = driven.result;
   driven.drive = drive(scenario, world,
@@ -85,14 +85,14 @@ void refuse_other_xml(const fs::path& file) {
 
 DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice) {
   if (is_common_road(file)) {
-    const CommonRoadDrive problem = read_common_road_drive(file);
+    CommonRoadDrive problem = read_common_road_drive(file);
     Driven driven = drive_and_describe(problem.scenario, problem.world, choice);
     driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
     return std::move(driven.result);
   }
   refuse_other_xml(file);
   const Scenario scenario = read_scenario(file);
-  const World world = make_world(scenario);
+  World world = make_world(scenario);
   return drive_and_describe(scenario, world, choice).result;
 }
 

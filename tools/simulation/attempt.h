@@ -12,6 +12,7 @@
 #include "roadbed/tools/simulation/path_keeper.h"
 #include "roadbed/tools/simulation/speed_search.h"
 #include "roadbed/tools/simulation/timed_goal.h"
+#include "roadbed/tools/simulation/waiting_places.h"
 #include "roadbed/tools/simulation/way_occupancy.h"
 
 namespace roadbed::tools {
@@ -35,6 +36,7 @@ struct Course {
   const planning::ReferenceLine& line;
   planning::SpeedCeiling ceiling;
   std::vector<GoalStretch> stretches;
+  std::vector<WaitingPlace> lights;
   PathKeeper keeper;
 };
 

@@ -11,6 +11,7 @@
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/control/stanley.h"
 #include "roadbed/tools/simulation/event_log.h"
+#include "roadbed/tools/simulation/foot.h"
 #include "roadbed/tools/simulation/observer.h"
 #include "roadbed/tools/simulation/pilot.h"
 
@@ -31,10 +32,11 @@ double most_steering_rad(double speed_mps, double lateral_mps2,
 
 class ClosedLoop {
  public:
-  ClosedLoop(const Scenario& scenario, const World& world, const LoopOptions& options)
+  ClosedLoop(const Scenario& scenario, World& world, const LoopOptions& options)
       : scenario_(scenario),
         world_(world),
         options_(options),
+        flow_(world.drivers, world.obstacles, scenario.duration_s, {}),
         sensors_(scenario.noise, scenario.seed),
         pilot_(world.goal ? make_timed_pilot(scenario, world, options)
                           : make_cruise_pilot(scenario, world, options)),
@@ -42,11 +44,16 @@ class ClosedLoop {
     truth_.motion.pose = world.start;
     truth_.motion.speed_mps = scenario.start_speed_mps;
     truth_.motion.steering_rad = start_steering_rad();
+    if (scenario.options.pedals) {
+      foot_.emplace(GradeProfile(world.road_map, world.route, world.line));
+    }
   }
 
   Drive run() {
     const auto cycles = static_cast<int>(std::ceil(10.0 * scenario_.duration_s - 1e-9));
     for (int cycle = 0; cycle < cycles && !is_over_; ++cycle) {
+      flow_.step(
+          {geometry::body_at(truth_.motion.pose, scenario_.vehicle), truth_.motion.speed_mps});
       plan_and_decide();
       record();
       for (int i = 0; i < kControlStepsPerCycle && !is_over_; ++i) control_step();
@@ -112,6 +119,13 @@ class ClosedLoop {
                                    keeper().path().front_pose_at(front_s_m_, wheelbase_m));
   }
 
+  double acceleration_after_step() {
+    if (!foot_) {
+      return control::actuate(truth_.acceleration_mps2, command_.acceleration_mps2, kControlStep_s);
+    }
+    return foot_->press(command_.acceleration_mps2, truth_.motion.speed_mps, s_m_, kControlStep_s);
+  }
+
   void control_step() {
     const VehicleState measured = sensors_.measure(truth_);
     const control::TrackingError error = tracking_error_of(measured.motion.pose);
@@ -119,8 +133,7 @@ class ClosedLoop {
     const double most = most_steering_rad(speed_mps, kMostLateral_mps2, scenario_.vehicle);
     const double wanted =
         std::clamp(control::stanley_steering_rad(error, speed_mps, scenario_.vehicle), -most, most);
-    truth_.acceleration_mps2 =
-        control::actuate(truth_.acceleration_mps2, command_.acceleration_mps2, kControlStep_s);
+    truth_.acceleration_mps2 = acceleration_after_step();
     truth_.motion = control::step(
         truth_.motion,
         {.acceleration_mps2 = truth_.acceleration_mps2,
@@ -205,17 +218,21 @@ class ClosedLoop {
                               .cross_track_m = error.cross_track_m,
                               .heading_error_rad = error.heading_rad,
                               .clearance_m = observer_.take_clearance_m(),
+                              .throttle = foot_ ? foot_->pedals().throttle : 0.0,
+                              .brake = foot_ ? foot_->pedals().brake : 0.0,
                               .off_road_m = observer_.off_road_m(truth_)});
   }
 
   const Scenario& scenario_;
   const World& world_;
   const LoopOptions& options_;
+  TrafficFlow flow_;
   Sensors sensors_;
   std::unique_ptr<Pilot> pilot_;
   Observer observer_;
 
   VehicleState truth_;
+  std::optional<Foot> foot_;
   int steps_ = 0;
   double s_m_ = 0.0;        ///< station on the world's line, when last looked
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
@@ -236,7 +253,7 @@ planning::SpeedCeiling ceiling_of(const Scenario& scenario, const planning::Refe
        .deceleration_mps2 = scenario.options.comfort_deceleration_mps2});
 }
 
-Drive drive(const Scenario& scenario, const World& world, const LoopOptions& options) {
+Drive drive(const Scenario& scenario, World& world, const LoopOptions& options) {
   return ClosedLoop(scenario, world, options).run();
 }
 

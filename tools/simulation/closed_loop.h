@@ -27,6 +27,7 @@ planning::SpeedCeiling ceiling_of(const Scenario& scenario, const planning::Refe
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
 /// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.
-Drive drive(const Scenario& scenario, const World& world, const LoopOptions& options = {});
+/// @param world  the motions of its drivers become what they did.
+Drive drive(const Scenario& scenario, World& world, const LoopOptions& options = {});
 
 }  // namespace roadbed::tools

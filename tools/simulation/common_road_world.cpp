@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <numbers>
 #include <utility>
@@ -30,6 +31,7 @@ using planning::Route;
 using planning::Sense;
 
 constexpr double kDefaultSpeed_mps = 50.0 / 3.6;
+constexpr double kLeastStep_s = 1e-3, kMostStep_s = 10.0, kFastestStart_mps = 100.0;
 constexpr double kStopping_s = 10.0;      // to come to rest after the goal is missed
 constexpr double kNothingAsked_s = 10.0;  // a drive without a goal
 constexpr double kRoadAhead_m = 120.0;    // beyond what is driven, to brake on
@@ -96,6 +98,16 @@ GoalState goal_state(const Source& source, const State& from) {
     state.lanes.push_back(*lane);
   }
   return state;
+}
+
+/// The pilots drive forwards only.
+double start_speed_mps(const Source& source) {
+  const double speed = exact(source, source.problem.initial_state.speed_mps, "a velocity");
+  if (!(speed >= 0.0 && speed <= kFastestStart_mps)) {
+    source.refuse(fmt::format("a start at {} m/s", speed),
+                  fmt::format("0 to {} m/s", kFastestStart_mps), "correct the initial state");
+  }
+  return speed;
 }
 
 TimedGoal goal_of(const Source& source) {
@@ -263,12 +275,57 @@ double usual_speed_mps(double start_mps, const TimedGoal& goal) {
   return usual;
 }
 
+/// A recording is one state for each time step: where one is missing nobody knows where it was.
+void refuse_gaps(const std::string& file, const map::common_road::Obstacle& obstacle) {
+  long last = obstacle.initial_state->time_step.least;
+  for (const State& state : obstacle.trajectory) {
+    const long step = state.time_step.least;
+    if (step != last + 1) {
+      throw map::InputError({.file = file,
+                             .place = {},
+                             .element = "obstacle " + obstacle.id,
+                             .found = fmt::format("time step {} after {}", step, last),
+                             .needed = "a state for each time step",
+                             .remedy = "add what is missing, or cut the trajectory off before"});
+    }
+    last = step;
+  }
+}
+
+/// What a file's lights show: red with yellow is red, and one that is off is dark.
+std::vector<ScenarioLight> lights_of(const map::RoadMap& road_map, long start_step, double step_s) {
+  std::vector<ScenarioLight> lights;
+  for (const map::Signal& signal : road_map.signals()) {
+    ScenarioLight light{.signals = {signal.source_id}, .pointer = {}, .phases = {}};
+    double offset = -static_cast<double>(start_step);
+    bool is_on = signal.dynamic;
+    for (const auto& [key, value] : signal.attributes) {
+      if (key == "timeOffset") offset += std::atof(value.c_str());
+      if (key == "active") is_on = is_on && value != "false";
+      const std::size_t blank = value.find(' ');
+      if (key != "cycleElement" || blank == std::string::npos) continue;
+      const std::string colour = value.substr(0, blank);
+      const double duration_s = step_s * std::atof(value.c_str() + blank + 1);
+      is_on = is_on && colour != "inactive";
+      if (!(duration_s > 0.0)) continue;
+      light.phases.push_back({colour == "green"    ? LightColour::green
+                              : colour == "yellow" ? LightColour::yellow
+                                                   : LightColour::red,
+                              duration_s});
+    }
+    light.offset_s = step_s * offset;
+    if (is_on && !light.phases.empty()) lights.push_back(std::move(light));
+  }
+  return lights;
+}
+
 void add_obstacles(const map::common_road::Scenario& from, const Source& source, World& world) {
   const long start_step = source.problem.initial_state.time_step.least;
   for (const map::common_road::Obstacle& obstacle : from.obstacles) {
     const bool can_be_hit =
         obstacle.role == ObstacleRole::fixed || obstacle.role == ObstacleRole::dynamic;
     if (!can_be_hit) continue;
+    refuse_gaps(source.file, obstacle);
     RecordedObstacle recorded =
         recorded_obstacle(obstacle, world.road_map, start_step, from.time_step_s);
     world.obstacles.push_back(std::move(recorded.obstacle));
@@ -322,7 +379,11 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
   map::RoadMap road_map = map::parse_map(bytes, file.string());
   const PlanningProblem& problem = from.planning_problems.front();
   const Source source{file.string(), road_map, problem, from.time_step_s};
-  const double speed_mps = exact(source, problem.initial_state.speed_mps, "a velocity");
+  if (!(from.time_step_s >= kLeastStep_s && from.time_step_s <= kMostStep_s)) {
+    source.refuse(fmt::format("time steps of {} s", from.time_step_s),
+                  fmt::format("{} to {} s", kLeastStep_s, kMostStep_s), "correct timeStepSize");
+  }
+  const double speed_mps = start_speed_mps(source);
   TimedGoal goal = goal_of(source);
   Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
   const Pose2 start = rear_axle(source, scenario.vehicle);
@@ -330,12 +391,16 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
   const planning::ReferenceLineOptions line_options{
       .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route, line_options);
+  scenario.lights = lights_of(road_map, problem.initial_state.time_step.least, from.time_step_s);
+  std::vector<WaitingPlace> places = waiting_places(road_map, route, line, scenario.lights);
   std::vector<planning::ReferenceLine> other_lines;
+  std::vector<std::vector<WaitingPlace>> other_places;
   const planning::RouteLeg& first = route.legs.front();
   for (const LanePlace& place :
        places_beside(road_map, {.lane = first.lane, .s_m = first.from_s_m})) {
     if (const auto other = find_route_of(source, {place}, goal, speed_mps)) {
       other_lines.push_back(planning::ReferenceLine::along(road_map, *other, line_options));
+      other_places.push_back(waiting_places(road_map, *other, other_lines.back(), scenario.lights));
     }
   }
   const planning::RouteLeg& last = route.legs.back();
@@ -354,6 +419,8 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
               .presence = {},
               .goal = std::move(goal),
               .other_lines = std::move(other_lines),
+              .waiting_places = std::move(places),
+              .other_waiting_places = std::move(other_places),
               .road_end_s_m = road_end_s_m};
   const Source placed{file.string(), world.road_map, problem, from.time_step_s};
   add_obstacles(from, placed, world);

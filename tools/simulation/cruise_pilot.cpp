@@ -8,6 +8,7 @@
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/decision.h"
 #include "roadbed/tools/simulation/follower.h"
+#include "roadbed/tools/simulation/overtaking.h"
 #include "roadbed/tools/simulation/pilot.h"
 #include "roadbed/tools/simulation/right_of_way.h"
 #include "roadbed/tools/simulation/safety.h"
@@ -18,9 +19,13 @@ namespace {
 
 constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
 constexpr double kBeyondHalt_m = 1.0;
+constexpr double kBeforeHalt_m = 0.4;  // of the room before a line, that hard braking may use
 constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kPassOffset_m = 0.5;  // off the reference line this far is passing
+constexpr double kChange_s = 3.0;      // to change lanes in, to overtake
+constexpr double kPassRoom_m = 0.25;   // more or less than asked for
+constexpr double kBehindToReturn_m = 1.0, kFallsBehind_mps = 3.0;  // overtaking given up
 
 /// Distance ahead that matters: to brake comfortably, and the gap to keep.
 double look_ahead_m(double speed_mps, const DecisionOptions& options) {
@@ -46,7 +51,8 @@ class CruisePilot : public Pilot {
                  .heading_error_rad = options.max_heading_error_rad,
                  .rooms = rooms(scenario.options.clearance_m),
                  .keeps_candidates = options.keeps_candidates}),
-        right_of_way_(scenario, world) {
+        right_of_way_(scenario, world),
+        overtaking_(scenario, world, ceiling_) {
     decision_options_.deceleration_mps2 = scenario.options.comfort_deceleration_mps2;
   }
 
@@ -55,14 +61,11 @@ class CruisePilot : public Pilot {
   /// Set speed, cruise control and safety layer.
   PilotCommand decide(const PilotView& view) override {
     const double speed = view.measured.motion.speed_mps;
+    t_s_ = view.t_s;
     if (predicts_) foreseen_.emplace(true_traffic(world_), view.t_s);
-    const std::vector<planning::Obstacle> ahead = obstacles_to_plan_for(view);
-    keeper_.plan({.t_s = view.t_s,
-                  .measured = view.measured,
-                  .speed = {.speed_mps = speed,
-                            .acceleration_mps2 = view.measured.acceleration_mps2,
-                            .target_mps = set_speed_mps_},
-                  .obstacles = ahead});
+    keeper_.locate(view.measured);
+    const Overtaking::Decision passing = look_at_passing(view);
+    plan_path(view, passing);
     const std::optional<Halt> halt = halt_ahead(view);
     const std::optional<Lead> truth = lead_ahead(view, halt);
     const bool is_blind = truth && !view.sensors.sees(view.t_s);
@@ -84,10 +87,66 @@ class CruisePilot : public Pilot {
       command.lead = {world_.obstacles[lead->obstacle].id, lead->gap_m, lead->speed_mps};
     }
     explain(answer, lead, speed, command);
+    if (halt && halt->is_hard) brake_for(*halt, speed, command);
+    if (passing.overtaken) overtake(passing, speed, command);
+    if (!passing.overtaken && !passing.reason.empty() && command.behaviour == Behaviour::follow) {
+      command.reason += "; " + passing.reason;
+    }
     return command;
   }
 
  private:
+  Overtaking::Decision look_at_passing(const PilotView& view) {
+    const double s_m = keeper_.s_m();
+    const geometry::LinePosition at =
+        world_.line.project(view.measured.motion.pose.position(), s_m);
+    return overtaking_.look({.t_s = view.t_s,
+                             .at = at,
+                             .speed_mps = view.measured.motion.speed_mps,
+                             .traffic = traffic()});
+  }
+
+  /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
+  /// lane of those who come the other way while somebody drives ahead.
+  void plan_path(const PilotView& view, const Overtaking::Decision& passing) {
+    const double speed = view.measured.motion.speed_mps;
+    const std::vector<planning::Obstacle> ahead = obstacles_to_plan_for(view);
+    PathKeeper::Question question{.t_s = view.t_s,
+                                  .measured = view.measured,
+                                  .speed = {.speed_mps = speed,
+                                            .acceleration_mps2 = view.measured.acceleration_mps2,
+                                            .target_mps = set_speed_mps_},
+                                  .obstacles = ahead};
+    const bool stays_beside =
+        passing.overtaken && (!passing.falls_back || passing.gap_m < kBehindToReturn_m);
+    if (stays_beside) {
+      PathKeeper::Question beside = question;
+      beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
+      beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
+      beside.asks_for_way_on = false;
+      const PathKeeper::Proposal proposal = keeper_.propose(
+          beside, {*passing.pass_at_m - kPassRoom_m, *passing.pass_at_m + kPassRoom_m});
+      if (proposal.plan.chosen) return keeper_.take(proposal);
+    }
+    PathKeeper::Offsets offsets;
+    if (passing.keep_within_m) {
+      (passing.side > 0.0 ? offsets.most_m : offsets.least_m) =
+          passing.side * *passing.keep_within_m;
+    }
+    keeper_.take(keeper_.propose(question, offsets));
+  }
+
+  void overtake(const Overtaking::Decision& passing, double speed_mps,
+                PilotCommand& command) const {
+    if (command.behaviour == Behaviour::emergency) return;
+    command.behaviour = Behaviour::pass;
+    command.reason = passing.reason;
+    if (!passing.falls_back) return;
+    const double lead_mps = traffic().obstacles[*passing.overtaken].motion.at(t_s_).speed_mps;
+    const bool falls_behind = speed_mps < lead_mps - kFallsBehind_mps;
+    command.acceleration_mps2 =
+        std::min(command.acceleration_mps2, falls_behind ? 0.0 : -cruise_options_.max_command_mps2);
+  }
   /// Who follows keeps its own distance: no path is given up for it.
   std::vector<planning::Obstacle> obstacles_to_plan_for(const PilotView& view) const {
     std::vector<planning::Obstacle> ahead = foreseen_ ? foreseen_->obstacles() : world_.obstacles;
@@ -156,6 +215,15 @@ class CruisePilot : public Pilot {
     return keeper_.checked_ahead_m();
   }
 
+  /// The cruise control cannot ask for what this halt takes.
+  void brake_for(const Halt& halt, double speed_mps, PilotCommand& command) const {
+    const auto braking = emergency_stop_mps2(speed_mps, halt.s_m + kBeforeHalt_m - keeper_.s_m());
+    if (!braking || -*braking > command.acceleration_mps2) return;
+    command.acceleration_mps2 = -*braking;
+    command.behaviour = Behaviour::emergency;
+    command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);
+  }
+
   std::string lead_name(const Lead& lead) const {
     const planning::Obstacle& obstacle = world_.obstacles[lead.obstacle];
     return fmt::format("{} {}", obstacle.kind, obstacle.id);
@@ -194,11 +262,13 @@ class CruisePilot : public Pilot {
   control::CruiseControl cruise_;
   PathKeeper keeper_;
   RightOfWay right_of_way_;
+  Overtaking overtaking_;
   struct {
     double t_s = 0.0;
     std::optional<Lead> lead;
   } last_seen_;
   double set_speed_mps_ = 0.0;
+  double t_s_ = 0.0;  ///< of the cycle
 };
 
 }  // namespace

@@ -52,14 +52,15 @@ struct DriveCycle {
 /// What is known at each row of the trajectory.
 struct DriveSample {
   double t_s = 0.0;
-  double s_m = 0.0;                ///< station on the reference line
-  double set_speed_mps = 0.0;      ///< what the cruise control is asked for
-  double speed_limit_mps = 0.0;    ///< of the map
-  double command_mps2 = 0.0;       ///< desired acceleration
-  double cross_track_m = 0.0;      ///< e_fa, of the true state against the path, front axle
-  double heading_error_rad = 0.0;  ///< θ_e
-  double clearance_m = 0.0;        ///< to the nearest obstacle; infinite without any
-  double off_road_m = 0.0;         ///< of the body's worst corner, in steps of 0.1 m; 0 on the road
+  double s_m = 0.0;                    ///< station on the reference line
+  double set_speed_mps = 0.0;          ///< what the cruise control is asked for
+  double speed_limit_mps = 0.0;        ///< of the map
+  double command_mps2 = 0.0;           ///< desired acceleration
+  double cross_track_m = 0.0;          ///< e_fa, of the true state against the path, front axle
+  double heading_error_rad = 0.0;      ///< θ_e
+  double clearance_m = 0.0;            ///< to the nearest obstacle; infinite without any
+  double throttle = 0.0, brake = 0.0;  ///< pedals, 0 to 1; 0 where the scenario has none
+  double off_road_m = 0.0;  ///< of the body's worst corner, in steps of 0.1 m; 0 on the road
 };
 
 enum class EventLevel { info, warning, fault };

@@ -171,6 +171,21 @@ ordered_json decisions(const Drive& drive) {
   return list;
 }
 
+/// How the pedals were used; null without any.
+ordered_json pedals(const Scenario& scenario, const Drive& drive) {
+  if (!scenario.options.pedals) return nullptr;
+  int changes = 0;
+  for (std::size_t i = 1; i < drive.samples.size(); ++i) {
+    const bool braked = drive.samples[i - 1].brake > 0.0, brakes = drive.samples[i].brake > 0.0;
+    changes += braked != brakes ? 1 : 0;
+  }
+  return {{"largest_throttle",
+           largest(drive.samples, [](const DriveSample& sample) { return sample.throttle; })},
+          {"largest_brake",
+           largest(drive.samples, [](const DriveSample& sample) { return sample.brake; })},
+          {"changes", changes}};
+}
+
 ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
   if (!audit) return nullptr;
   return {{"verdict", std::string(planning::name(audit->verdict))},
@@ -200,6 +215,7 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
                                    motion(drive), comfort(drive), tracking(drive), cycles(drive)}) {
     metrics.update(part);
   }
+  metrics["pedals"] = pedals(scenario, drive);
   metrics["decisions"] = decisions(drive);
   metrics["events"] = events(drive);
   metrics["audit"] = audit_summary(audit);

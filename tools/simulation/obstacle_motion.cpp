@@ -27,16 +27,6 @@ void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line
   }
 }
 
-double speed_at(const std::vector<TimedSpeed>& speeds, double t_s) {
-  const auto after = std::find_if(speeds.begin(), speeds.end(),
-                                  [&](const TimedSpeed& speed) { return speed.t_s > t_s; });
-  if (after == speeds.begin()) return speeds.front().speed_mps;
-  if (after == speeds.end()) return speeds.back().speed_mps;
-  const TimedSpeed& before = *std::prev(after);
-  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
-  return before.speed_mps + share * (after->speed_mps - before.speed_mps);
-}
-
 /// Speeds are those with which the straight line from point to point is driven.
 void fill_speeds(std::vector<TrajectoryPoint>& points) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -72,11 +62,22 @@ geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlac
   return geometry::Polyline(std::move(points));
 }
 
+double wanted_speed_mps(const std::vector<TimedSpeed>& speeds, double t_s) {
+  const auto after = std::find_if(speeds.begin(), speeds.end(),
+                                  [&](const TimedSpeed& speed) { return speed.t_s > t_s; });
+  if (after == speeds.begin()) return speeds.front().speed_mps;
+  if (after == speeds.end()) return speeds.back().speed_mps;
+  const TimedSpeed& before = *std::prev(after);
+  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
+  return before.speed_mps + share * (after->speed_mps - before.speed_mps);
+}
+
 double travelled_m(const std::vector<TimedSpeed>& speeds, double t_s) {
   // Trapezoids between 0, the times within, and t.
   double distance = 0.0, from_s = 0.0;
   const auto drive_to = [&](double to_s) {
-    distance += 0.5 * (speed_at(speeds, from_s) + speed_at(speeds, to_s)) * (to_s - from_s);
+    distance +=
+        0.5 * (wanted_speed_mps(speeds, from_s) + wanted_speed_mps(speeds, to_s)) * (to_s - from_s);
     from_s = to_s;
   };
   for (const TimedSpeed& speed : speeds) {
@@ -98,7 +99,7 @@ geometry::Trajectory drive_along(const Way& way, double way_length_m,
                       .x_m = pose.x_m,
                       .y_m = pose.y_m,
                       .heading_rad = pose.heading_rad,
-                      .speed_mps = distance < way_length_m ? speed_at(speeds, t_s) : 0.0});
+                      .speed_mps = distance < way_length_m ? wanted_speed_mps(speeds, t_s) : 0.0});
   }
   return geometry::Trajectory(std::move(points));
 }

@@ -22,6 +22,9 @@ std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId
 geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlace& from,
                                double length_m);
 
+/// Speed at a time, linear between the given ones and constant beyond.
+double wanted_speed_mps(const std::vector<TimedSpeed>& speeds, double t_s);
+
 /// Distance driven from time 0 to `t_s`, the speed linear between its times and constant beyond.
 double travelled_m(const std::vector<TimedSpeed>& speeds, double t_s);
 

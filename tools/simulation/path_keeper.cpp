@@ -71,11 +71,6 @@ LateralState PathKeeper::start_state(const VehicleState& measured) {
   return from_measurement_ ? here : planned;
 }
 
-void PathKeeper::plan(const Question& question) {
-  locate(question.measured);
-  take(propose(question, {}));
-}
-
 planning::PlanInput PathKeeper::input_for(const Question& question) const {
   planning::PlanInput input{.line = line_,
                             .start = start_,
@@ -108,6 +103,7 @@ planning::PlanOptions PathKeeper::options_for(const Question& question, const Of
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
   options.keep_candidates = bounds_.keeps_candidates;
+  if (!question.asks_for_way_on) options.way_on_horizon_s = 0.0;
   return options;
 }
 

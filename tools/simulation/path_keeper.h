@@ -41,6 +41,7 @@ class PathKeeper {
     planning::SpeedPlan speed;  ///< the longitudinal plan so far
     Ends ends = {};
     const std::vector<planning::Obstacle>& obstacles;
+    bool asks_for_way_on = true;  ///< what is begun among who moves has to be ended (way_on.h)
   };
 
   /// End offsets that candidates may have.
@@ -54,9 +55,6 @@ class PathKeeper {
     double beyond_the_edge_m = 0.0;
     double checked_m = 0.0;  ///< from the start on
   };
-
-  /// Plans from where the vehicle is measured to be, and takes the plan.
-  void plan(const Question& question);
 
   /// Where the vehicle is: the start of what is proposed until the next call.
   void locate(const VehicleState& measured) {

@@ -9,6 +9,7 @@
 #include "roadbed/control/cruise_design.h"
 #include "roadbed/tools/simulation/driven_way.h"
 #include "roadbed/tools/simulation/follower.h"
+#include "roadbed/tools/simulation/safety.h"
 #include "roadbed/tools/simulation/way_occupancy.h"
 
 namespace roadbed::tools {
@@ -17,11 +18,13 @@ namespace {
 constexpr double kBeforeLine_m = 0.5;  // kept from a line
 constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
 constexpr double kLookAhead_m = 80.0;
-constexpr double kSamePlace_m = 0.5;
+constexpr double kSameHalt_m = 0.5;
 constexpr double kShareOfBrakes = 0.9;  // the rest is left to the cruise control
 constexpr double kStopsShort_m = 0.1;   // of a line, at the latest
+constexpr double kRedSlack_s = 0.2;     // before red, to be past the line
 constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
-constexpr double kStartsWithin_mps2 = 1.5;
+constexpr double kStartsWithin_mps2 = 1.0;  // as the cruise control does
+constexpr double kJoining_m = 40.0;         // beyond a junction, to be as fast as others
 constexpr int kMostSteps = 150;
 constexpr double kSideRoom_m = 0.4;
 constexpr double kMovingOther_mps = 0.5;
@@ -108,7 +111,7 @@ void RightOfWay::pass_places(const View& view) {
 /// lets the vehicle drive on for a while at the speed that its acceleration still leads to.
 std::optional<double> RightOfWay::stops_with_mps2(const WaitingPlace& place,
                                                   const View& view) const {
-  if (kept_ && std::abs(kept_->s_m - place.s_m) < kSamePlace_m) return kept_->deceleration_mps2;
+  if (kept_ && std::abs(kept_->s_m - place.s_m) < kSameHalt_m) return kept_->deceleration_mps2;
   const control::CruiseOptions cruise;
   const double hardest = kShareOfBrakes * cruise.max_command_mps2;
   const double comfortable = scenario_.options.comfort_deceleration_mps2;
@@ -116,9 +119,32 @@ std::optional<double> RightOfWay::stops_with_mps2(const WaitingPlace& place,
       std::max(0.0, view.speed_mps + view.acceleration_mps2 * cruise.actuator_lag_s);
   const double left = left_m(place, view) - view.speed_mps * cruise.actuator_lag_s;
   const double way_m = 0.5 * speed * speed / hardest;  // to stop in
-  if (speed > kAtRest_mps && way_m > left - kStopsShort_m) return std::nullopt;
+  if (speed > kAtRest_mps && way_m > left - kStopsShort_m) {
+    return stops_before_red_mps2(place, view);
+  }
   if (way_m >= left - kBeforeLine_m) return hardest;
   return std::max(comfortable, 0.5 * speed * speed / (left - kBeforeLine_m));
+}
+
+/// Between the last place to stop at comfortably and the first from which a light is passed while
+/// it is yellow there may be some metres: v² / 2a + v T against v · yellow.
+std::optional<double> RightOfWay::stops_before_red_mps2(const WaitingPlace& place,
+                                                        const View& view) const {
+  if (place.kind != WaitingKind::light) return std::nullopt;
+  const ScenarioLight& light = scenario_.lights[*place.light];
+  if (colour_at(light, view.t_s) == LightColour::green) return std::nullopt;
+  const double left = left_m(place, view);
+  const double passes_in_s = left / std::max(kAtRest_mps, view.speed_mps) + kRedSlack_s;
+  double red_in_s = 0.0;
+  while (red_in_s <= passes_in_s && colour_at(light, view.t_s + red_in_s) != LightColour::red) {
+    red_in_s += WayOccupancy::kStep_s;
+  }
+  if (red_in_s > passes_in_s) return std::nullopt;
+  const double room_m =
+      left - kStopsShort_m - view.speed_mps * control::CruiseOptions{}.actuator_lag_s;
+  const double hard = 0.5 * view.speed_mps * view.speed_mps / std::max(0.1, room_m);
+  if (hard > SafetyOptions{}.most_mps2) return std::nullopt;
+  return hard;
 }
 
 std::optional<Halt> RightOfWay::look(const View& view) {
@@ -135,7 +161,8 @@ std::optional<Halt> RightOfWay::look(const View& view) {
     if (auto why = why_wait(places[i], view)) {
       kept_ = {places[i].s_m, *deceleration};
       return Halt{places[i].s_m - scenario_.vehicle.front_m() - kBeforeLine_m, *std::move(why),
-                  *deceleration};
+                  *deceleration,
+                  *deceleration > kShareOfBrakes * control::CruiseOptions{}.max_command_mps2};
     }
   }
   kept_.reset();
@@ -162,8 +189,10 @@ std::optional<std::string> RightOfWay::why_wait(const WaitingPlace& place, const
 /// None also marks those who only cross.
 std::optional<std::string> RightOfWay::who_comes(const WaitingPlace& place, const View& view,
                                                  Gap gap) {
-  const double until_m =
-      place.clear_s_m + scenario_.vehicle.rear_overhang_m - view.s_m;  // of the rear axle
+  // Who joins those who come from the side is not to be caught up with soon.
+  const bool joins = place.kind != WaitingKind::turn && gap.after == kGapToTake.after;
+  const double until_m = place.clear_s_m + scenario_.vehicle.rear_overhang_m - view.s_m +
+                         (joins ? kJoining_m : 0.0);  // of the rear axle
   const DrivenWay way = sample_way(view.path, view.s_m, std::max(1.0, until_m) + 2.0, view.ceiling,
                                    scenario_.vehicle);
   const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);

@@ -16,6 +16,7 @@ struct Halt {
   double s_m = 0.0;  ///< station of the rear axle
   std::string reason;
   double deceleration_mps2 = 1.5;  ///< to stop with, the same as long as the halt is asked for
+  bool is_hard = false;            ///< more than the cruise control may ask for
 };
 
 /// Looks at the waiting places of a world, one after the other: lights, signs, and gaps in the
@@ -39,7 +40,9 @@ class RightOfWay {
 
   /// The nearest place that is not to be passed now; none: drive on. A place that cannot be stopped
   /// at with 0.9 of what the cruise control may ask for, when that is first wanted, is passed; a
-  /// halt that was asked for stays until the place is free or passed.
+  /// halt that was asked for stays until the place is free or passed. A light that cannot be passed
+  /// either before it is red, at the present speed, is stopped at as hard as that takes, up to what
+  /// the vehicle can do.
   std::optional<Halt> look(const View& view);
 
   /// Per obstacle, whether it is on the path, but only crosses it, and will be gone in time: it is
@@ -58,6 +61,7 @@ class RightOfWay {
   void pass_places(const View& view);
   double left_m(const WaitingPlace& place, const View& view) const;
   std::optional<double> stops_with_mps2(const WaitingPlace& place, const View& view) const;
+  std::optional<double> stops_before_red_mps2(const WaitingPlace& place, const View& view) const;
 
   const Scenario& scenario_;
   const World& world_;

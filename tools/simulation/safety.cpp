@@ -15,4 +15,12 @@ std::optional<double> emergency_deceleration_mps2(double speed_mps, const Lead& 
   return std::min(needed, options.most_mps2);
 }
 
+std::optional<double> emergency_stop_mps2(double speed_mps, double distance_m,
+                                          const SafetyOptions& options) {
+  constexpr double kLeast_m = 0.1;
+  if (speed_mps <= 0.0) return std::nullopt;
+  const double needed = 0.5 * speed_mps * speed_mps / std::max(kLeast_m, distance_m);
+  return std::min(needed, options.most_mps2);
+}
+
 }  // namespace roadbed::tools

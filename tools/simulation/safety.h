@@ -19,4 +19,9 @@ struct SafetyOptions {
 std::optional<double> emergency_deceleration_mps2(double speed_mps, const Lead& lead,
                                                   const SafetyOptions& options = {});
 
+/// Deceleration that stops within a distance: v² / 2 d, at most the vehicle's limit. None: it
+/// stands.
+std::optional<double> emergency_stop_mps2(double speed_mps, double distance_m,
+                                          const SafetyOptions& options = {});
+
 }  // namespace roadbed::tools

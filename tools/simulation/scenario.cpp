@@ -194,7 +194,11 @@ std::vector<ScenarioLight> lights(const JsonNode& list) {
 
 ScenarioOptions options(const JsonNode& node) {
   node.require_object({"desired_speed_mps", "max_lateral_acceleration_mps2",
-                       "comfort_deceleration_mps2", "clearance_m"});
+                       "comfort_deceleration_mps2", "clearance_m", "pedals"});
+  const auto pedals = node.find("pedals");
+  if (pedals && !pedals->value().is_boolean()) {
+    pedals->refuse("is no truth value", "true or false", "correct it");
+  }
   const ScenarioOptions otherwise;
   return {
       .desired_speed_mps =
@@ -203,7 +207,8 @@ ScenarioOptions options(const JsonNode& node) {
           "max_lateral_acceleration_mps2", otherwise.max_lateral_acceleration_mps2, {0.1, 10.0}),
       .comfort_deceleration_mps2 = node.number_or("comfort_deceleration_mps2",
                                                   otherwise.comfort_deceleration_mps2, {0.1, 10.0}),
-      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0})};
+      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0}),
+      .pedals = pedals && pedals->value().get<bool>()};
 }
 
 geometry::VehicleShape vehicle(const JsonNode& node) {

@@ -86,6 +86,7 @@ struct ScenarioOptions {
   double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
   double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
   double clearance_m = 0.3;                    ///< to obstacles and occupied space
+  bool pedals = false;  ///< acceleration goes through throttle and brake, air, tyres and grade
 };
 
 struct Scenario {

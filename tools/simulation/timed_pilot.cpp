@@ -9,6 +9,7 @@
 #include "roadbed/tools/simulation/attempt.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/driven_way.h"
+#include "roadbed/tools/simulation/lights_ahead.h"
 #include "roadbed/tools/simulation/pilot.h"
 #include "roadbed/tools/simulation/speed_search.h"
 #include "roadbed/tools/simulation/traffic.h"
@@ -40,9 +41,13 @@ class TimedPilot : public Pilot {
         world_(world),
         predicts_(options.predicts),
         traffic_(true_traffic(world)) {
-    courses_.push_back(course_on(world.line, options));
-    for (const planning::ReferenceLine& line : world.other_lines) {
-      courses_.push_back(course_on(line, options));
+    courses_.push_back(course_on(world.line, world.waiting_places, options));
+    for (std::size_t i = 0; i < world.other_lines.size(); ++i) {
+      courses_.push_back(course_on(world.other_lines[i],
+                                   i < world.other_waiting_places.size()
+                                       ? world.other_waiting_places[i]
+                                       : std::vector<WaitingPlace>{},
+                                   options));
     }
   }
 
@@ -69,11 +74,14 @@ class TimedPilot : public Pilot {
   }
 
  private:
-  Course course_on(const planning::ReferenceLine& line, const LoopOptions& options) const {
+  Course course_on(const planning::ReferenceLine& line, std::vector<WaitingPlace> lights,
+                   const LoopOptions& options) const {
+    std::erase_if(lights, [](const auto& place) { return place.kind != WaitingKind::light; });
     return {
         .line = line,
         .ceiling = ceiling_of(scenario_, line),
         .stretches = goal_stretches(*world_.goal, world_.road_map, line, scenario_.vehicle),
+        .lights = std::move(lights),
         .keeper = {scenario_,
                    world_,
                    line,
@@ -187,14 +195,36 @@ class TimedPilot : public Pilot {
 
   void search(const PilotView& view, const Daring& daring, Attempt& attempt) const {
     if (!attempt.occupancy || attempt.daring->margin_m != daring.margin_m) {
-      attempt.occupancy =
-          std::make_shared<const WayOccupancy>(attempt.way, *bodies_, daring.margin_m);
+      auto occupancy = std::make_shared<WayOccupancy>(attempt.way, *bodies_, daring.margin_m);
+      block_lights(view, attempt, *occupancy);
+      attempt.occupancy = std::move(occupancy);
     }
     const WayOccupancy& occupancy = *attempt.occupancy;
     attempt.answer = search_speed(question_of(view, attempt, occupancy), daring.speed);
     attempt.daring = &daring;
     attempt.cost = attempt.answer.cost + kBesideCost * beside_m(attempt);
     attempt.lead = lead_on(occupancy, view);
+  }
+
+  void block_lights(const PilotView& view, const Attempt& attempt, WayOccupancy& occupancy) const {
+    for (const LightAhead& ahead : lights_ahead(attempt)) {
+      block_light(ahead, view.t_s, steps(view.t_s), stopping_m(view) < ahead.line_m, occupancy);
+    }
+  }
+
+  std::vector<LightAhead> lights_ahead(const Attempt& attempt) const {
+    std::vector<LightAhead> ahead;
+    for (const WaitingPlace& place : attempt.course->lights) {
+      const double line_m = ahead_of(attempt.way, place.s_m) - scenario_.vehicle.front_m();
+      ahead.push_back({place, scenario_.lights[*place.light], line_m});
+    }
+    return ahead;
+  }
+
+  static double stopping_m(const PilotView& view) {
+    const SpeedSearchOptions usual;
+    const double speed = view.measured.motion.speed_mps;
+    return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
   }
 
   /// The slower, the nearer: a bend of a few metres wants paths that are no longer.
@@ -304,6 +334,7 @@ class TimedPilot : public Pilot {
   std::optional<DriveLead> lead_on(const WayOccupancy& occupancy, const PilotView& view) const {
     const Blocked* nearest = nullptr;
     for (const Blocked& part : occupancy.at(0)) {
+      if (part.obstacle == Blocked::kNoObstacle) continue;
       if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
     }
     if (!nearest) return std::nullopt;
@@ -329,6 +360,9 @@ class TimedPilot : public Pilot {
       command.behaviour = Behaviour::pass;
       command.reason =
           fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));
+    } else if (const auto light = why_light_stops(lights_ahead(best), view.t_s)) {
+      command.behaviour = Behaviour::yield;
+      command.reason = *light;
     } else if (command.lead && command.lead->gap_m < kFollow_m) {
       command.behaviour = Behaviour::follow;
       command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,

@@ -134,6 +134,15 @@ void WayOccupancy::set_lists(Moment& moment) {
   if (!moment.blocked.empty()) moment.blocked.resize(kept + 1);
 }
 
+void WayOccupancy::block(int step, double from_m, double to_m) {
+  Moment& moment = moments_.at(static_cast<std::size_t>(step));
+  moment.parts.push_back({from_m, to_m, Blocked::kNoObstacle});
+  moment.blocked.clear();
+  moment.begins_m.clear();
+  moment.ends_m.clear();
+  set_lists(moment);
+}
+
 double WayOccupancy::gap_ahead_m(int step, double distance_m) const {
   const std::vector<double>& begins_m = of(step).begins_m;
   const auto next = std::ranges::lower_bound(begins_m, distance_m);

@@ -12,7 +12,9 @@ namespace roadbed::tools {
 /// Part of a way on which the body would touch an obstacle.
 struct Blocked {
   double from_m = 0.0, to_m = 0.0;  ///< of the rear axle, along the way
-  std::size_t obstacle = 0;         ///< index in the world
+  std::size_t obstacle = 0;         ///< index in the world, or kNoObstacle
+
+  static constexpr std::size_t kNoObstacle = static_cast<std::size_t>(-1);  ///< a red light
 };
 
 /// Where obstacles are from one time on, every 0.1 s: found once for all ways of a planning cycle.
@@ -48,6 +50,9 @@ class WayOccupancy {
   WayOccupancy(const DrivenWay& way, const Traffic& traffic, double start_s, int steps,
                double margin_m)
       : WayOccupancy(way, TrafficBodies(traffic, start_s, steps), margin_m) {}
+
+  /// A part that no obstacle blocks, such as the place behind a line at a red light.
+  void block(int step, double from_m, double to_m);
 
   /// At `step` · 0.1 s after the start, clamped to the last one.
   const std::vector<Blocked>& at(int step) const { return of(step).parts; }

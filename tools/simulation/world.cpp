@@ -73,6 +73,13 @@ class ObstacleMaker {
     return obstacle;
   }
 
+  LaneDriver driver_of(const std::string& id, const TrafficObstacle& traffic) const {
+    const map::LanePlace start = find(scenario_, road_map_, traffic.start).on_lane;
+    LaneDriver driver = traffic.to ? along_route(traffic, start) : along_lanes(traffic, start);
+    driver.obstacle = id;
+    return driver;
+  }
+
  private:
   Pose2 to_map(const Pose2& in_source) const {
     const Eigen::Vector2d place = road_map_.to_map(in_source.position());
@@ -98,24 +105,33 @@ class ObstacleMaker {
   }
 
   geometry::Trajectory motion(const TrafficObstacle& traffic) const {
-    const map::LanePlace start = find(scenario_, road_map_, traffic.start).on_lane;
-    if (traffic.to) return along_route(traffic, start);
-    const double length_m = travelled_m(traffic.speeds, scenario_.duration_s) + 1.0;
-    const geometry::Polyline way = straight_on(road_map_, start, length_m);
-    return drive_along([&](double distance_m) { return way.pose_at(distance_m); }, way.length_m(),
-                       traffic.speeds, scenario_.duration_s);
+    const LaneDriver driver = driver_of("", traffic);
+    return drive_along(driver.way, driver.way_length_m, driver.speeds, scenario_.duration_s);
   }
 
-  geometry::Trajectory along_route(const TrafficObstacle& traffic,
-                                   const map::LanePlace& start) const {
+  LaneDriver along_lanes(const TrafficObstacle& traffic, const map::LanePlace& start) const {
+    const double length_m = travelled_m(traffic.speeds, scenario_.duration_s) + 1.0;
+    const geometry::Polyline way = straight_on(road_map_, start, length_m);
+    return {.obstacle = {},
+            .way = [way](double distance_m) { return way.pose_at(distance_m); },
+            .way_length_m = way.length_m(),
+            .place_of = [way](const Eigen::Vector2d& point) { return way.project(point); },
+            .speeds = traffic.speeds};
+  }
+
+  LaneDriver along_route(const TrafficObstacle& traffic, const map::LanePlace& start) const {
     const Route route =
         route_or_refuse(scenario_, road_map_, {start, planning::Sense::along}, *traffic.to);
     const ReferenceLine line = ReferenceLine::along(road_map_, route);
-    const auto pose_at = [&](double s_m) {
+    const auto pose_at = [line](double s_m) {
       const planning::ReferencePoint point = line.at(s_m);
       return Pose2{point.in_map.x(), point.in_map.y(), point.heading_rad};
     };
-    return drive_along(pose_at, line.goal_s_m(), traffic.speeds, scenario_.duration_s);
+    return {.obstacle = {},
+            .way = pose_at,
+            .way_length_m = line.goal_s_m(),
+            .place_of = [line](const Eigen::Vector2d& point) { return line.project(point); },
+            .speeds = traffic.speeds};
   }
 
   const Scenario& scenario_;
@@ -167,8 +183,12 @@ World make_world(const Scenario& scenario) {
   ReferenceLine line = ReferenceLine::along(road_map, route);
   const ObstacleMaker maker(scenario, road_map);
   std::vector<Obstacle> obstacles;
+  std::vector<LaneDriver> drivers;
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {
     obstacles.push_back(maker.make(obstacle));
+    if (const auto* traffic = std::get_if<TrafficObstacle>(&obstacle.motion)) {
+      drivers.push_back(maker.driver_of(obstacle.id, *traffic));
+    }
   }
   std::optional<map::OccupancyMap> occupancy = occupancy_of(scenario);
   std::unique_ptr<const map::ClearanceField> field;
@@ -186,6 +206,7 @@ World make_world(const Scenario& scenario) {
               .route = std::move(route),
               .line = std::move(line),
               .obstacles = std::move(obstacles),
+              .drivers = std::move(drivers),
               .waiting_places = std::move(places)};
   refuse_overlap(scenario, world);
   return world;

@@ -13,6 +13,7 @@
 #include "roadbed/planning/route.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/timed_goal.h"
+#include "roadbed/tools/simulation/traffic_flow.h"
 #include "roadbed/tools/simulation/waiting_places.h"
 
 namespace roadbed::tools {
@@ -32,11 +33,13 @@ struct World {
   planning::Route route;
   planning::ReferenceLine line;
   std::vector<planning::Obstacle> obstacles;  ///< motions last for the scenario's duration
+  std::vector<LaneDriver> drivers = {};       ///< of the obstacles that follow who is ahead
   std::vector<Presence> presence = {};        ///< one per obstacle; empty: always there
   std::optional<TimedGoal> goal = {};         ///< none: to stand at the end of the route
   /// To the goal too, from lanes beside the start that may be changed to there.
   std::vector<planning::ReferenceLine> other_lines = {};
-  std::vector<WaitingPlace> waiting_places = {};  ///< on the route, by station
+  std::vector<WaitingPlace> waiting_places = {};                     ///< on the route, by station
+  std::vector<std::vector<WaitingPlace>> other_waiting_places = {};  ///< on each other line
   double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
 
   bool is_there(std::size_t obstacle, double t_s) const {

@@ -63,7 +63,7 @@ Scenario at_speed(double speed_mps) {
 /// Both ways of knowing the others.
 class BehaviourDrives : public testing::TestWithParam<bool> {
  protected:
-  static Drive driven(const Scenario& scenario, const World& world) {
+  static Drive driven(const Scenario& scenario, World world) {
     return tools::drive(scenario, world, {.predicts = GetParam()});
   }
 };

@@ -61,7 +61,7 @@ bool does(const Drive& drive, Behaviour behaviour) {
 }
 
 TEST(ClosedLoop, FreeRoadIsDrivenStraightToTheGoal) {
-  const World world = road_of_width(4.0, {});
+  World world = road_of_width(4.0, {});
   const Drive drive = tools::drive(scenario_at(0.0), world);
   ASSERT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
   const geometry::TrajectoryPoint& end = drive.trajectory.points().back();
@@ -76,7 +76,7 @@ TEST(ClosedLoop, FreeRoadIsDrivenStraightToTheGoal) {
 }
 
 TEST(ClosedLoop, RowsObeyTheVehiclesKinematics) {
-  const World world = road_of_width(9.0, {parked(70.0, -1.0)});
+  World world = road_of_width(9.0, {parked(70.0, -1.0)});
   const Drive drive = tools::drive(scenario_at(8.0), world);
   const auto& rows = drive.trajectory.points();
   ASSERT_EQ(rows.size(), drive.samples.size());
@@ -94,7 +94,7 @@ TEST(ClosedLoop, RowsObeyTheVehiclesKinematics) {
 }
 
 TEST(ClosedLoop, PassesAParkedCarAndComesBack) {
-  const World world = road_of_width(9.0, {parked(80.0, -0.5)});
+  World world = road_of_width(9.0, {parked(80.0, -0.5)});
   const Drive drive = tools::drive(scenario_at(8.0), world);
   ASSERT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
   EXPECT_GT(least_clearance_m(drive), 0.2);
@@ -104,7 +104,7 @@ TEST(ClosedLoop, PassesAParkedCarAndComesBack) {
 }
 
 TEST(ClosedLoop, StopsBehindACarThatLeavesNoWay) {
-  const World world = road_of_width(4.0, {parked(80.0, 0.0)});
+  World world = road_of_width(4.0, {parked(80.0, 0.0)});
   Scenario scenario = scenario_at(8.0);
   scenario.duration_s = 20.0;
   const Drive drive = tools::drive(scenario, world);
@@ -116,7 +116,7 @@ TEST(ClosedLoop, StopsBehindACarThatLeavesNoWay) {
 }
 
 TEST(ClosedLoop, FollowsASlowerCarAtItsHeadway) {
-  const World world = road_of_width(4.0, {driving(60.0, {{0.0, 4.0}})});
+  World world = road_of_width(4.0, {driving(60.0, {{0.0, 4.0}})});
   Scenario scenario = scenario_at(9.0);
   scenario.duration_s = 26.0;
   const Drive drive = tools::drive(scenario, world);
@@ -129,7 +129,7 @@ TEST(ClosedLoop, FollowsASlowerCarAtItsHeadway) {
 
 TEST(ClosedLoop, BrakesHarderThanTheCruiseControlMayOnlyIfItMust) {
   // 8 m ahead at the same speed, and from 0.5 s on the lead brakes at 8 m/s².
-  const World world = road_of_width(4.0, {driving(24.0, {{0.0, 9.0}, {0.5, 9.0}, {1.6, 0.0}})});
+  World world = road_of_width(4.0, {driving(24.0, {{0.0, 9.0}, {0.5, 9.0}, {1.6, 0.0}})});
   Scenario scenario = scenario_at(9.0);
   scenario.duration_s = 6.0;
   const Drive drive = tools::drive(scenario, world);
@@ -145,7 +145,7 @@ TEST(ClosedLoop, TouchingSomethingEndsTheDrive) {
   // A car appears 1 m ahead of the bumper: it drives into the ego's way at 30 m/s from behind.
   Obstacle rammer{.id = "rammer", .motion = {}};
   rammer.motion = drive_through({{0.0, {-40.0, 0.0, 0.0}}, {2.0, {60.0, 0.0, 0.0}}});
-  const World world = road_of_width(4.0, {rammer});
+  World world = road_of_width(4.0, {rammer});
   const Drive drive = tools::drive(scenario_at(5.0), world);
   EXPECT_EQ(drive.verdict.outcome, Outcome::collision);
   EXPECT_THAT(drive.verdict.text, testing::HasSubstr("touched rammer"));
@@ -154,7 +154,7 @@ TEST(ClosedLoop, TouchingSomethingEndsTheDrive) {
 }
 
 TEST(ClosedLoop, SameScenarioSameBytesAndAnotherSeedAnotherDrive) {
-  const World world = road_of_width(9.0, {parked(80.0, -0.5)});
+  World world = road_of_width(9.0, {parked(80.0, -0.5)});
   Scenario scenario = scenario_at(8.0);
   scenario.duration_s = 8.0;
   scenario.noise = {.gap_m = 0.2,
@@ -171,7 +171,7 @@ TEST(ClosedLoop, SameScenarioSameBytesAndAnotherSeedAnotherDrive) {
 }
 
 TEST(ClosedLoop, NoiseIsLivedWith) {
-  const World world = road_of_width(4.0, {driving(60.0, {{0.0, 4.0}, {20.0, 4.0}, {24.0, 8.0}})});
+  World world = road_of_width(4.0, {driving(60.0, {{0.0, 4.0}, {20.0, 4.0}, {24.0, 8.0}})});
   Scenario scenario = scenario_at(9.0);
   scenario.noise = {.gap_m = 0.5,
                     .relative_speed_mps = 0.2,
@@ -186,7 +186,7 @@ TEST(ClosedLoop, NoiseIsLivedWith) {
 }
 
 TEST(ClosedLoop, MetricsAgreeWithTheDrive) {
-  const World world = road_of_width(9.0, {parked(80.0, -0.5)});
+  World world = road_of_width(9.0, {parked(80.0, -0.5)});
   const Scenario scenario = scenario_at(8.0);
   const Drive drive = tools::drive(scenario, world);
   const nlohmann::ordered_json metrics = metrics_of(scenario, world, drive, {});

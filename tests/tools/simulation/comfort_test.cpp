@@ -66,5 +66,37 @@ TEST(Comfort, SteadyCircleHasItsCentripetalAccelerationAndNoJerk) {
   EXPECT_FALSE(comfort_of(circle(10.0, -0.05)).is_comfortable());
 }
 
+/// A drive in which nothing is smooth.
+geometry::Trajectory rough_drive() {
+  std::vector<geometry::TrajectoryPoint> rows;
+  double heading = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.1 * i, speed = 9.0 + 1.1 * std::sin(0.6 * t);
+    const double curvature = 0.03 * std::sin(0.8 * t) + 0.004 * ((i * 53) % 7 - 3) / 3.0;
+    rows.push_back({.t_s = t,
+                    .heading_rad = heading,
+                    .speed_mps = speed,
+                    .acceleration_mps2 = 1.2 * std::sin(0.9 * t) - 0.7 * std::cos(2.3 * t) +
+                                         0.25 * ((i * 37) % 11 - 5) / 5.0,
+                    .curvature_per_m = curvature});
+    heading += 0.1 * speed * curvature;
+  }
+  return geometry::Trajectory(std::move(rows));
+}
+
+// What scipy.signal.savgol_filter (SciPy 1.x) makes of the same signals with nuPlan's windows and
+// orders: accelerations (8, 2); jerks of the smoothed accelerations (15, 2, first derivative);
+// heading (5, 2, first) and (5, 3, second); delta = 0.1.
+TEST(Comfort, EachExtremeIsThatOfNuPlansFiltersInSciPy) {
+  const Comfort comfort = comfort_of(rough_drive());
+  EXPECT_NEAR(comfort.least_longitudinal_mps2, -1.9183807140049594, 1e-9);
+  EXPECT_NEAR(comfort.most_longitudinal_mps2, 1.8636170334831044, 1e-9);
+  EXPECT_NEAR(comfort.most_lateral_mps2, 3.08978813312283, 1e-9);
+  EXPECT_NEAR(comfort.most_yaw_rate_radps, 0.3105854801235438, 1e-9);
+  EXPECT_NEAR(comfort.most_yaw_acceleration_radps2, 0.3586588963091071, 1e-9);
+  EXPECT_NEAR(comfort.most_longitudinal_jerk_mps3, 3.294821844594028, 1e-9);
+  EXPECT_NEAR(comfort.most_jerk_mps3, 2.1133051689721074, 1e-9);
+}
+
 }  // namespace
 }  // namespace roadbed::tools

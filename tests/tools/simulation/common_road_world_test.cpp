@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -41,7 +42,7 @@ std::string refusal_of(const std::string& bytes) {
 }
 
 TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
-  const CommonRoadDrive problem = problem_of(junction());
+  CommonRoadDrive problem = problem_of(junction());
   const Eigen::Vector2d start = problem.world.road_map.to_source(problem.world.start.position());
   EXPECT_NEAR(start.x(), 5.0 - (0.5 * 4.508 - 0.8312829), 1e-9);
   EXPECT_NEAR(start.y(), 1.75, 1e-9);
@@ -49,7 +50,7 @@ TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
 }
 
 TEST(CommonRoadWorld, RecordedObstaclesAreThereAsLongAsTheirRecording) {
-  const CommonRoadDrive problem = problem_of(junction());
+  CommonRoadDrive problem = problem_of(junction());
   ASSERT_EQ(problem.world.obstacles.size(), 3u);
   EXPECT_TRUE(problem.world.is_there(0, 1e6));  // stands
   EXPECT_TRUE(problem.world.is_there(1, 3.0));  // 30 recorded steps
@@ -57,7 +58,7 @@ TEST(CommonRoadWorld, RecordedObstaclesAreThereAsLongAsTheirRecording) {
 }
 
 TEST(CommonRoadWorld, GoalIsReachedInItsTimeAtTheSameBytesEveryTime) {
-  const CommonRoadDrive problem = problem_of(junction());
+  CommonRoadDrive problem = problem_of(junction());
   const Drive first = drive(problem.scenario, problem.world);
   EXPECT_EQ(first.verdict.outcome, Outcome::goal_reached) << first.verdict.text;
   EXPECT_GE(first.verdict.at_s, 6.0 - 1e-9);
@@ -66,8 +67,33 @@ TEST(CommonRoadWorld, GoalIsReachedInItsTimeAtTheSameBytesEveryTime) {
   EXPECT_EQ(write_trajectory_csv(first.trajectory), write_trajectory_csv(second.trajectory));
 }
 
+/// When the front bumper passes the stop line at x = 50 m.
+double passes_line_at_s(const Drive& drive) {
+  for (const auto& row : drive.trajectory.points()) {
+    if (row.x_m + geometry::VehicleShape{}.front_m() > 50.0) return row.t_s;
+  }
+  return 1e9;
+}
+
+TEST(CommonRoadWorld, RedLightIsWaitedAtAndGreenIsDrivenOnAt) {
+  // On the lane of light 51: green until 1 s, yellow until 2 s, red and red with yellow until 9 s.
+  const std::string on_right_lane =
+      replaced(junction(), "<x>5</x><y>1.75</y>", "<x>5</x><y>-1.75</y>");
+  CommonRoadDrive problem = problem_of(on_right_lane);
+  const Drive waits = drive(problem.scenario, problem.world);
+  EXPECT_EQ(waits.verdict.outcome, Outcome::goal_reached) << waits.verdict.text;
+  EXPECT_GT(passes_line_at_s(waits), 9.0);
+  EXPECT_LT(passes_line_at_s(waits), 11.0);
+  EXPECT_TRUE(std::ranges::any_of(waits.cycles, [](const DriveCycle& cycle) {
+    return cycle.behaviour == Behaviour::yield && cycle.reason.starts_with("light 51 is red");
+  }));
+  CommonRoadDrive dark =
+      problem_of(replaced(on_right_lane, "<active>true</active>", "<active>false</active>"));
+  EXPECT_LT(passes_line_at_s(drive(dark.scenario, dark.world)), 8.0);
+}
+
 TEST(CommonRoadWorld, SolutionHoldsEveryTimeStepOfTheCentre) {
-  const CommonRoadDrive problem = problem_of(junction());
+  CommonRoadDrive problem = problem_of(junction());
   const Drive driven = drive(problem.scenario, problem.world);
   const std::string xml = solution_xml(problem, driven);
   EXPECT_THAT(xml, HasSubstr("benchmark_id=\"KS2:SM1:DEU_Junction-1_1_T-1:2020a\""));
@@ -91,13 +117,24 @@ TEST(CommonRoadWorld, WhatCannotBeDrivenIsRefused) {
               HasSubstr("lanelet 99"));
   EXPECT_THAT(refusal_of(replaced(good, "timeStepSize=\"0.1\"", "timeStepSize=\"0\"")),
               HasSubstr("timeStepSize"));
+  EXPECT_THAT(refusal_of(replaced(good, "timeStepSize=\"0.1\"", "timeStepSize=\"1e9\"")),
+              HasSubstr("time steps of 1000000000"));
+  for (const std::string speed : {"-5", "1e300"}) {
+    EXPECT_THAT(refusal_of(replaced(good, "<velocity><exact>10</exact></velocity><yaw",
+                                    "<velocity><exact>" + speed + "</exact></velocity><yaw")),
+                HasSubstr("needs 0 to 100 m/s"));
+  }
+  const std::size_t second = good.find("<time><exact>2</exact></time>");
+  const std::size_t state = good.rfind("<state>", second), next = good.find("<state>", second);
+  EXPECT_THAT(refusal_of(good.substr(0, state) + good.substr(next)),
+              HasSubstr("obstacle 72: time step 3 after 1"));
 }
 
 TEST(CommonRoadWorld, WithoutAGoalTheVehicleComesToRestAndSaysWhy) {
   std::string bytes = junction();
   const std::size_t from = bytes.find("<goalState>"), to = bytes.rfind("</goalState>");
   bytes.erase(from, to + 12 - from);
-  const CommonRoadDrive problem = problem_of(bytes);
+  CommonRoadDrive problem = problem_of(bytes);
   const Drive driven = drive(problem.scenario, problem.world);
   EXPECT_EQ(driven.verdict.outcome, Outcome::stopped);
   EXPECT_THAT(driven.verdict.text, HasSubstr("states no goal"));

@@ -41,7 +41,7 @@ TEST(OnRoad, WayThatStaysOrBeginsBesideTheRoadAndReturnsHasNoEnd) {
 }
 
 Drive driven(const std::filesystem::path& real, const std::string& name) {
-  const CommonRoadDrive problem =
+  CommonRoadDrive problem =
       read_common_road_drive(real / "commonroad/CommonRoad+commonroad-reachable-set" / name);
   return drive(problem.scenario, problem.world);
 }

@@ -94,6 +94,55 @@ TEST(ScenarioDrives, LightThatTurnsYellowIsNeverPassedAtRed) {
   EXPECT_LT(stops, 12);
 }
 
+TEST(ScenarioDrives, LightThatTurnsYellowAtFiftyIsNeverPassedAtRedEither) {
+  // At 13.9 m/s and with 3 s of yellow, ¼ g stops from 50 m on, and driving on does from 42 m on.
+  Scenario scenario = scenario_of("red_light");
+  scenario.options.desired_speed_mps = scenario.start_speed_mps = 13.8;
+  scenario.duration_s = 24.0;
+  int hard = 0, stops = 0;
+  for (int k = 0; k < 14; ++k) {
+    const double yellow_at_s = 8.1 + 0.12 * k;
+    scenario.lights.front().phases = {
+        {LightColour::green, yellow_at_s}, {LightColour::yellow, 3.0}, {LightColour::red, 60.0}};
+    const Driven d = driven(scenario);
+    const double passes_s = d.passes_x_at_s(279.0);
+    stops += passes_s > scenario.duration_s;
+    EXPECT_TRUE(passes_s > scenario.duration_s || passes_s < yellow_at_s + 3.0)
+        << "yellow at " << yellow_at_s << " s, passed at " << passes_s << " s";
+    if (const DriveCycle* braking = d.first(Behaviour::emergency)) {
+      ++hard;
+      EXPECT_NE(braking->reason.find("light 2 is yellow"), std::string::npos) << braking->reason;
+    }
+    for (const auto& row : d.drive.trajectory.points()) EXPECT_GT(row.acceleration_mps2, -4.5);
+  }
+  EXPECT_GT(hard, 0);
+  EXPECT_GT(stops, hard);
+  EXPECT_LT(stops, 14);
+}
+
+TEST(ScenarioDrives, StopSignIsStoppedAtAndThenAGapIsTaken) {
+  const Driven d = driven("stop_sign");
+  expect_arrives(d, 1.5);
+  EXPECT_NE(d.first(Behaviour::yield, "stop sign 1 is"), nullptr);
+  // The line is at y = −21 m; the drive comes from the south.
+  double stands_s = 0.0, leaves_s = 1e9;
+  for (const auto& row : d.drive.trajectory.points()) {
+    const double front_m = row.y_m + geometry::VehicleShape{}.front_m();
+    if (row.speed_mps < 0.05 && front_m > -22.5 && front_m < -21.0) stands_s = row.t_s;
+    if (front_m > -20.5) leaves_s = std::min(leaves_s, row.t_s);
+  }
+  EXPECT_GT(stands_s, 5.0);
+  EXPECT_GT(leaves_s, stands_s);
+  EXPECT_NE(d.first(Behaviour::yield, "would be met"), nullptr);
+  // Nobody who has the right of way has to brake; at the end of its way a car rests.
+  for (const planning::Obstacle& other : d.world.obstacles) {
+    const auto& points = other.motion.points();
+    for (std::size_t i = 1; i < points.size() && points[i].speed_mps > 0.0; ++i) {
+      EXPECT_GE(points[i].speed_mps, points[i - 1].speed_mps - 1e-6) << other.id << points[i].t_s;
+    }
+  }
+}
+
 /// An obstacle that does what a drive did, some time later, but for the drive's last 10 s; before,
 /// it comes straight on.
 planning::Obstacle follower(const Driven& ahead, double later_s) {

@@ -1,0 +1,43 @@
+#include "roadbed/tools/simulation/grade_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kApart_m = 1.0;  // least, between heights
+constexpr double kHalfBase_m = 5.0;
+
+}  // namespace
+
+GradeProfile::GradeProfile(const map::RoadMap& road_map, const planning::Route& route,
+                           const planning::ReferenceLine& line) {
+  for (const planning::RouteLeg& leg : route.legs) {
+    const map::LaneLine& centre = road_map.lane(leg.lane).centre;
+    const auto& points = centre.in_map.points();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t at = leg.reversed ? points.size() - 1 - i : i;
+      const double s_m = line.project(points[at]).s_m;
+      if (!heights_.empty() && s_m < heights_.back().s_m + kApart_m) continue;
+      heights_.push_back({s_m, centre.z_m[at]});
+    }
+  }
+}
+
+double GradeProfile::height_m(double s_m) const {
+  const auto after = std::ranges::upper_bound(heights_, s_m, {}, &Height::s_m);
+  if (after == heights_.begin()) return heights_.front().z_m;
+  if (after == heights_.end()) return heights_.back().z_m;
+  const Height& before = *std::prev(after);
+  const double share = (s_m - before.s_m) / (after->s_m - before.s_m);
+  return before.z_m + share * (after->z_m - before.z_m);
+}
+
+double GradeProfile::grade_rad(double s_m) const {
+  if (heights_.empty()) return 0.0;
+  return std::atan((height_m(s_m + kHalfBase_m) - height_m(s_m - kHalfBase_m)) /
+                   (2.0 * kHalfBase_m));
+}
+
+}  // namespace roadbed::tools

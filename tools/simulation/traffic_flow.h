@@ -1,0 +1,81 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/polyline.h"
+#include "roadbed/geometry/rectangle.h"
+#include "roadbed/planning/obstacle.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
+#include "roadbed/tools/simulation/scenario.h"
+
+namespace roadbed::tools {
+
+/// Somebody who drives along lanes at wanted speeds, and keeps a distance from whoever is ahead.
+struct LaneDriver {
+  std::string obstacle;  ///< id
+  Way way;               ///< of its centre
+  double way_length_m = 0.0;
+  /// Place of a point along the way and beside it.
+  std::function<geometry::LinePosition(const Eigen::Vector2d& point)> place_of;
+  std::vector<TimedSpeed> speeds;
+};
+
+/// The body of the vehicle that is simulated, and its speed along its axis.
+struct DrivenBody {
+  geometry::Rectangle body;
+  double speed_mps = 0.0;
+};
+
+/// Car following by the Intelligent Driver Model, in its improved form (Treiber and Kesting,
+/// Traffic Flow Dynamics, section 11.3.7), for those who drive at wanted speeds v₀(t):
+///
+///     s* = s₀ + max(0, v T + v Δv / (2 √(a b))),   z = s* / s
+///     dv/dt = a (1 − z²) where z ≥ 1; else as wanted
+///
+/// Who is not hindered drives exactly as its speeds say. Its future, as far as others foresee it,
+/// is that of its speeds; that of somebody who has been hindered is its present speed.
+class TrafficFlow {
+ public:
+  struct Options {
+    double headway_s = 1.2;       ///< T
+    double standstill_m = 2.0;    ///< s₀
+    double speeds_up_mps2 = 1.5;  ///< a
+    double brakes_mps2 = 2.0;     ///< b, comfortably
+    double hardest_mps2 = 8.0;
+  };
+  static constexpr double kStep_s = 0.1;
+
+  /// Sets everybody to the start. Drivers whose obstacle is not there are left out.
+  /// @param obstacles  kept by reference; the motions of drivers are replaced as they drive.
+  TrafficFlow(const std::vector<LaneDriver>& drivers, std::vector<planning::Obstacle>& obstacles,
+              double duration_s, const Options& options);
+
+  /// Drives everybody on by one step, behind whoever is ahead now. O(drivers · obstacles), a
+  /// projection for each that is near.
+  void step(const DrivenBody& vehicle);
+
+ private:
+  struct Car {
+    const LaneDriver* driver;
+    std::size_t obstacle;
+    double s_m, speed_mps;
+    bool hindered;  ///< at any time so far
+  };
+  struct Ahead {
+    double gap_m, speed_mps;
+  };
+
+  Ahead ahead_of(const Car& car, const DrivenBody& vehicle) const;
+  double braking_mps2(const Car& car, const Ahead& ahead) const;
+  void drive(Car& car, double braking_mps2);
+  void foresee(const Car& car);
+
+  std::vector<planning::Obstacle>& obstacles_;
+  Options options_;
+  std::vector<Car> cars_;
+  int steps_ = 0;
+};
+
+}  // namespace roadbed::tools
