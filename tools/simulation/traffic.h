@@ -21,7 +21,8 @@ struct Traffic {
 Traffic true_traffic(const World& world);
 
 /// What could be foreseen at one time by looking at the past only: what is there then keeps the
-/// speed and the turn rate of its last 0.3 s, and stays; what is not there yet is not known of.
+/// bend of its last 0.3 s for two seconds, goes on braking as long, up to a standstill, or speeding
+/// up for one, and stays; what is not there yet is not known of.
 class ForeseenTraffic {
  public:
   ForeseenTraffic(const Traffic& truth, double now_s);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadbed::tools {
@@ -66,6 +67,35 @@ TEST(ForeseenTraffic, WhatJustAppearedKeepsTheSpeedThatItIsSaidToHave) {
   const planning::Obstacle seen = foreseen(circling(0.3), {kSeen_s, 6.0});
   EXPECT_NEAR(seen.motion.at(kSeen_s).speed_mps, 8.0, 1e-9);
   EXPECT_NEAR(seen.motion.at(kSeen_s).heading_rad, seen.motion.at(kSeen_s + 4.0).heading_rad, 1e-9);
+}
+
+/// Straight on at 10 m/s, and from 1 s on with an acceleration.
+planning::Obstacle speeding_up(double acceleration_mps2) {
+  std::vector<geometry::TrajectoryPoint> points;
+  double x = 0.0, speed = 10.0;
+  for (int k = 0; k <= 600; ++k) {
+    points.push_back({.t_s = 0.01 * k, .x_m = x, .speed_mps = speed});
+    const double next = k < 100 ? speed : std::max(0.0, speed + 0.01 * acceleration_mps2);
+    x += 0.005 * (speed + next);
+    speed = next;
+  }
+  planning::Obstacle obstacle{.id = "other", .motion = {}};
+  obstacle.motion = geometry::Trajectory(std::move(points));
+  return obstacle;
+}
+
+TEST(ForeseenTraffic, BrakingGoesOnForTwoSecondsAndSpeedingUpForOne) {
+  const planning::Obstacle brakes = foreseen(speeding_up(-2.0));  // 6 m/s when it is seen
+  EXPECT_NEAR(brakes.motion.at(kSeen_s).speed_mps, 6.0, 0.01);
+  EXPECT_NEAR(brakes.motion.at(kSeen_s + 1.0).speed_mps, 4.0, 0.02);
+  EXPECT_NEAR(brakes.motion.at(kSeen_s + 5.0).speed_mps, 2.0, 0.03);
+  const double way_m = brakes.motion.at(kSeen_s + 4.0).x_m - brakes.motion.at(kSeen_s).x_m;
+  EXPECT_NEAR(way_m, 0.5 * (6.0 + 2.0) * 2.0 + 2.0 * 2.0, 0.1);
+  const planning::Obstacle faster = foreseen(speeding_up(1.5));  // 13 m/s then
+  EXPECT_NEAR(faster.motion.at(kSeen_s + 5.0).speed_mps, 14.5, 0.03);
+  const planning::Obstacle stops = foreseen(speeding_up(-4.5));  // 1 m/s: never backwards
+  EXPECT_NEAR(stops.motion.at(kSeen_s + 5.0).speed_mps, 0.0, 1e-9);
+  EXPECT_NEAR(stops.motion.at(kSeen_s + 5.0).x_m, stops.motion.at(kSeen_s).x_m + 1.0 / 9.0, 0.05);
 }
 
 TEST(ForeseenTraffic, WhatStandsWillStand) {
