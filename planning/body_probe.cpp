@@ -11,7 +11,8 @@ namespace {
 geometry::CoveringCircles circles_over(const geometry::BodyPart& part) {
   const double length_m = part.length_m(), width_m = part.width_m();
   const int count =
-      width_m > 0.0 ? std::clamp(static_cast<int>(std::ceil(1.5 * length_m / width_m)), 1, 16) : 1;
+      width_m > 0.0 ? static_cast<int>(std::clamp(std::ceil(1.5 * length_m / width_m), 1.0, 16.0))
+                    : 1;
   const double section_m = length_m / count;
   geometry::CoveringCircles circles{
       .centres_x_m = {}, .radius_m = 0.5 * std::hypot(section_m, width_m) + part.radius_m};

@@ -40,13 +40,14 @@ void check_size(const CellRange& range, std::int64_t layers, double cell_m) {
   constexpr auto most = static_cast<std::int64_t>(ClearanceField::kMostCells);
   constexpr std::int64_t longest = 65536;
   if (is_small(range) && layers < longest) return;
-  throw InputError({.file = "occupancy",
-                    .place = {},
-                    .element = "extent",
-                    .found = fmt::format("{} × {} cells of {} m in {} layers", range.width(),
-                                         range.height(), cell_m, layers),
-                    .needed = fmt::format("at most {} cells, and {} a side", most, longest),
-                    .remedy = "cut the occupancy, or take a coarser resolution"});
+  throw InputError(
+      {.file = "occupancy",
+       .place = {},
+       .element = "extent",
+       .found = fmt::format("{} × {} cells of {} m in {} layers", range.width(), range.height(),
+                            cell_m, layers),
+       .needed = fmt::format("at most {} cells, and {} a side", most, longest),
+       .remedy = "cut the occupancy, ask for less clearance, or take a coarser resolution"});
 }
 
 CellRange range_of(const std::vector<Slab>& slabs) {
@@ -73,7 +74,8 @@ struct ClearanceField::Grid {
     const CellRange held = slicer.range(region.around, slicer.cell_m());
     const auto margin = static_cast<std::int64_t>(std::ceil(horizon_m / slicer.cell_m())) + 3;
     const CellRange seen = held.grown(margin);
-    if (region.tile_m == 0.0 && is_small(seen)) {
+    constexpr std::size_t most_at_once = 20'000'000;
+    if (region.tile_m == 0.0 && is_small(seen) && seen.count() <= most_at_once) {
       whole = grid_of({held, seen, false}, slicer.slabs_in(seen));
     } else {
       make_tiles(region);
@@ -93,9 +95,11 @@ struct ClearanceField::Grid {
     const double cell_m = slicer.cell_m();
     const auto margin =
         static_cast<std::int64_t>(std::ceil((horizon_m + body_radius_m) / cell_m)) + 3;
-    const std::int64_t side = region.tile_m > 0.0
-                                  ? static_cast<std::int64_t>(std::ceil(region.tile_m / cell_m))
-                                  : 2 * margin;
+    constexpr std::int64_t longest = 10'000;  // of a side with both margins: kMostCells in all
+    const std::int64_t usual =
+        std::max<std::int64_t>(1, std::min(2 * margin, longest - 2 * margin));
+    const std::int64_t side =
+        region.tile_m > 0.0 ? static_cast<std::int64_t>(std::ceil(region.tile_m / cell_m)) : usual;
     const CellRange first = CellRange{0, 0, side, side}.grown(margin);
     check_size(first, slicer.layers(), cell_m);
     tiles = std::make_unique<const GridTiles>(

@@ -44,6 +44,15 @@ std::int64_t axis_of(std::uint64_t code, int axis) {
                     .remedy = "check the disk"});
 }
 
+[[noreturn]] void refuse_height(const std::filesystem::path& folder) {
+  throw InputError({.file = folder.string(),
+                    .place = {},
+                    .element = "height of all clouds",
+                    .found = "is over 65536 cells",
+                    .needed = {},
+                    .remedy = "take a coarser resolution, or cut the clouds"});
+}
+
 template <typename Visit>
 void for_each_block(const CellBlocks& blocks, const Visit& visit) {
   for (const CellBlocks::Placed& placed : blocks.regions()) {
@@ -144,11 +153,14 @@ void TileBuilder::put_aside() {
     const std::int64_t blocks_a_side = plan_.side_cells / kBlockSide;
     const Place tile{floor_div(aside.at[1], blocks_a_side), floor_div(aside.at[0], blocks_a_side)};
     bytes[tile].append(reinterpret_cast<const char*>(&aside), sizeof aside);
-    ++blocks_aside_[tile];
   });
   measured_.reset();
   for (const auto& [tile, data] : bytes) {
-    std::ofstream file(aside_file(tile), std::ios::binary | std::ios::app);
+    // What another run left under that name is not ours.
+    std::size_t& blocks = blocks_aside_[tile];
+    std::ofstream file(aside_file(tile),
+                       std::ios::binary | (blocks == 0 ? std::ios::trunc : std::ios::app));
+    blocks += data.size() / sizeof(AsideBlock);
     file.write(data.data(), static_cast<std::streamsize>(data.size()));
     if (!file.flush()) refuse_file(aside_file(tile), "cannot be written");
   }
@@ -157,6 +169,11 @@ void TileBuilder::put_aside() {
 OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) const {
   CellBlocks blocks(plan_.resolution_m);
   std::ifstream file(aside_file(place), std::ios::binary);
+  std::error_code error;
+  if (std::filesystem::file_size(aside_file(place), error) !=
+      blocks_aside_.at(place) * sizeof(AsideBlock)) {
+    refuse_file(aside_file(place), "was changed by another program");
+  }
   const std::int64_t first_x = place.second * plan_.side_cells,
                      first_y = place.first * plan_.side_cells;
   for (std::size_t i = 0; i < blocks_aside_.at(place); ++i) {
@@ -168,7 +185,7 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) con
     const std::array<std::int64_t, 3> key{kBlockSide * aside.at[0] - first_x + middle,
                                           kBlockSide * aside.at[1] - first_y + middle,
                                           kBlockSide * aside.at[2] + middle};
-    if (key[2] < 0 || key[2] >= 2 * middle) refuse_file(plan_.folder, "has more layers than keys");
+    if (key[2] < 0 || key[2] >= 2 * middle) refuse_height(plan_.folder);
     blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
                   static_cast<std::uint16_t>(key[2])},
                  aside.hit, aside.free);

@@ -14,6 +14,30 @@ bool do_meet(const Box3& a, const Box3& b) {
          (b.min_in_source.array() <= a.max_in_source.array()).all();
 }
 
+// The square of a tile, at any height: the index's bounds are not asked what is to be read.
+Box3 square_of(const TilesIndex& index, const OccupancyTile& tile) {
+  constexpr double any_height_m = 1e7;
+  const Eigen::Vector3d& origin = index.origin_in_source;
+  const Eigen::Vector3d least(origin.x() + index.side_m() * static_cast<double>(tile.x),
+                              origin.y() + index.side_m() * static_cast<double>(tile.y),
+                              -any_height_m);
+  return {least, {least.x() + index.side_m(), least.y() + index.side_m(), any_height_m}};
+}
+
+bool is_that_of(const OccupancyMap& map, const TilesIndex& index, const OccupancyTile& tile) {
+  constexpr double rounding_m = 1e-4;
+  const Box3 square = square_of(index, tile);
+  const Eigen::Vector3d origin(square.min_in_source.x(), square.min_in_source.y(),
+                               index.origin_in_source.z());
+  const std::optional<Box3> box = map.bounds();
+  return map.resolution_m() == index.resolution_m &&
+         (map.origin_in_source() - origin).norm() < rounding_m && box &&
+         (box->min_in_source - tile.bounds.min_in_source).norm() < rounding_m &&
+         (box->max_in_source - tile.bounds.max_in_source).norm() < rounding_m &&
+         (box->min_in_source.array() > square.min_in_source.array() - rounding_m).all() &&
+         (box->max_in_source.array() < square.max_in_source.array() + rounding_m).all();
+}
+
 void append_to(std::vector<OccupancyCell>& cells, std::vector<OccupancyCell> more) {
   cells.insert(cells.end(), more.begin(), more.end());
 }
@@ -44,7 +68,7 @@ std::vector<OccupancyCell> TiledOccupancy::cells() const {
 std::vector<OccupancyCell> TiledOccupancy::cells_in(const Box3& box) const {
   std::vector<OccupancyCell> cells;
   for (const OccupancyTile& tile : index_.tiles) {
-    if (do_meet(tile.bounds, box)) append_to(cells, load(tile)->cells_in(box));
+    if (do_meet(square_of(index_, tile), box)) append_to(cells, load(tile)->cells_in(box));
   }
   return cells;
 }
@@ -52,7 +76,8 @@ std::vector<OccupancyCell> TiledOccupancy::cells_in(const Box3& box) const {
 std::vector<OccupancyCell> TiledOccupancy::cells_of_tiles(std::span<const Box3> boxes) const {
   std::vector<OccupancyCell> cells;
   for (const OccupancyTile& tile : index_.tiles) {
-    const auto meets = [&](const Box3& box) { return do_meet(tile.bounds, box); };
+    const Box3 square = square_of(index_, tile);
+    const auto meets = [&](const Box3& box) { return do_meet(square, box); };
     if (std::ranges::any_of(boxes, meets)) append_to(cells, load(tile)->cells());
   }
   return cells;
@@ -80,9 +105,17 @@ std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& ti
                       .needed = tile.xxhash + " as the index says",
                       .remedy = "build the tiles again"});
   }
+  auto map = std::make_shared<const OccupancyMap>(OccupancyMap::parse(bytes, file.string()));
+  if (!is_that_of(*map, index_, tile)) {
+    throw InputError({.file = file.string(),
+                      .place = {},
+                      .element = {},
+                      .found = "has another resolution, origin or bounds",
+                      .needed = "those of the index",
+                      .remedy = "build the tiles again"});
+  }
   if (alive_.size() >= kMostAlive) alive_.pop_back();
-  alive_.push_front(
-      {&tile, std::make_shared<const OccupancyMap>(OccupancyMap::parse(bytes, file.string()))});
+  alive_.push_front({&tile, std::move(map)});
   ++tiles_read_;
   return alive_.front().map;
 }

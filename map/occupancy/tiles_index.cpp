@@ -6,13 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "roadbed/map/input_error.h"
 
 namespace roadbed::map {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
+using Ordered = nlohmann::ordered_json;
 
 constexpr const char* kTilesFormat = "roadbed occupancy tiles 1";
 constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
@@ -27,7 +30,7 @@ constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
                     .remedy = "build the tiles again"});
 }
 
-Json json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+Ordered json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
 /// Takes values out of a document, and says where one is not what it should be.
 class IndexReader {
@@ -44,7 +47,12 @@ class IndexReader {
                      .side_cells = whole(json_, "side_cells"),
                      .tiles = {}};
     check(index);
-    for (const Json& tile : list(json_, "tiles")) index.tiles.push_back(tile_of(tile));
+    std::set<std::pair<std::int64_t, std::int64_t>> places;
+    for (const Json& tile : list(json_, "tiles")) {
+      index.tiles.push_back(tile_of(tile));
+      if (places.emplace(index.tiles.back().x, index.tiles.back().y).second) continue;
+      refuse_index(name_, "tiles", index.tiles.back().file + " is there twice", "each once");
+    }
     return index;
   }
 
@@ -134,27 +142,32 @@ std::string tile_file_name(std::int64_t x, std::int64_t y) {
 }
 
 std::string write_tiles_index(const TilesIndex& index) {
-  Json json;
+  Ordered json;
   json["format"] = kTilesFormat;
   json["resolution_m"] = index.resolution_m;
   json["origin_m"] = json_of(index.origin_in_source);
   json["crs"] = index.crs;
   json["side_cells"] = index.side_cells;
   json["overlap_cells"] = 0;
-  json["tiles"] = Json::array();
+  json["tiles"] = Ordered::array();
   for (const OccupancyTile& tile : index.tiles) {
-    json["tiles"].push_back({{"file", tile.file},
-                             {"x", tile.x},
-                             {"y", tile.y},
-                             {"nodes", tile.nodes},
-                             {"xxhash", tile.xxhash},
-                             {"min_m", json_of(tile.bounds.min_in_source)},
-                             {"max_m", json_of(tile.bounds.max_in_source)}});
+    json["tiles"].push_back(Ordered{{"file", tile.file},
+                                    {"x", tile.x},
+                                    {"y", tile.y},
+                                    {"nodes", tile.nodes},
+                                    {"xxhash", tile.xxhash},
+                                    {"min_m", json_of(tile.bounds.min_in_source)},
+                                    {"max_m", json_of(tile.bounds.max_in_source)}});
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
 }
 
 TilesIndex parse_tiles_index(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t most_bytes = 64'000'000;
+  if (bytes.size() > most_bytes) {
+    refuse_index(name, "size", fmt::format("{} bytes", bytes.size()),
+                 fmt::format("at most {}", most_bytes));
+  }
   const Json json = Json::parse(bytes, nullptr, false);
   if (json.is_discarded()) refuse_index(name, "", "is no JSON document", "");
   return IndexReader(json, name).read();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <random>
 
@@ -165,9 +166,9 @@ TEST_F(TiledOccupancyTest, ReadsOnlyTilesThatABoxMeets) {
   EXPECT_EQ(index.tiles.size(), 40u);
   const TiledOccupancy tiles(folder_);
   EXPECT_EQ(tiles.cells_in({{95.0, 0.0, 0.0}, {125.0, 2.0, 2.0}}).size(), 3u);
-  EXPECT_EQ(tiles.tiles_read(), 3u);
+  EXPECT_EQ(tiles.tiles_read(), 4u);  // the box meets the square of one more
   tiles.cells_in({{95.0, 0.0, 0.0}, {125.0, 2.0, 2.0}});
-  EXPECT_EQ(tiles.tiles_read(), 3u);
+  EXPECT_EQ(tiles.tiles_read(), 4u);  // the box meets the square of one more
 }
 
 TEST_F(TiledOccupancyTest, MayBeLargerThanAnOctreesRange) {
@@ -213,6 +214,36 @@ TEST_F(TiledOccupancyTest, RefusesTilesThatAreNotThoseOfTheIndex) {
   EXPECT_THAT(message(), HasSubstr("as the index says"));
   std::filesystem::remove(folder_ / index.tiles[1].file);
   EXPECT_THAT(message(), HasSubstr("no such file"));
+}
+
+TEST_F(TiledOccupancyTest, TakesNothingOfWhatAKilledRunLeftBehind) {
+  PointCloud cloud;
+  cloud.points.emplace_back(1.0f, 1.0f, 1.0f);
+  put("tile_0_0.aside", std::string(5 * 144, '\x7f'));
+  build({cloud}, 64, 1);
+  EXPECT_EQ(finest(TiledOccupancy(folder_)).size(), 1u);
+}
+
+TEST_F(TiledOccupancyTest, RefusesAnIndexThatIsWrongAboutATile) {
+  std::mt19937 random(6);
+  const TilesIndex good = build(scans_around(random, {0, 0, 0}, 10.0), 64, 1'000'000);
+  const auto refuses = [&](const std::function<void(TilesIndex&)>& spoil) {
+    TilesIndex bad = good;
+    spoil(bad);
+    put("index.json", write_tiles_index(bad));
+    try {
+      TiledOccupancy(folder_).cells();
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refuses([](TilesIndex&) {}));
+  EXPECT_TRUE(refuses([](TilesIndex& index) { index.resolution_m = 0.2; }));
+  EXPECT_TRUE(refuses([](TilesIndex& index) { index.origin_in_source.x() += 0.1; }));
+  EXPECT_TRUE(refuses([](TilesIndex& index) { index.side_cells = 128; }));
+  EXPECT_TRUE(refuses([](TilesIndex& index) { index.tiles[0].bounds.max_in_source.x() -= 1.0; }));
+  EXPECT_TRUE(refuses([](TilesIndex& index) { index.tiles.push_back(index.tiles[0]); }));
 }
 
 TEST(TilesIndex, IsReadAsItWasWritten) {
