@@ -52,9 +52,9 @@ Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
   return *std::move(answer.route);
 }
 
-std::optional<map::OccupancyMap> occupancy_of(const Scenario& scenario) {
-  if (scenario.occupancy_files.empty()) return std::nullopt;
-  return map::load_occupancy(scenario.occupancy_files);
+std::unique_ptr<const map::OccupancyMap> occupancy_of(const Scenario& scenario) {
+  if (scenario.occupancy_files.empty()) return nullptr;
+  return std::make_unique<map::OccupancyMap>(map::load_occupancy(scenario.occupancy_files));
 }
 
 /// Makes obstacles of the scenario's; one instance per world.
@@ -190,7 +190,7 @@ World make_world(const Scenario& scenario) {
       drivers.push_back(maker.driver_of(obstacle.id, *traffic));
     }
   }
-  std::optional<map::OccupancyMap> occupancy = occupancy_of(scenario);
+  std::unique_ptr<const map::OccupancyMap> occupancy = occupancy_of(scenario);
   std::unique_ptr<const map::ClearanceField> field;
   if (occupancy) {
     field = std::make_unique<map::ClearanceField>(

@@ -27,9 +27,9 @@ struct Presence {
 /// poses are in the map's frame.
 struct World {
   map::RoadMap road_map;
-  std::optional<map::OccupancyMap> occupancy;
-  std::unique_ptr<const map::ClearanceField> field;  ///< of the occupancy; none without
-  geometry::Pose2 start;                             ///< of the ego's rear axle
+  std::unique_ptr<const map::OccupancyMap> occupancy;  ///< none where there is no file of it
+  std::unique_ptr<const map::ClearanceField> field;    ///< of the occupancy, which it refers to
+  geometry::Pose2 start;                               ///< of the ego's rear axle
   planning::Route route;
   planning::ReferenceLine line;
   std::vector<planning::Obstacle> obstacles;  ///< motions last for the scenario's duration
