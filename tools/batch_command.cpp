@@ -72,24 +72,29 @@ class BatchCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
+    // Some outputs name others: how the folder is called on the command line is not to matter.
+    folder_ = std::filesystem::absolute(folder_).lexically_normal();
     if (serves_) return run_server(streams);
     count_jobs(jobs_file_);  // nothing is made where there are none to read
-    make_output_folder(folder_, true);
     if (lists_) {
       list_missing(options(common), ResultStore(folder_), streams.out);
       return Exit::ok;
     }
+    make_output_folder(folder_, true);
     const FolderLock lock(folder_);
     return run_jobs(streams, common);
   }
 
  private:
   std::string fault() const {
+    const bool has_limits = isolates_ || time_limit_s_ || !memory_.empty();
     if (serves_) {
-      const bool is_alone = jobs_file_.empty() && !isolates_ && !time_limit_s_ && memory_.empty();
-      return is_alone ? "" : "--serve takes no JOBS, --isolate, --time-limit or --memory";
+      const bool is_alone = jobs_file_.empty() && !has_limits && !merges_ && !lists_ && !json_;
+      return is_alone ? "" : "--serve takes -o and --job-memory only";
     }
     if (jobs_file_.empty()) return "JOBS is required";
+    if (lists_ && (has_limits || merges_ || json_)) return "--list-missing takes JOBS and -o only";
+    if (merges_ && has_limits) return "--merge runs no job, so it takes no limits";
     if (!isolates_ && (time_limit_s_ || !job_memory_.empty())) {
       return "--time-limit and --job-memory need --isolate";
     }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +16,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
+#include "roadbed/tools/batch/buffered_output.h"
 #include "roadbed/tools/batch/counted.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
@@ -32,6 +35,21 @@ using Json = nlohmann::ordered_json;
       {.file = file, .place = {}, .element = {}, .found = found, .needed = {}, .remedy = remedy});
 }
 
+constexpr std::size_t kMostJobs = 100'000'000, kMostValues = 10'000'000;
+
+[[noreturn]] void refuse_number(const std::string& what, std::size_t most) {
+  refuse_jobs(what, fmt::format("more than {}", with_commas(most)), "write several files of jobs");
+}
+
+std::string line_of_job(const Json& job) {
+  try {
+    return job.dump();
+  } catch (const Json::type_error&) {  // another name would not be found again
+    refuse_jobs(job.dump(-1, ' ', false, Json::error_handler_t::replace),
+                "holds a text that is no UTF-8", "rename the file");
+  }
+}
+
 std::vector<Json> matching(const std::string& pattern) {
   const std::vector<std::string> files = matching_files(pattern);
   if (files.empty()) refuse_jobs(pattern, "matches no file", "check the pattern, and quote it");
@@ -47,8 +65,17 @@ std::optional<std::pair<long, long>> parse_range(const std::string& text) {
   const auto first = std::from_chars(text.data(), middle, from);
   const auto last = std::from_chars(middle + 2, end, to);
   const bool is_range = first.ec == std::errc() && last.ec == std::errc() && first.ptr == middle &&
-                        last.ptr == end && from <= to && to - from < 1'000'000'000;
+                        last.ptr == end && from <= to;
   return is_range ? std::optional(std::pair(from, to)) : std::nullopt;
+}
+
+void add_range(const std::pair<long, long>& range, std::vector<Json>& values) {
+  const auto [from, to] = range;
+  const auto steps = static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from);
+  if (steps >= kMostValues) refuse_number(fmt::format("{}..{}", from, to), kMostValues);
+  for (std::uint64_t step = 0; step <= steps; ++step) {
+    values.push_back(from + static_cast<long>(step));
+  }
 }
 
 std::vector<Json> values_of(const ArgumentInfo& option, const std::vector<std::string>& texts) {
@@ -57,12 +84,28 @@ std::vector<Json> values_of(const ArgumentInfo& option, const std::vector<std::s
     if (option.use == ArgumentInfo::Use::input) {
       std::ranges::move(matching(text), std::back_inserter(values));
     } else if (const auto range = parse_range(text)) {
-      for (long number = range->first; number <= range->second; ++number) values.push_back(number);
+      add_range(*range, values);
     } else {
       values.push_back(text);
     }
   }
   return values;
+}
+
+/// One of the lists whose product the jobs are.
+struct JobAxis {
+  std::function<void(Json& job, const Json& value)> put;
+  std::vector<Json> values;
+};
+
+/// @throws InputError if they are too many.
+std::size_t product_size(const std::vector<JobAxis>& axes) {
+  std::size_t count = 1;
+  for (const JobAxis& axis : axes) {
+    count *= axis.values.size();  // both are bounded
+    if (count > kMostJobs || axis.values.size() > kMostValues) refuse_number("jobs", kMostJobs);
+  }
+  return count;
 }
 
 /// The options of `jobs KIND`: those of the command, each with any number of values.
@@ -85,19 +128,14 @@ class KindOptions {
   const std::filesystem::path& file() const { return file_; }
   bool force() const { return force_; }
 
-  /// The product of all lists, the first of which changes slowest.
-  std::vector<Json> jobs() const {
-    std::vector<Json> jobs{Json{{"job", kind_.name}}};
-    if (!inputs_.empty()) multiply(jobs, values_of(kind_.positional(), inputs_), to_input);
-    for (const auto& [argument, values] : lists_) {
-      const auto put = [name = argument->name](Json& job, const Json& value) {
-        job["options"][name] = value;
-      };
-      if (!values.empty()) multiply(jobs, values_of(*argument, values), put);
-    }
-    if (!pairs_.empty()) multiply(jobs, pairs(), to_places);
-    for (Json& job : jobs) finish(job);
-    return jobs;
+  /// Gives the jobs one after the other: the product of all lists, the first of which changes
+  /// slowest. Returns how many there are.
+  /// @throws InputError before the first one, if they are too many.
+  std::size_t for_each_job(const std::function<void(const Json& job)>& take) const {
+    const std::vector<JobAxis> all = axes();
+    const std::size_t count = product_size(all);
+    for (std::size_t i = 0; i < count; ++i) take(job_at(all, i, count));
+    return count;
   }
 
  private:
@@ -136,16 +174,28 @@ class KindOptions {
     }
   }
 
-  template <typename Put>
-  static void multiply(std::vector<Json>& jobs, const std::vector<Json>& values, const Put& put) {
-    std::vector<Json> product;
-    for (const Json& job : jobs) {
-      for (const Json& value : values) {
-        product.push_back(job);
-        put(product.back(), value);
-      }
+  std::vector<JobAxis> axes() const {
+    std::vector<JobAxis> axes;
+    if (!inputs_.empty()) axes.push_back({to_input, values_of(kind_.positional(), inputs_)});
+    for (const auto& [argument, texts] : lists_) {
+      const auto put = [name = argument->name](Json& job, const Json& value) {
+        job["options"][name] = value;
+      };
+      if (!texts.empty()) axes.push_back({put, values_of(*argument, texts)});
     }
-    jobs = std::move(product);
+    if (!pairs_.empty()) axes.push_back({to_places, pairs()});
+    return axes;
+  }
+
+  Json job_at(const std::vector<JobAxis>& axes, std::size_t index, std::size_t count) const {
+    Json job{{"job", kind_.name}};
+    for (const JobAxis& axis : axes) {
+      count /= axis.values.size();
+      axis.put(job, axis.values[index / count]);
+      index %= count;
+    }
+    finish(job);
+    return job;
   }
 
   std::vector<Json> pairs() const {
@@ -188,16 +238,15 @@ class JobsCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     const KindOptions& options = *std::ranges::find_if(options_, &KindOptions::given);
     check_writable(options.file(), options.force());
-    const std::vector<Json> jobs = options.jobs();
-    std::string lines;
-    for (const Json& job : jobs) {
-      const std::string line = job.dump(-1, ' ', false, Json::error_handler_t::replace);
+    BufferedOutput lines(options.file());
+    const std::size_t count = options.for_each_job([&](const Json& job) {
+      const std::string line = line_of_job(job);
       parse_job(line, kinds_);
-      lines += line + "\n";
-    }
-    write_output(options.file(), lines);
+      lines.add(line + "\n");
+    });
+    lines.commit();
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} jobs\n", options.file().string(), with_commas(jobs.size()));
+      fmt::print(streams.err, "{}: {} jobs\n", options.file().string(), with_commas(count));
     }
     return Exit::ok;
   }

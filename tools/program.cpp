@@ -15,6 +15,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/build_id.h"
 
 namespace roadbed::tools {
 namespace {
@@ -83,7 +84,8 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
 int run_program(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
-  app.set_version_flag("--version", "roadbed " ROADBED_VERSION "\n" ROADBED_LIBRARIES);
+  app.set_version_flag(
+      "--version", "roadbed " ROADBED_VERSION " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
   app.require_subcommand(1);
   app.fallthrough();
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -70,7 +71,8 @@ void note_times(std::vector<double> cycle_ms, Row& row) {
   row.median_ms = cycle_ms[cycle_ms.size() / 2];
 }
 
-/// Drives one; whatever goes wrong with it is its own outcome.
+/// Drives one; whatever is wrong with it is its own outcome.
+/// @throws OutputError, std::bad_alloc  which say nothing of the scenario.
 void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
   try {
     const DrivenScenario driven = drive_scenario(row.file, choice);
@@ -82,6 +84,10 @@ void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
     row.at_s = driven.verdict.at_s;
     row.is_good = driven.verdict.outcome == Outcome::goal_reached;
     note_times(driven.cycle_ms, row);
+  } catch (const OutputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     row.outcome = "unusable";
     row.text = error.what();

@@ -86,15 +86,36 @@ std::string count_item(const BatchSummary& summary, JobStatus status) {
                      with_commas(summary.count(status)), look.word);
 }
 
+// A path as a link holds it, so that no sign of a name has a meaning of its own.
+std::string percent_encoded(std::string_view path) {
+  constexpr std::string_view plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
+  std::string encoded;
+  for (const char sign : path) {
+    if (plain.find(sign) != std::string_view::npos) {
+      encoded += sign;
+    } else {
+      encoded += fmt::format("%{:02X}", static_cast<unsigned char>(sign));
+    }
+  }
+  return encoded;
+}
+
+// What follows the hash and a sign; the whole name where others have named it.
+std::string shown_name(const std::string& file, const std::string& hash) {
+  const std::size_t begin = file.rfind(hash);
+  const std::size_t skipped = begin + hash.size() + 1;
+  return begin == std::string::npos || skipped >= file.size() ? file : file.substr(skipped);
+}
+
 // A report first: it is what a reader wants to see.
 std::string links(const WorstCase& job) {
   std::string reports, others;
   for (const std::string& file : job.files) {
     const bool is_page = file.ends_with(".html");
-    const std::string name = file.substr(file.rfind(job.hash) + job.hash.size());
-    const std::string_view shown = is_page ? "report" : std::string_view(name).substr(1);
+    const std::string shown = is_page ? "report" : shown_name(file, job.hash);
     (is_page ? reports : others) +=
-        fmt::format("<a href=\"{}\">{}</a> ", escape_markup(file), escape_markup(shown));
+        fmt::format("<a href=\"{}\">{}</a> ", percent_encoded(file), escape_markup(shown));
   }
   return reports + others;
 }

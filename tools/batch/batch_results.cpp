@@ -5,6 +5,7 @@
 #include <string>
 
 #include "roadbed/tools/batch/batch_page.h"
+#include "roadbed/tools/batch/buffered_output.h"
 #include "roadbed/tools/batch/counted.h"
 #include "roadbed/tools/support/output_file.h"
 
@@ -12,34 +13,6 @@ namespace roadbed::tools {
 namespace {
 
 constexpr std::size_t kMostListed = 500;  // of each kind
-constexpr std::size_t kPiece = std::size_t{1} << 20;
-
-/// Collects small pieces into few writes.
-class BufferedOutput {
- public:
-  explicit BufferedOutput(const std::filesystem::path& file) : file_(file) {}
-
-  void add(std::string_view bytes) {
-    buffer_ += bytes;
-    if (buffer_.size() >= kPiece) flush();
-  }
-
-  void commit() {
-    flush();
-    file_.commit();
-  }
-
- private:
-  void flush() {
-    file_.write(written_, buffer_);
-    written_ += buffer_.size();
-    buffer_.clear();
-  }
-
-  OutputFile file_;
-  std::string buffer_;
-  std::uint64_t written_ = 0;
-};
 
 }  // namespace
 

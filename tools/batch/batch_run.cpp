@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -19,17 +20,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::ifstream open_jobs(const fs::path& file) {
-  std::error_code error;
-  std::ifstream stream;
-  if (!fs::is_directory(file, error)) stream.open(file, std::ios::binary);
-  if (stream.is_open()) return stream;
+[[noreturn]] void refuse_jobs_file(const fs::path& file, const std::string& found,
+                                   const std::string& remedy) {
   throw map::InputError({.file = file.string(),
                          .place = {},
                          .element = {},
-                         .found = fs::exists(file, error) ? "cannot be read" : "no such file",
+                         .found = found,
                          .needed = "a file with a job a line",
-                         .remedy = "check the path; roadbed jobs writes such files"});
+                         .remedy = remedy});
+}
+
+std::ifstream open_jobs(const fs::path& file) {
+  const std::string remedy = "check the path; roadbed jobs writes such files";
+  std::error_code error;
+  if (!fs::exists(file, error)) refuse_jobs_file(file, "no such file", remedy);
+  if (!fs::is_regular_file(file, error)) {
+    refuse_jobs_file(file, "is no regular file",
+                     "write the jobs to a file first: it is read more than once");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.is_open()) refuse_jobs_file(file, "cannot be read", remedy);
+  return stream;
 }
 
 std::unique_ptr<JobRunner> make_runner(const BatchOptions& options) {
@@ -143,11 +154,10 @@ void BatchRun::bring(const Taken& taken, JobRunner& runner) {
 bool BatchRun::claim(std::size_t index, const JobHash& hash) {
   const std::scoped_lock lock(mutex_);
   order_[index].hash = hash;
-  const bool is_first = claimed_.insert(hash).second;
-  const bool stands = is_first && store_.stands(hash, options_.merges);
-  if (stands) there_.insert(hash);
-  if (there_.contains(hash)) ++were_there_;
-  if (is_first && !stands) return true;
+  const auto [claim, is_first] = were_there_by_hash_.try_emplace(hash, false);
+  if (is_first) claim->second = store_.stands(hash, options_.merges);
+  if (claim->second) ++were_there_;
+  if (is_first && !claim->second) return true;
   progress_.skip_one();
   return false;
 }

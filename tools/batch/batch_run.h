@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iosfwd>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -42,7 +42,7 @@ std::size_t count_jobs(const std::filesystem::path& jobs_file);
 void list_missing(const BatchOptions& options, const ResultStore& store, std::ostream& out);
 
 /// Brings the jobs of a file to their results: those that have none that stands run, in threads.
-/// Memory: about 100 bytes a job beside the store, and the jobs that run.
+/// Memory: about 120 bytes a job beside the store, and the jobs that run.
 class BatchRun {
  public:
   /// @param store, progress  live as long as this.
@@ -94,7 +94,7 @@ class BatchRun {
 
   std::mutex mutex_;  // of all that follows
   std::vector<LineResult> order_;
-  std::set<JobHash> claimed_, there_;
+  std::map<JobHash, bool> were_there_by_hash_;  // of all jobs taken
   std::size_t were_there_ = 0, missing_ = 0;
   bool is_complete_ = false;
   std::exception_ptr error_;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 
 #include "roadbed/tools/batch/hash_text.h"
 
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPiece = std::size_t{1} << 18;
+constexpr std::size_t kMostKnown = 10'000;  // some 3 MB; more are read again
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
 struct FreeState {
@@ -65,6 +67,12 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
+template <typename Value>
+void keep(std::map<std::string, Value>& known, const fs::path& file, Value value) {
+  if (known.size() >= kMostKnown) known.clear();
+  known[file.native()] = std::move(value);
+}
+
 // The job itself says what is wrong with a file that cannot be read.
 std::vector<fs::path> names_in(const fs::path& path, const FilesNamed& named) {
   try {
@@ -102,7 +110,7 @@ std::string FileHashes::of_file(const fs::path& file) {
   }
   const std::string hash = read_and_hash(file);
   const std::scoped_lock lock(mutex_);
-  hashes_[file.native()] = {stamp, hash};
+  keep(hashes_, file, {stamp, hash});
   return hash;
 }
 
@@ -127,7 +135,7 @@ std::vector<fs::path> FileHashes::named_in(const fs::path& path, const FilesName
   }
   std::vector<fs::path> names = names_in(path, named);
   const std::scoped_lock lock(mutex_);
-  names_[path.native()] = {stamp, names};
+  keep(names_, path, {stamp, names});
   return names;
 }
 

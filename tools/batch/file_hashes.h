@@ -11,8 +11,8 @@
 
 namespace roadbed::tools {
 
-/// Hashes of what files hold, remembered by path, size and time of last change. May be asked by
-/// several threads.
+/// Hashes of what files hold, remembered by path, size and time of last change, of 10,000 files at
+/// most. May be asked by several threads.
 class FileHashes {
  public:
   /// XXH3 (128 bits, hexadecimal) of a file's bytes, or of the names and bytes of all files below a

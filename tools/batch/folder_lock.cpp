@@ -4,9 +4,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -28,15 +31,35 @@ int open_or_refuse(const fs::path& file) {
                      .remedy = "choose a folder that you may write to"});
 }
 
+using IsLeft = bool (*)(const std::string& name);
+
 // Outputs in the making have a dot before their name.
-void sweep(const fs::path& folder) {
-  std::error_code error;
+bool has_dot(const std::string& name) { return name.starts_with('.'); }
+
+bool is_page_in_the_making(const std::string& name) {
+  constexpr std::array<std::string_view, 3> starts{".results.jsonl.", ".summary.json.",
+                                                   ".index.html."};
+  return std::ranges::any_of(starts, [&](auto start) { return name.starts_with(start); });
+}
+
+template <typename Walk>
+void remove_files(const fs::path& folder, IsLeft is_left) {
+  std::error_code error, unknown;
   std::vector<fs::path> left;
-  auto entry = fs::recursive_directory_iterator(folder, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    if (entry->path().filename().native().starts_with('.')) left.push_back(entry->path());
+  auto entry = Walk(folder, error);
+  for (; !error && entry != Walk(); entry.increment(error)) {
+    const bool is_file = entry->is_regular_file(unknown);
+    if (is_file && is_left(entry->path().filename().native())) left.push_back(entry->path());
   }
   for (const fs::path& file : left) fs::remove(file, error);
+}
+
+// Below these folders everything is the batch's own; beside them the user may keep what he likes.
+void sweep(const fs::path& folder) {
+  remove_files<fs::directory_iterator>(folder, is_page_in_the_making);
+  for (const char* own : {"files", "journal", "tables"}) {
+    remove_files<fs::recursive_directory_iterator>(folder / own, has_dot);
+  }
 }
 
 }  // namespace

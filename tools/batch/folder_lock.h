@@ -19,7 +19,8 @@ class FolderLock {
 };
 
 /// Marks a folder as being worked in, by the file `unfinished` in it. Where the mark was left
-/// behind by a run that was killed, half-written files are swept away first.
+/// behind by a run that was killed, half-written files are swept away first: those of the pages,
+/// and those below `files`, `journal` and `tables`, and no others.
 class UnfinishedMark {
  public:
   /// @throws OutputError if the mark cannot be made.

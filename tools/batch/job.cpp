@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 4> kOwnOptions{"force", "json", "quiet", "threads"};
+// `rules` prints a table, whatever the job's inputs are.
+constexpr std::array<std::string_view, 5> kOwnOptions{"force", "json", "quiet", "rules", "threads"};
 
 std::string kind_names(const JobKinds& kinds) {
   std::string names;
@@ -43,7 +44,7 @@ void check_value(const ArgumentInfo& argument, const JsonNode& node) {
 const ArgumentInfo& known_option(const JobKind& kind, const std::string& name,
                                  const JsonNode& node) {
   if (std::ranges::find(kOwnOptions, name) != kOwnOptions.end()) {
-    node.refuse("is set by the batch", "", "leave it out");
+    node.refuse("is set by the batch, or no option of a job", "", "leave it out");
   }
   const ArgumentInfo* option = kind.option(name);
   if (option == nullptr) {

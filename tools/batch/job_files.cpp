@@ -52,6 +52,7 @@ std::vector<JobOutput> outputs_of(const Job& job, const std::string& hash, const
 std::vector<std::string> files_of(const std::vector<JobOutput>& outputs, const fs::path& folder) {
   std::vector<std::string> files;
   const auto add = [&](const fs::path& file) {
+    if (file.filename().native().starts_with('.')) return;  // left half-written by a killed process
     files.push_back(file.lexically_relative(folder).generic_string());
   };
   for (const JobOutput& output : outputs) {

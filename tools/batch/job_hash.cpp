@@ -1,13 +1,17 @@
 #include "roadbed/tools/batch/job_hash.h"
 
 #include "roadbed/tools/batch/hash_text.h"
+#include "roadbed/tools/support/build_id.h"
 
 namespace roadbed::tools {
 namespace {
 
 using nlohmann::json;
 
-std::string version() { return ROADBED_VERSION; }
+const std::string& program() {
+  static const std::string text = ROADBED_VERSION " " + build_id();
+  return text;
+}
 
 void add_file(const std::filesystem::path& path, FileHashes& files, json& list) {
   list.push_back({path.generic_string(), files.of(path)});
@@ -23,13 +27,13 @@ std::string hash_of(const Job& job, FileHashes& files) {
       add_file(path, files, contents);
     }
   }
-  const json identity = {version(),   job.kind->name, job.inputs,
+  const json identity = {program(),   job.kind->name, job.inputs,
                          job.options, job.outputs,    std::move(contents)};
   return hash_text(identity.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 std::string hash_of_bad_line(std::string_view line) {
-  return hash_text(version() + " bad line " + std::string(line));
+  return hash_text(program() + " bad line " + std::string(line));
 }
 
 }  // namespace roadbed::tools

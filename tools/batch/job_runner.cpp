@@ -25,7 +25,8 @@ std::string ProcessRunner::run(const Job& job, const std::string& hash, const st
   if (!answer.death.empty()) return failed(Cause::crash, answer.death);
   const auto head = read_head(answer.line);
   if (!head) return failed(Cause::internal, "its process answered with no result");
-  if (text_of(head->hash) != hash) {
+  if (const std::string other = text_of(head->hash); other != hash) {
+    remove_files_of(other, folder_);
     return failed(Cause::changed, "an input changed while the job ran");
   }
   if (head->cause != Cause::memory) return answer.line;

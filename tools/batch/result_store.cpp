@@ -22,6 +22,7 @@ constexpr std::size_t kLongestResult = std::size_t{1} << 30;
 
 std::vector<fs::path> journals_in(const fs::path& folder) {
   std::vector<fs::path> journals;
+  if (std::error_code error; !fs::exists(folder, error)) return journals;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.is_regular_file() && entry.path().extension() == ".jsonl") {
       journals.push_back(entry.path());
@@ -59,11 +60,9 @@ bool are_there(const std::vector<std::string>& files, const fs::path& folder) {
 
 ResultStore::ResultStore(fs::path folder) : folder_(std::move(folder)) {
   const fs::path journals = folder_ / "journal";
-  make_output_folder(journals, true);
   journals_ = journals_in(journals);
   for (std::uint32_t i = 0; i < journals_.size(); ++i) read_journal(i);
   journals_.push_back(next_journal(journals));
-  own_ = std::make_unique<AppendedFile>(journals_.back());
 }
 
 void ResultStore::read_journal(std::uint32_t index) {
@@ -97,6 +96,10 @@ void ResultStore::add(std::string_view line) {
   const auto head = read_head(line);
   if (!head) throw std::invalid_argument("ResultStore::add: the line is no result");
   const std::scoped_lock lock(mutex_);
+  if (!own_) {
+    make_output_folder(folder_ / "journal", true);
+    own_ = std::make_unique<AppendedFile>(journals_.back());
+  }
   const std::uint64_t begin = own_->append(line);
   entries_[head->hash] = {.journal = static_cast<std::uint32_t>(journals_.size() - 1),
                           .is_answer = head->status != JobStatus::failed,

@@ -25,9 +25,9 @@ struct LineResult {
 /// the order in which they came. Memory: about 100 bytes a result. May be used by several threads.
 class ResultStore {
  public:
-  /// Reads all journals; of several results of a job an answer counts before a failure, else the
-  /// last one of the last journal by name. What is no whole line, or names a file that is gone,
-  /// does not count.
+  /// Reads all journals, and makes nothing; of several results of a job an answer counts before a
+  /// failure, else the last one of the last journal by name. What is no whole line, or names a file
+  /// that is gone, does not count.
   /// @throws InputError if a journal cannot be read.
   explicit ResultStore(std::filesystem::path folder);
 
@@ -60,7 +60,7 @@ class ResultStore {
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> journals_;  // the last one is this run's
-  std::unique_ptr<AppendedFile> own_;
+  std::unique_ptr<AppendedFile> own_;            // made with its first result
   mutable std::mutex mutex_;
   std::unordered_map<JobHash, Entry, HashOfHash> entries_;
 };

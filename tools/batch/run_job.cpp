@@ -31,16 +31,29 @@ std::vector<std::string> words_of(const Job& job, const std::vector<JobOutput>& 
   return words;
 }
 
+[[noreturn]] void refuse_folder(const fs::path& folder, const std::string& found) {
+  throw OutputError({.file = folder.string(),
+                     .place = {},
+                     .element = {},
+                     .found = found,
+                     .needed = {},
+                     .remedy = "free some space or choose another folder"});
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error && !fs::is_directory(folder)) {
-    throw OutputError({.file = folder.string(),
-                       .place = {},
-                       .element = {},
-                       .found = "cannot be made: " + error.message(),
-                       .needed = {},
-                       .remedy = "free some space or choose another folder"});
+    refuse_folder(folder, "cannot be made: " + error.message());
+  }
+}
+
+// What a process that was killed left in a folder would be taken for the job's.
+void remove_old(const std::vector<JobOutput>& outputs) {
+  for (const JobOutput& output : outputs) {
+    std::error_code error;
+    fs::remove_all(output.path, error);
+    if (error) refuse_folder(output.path, "cannot be removed: " + error.message());
   }
 }
 
@@ -54,10 +67,14 @@ JobResult run_command(const Job& job, const std::string& hash, const fs::path& f
     return failure(hash, Cause::line, kUsage, fault);
   }
   if (!outputs.empty()) make_folder(folder_of_files(hash, folder));
+  remove_old(outputs);
   std::ostringstream out, err;
   const Exit exit = command->run({out, err}, {.quiet = true, .threads = 1, .is_alone = false});
   if (exit != Exit::ok && out.view().empty()) {
     return failure(hash, Cause::input, static_cast<int>(exit), err.str());
+  }
+  if (!nlohmann::json::accept(out.view())) {
+    return failure(hash, Cause::internal, static_cast<int>(exit), "what it printed is no JSON");
   }
   JobResult result{.hash = hash,
                    .status = exit == Exit::ok ? JobStatus::done : JobStatus::no,

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/run_job.h"
@@ -21,7 +22,12 @@ std::string answer(const JobLines::Line& line, const JobKinds& kinds, FileHashes
   }
   try {
     const Job job = parse_job(line.text, kinds);
-    JobResult result = run_job(job, hash_of(job, files), options.folder);
+    const std::string hash = hash_of(job, files);
+    JobResult result = run_job(job, hash, options.folder);
+    if (hash_of(job, files) != hash) {
+      remove_files_of(hash, options.folder);
+      result = failure(hash, Cause::changed, {}, "an input changed while the job ran");
+    }
     if (result.cause == Cause::memory && !options.job_memory.empty()) {
       result.reason = "needed more than " + options.job_memory;
     }

@@ -67,12 +67,43 @@ std::string death_of(int status) {
                      name == nullptr ? "" : fmt::format(" (SIG{})", name));
 }
 
+std::optional<Clock::time_point> deadline_in(const std::optional<double>& limit_s) {
+  if (!limit_s) return {};
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*limit_s));
+}
+
+enum class Sending { sent, broken, late };
+
 // Milliseconds to wait for, -1 for ever.
 int wait_ms(const std::optional<Clock::time_point>& deadline) {
   if (!deadline) return -1;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now());
   constexpr std::int64_t most = 1'000'000;
   return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, most));
+}
+
+/// Waits until the descriptor can be read from or written to, or its other end is gone.
+/// @returns false at the deadline.
+bool wait_for(int descriptor, short events, const std::optional<Clock::time_point>& deadline) {
+  for (;;) {
+    pollfd ready{.fd = descriptor, .events = events, .revents = 0};
+    if (::poll(&ready, 1, wait_ms(deadline)) > 0) return true;
+    if (deadline && Clock::now() >= *deadline) return false;
+  }
+}
+
+/// Sends a line, with its end.
+Sending send_line(int descriptor, std::string_view rest,
+                  const std::optional<Clock::time_point>& deadline) {
+  while (!rest.empty()) {
+    if (!wait_for(descriptor, POLLOUT, deadline)) return Sending::late;
+    const ssize_t written = ::write(descriptor, rest.data(), rest.size());
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (written < 0) return Sending::broken;
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return Sending::sent;
 }
 
 enum class Reading { line, end, late };
@@ -82,11 +113,7 @@ Reading read_line(int descriptor, const std::optional<Clock::time_point>& deadli
                   std::string& line) {
   std::vector<char> piece(std::size_t{1} << 16);
   for (;;) {
-    pollfd ready{.fd = descriptor, .events = POLLIN, .revents = 0};
-    const int count = ::poll(&ready, 1, wait_ms(deadline));
-    if (count < 0 && errno == EINTR) continue;
-    if (count == 0 && deadline && Clock::now() >= *deadline) return Reading::late;
-    if (count == 0) continue;
+    if (!wait_for(descriptor, POLLIN, deadline)) return Reading::late;
     const ssize_t size = ::read(descriptor, piece.data(), piece.size());
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) return Reading::end;
@@ -118,6 +145,7 @@ void ServeProcess::start() {
   ::close(to_child.read_end);
   ::close(from_child.write_end);
   input_ = to_child.write_end;
+  ::fcntl(input_, F_SETFL, O_NONBLOCK);  // a process that hangs may leave its line unread
   output_ = from_child.read_end;
   answered_ = 0;
   process_ = std::max(child, 0);
@@ -144,28 +172,20 @@ void ServeProcess::end() {
   reap();
 }
 
-bool ServeProcess::send(const std::string& line) const {
-  std::string_view rest = line;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(input_, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    rest.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
 ServeProcess::Answer ServeProcess::ask(const std::string& line, std::optional<double> limit_s) {
   if (process_ == 0) start();
-  if (!send(line + "\n")) {  // it died between two jobs, over none
+  const std::string bytes = line + "\n";
+  const auto deadline = deadline_in(limit_s);
+  Sending sending = send_line(input_, bytes, deadline);
+  if (sending == Sending::broken) {  // it died between two jobs, over none
     end();
     start();
-    if (!send(line + "\n")) return {.death = reap()};
+    sending = send_line(input_, bytes, deadline);
   }
-  std::optional<Clock::time_point> deadline;
-  if (limit_s) {
-    deadline = Clock::now() +
-               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*limit_s));
+  if (sending == Sending::broken) return {.death = reap()};
+  if (sending == Sending::late) {
+    end();
+    return {.is_late = true};
   }
   Answer answer;
   switch (read_line(output_, deadline, answer.line)) {

@@ -27,7 +27,7 @@ class ServeProcess {
     std::string death = {};  ///< "killed by signal 11 (SIGSEGV)"
   };
 
-  /// @param limit_s  wall clock that the answer may take.
+  /// @param limit_s  wall clock that the question and its answer may take.
   /// @throws OutputError if no process can be started.
   Answer ask(const std::string& line, std::optional<double> limit_s);
 
@@ -42,7 +42,6 @@ class ServeProcess {
 
  private:
   void start();
-  bool send(const std::string& line) const;
   std::string reap();
 
   std::filesystem::path folder_;

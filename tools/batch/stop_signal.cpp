@@ -8,7 +8,11 @@ namespace {
 std::atomic<bool> asked = false;  // a handler of signals has no other place
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void ask(int) { asked = true; }
+void ask(int) {
+  asked = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
 
 }  // namespace
 
@@ -16,7 +20,6 @@ StopSignal::StopSignal() {
   asked = false;
   struct sigaction stop {};
   stop.sa_handler = ask;
-  stop.sa_flags = static_cast<int>(SA_RESETHAND);
   ::sigaction(SIGINT, &stop, &interrupt_);
   ::sigaction(SIGTERM, &stop, &terminate_);
   struct sigaction ignore {};

@@ -4,9 +4,9 @@
 
 namespace roadbed::tools {
 
-/// While it lives, the first SIGINT or SIGTERM only asks to stop; a second one ends the process. A
-/// reader that has gone away is an error of writing, not the end of the process, and so is a file
-/// that may not grow.
+/// While it lives, the first SIGINT or SIGTERM only asks to stop; the second of either ends the
+/// process. A reader that has gone away is an error of writing, not the end of the process, and so
+/// is a file that may not grow.
 class StopSignal {
  public:
   StopSignal();

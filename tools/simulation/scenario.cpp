@@ -268,9 +268,15 @@ Scenario read_scenario(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file) {
   std::vector<std::filesystem::path> files;
   if (std::filesystem::is_directory(file)) {
+    std::vector<std::filesystem::path> scenarios;
     for (const auto& entry : std::filesystem::directory_iterator(file)) {
-      if (entry.path().extension() != ".json" || entry.is_directory()) continue;
-      std::ranges::copy(files_named_by_scenario(entry.path()), std::back_inserter(files));
+      if (entry.path().extension() == ".json" && !entry.is_directory()) {
+        scenarios.push_back(entry.path());
+      }
+    }
+    std::ranges::sort(scenarios);
+    for (const auto& scenario : scenarios) {
+      std::ranges::copy(files_named_by_scenario(scenario), std::back_inserter(files));
     }
     return files;
   }

@@ -20,7 +20,7 @@ void ProgressBar::skip_one() {
 }
 
 void ProgressBar::draw() {
-  if (!is_shown_) return;
+  if (!is_shown_ || done_ > all_) return;  // more came than were counted
   constexpr std::size_t width = 40;
   constexpr std::chrono::milliseconds pause{50};  // a terminal is slower than many a piece of work
   const auto now = Clock::now();

@@ -85,5 +85,30 @@ TEST(JobsCommand, RefusesAPatternThatMatchesNothingAndAnUnknownOutput) {
   EXPECT_EQ(run_roadbed({"jobs", "import", "--spped", "1", "-o", out}).status, 2);
 }
 
+TEST(JobsCommand, RefusesMoreJobsThanAFileShouldHold) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "jobs.jsonl").string();
+  for (const char* range : {"1..100000", "1..900000000000"}) {
+    const ProgramRun run = run_roadbed({"jobs", "audit", "--occupancy", folder.write("a.bt", ""),
+                                        "--inflate", range, "--clearance", "1..100000", "-o", out});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err, HasSubstr("write several files of jobs"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(JobsCommand, RefusesANameThatJsonCannotHold) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun run = run_roadbed({"jobs", "import",
+                                      folder.write("stra\xdf"
+                                                   "e.xodr",
+                                                   ""),
+                                      "-o", out});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.err, HasSubstr("no UTF-8"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 }  // namespace
 }  // namespace roadbed::tests

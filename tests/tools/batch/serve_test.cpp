@@ -15,7 +15,6 @@ namespace roadbed::tests {
 namespace {
 
 using nlohmann::json;
-using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 
@@ -88,6 +87,7 @@ TEST(Serve, AnswersEveryBadLineWithItsReasonAndGoesOn) {
       {R"({"job":"audit","speed":1})", "speed"},
       {R"({"job":"audit","options":{"trajectry":"a"}})", "is no option of audit"},
       {R"({"job":"audit","options":{"force":true}})", "is set by the batch"},
+      {R"({"job":"validate","options":{"rules":true}})", "no option of a job"},
       {R"({"job":"audit","options":{"report":"a.html"}})", "the batch chooses"},
       {R"({"job":"audit","options":{"inflate":{"m":1}}})", "a text, a number, or a list"},
       {R"({"job":"route","options":{"matrix":1}})", "true or false"},
@@ -145,6 +145,58 @@ TEST(Serve, GivesAJobAnotherHashWhenAFileThatItReadsChanges) {
   EXPECT_NE(second, first);
   add_space("town.xodr");  // named by the scenario, not by the job
   EXPECT_NE(hash(), second);
+}
+
+json simulate_job(const std::filesystem::path& scenario) {
+  return {{"job", "simulate"}, {"inputs", {scenario.string()}}};
+}
+
+TEST(Serve, TakesNothingThatAKilledProcessLeftForFilesOfTheJob) {
+  const TemporaryFolder folder;
+  const std::string line = simulate_job(data_folder() / "drive.json").dump();
+  const json first = served(line, folder.path()).at(0);
+  const auto hash = first["hash"].get<std::string>();
+  const std::string own = "files/" + hash.substr(0, 2) + "/" + hash + "/";
+  folder.write(own + ".report.html.4711-0", "half");
+  folder.write(own + "older.csv", "");
+  EXPECT_EQ(served(line, folder.path()).at(0), first);
+  EXPECT_FALSE(std::filesystem::exists(folder / (own + "older.csv")));
+}
+
+TEST(Serve, SaysThatAnInputChangedWhileTheJobRan) {
+  const TemporaryFolder inputs;
+  for (const char* name : {"town.xodr", "town.bt", "drive.json"}) {
+    std::filesystem::copy_file(data_folder() / name, inputs / name);
+  }
+  // What it writes goes below the folder that it reads.
+  const json result = served(simulate_job(inputs.path()).dump(), inputs / "out").at(0);
+  EXPECT_EQ(result["status"], "failed");
+  EXPECT_EQ(result["cause"], "changed");
+  EXPECT_TRUE(result["files"].empty());
+  EXPECT_TRUE(files_below(inputs / "out").empty());
+}
+
+TEST(Serve, KnowsAJobOfAnotherProgramByAnotherHash) {
+  const TemporaryFolder folder, inputs;
+  const std::string line = route_job("lane:7/0/1@55").dump();
+  const std::string jobs = inputs.write("jobs.jsonl", line);
+  const ProgramRun listed =
+      run_roadbed({"batch", jobs, "-o", folder.path().string(), "--list-missing"});
+  const json here = served(line, folder.path()).at(0);  // in the program of the tests
+  EXPECT_THAT(listed.out, EndsWith("\t" + line + "\n"));
+  EXPECT_NE(listed.out.substr(0, 32), here["hash"].get<std::string>());
+}
+
+TEST(Program, SaysTheBuildThatItsLinkerWroteIntoIt) {
+  const std::string shown = run_roadbed({"--version"}).out;
+  const std::size_t begin = shown.find("(build ") + 7, end = shown.find(')');
+  ASSERT_EQ(end - begin, 40U) << shown;
+  EXPECT_LT(end, shown.find('\n'));
+  std::string note("GNU\0", 4);
+  for (std::size_t i = begin; i < end; i += 2) {
+    note += static_cast<char>(std::stoi(shown.substr(i, 2), nullptr, 16));
+  }
+  EXPECT_NE(bytes_of(program_file()).find(note), std::string::npos);
 }
 
 }  // namespace

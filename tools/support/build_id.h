@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace roadbed::tools {
+
+/// What the linker calls this program (ELF's note NT_GNU_BUILD_ID, a hash of what it linked), in
+/// hexadecimal digits: the same for the same sources, compiler and options, another one after any
+/// change of the code. Empty where the linker wrote none.
+std::string build_id();
+
+}  // namespace roadbed::tools
