@@ -17,10 +17,13 @@ namespace roadbed::planning {
 struct GroundUnder {
   double level_m = 0.0;
   std::shared_ptr<const map::Ground> surface = nullptr;
+  double margin_m = 0.0;  ///< the ground may be this much lower or higher
 
+  /// Holds the heights above the ground wherever within the margin that is.
   map::HeightBand band(double from_height_m, double to_height_m) const {
-    if (surface) return {from_height_m, to_height_m, surface.get()};
-    return {level_m + from_height_m, level_m + to_height_m};
+    const double from_m = from_height_m - margin_m, to_m = to_height_m + margin_m;
+    if (surface) return {from_m, to_m, surface.get()};
+    return {level_m + from_m, level_m + to_m};
   }
 };
 

@@ -94,6 +94,7 @@ class AuditCommand : public Command {
     std::optional<map::RoadMap> road_map;
     if (!map_.empty()) road_map = map::load_map(map_);
     question.ground = ground_rule(road_map ? &*road_map : nullptr);
+    question.ground.body = reach_of(question);
     const std::vector<AuditSubject> subjects = subjects_.list(road_map ? &*road_map : nullptr);
     const Scene scene = make_scene(road_map, streams, common);
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
@@ -125,8 +126,10 @@ class AuditCommand : public Command {
     arguments
         .add("--ground", ground_,
              "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
-             "road's surface of --map, which the band follows; measured: the lowest surface that "
-             "was measured along the drive. Default: map with --map, else 0")
+             "road's surface of --map, which the band follows; measured: the surface that was "
+             "measured along the drive, to a cell, with nothing below it, on all sides and "
+             "without a step, refused elsewhere; heights are widened by a cell. A drive that is "
+             "all upon an obstacle takes its top for ground. Default: map with --map, else 0")
         .checked(ground_fault);
     arguments
         .add("--from-height", from_height_m_,
@@ -303,10 +306,12 @@ class AuditCommand : public Command {
     fmt::print(err, "note: heights are above the {}, z {:.2f} m to {:.2f} m along the drive\n",
                is_map ? "map's road" : "measured ground", low_m, high_m);
     const double underside_m =
-        std::ranges::min(question.parts, {}, &geometry::BodyPart::from_height_m).from_height_m;
-    if (!ground.surface || underside_m > cell_m) return;
+        std::ranges::min(question.parts, {}, &geometry::BodyPart::from_height_m).from_height_m -
+        ground.margin_m;
+    const bool is_exact = !ground.surface && ground.margin_m == 0.0;
+    if (is_exact || underside_m > cell_m) return;
     fmt::print(err,
-               "note: cells of {} m: the ground's own reach up to the vehicle's underside, {} m; "
+               "note: cells of {} m: the ground's own reach up to where heights begin, {:.3g} m; "
                "raise --from-height, or build finer cells\n",
                cell_m, underside_m);
   }

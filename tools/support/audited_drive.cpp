@@ -53,12 +53,25 @@ void check_heights(const map::OccupancySource& occupancy, const map::Ground& gro
 planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
                                    const geometry::Trajectory& drive, const GroundRule& rule) {
   if (rule.kind == GroundRule::Kind::level) return {.level_m = rule.level_m};
+  const bool is_map = rule.kind == GroundRule::Kind::map;
   auto ground = std::make_shared<const map::Ground>(
-      rule.kind == GroundRule::Kind::map ? planning::road_under(*rule.road_map, drive)
-                                         : planning::measured_under(occupancy, drive));
-  if (rule.kind == GroundRule::Kind::map) check_heights(occupancy, *ground);
-  if (ground->is_level()) return {.level_m = ground->lowest_m()};
-  return {.level_m = ground->lowest_m(), .surface = std::move(ground)};
+      is_map ? planning::road_under(*rule.road_map, drive)
+             : planning::measured_under(occupancy, drive, rule.body));
+  if (is_map) check_heights(occupancy, *ground);
+  planning::GroundUnder under{.level_m = ground->lowest_m()};
+  if (!is_map) under.margin_m = planning::measured_ground_margin_m(occupancy.resolution_m());
+  if (!ground->is_level()) under.surface = std::move(ground);
+  return under;
+}
+
+planning::BodyReach reach_of(const AuditQuestion& question) {
+  planning::BodyReach reach;
+  for (const geometry::BodyPart& part : question.parts) {
+    const double grown_m = part.radius_m + question.options.inflate_m;
+    reach.rear_m = std::min(reach.rear_m, part.rear_m - grown_m);
+    reach.front_m = std::max(reach.front_m, part.front_m + grown_m);
+  }
+  return reach;
 }
 
 planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,

@@ -8,6 +8,7 @@
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/map/road_map.h"
+#include "roadbed/planning/measured_ground.h"
 #include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tools/support/audit_subjects.h"
 
@@ -19,6 +20,7 @@ struct GroundRule {
   Kind kind = Kind::level;
   double level_m = 0.0;
   const map::RoadMap* road_map = nullptr;  ///< of Kind::map
+  planning::BodyReach body = {};           ///< of Kind::measured: what needs ground under it
 };
 
 /// What is asked of every drive.
@@ -32,6 +34,9 @@ struct AuditQuestion {
   /// From the lowest part's underside to the highest top.
   map::HeightBand heights(const planning::GroundUnder& under) const;
 };
+
+/// How far the vehicle reaches, with the margin.
+planning::BodyReach reach_of(const AuditQuestion& question);
 
 /// What the vehicle of a question meets on a drive.
 planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,
