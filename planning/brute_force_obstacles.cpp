@@ -18,7 +18,8 @@ constexpr std::int64_t kTileSide = 64;
 constexpr double kMostColumns = 1e9;
 constexpr double kFarthest_m = 1e9;
 constexpr auto kTooMuch = "the drive's surroundings have too many columns to be checked";
-constexpr std::size_t kMostTiles = 50'000;  // 800 MB of columns
+constexpr std::size_t kMostTiles = 50'000;      // 800 MB of columns
+constexpr std::size_t kMostBoxes = 20'000'000;  // 480 MB; over a ground one for each column
 
 double point_to_edge_m(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                        const Eigen::Vector2d& b) {
@@ -151,6 +152,8 @@ BruteForceObstacles::BruteForceObstacles(const std::vector<map::OccupancyCell>& 
 void BruteForceObstacles::add_occupied(const map::OccupancyCell& cell) {
   const double side_m = band_.ground ? resolution_m_ : cell.size_m;
   const auto count = static_cast<int>(std::lround(cell.size_m / side_m));
+  const auto columns = static_cast<std::size_t>(count) * static_cast<std::size_t>(count);
+  if (band_.ground && x_m_.size() + columns > kMostBoxes) throw std::length_error(kTooMuch);
   const Eigen::Vector2d corner = cell.centre_in_source.head<2>().array() - 0.5 * cell.size_m;
   for (int x = 0; x < count; ++x) {
     for (int y = 0; y < count; ++y) {

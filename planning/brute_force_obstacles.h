@@ -43,6 +43,7 @@ class BodyOutline {
 /// Poses are those of the rear axle's centre.
 class BruteForceObstacles {
  public:
+  /// @throws std::length_error if over a ground they have over 2·10⁷ columns.
   BruteForceObstacles(const std::vector<map::OccupancyCell>& cells, double resolution_m,
                       const map::HeightBand& band, const BodyOutline& body);
 

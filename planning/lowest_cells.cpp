@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::int64_t kSide = 32;          // columns of a tile
-constexpr std::size_t kMostTiles = 50'000;  // 200 MB
-constexpr double kFarthestColumn = 1e8;     // from the origin; no octree reaches there
+constexpr std::int64_t kSide = 32;              // columns of a tile
+constexpr std::size_t kMostKeptTiles = 50'000;  // 200 MB
+constexpr double kFarthestColumn = 1e8;         // from the origin; no octree reaches there
 
 std::int64_t tile_of_column(std::int64_t column) {
   return column >= 0 ? column / kSide : -((kSide - 1 - column) / kSide);
@@ -39,10 +39,11 @@ LowestCells::LowestCells(const map::OccupancySource& occupancy, const std::vecto
       radius_m_(radius_m),
       origin_(occupancy.origin_in_source()) {
   Vector2d least = points.front(), most = least;
+  const Vector2d margin = Vector2d::Constant(radius_m + cell_m_);
   for (const Vector2d& point : points) {
     want(columns_around(point));
-    least = least.cwiseMin(point.array() - radius_m - cell_m_);
-    most = most.cwiseMax(point.array() + radius_m + cell_m_);
+    least = least.cwiseMin(point - margin);
+    most = most.cwiseMax(point + margin);
   }
   constexpr double any_height_m = 1e6;
   const map::Box3 around{{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}};
@@ -66,7 +67,7 @@ void LowestCells::want(const Columns& columns) {
     for (Column x = tile_of_column(columns.from_x); x * kSide < columns.to_x; ++x) {
       std::vector<float>& tile = tiles_[key_of_tile(x, y)];
       if (tile.empty()) tile.resize(kSide * kSide, std::numeric_limits<float>::infinity());
-      if (tiles_.size() <= kMostTiles) continue;
+      if (tiles_.size() <= kMostKeptTiles) continue;
       throw map::InputError({.file = "ground",
                              .place = {},
                              .element = {},

@@ -20,17 +20,17 @@ namespace {
 using Eigen::Vector2d;
 using map::GroundPlace;
 
-constexpr double kAround_m = 2.0;   // columns this near speak of a place
-constexpr double kSteepest = 0.35;  // more is no road
-constexpr double kApart_m = 1.0;    // of places along a body
-constexpr double kSame_m = 0.7;     // nearer places are one
+constexpr double kAround_m = 2.0;         // columns this near speak of a place
+constexpr double kSteepest = 0.35;        // more is no road
+constexpr double kStationsApart_m = 1.0;  // of places along a body
+constexpr double kSame_m = 0.7;           // nearer places are one
 
 /// Places under a body at a pose, from the axle to the front, then to the rear.
 std::vector<geometry::Pose2> stations_under(const geometry::Pose2& pose, const BodyReach& body) {
   const Vector2d axis(std::cos(pose.heading_rad), std::sin(pose.heading_rad));
   std::vector<geometry::Pose2> stations{pose};
   for (const double end_m : {body.front_m, body.rear_m}) {
-    const double count = std::ceil(std::abs(end_m) / kApart_m);
+    const double count = std::ceil(std::abs(end_m) / kStationsApart_m);
     for (double i = 1.0; i <= count; ++i) {
       const Vector2d at = pose.position() + i / count * end_m * axis;
       stations.push_back({at.x(), at.y(), pose.heading_rad});
@@ -145,10 +145,10 @@ class MeasuredFollower {
                         double heading_rad) const {
     constexpr double few = 0.02, most = 0.5, spread = 0.5;
     constexpr int fewest = 4;
-    struct Side {
+    struct Sector {
       int all = 0, on = 0;
     };
-    std::array<Side, 4> sides;
+    std::array<Sector, 4> sides;
     int below = 0, on = 0;
     double squares_m2 = 0.0;
     const Vector2d axis(std::cos(heading_rad), std::sin(heading_rad));
@@ -156,7 +156,7 @@ class MeasuredFollower {
       const Vector2d off = point.head<2>() - plane.in_source;
       const bool is_ahead = off.dot(axis) >= 0.0;
       const bool is_left = axis.x() * off.y() - axis.y() * off.x() >= 0.0;
-      Side& side = sides[(is_ahead ? 2U : 0U) + (is_left ? 1U : 0U)];
+      Sector& side = sides[(is_ahead ? 2U : 0U) + (is_left ? 1U : 0U)];
       const double above_m = point.z() - plane_at(plane, point.head<2>());
       ++side.all;
       if (above_m < -within_m_) ++below;
@@ -172,7 +172,7 @@ class MeasuredFollower {
     if (squares_m2 > std::pow(spread * within_m_, 2) * on) {
       refuse(plane.in_source, "the surface there lies on two levels");
     }
-    for (const Side& side : sides) {
+    for (const Sector& side : sides) {
       if (side.on >= fewest && side.on >= most * side.all) continue;
       refuse(plane.in_source, fmt::format("on one side {} of {} columns are at the surface's "
                                           "height",

@@ -3,8 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -69,7 +67,8 @@ class AuditCommand : public Command {
              "centre; an id of one row stands for ever, one of several is there from its "
              "first to its last), in the drive's time and coordinates")
         .reads(files_named_by_scenario);
-    declare_question(arguments);
+    const std::vector<Argument> question = declare_question(arguments);
+    not_with_check.insert(not_with_check.end(), question.begin(), question.end());
     not_with_check.insert(not_with_check.end(), {vehicle, map});
     declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
@@ -93,7 +92,7 @@ class AuditCommand : public Command {
     AuditQuestion question = asked();
     std::optional<map::RoadMap> road_map;
     if (!map_.empty()) road_map = map::load_map(map_);
-    question.ground = ground_rule(road_map ? &*road_map : nullptr);
+    question.ground = ground_rule(ground_, road_map ? &*road_map : nullptr);
     question.ground.body = reach_of(question);
     const std::vector<AuditSubject> subjects = subjects_.list(road_map ? &*road_map : nullptr);
     const Scene scene = make_scene(road_map, streams, common);
@@ -110,32 +109,36 @@ class AuditCommand : public Command {
     const map::RoadMap* road_map;
   };
 
-  void declare_question(Arguments& arguments) {
-    arguments.add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
-        .within(0.0, 100.0)
-        .with_default();
-    arguments.add("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
-        .within(0.0, 100.0)
-        .with_default();
-    arguments.choice("--unknown", options_.unknown,
-                     {{"free", UnknownPolicy::free},
-                      {"occupied", UnknownPolicy::occupied},
-                      {"report", UnknownPolicy::report}},
-                     "What space counts as that was not measured: free, occupied, or report: no "
-                     "obstacle, but a drive over it is not clear");
-    arguments
-        .add("--ground", ground_,
-             "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
-             "road's surface of --map, which the band follows; measured: the surface that was "
-             "measured along the drive, to a cell, with nothing below it, on all sides and "
-             "without a step, refused elsewhere; heights are widened by a cell. A drive that is "
-             "all upon an obstacle takes its top for ground. Default: map with --map, else 0")
-        .checked(ground_fault);
-    arguments
-        .add("--from-height", from_height_m_,
-             "The vehicle's underside above the ground [m]; its top is the vehicle's height")
-        .within(-100.0, 100.0)
-        .with_default();
+  // What a certificate says itself, so that it cannot stand beside --check.
+  std::vector<Argument> declare_question(Arguments& arguments) {
+    return {
+        arguments
+            .add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
+            .within(0.0, 100.0)
+            .with_default(),
+        arguments.add("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
+            .within(0.0, 100.0)
+            .with_default(),
+        arguments.choice("--unknown", options_.unknown,
+                         {{"free", UnknownPolicy::free},
+                          {"occupied", UnknownPolicy::occupied},
+                          {"report", UnknownPolicy::report}},
+                         "What space counts as that was not measured: free, occupied, or report: "
+                         "no obstacle, but a drive over it is not clear"),
+        arguments
+            .add("--ground", ground_,
+                 "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
+                 "road's surface of --map, which the band follows; measured: the surface that was "
+                 "measured along the drive, to a cell, with nothing below it, on all sides and "
+                 "without a step, refused elsewhere; heights are widened by a cell. A drive that "
+                 "is all upon an obstacle takes its top for ground. Default: map with --map, else "
+                 "0")
+            .checked(ground_rule_fault),
+        arguments
+            .add("--from-height", from_height_m_,
+                 "The vehicle's underside above the ground [m]; its top is the vehicle's height")
+            .within(-100.0, 100.0)
+            .with_default()};
   }
 
   void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
@@ -176,29 +179,6 @@ class AuditCommand : public Command {
       check.excludes(other);
     for (const Argument& other : not_with_check) check.excludes(other);
     arguments.flag("--force", force_, "Replace outputs that exist");
-  }
-
-  static std::string ground_fault(const std::string& text) {
-    if (text == "map" || text == "measured") return {};
-    constexpr double farthest_m = 1e5;
-    const auto height_m = number_of(text);
-    const bool is_height = height_m && std::abs(*height_m) <= farthest_m;
-    return is_height ? "" : "is neither a height nor map nor measured";
-  }
-
-  static std::optional<double> number_of(const std::string& text) {
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
-  }
-
-  GroundRule ground_rule(const map::RoadMap* road_map) const {
-    using Kind = GroundRule::Kind;
-    if (const auto level_m = number_of(ground_)) return {.kind = Kind::level, .level_m = *level_m};
-    if (ground_ == "measured") return {.kind = Kind::measured};
-    if (road_map == nullptr) return {};
-    return {.kind = Kind::map, .road_map = road_map};
   }
 
   std::string missing() const {
@@ -316,21 +296,28 @@ class AuditCommand : public Command {
                cell_m, underside_m);
   }
 
+  // What a picture of a drive can show.
+  map::Box2 drawn(const AuditedDrive& audited, const AuditQuestion& question) const {
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
+    const map::Box2 around =
+        planning::audited_region(audited.drive, question.parts, options_).around;
+    return {around.min_in_source - margin_m, around.max_in_source + margin_m};
+  }
+
   void write_picture(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
                      const map::HeightBand& heights) const {
     if (svg_.empty()) return;
-    write_output(
-        svg_, audit_svg({audited.drive, inflated_parts(question), audited.report,
-                         occupied_boxes(*scene.occupancy, heights), scene.lanes, question.moving}));
+    write_output(svg_,
+                 audit_svg({audited.drive, inflated_parts(question), audited.report,
+                            occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
+                            scene.lanes, question.moving}));
   }
 
   void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
                     const map::HeightBand& heights) const {
     if (report_.empty()) return;
-    const map::Box2 around =
-        planning::audited_region(audited.drive, question.parts, options_).around;
-    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
-    const Eigen::AlignedBox2d box(around.min_in_source - margin_m, around.max_in_source + margin_m);
+    const map::Box2 around = drawn(audited, question);
+    const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
     AuditSurroundings page{.name = audited.name,
                            .body = inflated_shape(question),
                            .parts = inflated_parts(question),
@@ -355,7 +342,8 @@ class AuditCommand : public Command {
     for (const AuditedDrive& audited : audits) {
       index.push_back(indexed(audited));
       if (!audited.fault.empty()) continue;
-      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground));
+      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground),
+                                           drawn(audited, question));
       index.back().pictures =
           close_ups(audited.report, {audited.drive, parts, occupied, scene.lanes, question.moving});
     }
@@ -380,6 +368,8 @@ class AuditCommand : public Command {
                          .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
                                                             audit, question.moving)};
     if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
+    if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
+    if (!map_.empty()) file.roads = certified_file(map_);
     write_output(certificate_, write_certificate_json(file));
   }
 

@@ -10,6 +10,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/planning/ground_claims.h"
 #include "roadbed/planning/measured_ground.h"
 #include "roadbed/planning/vehicle_audit.h"
 
@@ -184,6 +185,37 @@ TEST(DriveGround, ACertificateOverAGroundFallsWithTheGround) {
   const map::Ground sunk(lower);
   certificate.band.ground = &sunk;
   EXPECT_THAT(check_certificate(certificate, cloud.cells(), 0.1, drive), Not(IsEmpty()));
+}
+
+TEST(DriveGround, ACheckRefusesACellThatWouldBeBillionsOfColumns) {
+  const std::vector<map::OccupancyCell> cells{{{0.0, 0.0, 0.0}, 6553.6, map::CellState::occupied}};
+  const map::Ground ground({{{0.0, 0.0}, 0.0, {0.01, 0.0}}});
+  AuditCertificate certificate;
+  certificate.band = {0.2, 1.5, &ground};
+  EXPECT_THROW(check_certificate(certificate, cells, 0.1, along_the_road(0.0, 1.0, 0.0)),
+               std::length_error);
+}
+
+TEST(DriveGround, AClaimedGroundMustBeUnderTheDrive) {
+  const Trajectory drive = along_the_road(0.0, 10.0, 0.0);
+  const auto faults = [&](const std::vector<double>& x_m, double z_m, double slope) {
+    std::vector<map::GroundPlace> places;
+    for (const double x : x_m) places.push_back({{x, 0.0}, 0.0, {0.0, 0.0}});
+    places.back().z_m = z_m;
+    places.back().slope.x() = slope;
+    return ground_faults(map::Ground(places), drive, 4.0);
+  };
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 6.0, 8.0, 10.0}, 0.1, 0.1), IsEmpty());
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.9}, 0.1, 0.1), IsEmpty());
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 10.0}, 0.0, 0.0), ElementsAre(HasSubstr("within 2 m")));
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 16.1}, 0.0, 0.0),
+              ElementsAre(HasSubstr("away from the drive")));
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 6.0, 8.0, 10.0}, 0.5, 0.51),
+              ElementsAre(HasSubstr("slope is 0.51")));
+  EXPECT_THAT(faults({0.0, 2.0, 4.0, 6.0, 8.0, 10.0}, 0.6, 0.0),
+              ElementsAre(HasSubstr("steps by 0.60 m")));
 }
 
 TEST(DriveGround, SaysWhereItCannotBeTold) {

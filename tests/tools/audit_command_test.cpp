@@ -362,13 +362,55 @@ TEST_F(AuditCommand, FollowsTheGroundOfAMapOrOfTheMeasuredRoad) {
     EXPECT_NEAR(Json::parse(near.out).at("least_clearance_m").get<double>(), 1.0 - 0.805, 0.02);
     const ProgramRun holds = run_roadbed({"audit", "--check", proof});
     EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
-    EXPECT_THAT(holds.out, HasSubstr("above ground at z 2.00 m"));
+    EXPECT_THAT(holds.out, testing::ContainsRegex("above ground at z (1.9|2.0)[0-9] m to [0-9.]+ "
+                                                  "m at the drive's rows, as the certificate"));
     EXPECT_EQ(audit_on("hit.csv", ground).status, 1);
   }
+  // A certificate whose ground is not under the drive, or is no ground.
+  const Json claimed = Json::parse(bytes_of(proof));
+  const auto forged = [&](const std::vector<double>& place) {
+    Json forgery = claimed;
+    forgery["ground"] = Json::array({place});
+    const std::string file = folder_.write("forged.json", forgery.dump());
+    const ProgramRun run = run_roadbed({"audit", "--check", file});
+    EXPECT_EQ(run.status, 1);
+    return run.out + run.err;
+  };
+  EXPECT_THAT(forged({-90, 0, 100, 0, 0}), HasSubstr("nothing is said within 2 m"));
+  EXPECT_THAT(forged({-90, 0, 100, 1, 0}), HasSubstr("-0.5 to 0.5"));
+  Json stepped = claimed;
+  stepped["ground"].push_back(stepped["ground"][4]);
+  stepped["ground"].back()[0] = stepped["ground"].back()[0].get<double>() + 0.3;
+  stepped["ground"].back()[2] = stepped["ground"].back()[2].get<double>() + 5.0;
+  const std::string step = folder_.write("stepped.json", stepped.dump());
+  EXPECT_THAT(run_roadbed({"audit", "--check", step}).out, HasSubstr("it steps by"));
   // On the level of its start the road itself is in the way, further up.
   const ProgramRun level = audit_on("near.csv", {"--ground", "2"});
   EXPECT_EQ(level.status, 1);
   EXPECT_EQ(Json::parse(level.out).at("verdict"), "conflict");
+}
+
+TEST_F(AuditCommand, ACertificateAnswersItsOwnQuestionAndNamesWhereThatIsFrom) {
+  const std::string proof = folder_ / "asked.json", drive = folder_ / "drives/near.csv";
+  const std::string car = folder_.write("car.json", "{\"height_m\": 1.4}");
+  ASSERT_EQ(audit({"--trajectory", drive, "--vehicle", car, "--certificate", proof}).status, 0);
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+  for (const std::vector<std::string>& question :
+       std::vector<std::vector<std::string>>{{"--ground", "0"},
+                                             {"--inflate", "0"},
+                                             {"--clearance", "1"},
+                                             {"--unknown", "report"},
+                                             {"--from-height", "0.2"}}) {
+    const ProgramRun run = run_roadbed({"audit", "--check", proof, question[0], question[1]});
+    EXPECT_EQ(run.status, 2) << question[0];
+    EXPECT_THAT(run.err, HasSubstr(question[0]));
+  }
+  folder_.write("car.json", "{\"height_m\": 1.3}");
+  const ProgramRun changed = run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_THAT(changed.out, HasSubstr("car.json has the hash"));
+  std::filesystem::remove(car);
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
 }
 
 TEST_F(AuditCommand, RefusesHeightsThatAreNone) {

@@ -61,9 +61,12 @@ void check_overlap(const std::vector<geometry::Ring>& lanes,
 }
 
 std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
-                                      const map::HeightBand& band) {
+                                      const map::HeightBand& band, const map::Box2& around) {
   std::vector<map::Box2> boxes;
-  for (const map::OccupancyCell& cell : occupancy.cells()) {
+  constexpr double any_height_m = 1e6;
+  const Eigen::Vector2d &least = around.min_in_source, &most = around.max_in_source;
+  for (const map::OccupancyCell& cell : occupancy.cells_in(
+           {{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}})) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
     if (cell.state != map::CellState::occupied) continue;
     const Eigen::Array2d centre = cell.centre_in_source.head<2>();

@@ -30,8 +30,9 @@ std::string text_of(const map::Box2& box);
 void check_overlap(const std::vector<geometry::Ring>& lanes,
                    const std::optional<map::Box2>& measured, const std::string& occupancy);
 
-/// Occupied cells of a height band in plan view, as they are; they may lie above one another.
+/// Occupied cells of a height band in plan view, as they are; they may lie above one another. Those
+/// that meet `around`, and some beside it perhaps.
 std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
-                                      const map::HeightBand& band);
+                                      const map::HeightBand& band, const map::Box2& around);
 
 }  // namespace roadbed::tools

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -48,7 +50,30 @@ void check_heights(const map::OccupancySource& occupancy, const map::Ground& gro
        .remedy = "bring both into one frame, or give --ground Z"});
 }
 
+std::optional<double> height_in(const std::string& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 }  // namespace
+
+std::string ground_rule_fault(const std::string& text) {
+  if (text == "map" || text == "measured") return {};
+  constexpr double farthest_m = 1e5;
+  const auto height_m = height_in(text);
+  const bool is_height = height_m && std::abs(*height_m) <= farthest_m;
+  return is_height ? "" : "is neither a height nor map nor measured";
+}
+
+GroundRule ground_rule(const std::string& text, const map::RoadMap* road_map) {
+  using Kind = GroundRule::Kind;
+  if (const auto level_m = height_in(text)) return {.kind = Kind::level, .level_m = *level_m};
+  if (text == "measured") return {.kind = Kind::measured};
+  if (road_map == nullptr) return {};
+  return {.kind = Kind::map, .road_map = road_map};
+}
 
 planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
                                    const geometry::Trajectory& drive, const GroundRule& rule) {

@@ -23,6 +23,14 @@ struct GroundRule {
   planning::BodyReach body = {};           ///< of Kind::measured: what needs ground under it
 };
 
+/// What is wrong with the words of a rule: a height in metres, "map" or "measured"; nothing: all is
+/// well.
+std::string ground_rule_fault(const std::string& text);
+
+/// The rule of words without a fault; of none it is that of the map if there is one, else level 0.
+/// @pre there is a map where the words are "map".
+GroundRule ground_rule(const std::string& text, const map::RoadMap* road_map);
+
 /// What is asked of every drive.
 struct AuditQuestion {
   geometry::VehicleShape shape;

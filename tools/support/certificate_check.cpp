@@ -3,16 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/ground.h"
 #include "roadbed/map/occupancy/tiled_occupancy.h"
 #include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/planning/ground_claims.h"
 #include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/trajectory_csv.h"
@@ -50,6 +54,24 @@ std::vector<map::OccupancyCell> cells_for(const map::OccupancySource& occupancy,
   return tiles->cells_of_tiles(boxes);
 }
 
+// A vehicle or map that is still there must be the one that was taken.
+void compare_if_there(const std::optional<CertifiedFile>& claimed,
+                      std::vector<std::string>& faults) {
+  std::error_code unreadable;
+  if (!claimed || !fs::exists(claimed->name, unreadable)) return;
+  compare(*claimed, certified_file(claimed->name), faults);
+}
+
+std::vector<std::string> faults_of_ground(const CertificateFile& file,
+                                          const geometry::Trajectory& drive) {
+  if (!file.ground) return {};
+  double reach_m = 0.0;
+  for (const planning::AuditCertificate& part : file.parts) {
+    reach_m = std::max(reach_m, part.part.reach_m() + std::sqrt(2.0) * part.inflate_m);
+  }
+  return planning::ground_faults(*file.ground, drive, reach_m);
+}
+
 std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
                                    const fs::path& trajectory_file, const fs::path& obstacles_file,
                                    const fs::path& name) {
@@ -65,8 +87,11 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
     faults.push_back(fmt::format("the certificate is not about what moves in {}, nor anywhere else",
                                  obstacles_file.string()));
   }
+  compare_if_there(file.vehicle, faults);
+  compare_if_there(file.roads, faults);
   if (!faults.empty()) return faults;
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
+  faults = faults_of_ground(file, drive);
   const std::unique_ptr<const map::OccupancySource> occupancy = map::open_occupancy(occupancy_file);
   try {
     const std::vector<map::OccupancyCell> cells = cells_for(*occupancy, file, drive);
@@ -104,13 +129,16 @@ std::string text_of(const planning::AuditCertificate& audit) {
                      part.name, part.length_m(), part.width_m(), -part.rear_m, aside, heights);
 }
 
-std::string question_of(const CertificateFile& file) {
+std::string question_of(const CertificateFile& file, const fs::path& trajectory_file) {
   const planning::AuditCertificate& audit = file.parts.front();
   std::string text;
   for (const planning::AuditCertificate& part : file.parts) text += text_of(part) + "; ";
   if (const map::Ground* ground = audit.band.ground) {
-    text += fmt::format("above ground at z {:.2f} m to {:.2f} m; ", ground->lowest_m(),
-                        ground->highest_m());
+    const auto [low_m, high_m] =
+        planning::heights_at_rows_m(*ground, read_trajectory_csv(trajectory_file));
+    text += fmt::format(
+        "above ground at z {:.2f} m to {:.2f} m at the drive's rows, as the certificate has it; ",
+        low_m, high_m);
   }
   return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
                             audit.inflate_m, audit.clearance_m,
@@ -119,10 +147,11 @@ std::string question_of(const CertificateFile& file) {
                                            : "nothing moves");
 }
 
-void print(std::ostream& out, const CertificateFile& file, const std::vector<std::string>& faults) {
+void print(std::ostream& out, const CertificateFile& file, const std::string& question,
+           const std::vector<std::string>& faults) {
   out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
   out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(file.verdict()), file.program);
-  out << fmt::format("{:<17}{}\n", "question", question_of(file));
+  out << fmt::format("{:<17}{}\n", "question", question);
   std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
   bool is_whole = true;
   for (const planning::AuditCertificate& part : file.parts) {
@@ -145,19 +174,21 @@ bool check_certificate_file(const fs::path& certificate, const fs::path& occupan
                             const fs::path& trajectory, const fs::path& obstacles, bool json,
                             std::ostream& out) {
   const CertificateFile file = read_certificate_json(certificate);
-  const std::vector<std::string> faults = faults_of(
-      file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy,
-      trajectory.empty() ? fs::path(file.trajectory.name) : trajectory, obstacles, certificate);
+  const fs::path drive = trajectory.empty() ? fs::path(file.trajectory.name) : trajectory;
+  const std::vector<std::string> faults =
+      faults_of(file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy, drive,
+                obstacles, certificate);
+  const std::string question = question_of(file, drive);
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},
-                                  {"question", question_of(file)},
+                                  {"question", question},
                                   {"verdict", name(file.verdict())},
                                   {"certified_clearance_m", file.certified_clearance_m()},
                                   {"faults", faults}}
                .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
         << '\n';
   } else {
-    print(out, file, faults);
+    print(out, file, question, faults);
   }
   return faults.empty();
 }

@@ -18,6 +18,7 @@
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/obstacles_csv.h"
+#include "roadbed/tools/support/vehicle_json.h"
 
 namespace roadbed::tools {
 namespace {
@@ -134,7 +135,7 @@ Value one_of(const JsonNode& node, const std::array<Value, N>& values) {
 
 CertifiedFile read_file_entry(const JsonNode& node) {
   node.require_object({"file", "xxhash"});
-  return {.name = node.at("file").text(), .xxhash = node.at("xxhash").text()};
+  return {.name = node.at("file").one_line(), .xxhash = node.at("xxhash").one_line()};
 }
 
 geometry::BodyPart read_part(const JsonNode& node) {
@@ -150,7 +151,7 @@ geometry::BodyPart read_part(const JsonNode& node) {
                           .right_m = middle_m - 0.5 * width_m,
                           .left_m = middle_m + 0.5 * width_m,
                           .radius_m = node.number_or("radius_m", 0.0, measure)};
-  if (const auto name = node.find("name")) part.name = name->text();
+  if (const auto name = node.find("name")) part.name = read_part_name(*name);
   try {
     part.check();
   } catch (const std::invalid_argument& fault) {
@@ -163,8 +164,9 @@ map::HeightBand read_band(const JsonNode& node) {
   constexpr Range height{-1e6, 1e6};
   const std::vector<JsonNode> ends = numbers(node, 2);
   const map::HeightBand band{ends[0].number(height), ends[1].number(height), nullptr};
-  if (!(band.from_m < band.to_m)) {
-    node.refuse("is empty", "a lower and a higher end", "write the certificate anew");
+  if (!is_height_of_part(band.from_m, band.to_m)) {
+    node.refuse(fmt::format("is {:.9g} m high", band.to_m - band.from_m),
+                fmt::format("at least {} m", kLeastHeight_m), "write the certificate anew");
   }
   return band;
 }
@@ -172,7 +174,7 @@ map::HeightBand read_band(const JsonNode& node) {
 std::shared_ptr<const map::Ground> read_ground(const JsonNode& node) {
   const auto ground = node.find("ground");
   if (!ground) return nullptr;
-  constexpr Range slope{-10.0, 10.0}, height{-1e6, 1e6}, place{-1e9, 1e9};
+  constexpr Range slope{-0.5, 0.5}, height{-1e6, 1e6}, place{-1e9, 1e9};
   std::vector<map::GroundPlace> places;
   for (const JsonNode& element : ground->elements()) {
     const std::vector<JsonNode> values = numbers(element, 5);
@@ -229,7 +231,7 @@ std::vector<Conflict> read_conflicts(const JsonNode& node) {
     conflict.least_clearance_m = element.at("clearance_m").number(kLength_m);
     conflict.witness = {{witness[0].number(kAny), witness[1].number(kAny)},
                         {witness[2].number(kAny), witness[3].number(kAny)}};
-    if (const auto id = element.find("obstacle")) conflict.obstacle = id->text();
+    if (const auto id = element.find("obstacle")) conflict.obstacle = id->one_line();
     conflicts.push_back(conflict);
   }
   return conflicts;
@@ -297,6 +299,8 @@ std::string write_certificate_json(const CertificateFile& file) {
   json["occupancy"] = file_json(file.occupancy);
   json["trajectory"] = file_json(file.trajectory);
   if (has_moving) json["obstacles"] = file_json(*file.obstacles);
+  if (file.vehicle) json["vehicle_file"] = file_json(*file.vehicle);
+  if (file.roads) json["map"] = file_json(*file.roads);
   json["vehicle"] = part_json(body.part);
   json["heights_m"] = {body.band.from_m, body.band.to_m};
   if (file.ground) json["ground"] = ground_json(*file.ground);
@@ -336,16 +340,20 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
                        "obstacles",
                        "from_moving",
                        "parts",
-                       "ground"});
+                       "ground",
+                       "vehicle_file",
+                       "map"});
   if (const JsonNode format = node.at("format"); format.text() != kFormat) {
     format.refuse(fmt::format("is \"{}\"", format.text()), fmt::format("\"{}\"", kFormat),
                   "write the certificate with this version of roadbed");
   }
-  CertificateFile file{.program = node.at("program").text(),
+  CertificateFile file{.program = node.at("program").one_line(),
                        .occupancy = read_file_entry(node.at("occupancy")),
                        .trajectory = read_file_entry(node.at("trajectory")),
                        .parts = {}};
   if (const auto obstacles = node.find("obstacles")) file.obstacles = read_file_entry(*obstacles);
+  if (const auto vehicle = node.find("vehicle_file")) file.vehicle = read_file_entry(*vehicle);
+  if (const auto roads = node.find("map")) file.roads = read_file_entry(*roads);
   const bool has_moving = file.obstacles.has_value();
   AuditCertificate audit;
   audit.clearance_m = node.at("clearance_m").number(kLength_m);
@@ -374,9 +382,13 @@ CertificateFile read_certificate_json(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> files_named_by_certificate(const std::filesystem::path& file) {
   try {
     const CertificateFile read = read_certificate_json(file);
-    if (!read.obstacles) return {read.occupancy.name, read.trajectory.name};
-    std::vector<std::filesystem::path> files = files_named_by_scenario(read.obstacles->name);
-    files.insert(files.end(), {read.occupancy.name, read.trajectory.name, read.obstacles->name});
+    std::vector<std::filesystem::path> files{read.occupancy.name, read.trajectory.name};
+    for (const auto& named : {read.vehicle, read.roads, read.obstacles}) {
+      if (named) files.emplace_back(named->name);
+    }
+    if (!read.obstacles) return files;
+    const auto more = files_named_by_scenario(read.obstacles->name);
+    files.insert(files.end(), more.begin(), more.end());
     return files;
   } catch (const map::InputError&) {
     return {};

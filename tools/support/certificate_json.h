@@ -27,6 +27,8 @@ struct CertificateFile {
   /// Of what moves, if anything does; the hash is that of the obstacles, not of the file's bytes,
   /// since a scenario names other files.
   std::optional<CertifiedFile> obstacles = {};
+  /// What the question was taken from; the vehicle's parts and the ground stand here besides.
+  std::optional<CertifiedFile> vehicle = {}, roads = {};
   std::shared_ptr<const map::Ground> ground = nullptr;  ///< of the parts' bands, if not level
   /// One for each part of the vehicle, the body first; all of one question but for their heights.
   std::vector<planning::AuditCertificate> parts;

@@ -138,6 +138,19 @@ std::string JsonNode::text() const {
   return text;
 }
 
+std::string JsonNode::one_line() const {
+  constexpr unsigned char first_printable = 0x20, del = 0x7f;
+  std::string line = text();
+  const auto is_control = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < first_printable || byte == del;
+  };
+  if (std::ranges::any_of(line, is_control)) {
+    refuse("has a control character", "one line of text", "take it out");
+  }
+  return line;
+}
+
 void JsonNode::refuse(const std::string& found, const std::string& needed,
                       const std::string& remedy) const {
   throw map::InputError({.file = file_,

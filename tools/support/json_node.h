@@ -49,6 +49,9 @@ class JsonNode {
   /// A string that is not empty.
   std::string text() const;
 
+  /// The same without control characters, so that it cannot forge lines of an output.
+  std::string one_line() const;
+
   [[noreturn]] void refuse(const std::string& found, const std::string& needed,
                            const std::string& remedy) const;
 

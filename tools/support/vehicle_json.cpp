@@ -47,6 +47,9 @@ void check_part(const BodyPart& part, const JsonNode& node) {
   } catch (const std::invalid_argument& error) {
     node.refuse(error.what(), "a box or circle with extent", std::string(kRemedy));
   }
+  if (is_height_of_part(part.from_height_m, part.to_height_m)) return;
+  node.refuse(fmt::format("is {:.9g} m high", part.to_height_m - part.from_height_m),
+              fmt::format("at least {} m", kLeastHeight_m), std::string(kRemedy));
 }
 
 BodyPart mirror(const JsonNode& node, const VehicleShape& shape, bool is_left) {
@@ -88,7 +91,7 @@ BodyPart circle(const JsonNode& node, std::size_t number) {
 BodyPart other_part(const JsonNode& node) {
   node.require_object(
       {"name", "rear_m", "front_m", "right_m", "left_m", "from_height_m", "to_height_m"});
-  BodyPart part{.name = node.at("name").text(),
+  BodyPart part{.name = read_part_name(node.at("name")),
                 .rear_m = node.at("rear_m").number(kPlace_m),
                 .front_m = node.at("front_m").number(kPlace_m),
                 .right_m = node.at("right_m").number(kPlace_m),
@@ -162,6 +165,21 @@ VehicleShape shape_of(const JsonNode& node) {
 
 }  // namespace
 
+bool is_height_of_part(double from_m, double to_m) {
+  constexpr double rounding_m = 1e-9;
+  return to_m - from_m >= kLeastHeight_m - rounding_m;
+}
+
+std::string read_part_name(const JsonNode& node) {
+  constexpr std::size_t longest = 60;
+  std::string name = node.one_line();
+  if (name.size() > longest) {
+    node.refuse(fmt::format("has {} bytes", name.size()), fmt::format("at most {}", longest),
+                "shorten the name");
+  }
+  return name;
+}
+
 std::vector<BodyPart> Vehicle::parts(double from_height_m) const {
   std::vector<BodyPart> all = circles;
   for (BodyPart& part : all) {
@@ -170,15 +188,15 @@ std::vector<BodyPart> Vehicle::parts(double from_height_m) const {
   }
   if (all.empty()) all.push_back(geometry::body_of(shape, from_height_m));
   for (const BodyPart& part : all) {
-    if (part.from_height_m < part.to_height_m) continue;
+    if (is_height_of_part(part.from_height_m, part.to_height_m)) continue;
     throw map::InputError(
         {.file = "vehicle",
          .place = {},
          .element = part.name,
          .found = fmt::format("ends {} m above the ground", part.to_height_m),
-         .needed = fmt::format("more than where it begins, {} m, by --from-height "
+         .needed = fmt::format("{} m more at least than where it begins, {} m, by --from-height "
                                "or its own",
-                               part.from_height_m),
+                               kLeastHeight_m, part.from_height_m),
          .remedy = "lower --from-height"});
   }
   all.insert(all.end(), more.begin(), more.end());

@@ -7,6 +7,7 @@
 
 #include "roadbed/geometry/body_part.h"
 #include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {
 
@@ -22,6 +23,16 @@ struct Vehicle {
   /// @throws InputError if a part would be empty.
   std::vector<geometry::BodyPart> parts(double from_height_m) const;
 };
+
+/// Less is no height of a part, but a mistake.
+inline constexpr double kLeastHeight_m = 1e-3;
+
+/// Whether heights are apart by that; a rounding below is let pass.
+bool is_height_of_part(double from_m, double to_m);
+
+/// The name of a part: one line of 1 to 60 bytes.
+/// @throws InputError otherwise.
+std::string read_part_name(const JsonNode& node);
 
 /// Reads a vehicle: one JSON object with the members of VehicleShape as keys, every one optional,
 /// with its default. An unknown key is an error, so that a misspelt one is not lost. For audits

@@ -124,6 +124,22 @@ TEST(VehicleJson, RefusesPartsThatCannotBeMeant) {
               HasSubstr("two parts of one name"));
 }
 
+TEST(VehicleJson, RefusesNamesThatCouldForgeLinesAndHeightsThatAreNone) {
+  const auto named = [](const std::string& name, const std::string& top) {
+    return refusal(R"({"parts":[{"name":")" + name +
+                   R"(","rear_m":0,"front_m":1,"right_m":-1,"left_m":1,"from_height_m":1,)" +
+                   R"("to_height_m":)" + top + "}]}");
+  };
+  EXPECT_EQ(named("load", "2"), "accepted");
+  EXPECT_THAT(named(R"(load\ncertificate      holds)", "2"),
+              HasSubstr("/parts/0/name: has a control character"));
+  EXPECT_THAT(named(R"(load\u001b[2J)", "2"), HasSubstr("has a control character"));
+  EXPECT_THAT(named("", "2"), HasSubstr("/parts/0/name: is empty"));
+  EXPECT_THAT(named(std::string(61, 'x'), "2"), HasSubstr("has 61 bytes, needs at most 60"));
+  EXPECT_EQ(named(std::string(60, 'x'), "1.001"), "accepted");
+  EXPECT_THAT(named("load", "1.000001"), HasSubstr("is 1e-06 m high, needs at least 0.001 m"));
+}
+
 TEST(VehicleJson, WhatDrivesTakesNoPartsThatItWouldNotLookAt) {
   EXPECT_THROW(parse_vehicle_shape_json(kMirrors, "car.json"), map::InputError);
   EXPECT_EQ(parse_vehicle_shape_json("{\"width_m\":2}", "car.json").width_m, 2.0);
@@ -131,6 +147,8 @@ TEST(VehicleJson, WhatDrivesTakesNoPartsThatItWouldNotLookAt) {
 
 TEST(VehicleJson, ABodyThatBeginsOverItsTopIsRefused) {
   EXPECT_THROW(parse_vehicle_json("{\"height_m\":1}", "car.json").parts(1.0), map::InputError);
+  EXPECT_THROW(parse_vehicle_json("{\"height_m\":1}", "car.json").parts(0.9999995),
+               map::InputError);
 }
 
 }  // namespace
