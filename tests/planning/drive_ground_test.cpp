@@ -22,7 +22,7 @@ using map::OccupancyMap;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr BodyReach kCar{.rear_m = -1.1, .front_m = 3.4};
+constexpr BodyReach kReach{.rear_m = -1.1, .front_m = 3.4};
 
 /// Height of a hilly road at s: up 10 m over the first 200 m and down again, without a kink.
 double hill_m(double s_m) { return 5.0 - 5.0 * std::cos(M_PI * s_m / 200.0); }
@@ -106,7 +106,7 @@ TEST(DriveGround, OfAMapIsTheRoadsSurface) {
 
 TEST(DriveGround, MeasuredIsTheRoadsSurfaceToHalfACellWithABoxOnItOrABridgeAboveIt) {
   const OccupancyMap cloud = hilly_cloud(Eigen::Vector2d(150.0, -1.75));
-  const map::Ground ground = measured_under(cloud, along_the_road(110.0, 290.0, -1.75), kCar);
+  const map::Ground ground = measured_under(cloud, along_the_road(110.0, 290.0, -1.75), kReach);
   for (double x = 110.0; x < 293.0; x += 0.37) {
     EXPECT_NEAR(ground.height_m({x, -1.75}), hill_m(x) - 0.03 * 1.75, 0.06) << x;
   }
@@ -146,7 +146,7 @@ TEST(DriveGround, ABoxOnTheHillIsFoundAndNeitherTheRoadNorTheBridgeIsAConflict) 
   const Trajectory drive = along_the_road(110.0, 285.0, -1.75);
   const OccupancyMap free_road = hilly_cloud(std::nullopt);
   for (const map::Ground& ground :
-       {road_under(road_map, drive), measured_under(free_road, drive, kCar)}) {
+       {road_under(road_map, drive), measured_under(free_road, drive, kReach)}) {
     const HillAudit free = hill_audit(free_road, ground, drive, car);
     EXPECT_EQ(free.verdict, Verdict::clear);
     EXPECT_THAT(free.faults, IsEmpty());
@@ -154,7 +154,7 @@ TEST(DriveGround, ABoxOnTheHillIsFoundAndNeitherTheRoadNorTheBridgeIsAConflict) 
   for (const double box_m : {150.0, 200.0, 250.0}) {
     const OccupancyMap blocked = hilly_cloud(Eigen::Vector2d(box_m, -1.6));
     for (const map::Ground& ground :
-         {road_under(road_map, drive), measured_under(blocked, drive, kCar)}) {
+         {road_under(road_map, drive), measured_under(blocked, drive, kReach)}) {
       const HillAudit hit = hill_audit(blocked, ground, drive, car);
       ASSERT_EQ(hit.verdict, Verdict::conflict);
       EXPECT_NEAR(hit.conflicts.front().witness.min_in_source.x(), box_m, 0.3);
@@ -222,7 +222,7 @@ TEST(DriveGround, SaysWhereItCannotBeTold) {
   const map::RoadMap road_map = hilly_map();
   EXPECT_THROW(road_under(road_map, along_the_road(-100.0, 50.0, 0.0)), map::InputError);
   const OccupancyMap cloud = hilly_cloud(std::nullopt);
-  EXPECT_THROW(measured_under(cloud, along_the_road(110.0, 390.0, 0.0), kCar), map::InputError);
+  EXPECT_THROW(measured_under(cloud, along_the_road(110.0, 390.0, 0.0), kReach), map::InputError);
   // Under the bridge, onto it, and back across the road below.
   const Trajectory across({{.t_s = 0, .x_m = 200, .y_m = -45, .heading_rad = M_PI_2},
                            {.t_s = 1, .x_m = 200, .y_m = 45, .heading_rad = M_PI_2},
