@@ -211,10 +211,6 @@ ScenarioOptions options(const JsonNode& node) {
       .pedals = pedals && pedals->value().get<bool>()};
 }
 
-geometry::VehicleShape vehicle(const JsonNode& node) {
-  return parse_vehicle_shape_json(node.value().dump(), node.file() + ":" + node.pointer());
-}
-
 std::uint64_t seed(const JsonNode& node) {
   const double number = node.number({0.0, kLargestSeed});
   if (number != std::floor(number)) {
@@ -234,7 +230,7 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("occupancy")) {
     scenario.occupancy_files = occupancy_files(*node, scenario.file.parent_path());
   }
-  if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle(*node);
+  if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle_shape_in(*node);
   if (const auto node = root.find("seed")) scenario.seed = seed(*node);
   if (const auto node = root.find("noise")) scenario.noise = noise(*node);
   if (const auto node = root.find("options")) scenario.options = options(*node);

@@ -205,7 +205,10 @@ std::vector<BodyPart> Vehicle::parts(double from_height_m) const {
 
 Vehicle parse_vehicle_json(std::string_view bytes, const std::string& name) {
   const nlohmann::json document = parse_json_strictly(bytes, name);
-  const JsonNode node(document, name);
+  return vehicle_in(JsonNode(document, name));
+}
+
+Vehicle vehicle_in(const JsonNode& node) {
   node.require_object({"length_m", "width_m", "rear_overhang_m", "wheelbase_m", "height_m",
                        "max_steering_rad", "max_steering_rate_radps", "mirrors", "circles",
                        "parts"});
@@ -227,15 +230,11 @@ Vehicle read_vehicle_json(const std::filesystem::path& file) {
   return parse_vehicle_json(map::read_file(file), file.string());
 }
 
-VehicleShape parse_vehicle_shape_json(std::string_view bytes, const std::string& name) {
-  const Vehicle vehicle = parse_vehicle_json(bytes, name);
+VehicleShape vehicle_shape_in(const JsonNode& node) {
+  const Vehicle vehicle = vehicle_in(node);
   if (vehicle.circles.empty() && vehicle.more.empty()) return vehicle.shape;
-  throw map::InputError({.file = name,
-                         .place = {},
-                         .element = {},
-                         .found = "has mirrors, circles or parts, which only audits look at",
-                         .needed = "a rectangle that holds them",
-                         .remedy = "leave them out, and widen width_m and length_m"});
+  node.refuse("has mirrors, circles or parts, which only audits look at",
+              "a rectangle that holds them", "leave them out, and widen width_m and length_m");
 }
 
 }  // namespace roadbed::tools

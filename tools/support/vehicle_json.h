@@ -11,6 +11,8 @@
 
 namespace roadbed::tools {
 
+class JsonNode;
+
 /// A vehicle as its file tells it: the rectangle that is planned and driven with, and what an audit
 /// looks at besides.
 struct Vehicle {
@@ -52,8 +54,11 @@ Vehicle read_vehicle_json(const std::filesystem::path& file);
 /// The same from bytes; `name` stands for the file in messages.
 Vehicle parse_vehicle_json(std::string_view bytes, const std::string& name);
 
+/// The same from a member of another document.
+Vehicle vehicle_in(const JsonNode& node);
+
 /// The rectangle alone, for what plans and drives.
 /// @throws InputError as well if the vehicle is more than that.
-geometry::VehicleShape parse_vehicle_shape_json(std::string_view bytes, const std::string& name);
+geometry::VehicleShape vehicle_shape_in(const JsonNode& node);
 
 }  // namespace roadbed::tools

@@ -109,7 +109,7 @@ TEST(Scenario, WhatIsOptionalMayBeMissing) {
 }
 
 TEST(Scenario, FaultsAreReportedAtTheirPlace) {
-  using testing::AllOf, testing::HasSubstr, testing::StartsWith;
+  using testing::StartsWith;
   EXPECT_THAT(message_with("/obstacles/1/length_m", -4),
               StartsWith("test.json:/obstacles/1/length_m: is -4"));
   EXPECT_THAT(message_with("/obstacles/1/length_m", 0),
@@ -140,7 +140,7 @@ TEST(Scenario, FaultsAreReportedAtTheirPlace) {
   EXPECT_THAT(message_with("/duration_s", 0), StartsWith("test.json:/duration_s: is 0"));
   EXPECT_THAT(message_with("/seed", 1.5), StartsWith("test.json:/seed: is 1.5"));
   EXPECT_THAT(message_with("/vehicle/wheelbase_m", -1),
-              AllOf(StartsWith("test.json:/vehicle"), HasSubstr("/wheelbase_m: is -1")));
+              StartsWith("test.json:/vehicle/wheelbase_m: is -1"));
   EXPECT_THAT(message_with("/roadbed_scenario", 2),
               StartsWith("test.json:/roadbed_scenario: is 2"));
   EXPECT_THAT(message_with("/goal", ""), StartsWith("test.json:/goal: is empty"));

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "roadbed/map/input_error.h"
+#include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {
 namespace {
@@ -141,8 +144,12 @@ TEST(VehicleJson, RefusesNamesThatCouldForgeLinesAndHeightsThatAreNone) {
 }
 
 TEST(VehicleJson, WhatDrivesTakesNoPartsThatItWouldNotLookAt) {
-  EXPECT_THROW(parse_vehicle_shape_json(kMirrors, "car.json"), map::InputError);
-  EXPECT_EQ(parse_vehicle_shape_json("{\"width_m\":2}", "car.json").width_m, 2.0);
+  const auto shape_of = [](std::string_view text) {
+    const nlohmann::json document = nlohmann::json::parse(text);
+    return vehicle_shape_in(JsonNode(document, "car.json"));
+  };
+  EXPECT_THROW(shape_of(kMirrors), map::InputError);
+  EXPECT_EQ(shape_of("{\"width_m\":2}").width_m, 2.0);
 }
 
 TEST(VehicleJson, ABodyThatBeginsOverItsTopIsRefused) {
