@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/occupancy/cell_range.h"
 
 namespace roadbed::map {
 namespace {
@@ -37,9 +38,9 @@ void for_each_bit(std::uint64_t word, const Visit& visit) {
   for (; word != 0; word &= word - 1) visit(static_cast<std::size_t>(std::countr_zero(word)));
 }
 
-CellBlock::Bits bits_where(const std::array<float, 512>& values, bool (*holds)(float, float),
-                           float than) {
-  CellBlock::Bits bits{};
+BlockBits bits_where(const std::array<float, 512>& values, bool (*holds)(float, float),
+                     float than) {
+  BlockBits bits{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (holds(values[i], than)) bits[i / 64] |= std::uint64_t{1} << i % 64;
   }
@@ -49,10 +50,15 @@ CellBlock::Bits bits_where(const std::array<float, 512>& values, bool (*holds)(f
 }  // namespace
 
 std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m) {
-  const Eigen::Array3d cells = (in_tree.array() * (1.0 / resolution_m)).floor() + kHalfRange;
-  if (!((cells >= 0.0).all() && (cells < 2.0 * kHalfRange).all())) return std::nullopt;
-  return CellKey{static_cast<std::uint16_t>(cells.x()), static_cast<std::uint16_t>(cells.y()),
-                 static_cast<std::uint16_t>(cells.z())};
+  const double per_cell = 1.0 / resolution_m;
+  CellKey key;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = in_tree[axis] * per_cell;
+    if (!(cells >= -kHalfRange && cells < kHalfRange)) return std::nullopt;
+    key[static_cast<std::size_t>(axis)] =
+        static_cast<std::uint16_t>(whole_below(cells) + static_cast<std::int64_t>(kHalfRange));
+  }
+  return key;
 }
 
 CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
@@ -62,7 +68,7 @@ CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
       options_(options),
       rule_(rule),
       most_bytes_(most_bytes(points)),
-      blocks_(options.resolution_m) {}
+      carved_(options.resolution_m) {}
 
 void CloudMeasurements::add(const PointCloud& cloud) {
   blocks_.begin_scan();
@@ -93,17 +99,25 @@ void CloudMeasurements::add_scan(const PointCloud& cloud, const Eigen::Vector3d&
     const double length_m = length_of(end - sensor);
     if (!(length_m > range_m)) {
       blocks_.mark_hit(key);
-      blocks_.carve(sensor, from, end, key);
+      carved_.carve(sensor, from, end, key);
     } else {
       if (options_.sticky_hits) blocks_.mark_hit(key);
       const Eigen::Vector3f direction = (end - sensor) / static_cast<float>(length_m);
       const Eigen::Vector3f cut = sensor + direction * static_cast<float>(range_m);
       if (const auto to = key_at(cut.cast<double>(), options_.resolution_m)) {
-        blocks_.carve(sensor, from, cut, *to);
+        carved_.carve(sensor, from, cut, *to);
       }
     }
     check_room(cloud);
   }
+  add_carved(cloud);
+}
+
+void CloudMeasurements::add_carved(const PointCloud& cloud) {
+  carved_.drain([&](const CellKey& first, const BlockBits& free) {
+    blocks_.merge(first, {}, free);
+    check_room(cloud);
+  });
 }
 
 CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what,
@@ -122,7 +136,8 @@ CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what
 
 void CloudMeasurements::check_room(const PointCloud& cloud) const {
   const std::size_t log_odds = options_.sticky_hits ? 0 : sizeof(std::array<float, 512>);
-  if (blocks_.kept_bytes() + blocks_.block_count() * log_odds <= most_bytes_) return;
+  const std::size_t blocks = blocks_.kept_bytes() + blocks_.block_count() * log_odds;
+  if (blocks + carved_.kept_bytes() <= most_bytes_) return;
   throw InputError({.file = cloud.name,
                     .place = {},
                     .element = cloud.sensor_in_source ? "rays" : "points",

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "roadbed/map/occupancy/carved_cells.h"
 #include "roadbed/map/occupancy/cell_blocks.h"
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/map/occupancy/octree_bytes.h"
@@ -48,6 +49,7 @@ class CloudMeasurements {
                       const Eigen::Vector3d& in_source) const;
   void add_hits(const PointCloud& cloud);
   void add_scan(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_source);
+  void add_carved(const PointCloud& cloud);
   void check_room(const PointCloud& cloud) const;
   void weigh_scan();
 
@@ -56,6 +58,7 @@ class CloudMeasurements {
   LogOddsRule rule_;
   std::size_t most_bytes_;
   CellBlocks blocks_;
+  CarvedCells carved_;  // by the scan that is being added
 };
 
 }  // namespace roadbed::map

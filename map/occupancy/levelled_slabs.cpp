@@ -13,10 +13,10 @@ namespace {
 constexpr double kTouchesOver_m = 1e-6;  // cells that overlap the band by less only touch it
 constexpr double kRounding_m = 5e-5;     // of some dozens of heights added up
 
-class Columns {
+class BandColumns {
  public:
-  Columns(const HeightBand& band, const Eigen::Vector3d& origin, double cell_m,
-          const CellRange& range)
+  BandColumns(const HeightBand& band, const Eigen::Vector3d& origin, double cell_m,
+              const CellRange& range)
       : band_(band), origin_(origin), cell_m_(cell_m), range_(range) {
     const auto count = static_cast<std::size_t>(std::max<std::int64_t>(0, range.width()) *
                                                 std::max<std::int64_t>(0, range.height()));
@@ -108,7 +108,7 @@ class Columns {
 std::vector<Slab> levelled_slabs(const std::vector<OccupancyCell>& leaves, const HeightBand& band,
                                  const Eigen::Vector3d& origin_in_source, double cell_m,
                                  const CellRange& range) {
-  Columns columns(band, origin_in_source, cell_m, range);
+  BandColumns columns(band, origin_in_source, cell_m, range);
   for (const OccupancyCell& leaf : leaves) columns.add(leaf);
   return columns.slabs();
 }

@@ -22,9 +22,9 @@ constexpr std::int64_t kBlockSide = 8, kMiddleBlock = 4096;  // of the blocks th
 struct AsideBlock {
   std::array<std::int32_t, 3> at;
   std::int32_t unused = 0;
-  CellBlock::Bits hit, free;
+  BlockBits hit, free;
 };
-static_assert(sizeof(AsideBlock) == 16 + 2 * sizeof(CellBlock::Bits));
+static_assert(sizeof(AsideBlock) == 16 + 2 * sizeof(BlockBits));
 
 // Every third bit of a Morton code, from one on.
 std::int64_t axis_of(std::uint64_t code, int axis) {
@@ -167,7 +167,7 @@ void TileBuilder::put_aside() {
 }
 
 OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) const {
-  CellBlocks blocks(plan_.resolution_m);
+  CellBlocks blocks;
   std::ifstream file(aside_file(place), std::ios::binary);
   std::error_code error;
   if (std::filesystem::file_size(aside_file(place), error) !=

@@ -88,6 +88,48 @@ TEST(OctreeBuild, WithoutStickyHitsTheTreeIsThatOfInsertPointCloudNodeForNode) {
   }
 }
 
+/// Sensors and points on corners and in middles of cells, so that rays cross several borders at
+/// once, and end on borders where they are cut at a whole number of cells.
+std::vector<PointCloud> scans_on_lattice(std::mt19937& random, int scans, int points,
+                                         double resolution_m) {
+  std::uniform_int_distribution<int> sensor_place(-20, 20), point_place(-90, 90);
+  const auto on_lattice = [&](std::uniform_int_distribution<int>& place) {
+    const int x = place(random), y = place(random), z = place(random);
+    return Eigen::Vector3f((0.5 * resolution_m * Eigen::Vector3d(x, y, z)).cast<float>());
+  };
+  std::vector<PointCloud> clouds;
+  for (int i = 0; i < scans; ++i) {
+    PointCloud cloud;
+    const Eigen::Vector3f sensor = on_lattice(sensor_place);
+    cloud.sensor_in_source = sensor.cast<double>();
+    for (int k = 0; k < points; ++k) {
+      Eigen::Vector3f way = on_lattice(point_place);
+      if (k % 3 == 0) way.y() = way.x();
+      if (k % 5 == 0) way.z() = -way.x();
+      if (k % 7 == 0) way.x() = 0.0f;
+      cloud.points.push_back(sensor + way);
+    }
+    clouds.push_back(std::move(cloud));
+  }
+  return clouds;
+}
+
+TEST(OctreeBuild, RaysThatCrossSeveralBordersAtOnceGoAsInOctoMap) {
+  std::mt19937 random(20261122);
+  for (int round = 0; round < 12; ++round) {
+    const double resolution_m = round % 3 == 0 ? 0.1 : round % 3 == 1 ? 0.25 : 0.3;
+    const double range_m = round % 2 == 0 ? -1.0 : 10.0 * resolution_m;
+    const auto clouds = scans_on_lattice(random, 3, 200, resolution_m);
+    octomap::OcTree theirs(resolution_m);
+    for (const PointCloud& cloud : clouds) insert(theirs, cloud, range_m);
+    OccupancyOptions options{.resolution_m = resolution_m, .sticky_hits = false};
+    if (range_m > 0.0) options.carve_range_m = range_m;
+    const auto tree = read_with_octomap(OccupancyMap::build(clouds, options).to_ot());
+    ASSERT_TRUE(tree);
+    expect_equal_nodes(*tree, theirs);
+  }
+}
+
 /// Free cells first, then hits, each by itself, as the law of sticky hits says it.
 octomap::OcTree sticky_tree(const std::vector<PointCloud>& clouds, double resolution_m) {
   octomap::OcTree tree(resolution_m);
