@@ -143,7 +143,8 @@ class KindOptions {
     if (kind == "import") return "'maps/**/*.xodr' -o jobs.jsonl";
     if (kind == "validate") return "'maps/*.xodr' --outputs sarif -o jobs.jsonl";
     if (kind == "route") return "town.rbm --pairs pairs.csv -o jobs.jsonl";
-    if (kind == "simulate") return "'scenarios/**/*.xml' -o jobs.jsonl";
+    if (kind == "simulate")
+      return "'scenarios/**/*.json' --vehicle 'cars/*.json' --seed 0..99 -o jobs.jsonl";
     return "--occupancy city.bt --trajectory 'drives/*.csv' --inflate 0.1 0.2 -o jobs.jsonl";
   }
 

@@ -17,6 +17,7 @@
 #include "roadbed/tools/support/in_threads.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/progress_bar.h"
+#include "roadbed/tools/support/vehicle_json.h"
 
 namespace roadbed::tools {
 namespace {
@@ -33,6 +34,10 @@ std::string timings_csv(const std::vector<double>& cycle_ms) {
   for (std::size_t i = 0; i < cycle_ms.size(); ++i)
     csv += fmt::format("{},{:.3f}\n", i, cycle_ms[i]);
   return csv;
+}
+
+std::string seed_fault(const std::string& text) {
+  return parse_seed(text) ? "" : "is no whole number from 0 to 2^53";
 }
 
 /// One scenario of many: what became of it.
@@ -141,17 +146,48 @@ class SimulateCommand : public Command {
                    "Keep what became of each candidate, for the report; takes longer");
     arguments.flag("--predict", choice_.predicts,
                    "Foresee others from what could be seen of them, not by their true future");
+    declare_changes(arguments);
     arguments.flag("--force", force_, "Replace outputs that exist");
-    arguments.example("  roadbed simulate data/drive.json -o drive");
+    arguments.example(
+        "  roadbed simulate data/drive.json -o drive\n"
+        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!timings_file_.empty()) check_writable(timings_file_, force_);
+    read_changes();
     return fs::is_directory(scenario_file_) ? run_folder(streams, common)
                                             : run_one(streams, common);
   }
 
  private:
+  void declare_changes(Arguments& arguments) {
+    arguments
+        .add("--vehicle", choice_.vehicle_file,
+             "Vehicle (.json) in place of the scenario's; of CommonRoad files there is no "
+             "solution.xml then, as that names vehicle 2")
+        .reads();
+    arguments
+        .add("--noise", choice_.noise_file,
+             "Noise of what is measured (.json, the keys of a scenario's noise), in place of the "
+             "scenario's")
+        .reads();
+    arguments
+        .add("--seed", seed_,
+             "Seed of the noise in place of the scenario's: the same drive for the same seed; "
+             "refused where there is no noise")
+        .checked(seed_fault);
+  }
+
+  void read_changes() {
+    ScenarioChanges& changes = choice_.changes;
+    if (!choice_.vehicle_file.empty()) {
+      changes.vehicle = read_vehicle_shape_json(choice_.vehicle_file);
+    }
+    if (!choice_.noise_file.empty()) changes.noise = read_noise_json(choice_.noise_file);
+    if (!seed_.empty()) changes.seed = parse_seed(seed_);
+  }
+
   Exit run_one(const Streams& streams, const CommonOptions& common) const {
     const DrivenScenario driven = drive_scenario(scenario_file_, choice_);
     make_output_folder(folder_, force_);
@@ -225,6 +261,7 @@ class SimulateCommand : public Command {
   }
 
   fs::path scenario_file_, folder_, timings_file_;
+  std::string seed_;
   bool json_ = false, force_ = false;
   DriveChoice choice_;
 };

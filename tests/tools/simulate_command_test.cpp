@@ -142,6 +142,83 @@ TEST_F(SimulateCommand, FolderMayHoldCommonRoadFilesAndOtherXml) {
   }
 }
 
+TEST_F(SimulateCommand, AVehicleFileIsWhatTheSameKeysInTheScenarioAre) {
+  const std::string lorry = R"({"length_m": 8.0, "width_m": 2.4, "wheelbase_m": 4.5})";
+  json otherwise = short_drive();
+  otherwise["obstacles"] = {{{"id", "a"}, {"parked", {{"place", "lane:1/3/1@30"}, {"d_m", -4.0}}}}};
+  json inside = otherwise;
+  inside["vehicle"] = json::parse(lorry);
+  ASSERT_EQ(simulate(inside, "inside").status, 0);
+  ASSERT_EQ(simulate(otherwise, "otherwise").status, 0);
+  const std::string file = folder_.write("lorry.json", lorry);
+  const ProgramRun run = run_roadbed({"simulate", (folder_ / "scenario.json").string(), "--vehicle",
+                                      file, "-o", out("given").string()});
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const char* name : {"trajectory.csv", "metrics.json"}) {
+    EXPECT_EQ(bytes_of(out("given") / name), bytes_of(out("inside") / name)) << name;
+  }
+  EXPECT_NE(bytes_of(out("given") / "metrics.json"), bytes_of(out("otherwise") / "metrics.json"));
+  EXPECT_THAT(bytes_of(out("given") / "report.html"), HasSubstr("--vehicle lorry.json"));
+}
+
+TEST_F(SimulateCommand, ASeedIsWhatItIsInTheScenarioAndAnotherOneGivesAnotherDrive) {
+  json scenario = short_drive();
+  scenario["noise"] = {{"position_m", 0.05}};
+  scenario["seed"] = 5;
+  ASSERT_EQ(simulate(scenario, "inside").status, 0);
+  scenario.erase("seed");
+  for (const char* seed : {"5", "6"}) {
+    const std::string file = folder_.write("scenario.json", scenario.dump());
+    ASSERT_EQ(run_roadbed({"simulate", file, "--seed", seed, "-o", out(seed).string()}).status, 0);
+  }
+  for (const char* name : {"trajectory.csv", "metrics.json"}) {
+    EXPECT_EQ(bytes_of(out("5") / name), bytes_of(out("inside") / name)) << name;
+    EXPECT_NE(bytes_of(out("6") / name), bytes_of(out("inside") / name)) << name;
+  }
+}
+
+TEST_F(SimulateCommand, CommonRoadTakesNoiseBySeedAndAnotherVehicle) {
+  const std::string file = (data_folder() / "junction.xml").string();
+  const std::string noise = folder_.write("noise.json", R"({"position_m": 0.02})");
+  const auto drive = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"simulate", file, "-o", out(name).string()});
+    const ProgramRun run = run_roadbed(more);
+    EXPECT_EQ(run.err.find("roadbed:"), std::string::npos) << run.err;
+    return bytes_of(out(name) / "trajectory.csv");
+  };
+  const std::string one = drive("one", {"--noise", noise, "--seed", "1"});
+  EXPECT_EQ(drive("again", {"--noise", noise, "--seed", "1"}), one);
+  EXPECT_NE(drive("two", {"--noise", noise, "--seed", "2"}), one);
+  EXPECT_TRUE(std::filesystem::exists(out("one") / "solution.xml"));
+  const std::string small = folder_.write("small.json", R"({"length_m": 3.6})");
+  EXPECT_NE(drive("small", {"--vehicle", small}), drive("plain", {}));
+  EXPECT_FALSE(std::filesystem::exists(out("small") / "solution.xml"));
+}
+
+TEST_F(SimulateCommand, RefusesChangesThatCannotBeMade) {
+  const std::string scenario = folder_.write("scenario.json", short_drive().dump());
+  const auto refused = [&](const std::string& option, const std::string& value, int status) {
+    const ProgramRun run =
+        run_roadbed({"simulate", scenario, option, value, "-o", out("a").string()});
+    EXPECT_EQ(run.status, status) << value;
+    EXPECT_FALSE(std::filesystem::exists(out("a"))) << value;
+    return run.err;
+  };
+  EXPECT_THAT(refused("--seed", "7", 1), HasSubstr("leave --seed out, or give --noise"));
+  for (const char* text : {"1.5", "-1", "many", "9007199254740993"}) {
+    EXPECT_THAT(refused("--seed", text, 2), HasSubstr("is no whole number")) << text;
+  }
+  const std::string truck = folder_.write("truck.json", R"({"length_mm": 8000})");
+  EXPECT_THAT(refused("--vehicle", truck, 1), HasSubstr("truck.json:/length_mm"));
+  const std::string mirrors =
+      folder_.write("mirrors.json", R"({"mirrors": {"beyond_m": 0.2, "rear_m": 1.7, "front_m": 1.9,
+                                      "from_height_m": 0.9, "to_height_m": 1.2}})");
+  EXPECT_THAT(refused("--vehicle", mirrors, 1), HasSubstr("which only audits look at"));
+  EXPECT_THAT(refused("--vehicle", (folder_ / "none.json").string(), 1), HasSubstr("no such file"));
+  const std::string noise = folder_.write("noise.json", R"({"position_m": -1})");
+  EXPECT_THAT(refused("--noise", noise, 1), HasSubstr("noise.json:/position_m"));
+}
+
 TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
   const ProgramRun run = run_roadbed({"control", "design", "--json"});
   EXPECT_EQ(run.status, 0);

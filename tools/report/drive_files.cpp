@@ -26,10 +26,12 @@ ReportSource source(const std::string& role, const fs::path& file) {
           .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
 }
 
-std::vector<ReportSource> sources_of(const Scenario& scenario) {
+std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {
   std::vector<ReportSource> sources{source("scenario", scenario.file)};
   if (scenario.map_file != scenario.file) sources.push_back(source("map", scenario.map_file));
   for (const fs::path& file : scenario.occupancy_files) sources.push_back(source("cloud", file));
+  if (!choice.vehicle_file.empty()) sources.push_back(source("vehicle", choice.vehicle_file));
+  if (!choice.noise_file.empty()) sources.push_back(source("noise", choice.noise_file));
   return sources;
 }
 
@@ -37,6 +39,19 @@ std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const Wo
                                               const Drive& drive) {
   if (!world.field) return std::nullopt;
   return planning::audit(*world.field, drive.trajectory, scenario.vehicle);
+}
+
+// As one would type it beside the inputs.
+std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
+  std::string command = "roadbed simulate " + scenario.file.filename().string();
+  if (choice.predicts) command += " --predict";
+  if (choice.keeps_candidates) command += " --candidates";
+  if (!choice.vehicle_file.empty()) {
+    command += " --vehicle " + choice.vehicle_file.filename().string();
+  }
+  if (!choice.noise_file.empty()) command += " --noise " + choice.noise_file.filename().string();
+  if (choice.changes.seed) command += fmt::format(" --seed {}", *choice.changes.seed);
+  return command + " -o DIR";
 }
 
 struct Driven {
@@ -54,14 +69,11 @@ Driven drive_and_describe(const Scenario& scenario, World& world, const DriveCho
   result.name = scenario.name;
   result.verdict = driven.drive.verdict;
   result.audit = audit_of(scenario, world, driven.drive);
-  const ReportInput report = report_of(
-      scenario, world, driven.drive,
-      {.command = fmt::format("roadbed simulate {}{}{} -o DIR", scenario.file.filename().string(),
-                              choice.predicts ? " --predict" : "",
-                              choice.keeps_candidates ? " --candidates" : ""),
-       .version = "roadbed " ROADBED_VERSION,
-       .sources = sources_of(scenario),
-       .audit = result.audit});
+  const ReportInput report = report_of(scenario, world, driven.drive,
+                                       {.command = command_of(scenario, choice),
+                                        .version = "roadbed " ROADBED_VERSION,
+                                        .sources = sources_of(scenario, choice),
+                                        .audit = result.audit});
   result.files = {
       {"trajectory.csv", write_trajectory_csv(driven.drive.trajectory)},
       {"metrics.json", metrics_of(scenario, world, driven.drive, result.audit).dump(2) + "\n"},
@@ -85,13 +97,16 @@ void refuse_other_xml(const fs::path& file) {
 
 DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice) {
   if (is_common_road(file)) {
-    CommonRoadDrive problem = read_common_road_drive(file);
+    CommonRoadDrive problem = read_common_road_drive(file, choice.changes);
     Driven driven = drive_and_describe(problem.scenario, problem.world, choice);
-    driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
+    if (!choice.changes.vehicle) {
+      driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
+    }
     return std::move(driven.result);
   }
   refuse_other_xml(file);
-  const Scenario scenario = read_scenario(file);
+  Scenario scenario = read_scenario(file);
+  choice.changes.apply_to(scenario);
   World world = make_world(scenario);
   return drive_and_describe(scenario, world, choice).result;
 }

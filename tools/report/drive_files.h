@@ -8,6 +8,7 @@
 
 #include "roadbed/planning/audit.h"
 #include "roadbed/tools/simulation/drive.h"
+#include "roadbed/tools/simulation/scenario_changes.h"
 
 namespace roadbed::tools {
 
@@ -24,10 +25,13 @@ struct DrivenScenario {
 struct DriveChoice {
   bool predicts = false;          ///< pilots know of others only what could be known at the time
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
+  ScenarioChanges changes = {};   ///< of what the file says
+  std::filesystem::path vehicle_file = {}, noise_file = {};  ///< where these come from, if given
 };
 
 /// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:
-/// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml.
+/// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml, unless
+/// the vehicle is another than the one that it names.
 /// @throws InputError if the scenario is unusable.
 DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {});
 

@@ -365,7 +365,8 @@ bool is_common_road(const std::filesystem::path& file) {
   return map::common_road::holds_scenario(head);
 }
 
-CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
+CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
+                                       const ScenarioChanges& changes) {
   const std::string bytes = map::read_file(file);
   const map::common_road::Scenario from = map::common_road::parse_scenario(bytes, file.string());
   if (from.planning_problems.empty()) {
@@ -386,6 +387,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file) {
   const double speed_mps = start_speed_mps(source);
   TimedGoal goal = goal_of(source);
   Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
+  changes.apply_to(scenario);
   const Pose2 start = rear_axle(source, scenario.vehicle);
   Route route = route_of(source, start_places(source, start, scenario.vehicle), goal, speed_mps);
   const planning::ReferenceLineOptions line_options{

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/scenario_changes.h"
 #include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools {
@@ -20,10 +21,12 @@ struct CommonRoadDrive {
 bool is_common_road(const std::filesystem::path& file);
 
 /// Reads the first planning problem of a CommonRoad file: time 0 is that of its initial state. The
-/// vehicle is CommonRoad's vehicle 2. The route leads to the goal's place; where the goal asks for
-/// none, straight on from the start.
+/// vehicle is CommonRoad's vehicle 2 and nothing is left to chance, unless `changes` say otherwise;
+/// the vehicle's centre is where the file has it. The route leads to the goal's place; where the
+/// goal asks for none, straight on from the start.
 /// @throws InputError if the file is unusable, has no planning problem, the start or the goal is
 ///         off the road, no route leads to the goal, or an obstacle touches the ego at the start.
-CommonRoadDrive read_common_road_drive(const std::filesystem::path& file);
+CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
+                                       const ScenarioChanges& changes = {});
 
 }  // namespace roadbed::tools

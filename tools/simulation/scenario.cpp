@@ -24,7 +24,6 @@ constexpr Range kDuration{0.1, 3600.0};
 constexpr Range kSize{0.05, 100.0};
 constexpr Range kDeviation{0.0, 100.0};
 constexpr Range kOffset{-100.0, 100.0};
-constexpr double kLargestSeed = 9007199254740992.0;  // 2⁵³: every integer up to it is a double
 
 ScenarioPlace place(const JsonNode& node) { return {node.text(), node.pointer()}; }
 
@@ -149,20 +148,6 @@ std::vector<TimeSpan> time_spans(const JsonNode& list) {
   return spans;
 }
 
-ScenarioNoise noise(const JsonNode& node) {
-  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
-                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
-  const auto dropouts = node.find("dropouts");
-  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
-          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
-          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
-          .position_m = node.number_or("position_m", 0.0, kDeviation),
-          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
-          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
-          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<TimeSpan>{},
-          .dropout_share = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
-}
-
 LightPhase light_phase(const JsonNode& node) {
   node.require_object({"colour", "duration_s"});
   const JsonNode colour = node.at("colour");
@@ -212,7 +197,7 @@ ScenarioOptions options(const JsonNode& node) {
 }
 
 std::uint64_t seed(const JsonNode& node) {
-  const double number = node.number({0.0, kLargestSeed});
+  const double number = node.number({0.0, static_cast<double>(kLargestSeed)});
   if (number != std::floor(number)) {
     node.refuse(fmt::format("is {}", number), "a whole number", "round it");
   }
@@ -232,13 +217,27 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   }
   if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle_shape_in(*node);
   if (const auto node = root.find("seed")) scenario.seed = seed(*node);
-  if (const auto node = root.find("noise")) scenario.noise = noise(*node);
+  if (const auto node = root.find("noise")) scenario.noise = noise_in(*node);
   if (const auto node = root.find("options")) scenario.options = options(*node);
   if (const auto node = root.find("lights")) scenario.lights = lights(*node);
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
 }
 
 }  // namespace
+
+ScenarioNoise noise_in(const JsonNode& node) {
+  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
+                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
+  const auto dropouts = node.find("dropouts");
+  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
+          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
+          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
+          .position_m = node.number_or("position_m", 0.0, kDeviation),
+          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
+          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
+          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<TimeSpan>{},
+          .dropout_share = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
+}
 
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
   const nlohmann::json document = parse_json_strictly(bytes, file.string());

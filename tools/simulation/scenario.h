@@ -14,6 +14,8 @@
 
 namespace roadbed::tools {
 
+class JsonNode;
+
 // A scenario file, as it is written: places are still texts and coordinates the source's raw ones.
 // The schema is in tools/simulation/README.md. make_world() turns it into what is driven.
 
@@ -111,6 +113,13 @@ Scenario read_scenario(const std::filesystem::path& file);
 
 /// The same from bytes; `file` stands for the scenario in messages and gives the folder.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
+
+/// The noise of a scenario, or of a document of its own.
+/// @throws InputError naming the first fault.
+ScenarioNoise noise_in(const JsonNode& node);
+
+/// Every whole number up to it is a double, which JSON numbers are.
+constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
 
 /// The map and the clouds that a scenario names, or those of all scenarios (.json) right in a
 /// folder. A file that is no such scenario names none, as a CommonRoad one, which holds its map.

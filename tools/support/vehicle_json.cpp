@@ -237,4 +237,9 @@ VehicleShape vehicle_shape_in(const JsonNode& node) {
               "a rectangle that holds them", "leave them out, and widen width_m and length_m");
 }
 
+VehicleShape read_vehicle_shape_json(const std::filesystem::path& file) {
+  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
+  return vehicle_shape_in(JsonNode(document, file.string()));
+}
+
 }  // namespace roadbed::tools

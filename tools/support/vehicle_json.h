@@ -61,4 +61,7 @@ Vehicle vehicle_in(const JsonNode& node);
 /// @throws InputError as well if the vehicle is more than that.
 geometry::VehicleShape vehicle_shape_in(const JsonNode& node);
 
+/// The same from a vehicle's file.
+geometry::VehicleShape read_vehicle_shape_json(const std::filesystem::path& file);
+
 }  // namespace roadbed::tools

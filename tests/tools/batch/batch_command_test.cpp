@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -62,6 +63,34 @@ TEST(BatchCommand, WritesTheSameBytesForAnyNumberOfThreadsAndIsolated) {
   EXPECT_TRUE(outputs_of_batch(two.path()) == expected);
   EXPECT_TRUE(outputs_of_batch(four.path()) == expected);
   EXPECT_TRUE(outputs_of_batch(isolated.path()) == expected);
+}
+
+TEST(BatchCommand, DrivesEachScenarioWithEachVehicleAndSeed) {
+  const TemporaryFolder inputs, folder;
+  const std::string scenario = (data_folder() / "scenarios/stop_and_go.json").string();
+  for (const char* length : {"4.0", "4.6"}) {
+    inputs.write(std::string("car_") + length + ".json",
+                 std::string(R"({"length_m": )") + length + "}");
+  }
+  const std::string jobs = (inputs / "jobs.jsonl").string();
+  ASSERT_EQ(run_roadbed({"jobs", "simulate", scenario, "--vehicle",
+                         (inputs / "car_*.json").string(), "--seed", "3..4", "-o", jobs})
+                .status,
+            0);
+  EXPECT_EQ(batch(jobs, folder.path(), {"--threads", "2"}).status, 0);
+  const auto results = results_in(folder.path());
+  ASSERT_EQ(results.size(), 4U);
+  std::set<std::string> drives;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i]["result"]["seed"], i % 2 + 3);
+    for (const auto& file : results[i]["files"]) {
+      const auto name = file.get<std::string>();
+      if (name.ends_with("trajectory.csv")) drives.insert(bytes_of(folder / name));
+    }
+  }
+  EXPECT_EQ(drives.size(), 4U);
+  inputs.write("car_4.6.json", R"({"length_m": 4.7})");
+  EXPECT_THAT(batch(jobs, folder.path()).out, HasSubstr("2 were there already"));
 }
 
 TEST(BatchCommand, RunsAgainOnlyWhatChanged) {

@@ -59,6 +59,24 @@ TEST(JobsCommand, WritesTheProductOfAllLists) {
   }
 }
 
+TEST(JobsCommand, MultipliesScenariosByVehiclesAndSeeds) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.json", "b.json", "car_1.json", "car_2.json"}) folder.write(name, "");
+  const std::string out = (folder / "jobs.jsonl").string();
+  const ProgramRun run =
+      run_roadbed({"jobs", "simulate", (folder / "?.json").string(), "--vehicle",
+                   (folder / "car_*.json").string(), "--seed", "0..9", "20", "-o", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto jobs = jobs_written(out);
+  ASSERT_EQ(jobs.size(), 2U * 2U * 11U);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    EXPECT_EQ(jobs[i]["inputs"][0], (folder / (i < 22 ? "a.json" : "b.json")).string());
+    const json& options = jobs[i]["options"];
+    EXPECT_EQ(options["vehicle"], (folder / (i % 22 < 11 ? "car_1.json" : "car_2.json")).string());
+    EXPECT_EQ(options["seed"], i % 11 < 10 ? json(i % 11) : json("20"));
+  }
+}
+
 TEST(JobsCommand, WritesARouteForEachPair) {
   const TemporaryFolder folder;
   const std::string pairs = folder.write("od.csv", "from,to\n\"1,2\",\"3,4\"\nlane:a,lane:b\n");
