@@ -121,7 +121,7 @@ def run_missing(lines: list[str], done: dict[str, str], output: Path) -> None:
 def main() -> int:
     """Run `batch JOBS -o DIR`, with --list-missing or --merge, or `batch --serve -o DIR`."""
     if sys.argv[1] == "--version":
-        print("stand-in 1")
+        print("roadbed stand-in 1")
         return 0
     arguments = [argument for argument in sys.argv[2:] if argument != "--quiet"]
     output = Path(arguments[arguments.index("-o") + 1])

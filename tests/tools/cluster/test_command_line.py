@@ -18,7 +18,11 @@ from batches import job, run, write_jobs
         (["--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "--workers is for a cluster of"),
         (["--tls-ca", "ca.pem"], "--tls-ca needs --scheduler tls://HOST:PORT"),
         (["--scheduler", "tls://127.0.0.1:1"], "tls://127.0.0.1:1 needs --tls-ca FILE"),
+        (["--scheduler", "localhost"], "--scheduler: 'localhost' is no address such as tcp://"),
+        (["--scheduler", "http://127.0.0.1:1"], "'http://127.0.0.1:1' is no address such as"),
+        (["--scheduler", "tcp://127.0.0.1:99999"], "'tcp://127.0.0.1:99999' is no address such as"),
         (["--roadbed", "no-such-program"], "--roadbed: no-such-program: no such program"),
+        (["--roadbed", "true"], "true is not roadbed: its --version says"),
         (["--schedule", "tcp://127.0.0.1:1"], "unrecognized arguments"),
     ],
 )
@@ -36,7 +40,17 @@ def test_unusable_jobs_are_told_with_status_1_and_leave_nothing(tmp_path: Path) 
         1,
         f"roadbed-cluster: {tmp_path}/jobs.jsonl: no such file\n",
     )
+    folder = run(tmp_path, "-o", tmp_path / "out")
+    assert (folder.returncode, folder.stderr) == (
+        1,
+        f"roadbed-cluster: {tmp_path}: is a folder; `roadbed jobs` writes a file of jobs\n",
+    )
     jobs = write_jobs(tmp_path / "jobs.jsonl", ["no job"])
+    file = run(jobs, "-o", jobs)
+    assert (file.returncode, file.stderr) == (
+        1,
+        f"roadbed-cluster: {jobs}: is no folder; name one for the results\n",
+    )
     bad = run(jobs, "-o", tmp_path / "out")
     assert (bad.returncode, bad.stderr) == (1, f"{jobs}:1: not a job\n")
     assert not (tmp_path / "out").exists()

@@ -17,7 +17,9 @@ from stand_in import hash_of
 def options(folder: Path, program: Path = STAND_IN, **limits: str) -> ServeOptions:
     """Return options that start the stand-in."""
     (folder / "unfinished").write_text("mark")
-    return ServeOptions((str(program),), "stand-in 1", str(folder), "mark", str(folder), **limits)
+    return ServeOptions(
+        (str(program),), "roadbed stand-in 1", str(folder), "mark", str(folder), **limits
+    )
 
 
 def asked(*lines: str) -> list[Job]:
@@ -40,7 +42,7 @@ def test_memory_held_from_jobs_before_is_not_blamed_on_the_next(tmp_path: Path) 
     keeper.write_text(
         "#!/usr/bin/env python3\n"
         "import json, sys\n"
-        "if sys.argv[1] == '--version': print('stand-in 1'), sys.exit()\n"
+        "if sys.argv[1] == '--version': print('roadbed stand-in 1'), sys.exit()\n"
         "for count, line in enumerate(sys.stdin):\n"
         "    answer = {'hash': json.loads(line)['hash'], 'status': 'done'}\n"
         "    if count: answer |= {'status': 'failed', 'cause': 'memory'}\n"
@@ -90,6 +92,8 @@ def test_another_folder_under_the_same_path_stops_the_run(
 def test_another_program_on_a_worker_stops_the_run(tmp_path: Path) -> None:
     with pytest.raises(WrongWorker, match="no-such-program cannot be run"):
         run_chunk(asked(job(1)), options(tmp_path, Path("no-such-program")))
-    other = replace(options(tmp_path), version="stand-in 2")
-    with pytest.raises(WrongWorker, match="is 'stand-in 1' on a worker, 'stand-in 2' here"):
+    other = replace(options(tmp_path), version="roadbed stand-in 2")
+    with pytest.raises(
+        WrongWorker, match="is 'roadbed stand-in 1' on a worker, 'roadbed stand-in 2' here"
+    ):
         run_chunk(asked(job(1)), other)

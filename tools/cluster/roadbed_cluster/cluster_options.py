@@ -1,9 +1,12 @@
 """Where a cluster is, and the files that prove who one is there."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from roadbed_cluster.errors import UsageError
+
+_MOST_PORT = 65535
 
 
 @dataclass(frozen=True)
@@ -25,8 +28,10 @@ class ClusterOptions:
         """Check that the options fit each other.
 
         Raises:
-            UsageError: if they do not, or a file of TLS is not there.
+            UsageError: if they do not, the address is none, or a file of TLS is not there.
         """
+        if self.scheduler is not None:
+            _check_address(self.scheduler)
         files = {
             "--tls-ca": self.tls_ca,
             "--tls-cert": self.tls_cert,
@@ -41,3 +46,12 @@ class ClusterOptions:
                 raise UsageError(f"{name} needs --scheduler tls://HOST:PORT")
             if file is not None and not file.is_file():
                 raise UsageError(f"{name}: {file}: no such file")
+
+
+def _check_address(address: str) -> None:
+    found = re.fullmatch(r"((tcp|tls)://)?([^\s:/]+|\[[0-9a-fA-F:.]+\]):([0-9]+)", address)
+    if found is None or not 0 < int(found[4]) <= _MOST_PORT:
+        raise UsageError(
+            f"--scheduler: {address!r} is no address such as tcp://10.0.0.1:8786 or "
+            "tls://10.0.0.1:8786"
+        )

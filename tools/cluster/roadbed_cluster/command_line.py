@@ -48,8 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    if not options.jobs.is_file():
-        raise RunStopped(f"{options.jobs}: no such file")
+    _check_paths(options.jobs, options.output)
     batch = Batch(
         program=_program(options.roadbed),
         jobs=options.jobs.resolve(),
@@ -76,6 +75,15 @@ def _run(options: argparse.Namespace) -> int:
             quiet=options.quiet,
         ),
     )
+
+
+def _check_paths(jobs: Path, output: Path) -> None:
+    if jobs.is_dir():
+        raise RunStopped(f"{jobs}: is a folder; `roadbed jobs` writes a file of jobs")
+    if not jobs.is_file():
+        raise RunStopped(f"{jobs}: no such file")
+    if output.exists() and not output.is_dir():
+        raise RunStopped(f"{output}: is no folder; name one for the results")
 
 
 def _tables(options: argparse.Namespace) -> int:

@@ -44,7 +44,7 @@ def version_of(program: tuple[str, ...]) -> str:
     """Return the first line of `roadbed --version`.
 
     Raises:
-        WrongWorker: if it cannot be run.
+        WrongWorker: if it cannot be run, or is another program.
     """
     try:
         shown = subprocess.run(
@@ -52,7 +52,10 @@ def version_of(program: tuple[str, ...]) -> str:
         )
     except (OSError, subprocess.SubprocessError) as error:
         raise WrongWorker(f"{program[0]} cannot be run: {error}") from error
-    return shown.stdout.partition("\n")[0]
+    first = shown.stdout.partition("\n")[0]
+    if not first.startswith("roadbed "):
+        raise WrongWorker(f"{program[0]} is not roadbed: its --version says {first!r}")
+    return first
 
 
 def _check(options: ServeOptions) -> None:
