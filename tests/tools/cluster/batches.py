@@ -4,11 +4,15 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from warm import Program, WarmProcess, roadbed_cluster
+
 STAND_IN = Path(__file__).with_name("stand_in.py")
+_LOGS = tempfile.TemporaryDirectory()
 
 
 def job(seed: int, do: str = "answer", inputs: Iterable[Path] = (), **options: object) -> str:
@@ -38,11 +42,17 @@ def environment() -> dict[str, str]:
     return {**os.environ, "ROADBED": str(STAND_IN)}
 
 
+def start(*arguments: object, program: Program = roadbed_cluster) -> WarmProcess:
+    """Start `roadbed-cluster` with the stand-in as its program."""
+    log = Path(tempfile.mkdtemp(dir=_LOGS.name)) / "log"
+    return WarmProcess(program, arguments, environment(), log)
+
+
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
     """Run `roadbed-cluster` to its end."""
-    return subprocess.run(
-        command(*arguments), env=environment(), capture_output=True, text=True, timeout=300
-    )
+    process = start(*arguments)
+    output, errors = process.communicate(timeout=300)
+    return subprocess.CompletedProcess(list(arguments), process.wait(), output, errors)
 
 
 def run_sequentially(jobs: Path, output: Path) -> bytes:

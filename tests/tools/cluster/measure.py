@@ -23,7 +23,7 @@ import psutil
 from distributed import Client
 
 from batches import STAND_IN, job, write_jobs
-from dask_processes import DaskProcesses
+from dask_processes import DaskProcesses, Process
 from roadbed_cluster import tables
 from roadbed_cluster.batch import Batch
 from roadbed_cluster.chunks import Chunks
@@ -55,7 +55,7 @@ class WatchedChunks(Chunks):
 def cluster(folder: Path) -> Iterator[tuple[DaskProcesses, Client]]:
     """Give a scheduler, two workers and a client."""
     folder.mkdir()
-    with DaskProcesses(folder) as dask:
+    with DaskProcesses(folder, are_forked=False) as dask:
         dask.start_hosts(SLOTS)
         with Client(dask.address) as client:
             yield dask, client
@@ -69,7 +69,7 @@ def peak_mb(pid: int) -> float:
     return 0.0
 
 
-def cpu_s(process: subprocess.Popen[bytes]) -> float:
+def cpu_s(process: Process) -> float:
     """Return the processor time of a process so far."""
     times = psutil.Process(process.pid).cpu_times()
     return float(times.user + times.system)

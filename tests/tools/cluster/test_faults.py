@@ -1,24 +1,16 @@
 """What dies is done again: nothing lost, nothing twice, the bytes of the sequential run."""
 
 import os
+import resource
 import signal
-import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
 
-from batches import (
-    command,
-    environment,
-    job,
-    journal,
-    results,
-    run,
-    run_sequentially,
-    write_jobs,
-)
+from batches import job, journal, results, run, run_sequentially, start, write_jobs
 from dask_processes import DaskProcesses, children_of, command_of, wait_until
+from warm import roadbed_cluster
 
 JOBS = 1000
 SLEEP_S = 0.04
@@ -39,12 +31,7 @@ class Run:
     def __init__(self, jobs: Path, output: Path, *arguments: object) -> None:
         """Start it."""
         self.output = output
-        self.process = subprocess.Popen(
-            command(jobs, "-o", output, "--quiet", *arguments),
-            env=environment(),
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        self.process = start(jobs, "-o", output, "--quiet", *arguments)
 
     def done(self) -> int:
         """Return how many results it has kept."""
@@ -57,12 +44,12 @@ class Run:
         """Return once it has kept `more` results than now."""
         goal = self.done() + more
         wait_until(lambda: self.done() >= goal or self.process.poll() is not None, "results")
-        assert self.process.poll() is None, "the run ended before the fault"
+        assert self.process.poll() is None, f"the run ended before the fault: {self.end()}"
 
     def end(self) -> tuple[int, str]:
         """Return its exit status and what it said."""
         _, said = self.process.communicate(timeout=300)
-        return self.process.returncode, said
+        return self.process.wait(), said
 
 
 def same_as_sequential(jobs: Path, output: Path) -> bool:
@@ -209,17 +196,18 @@ def test_a_worker_that_is_killed_takes_its_roadbed_along(
     batch.process.wait()
 
 
+def with_small_files(arguments: Sequence[str]) -> int:
+    """Be `roadbed-cluster` where no file can grow past 15 kB."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (15_000, 15_000))
+    return roadbed_cluster(arguments)
+
+
 def test_a_full_disk_under_the_journal_stops_with_a_line_and_resumes(tmp_path: Path) -> None:
     jobs = write_jobs(tmp_path / "jobs.jsonl", (job(seed) for seed in range(150)))
-    limited = subprocess.run(
-        ["prlimit", f"--fsize={15_000}", *command(jobs, "-o", tmp_path / "out", "--workers", 1)],
-        env=environment(),
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    limited = start(jobs, "-o", tmp_path / "out", "--workers", 1, program=with_small_files)
+    _, said = limited.communicate(timeout=120)
     assert limited.returncode == 1
-    assert limited.stderr == (
+    assert said == (
         f"roadbed-cluster: {tmp_path}/out/journal/cluster.jsonl: File too large; "
         "make room and run the same command again\n"
     )

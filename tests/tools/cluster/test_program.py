@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from batches import command, write_jobs
+from batches import start, write_jobs
 from dask_processes import DaskProcesses, wait_until
+from warm import WarmProcess
 
 DATA = Path(__file__).parents[3] / "data"
 PROGRAM = os.environ.get("ROADBED_PROGRAM", "roadbed")
@@ -62,20 +63,19 @@ def contents(output: Path) -> dict[str, bytes]:
 def sequential(jobs: Path, output: Path) -> dict[str, bytes]:
     """Return what `roadbed batch` alone makes of the jobs."""
     assert roadbed("batch", jobs, "-o", output, "--threads", 1).returncode == 1  # some failed
-    tables = subprocess.run(command("tables", output), capture_output=True, check=True)
-    assert len(tables.stdout.splitlines()) == 5
+    tables = start("tables", output)
+    assert len(tables.communicate(timeout=300)[0].splitlines()) == 5
     return contents(output)
 
 
-def start(jobs: Path, output: Path, *arguments: object) -> subprocess.Popen[str]:
+def start_run(jobs: Path, output: Path, *arguments: object) -> WarmProcess:
     """Start roadbed-cluster with roadbed."""
-    words = command(jobs, "-o", output, "--quiet", "--roadbed", PROGRAM, *arguments)
-    return subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    return start(jobs, "-o", output, "--quiet", "--roadbed", PROGRAM, *arguments)
 
 
 def test_jobs_of_every_kind_give_the_bytes_of_the_sequential_run(tmp_path: Path) -> None:
-    jobs = mixed_jobs(tmp_path, audits=20)
-    run = start(jobs, tmp_path / "out", "--workers", 2)
+    jobs = mixed_jobs(tmp_path, audits=4)
+    run = start_run(jobs, tmp_path / "out", "--workers", 2)
     _, said = run.communicate(timeout=300)
     assert (run.returncode, said) == (1, "")
     assert contents(tmp_path / "out") == sequential(jobs, tmp_path / "sequential")
@@ -97,7 +97,7 @@ def test_a_thousand_audits_survive_five_workers_a_host_and_the_scheduler(tmp_pat
     (tmp_path / "dask").mkdir()
     with DaskProcesses(tmp_path / "dask") as dask:
         hosts = dask.start_hosts(3)
-        run = start(jobs, tmp_path / "out", "--scheduler", dask.address, "--chunk", 0.3)
+        run = start_run(jobs, tmp_path / "out", "--scheduler", dask.address, "--chunk", 0.3)
         for kill in range(5):
             wait_for(30)
             os.kill(dask.worker_of(hosts[1 + kill % 2]), signal.SIGKILL)
@@ -110,7 +110,7 @@ def test_a_thousand_audits_survive_five_workers_a_host_and_the_scheduler(tmp_pat
         assert said.startswith("roadbed-cluster: the scheduler is gone after ")
         dask.start_scheduler()
         dask.start_hosts(2)
-        run = start(jobs, tmp_path / "out", "--scheduler", dask.address)
+        run = start_run(jobs, tmp_path / "out", "--scheduler", dask.address)
         assert run.communicate(timeout=300)[1] == ""
     hashes = [json.loads(line)["hash"] for line in journal.read_text().splitlines()]
     assert len(set(hashes)) == len(hashes) == 1006
