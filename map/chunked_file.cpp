@@ -193,7 +193,17 @@ void ChunkedFile::fetch(std::uint64_t chunk) const {
   if (XXH3_64bits(body_ + from, size) != hashes_[chunk]) {
     refuse(fmt::format("chunk {}", chunk), "its checksum is wrong");
   }
+  fetched_.fetch_add(1, std::memory_order_relaxed);
   checked_[chunk].store(true, std::memory_order_release);
+}
+
+void ChunkedFile::let_go() const {
+  const std::lock_guard lock(mutex_);
+  for (std::uint64_t chunk = 0; chunk < hashes_.size(); ++chunk) {
+    checked_[chunk].store(false, std::memory_order_relaxed);
+  }
+  fetched_ = 0;
+  if (body_ != nullptr) ::madvise(body_, body_size_, MADV_DONTNEED);
 }
 
 void ChunkedFile::need_all() const {

@@ -65,6 +65,13 @@ class ChunkedFile {
   void need_all() const;
 
   std::size_t chunks() const { return hashes_.size(); }
+
+  /// How many chunks have been fetched so far and are in memory.
+  std::size_t chunks_in_memory() const { return fetched_.load(std::memory_order_relaxed); }
+
+  /// Lets go of all chunks, which are fetched again when needed: for who goes through a file that
+  /// memory does not hold. Whatever data() pointed to is gone; nobody may be reading meanwhile.
+  void let_go() const;
   const std::string& name() const { return name_; }
 
   /// Throws InputError that asks for the file to be compiled again.
@@ -85,6 +92,7 @@ class ChunkedFile {
   std::vector<std::uint64_t> hashes_;
   std::byte* body_ = nullptr;  // address space for the body; pages appear as chunks are fetched
   mutable std::mutex mutex_;
+  mutable std::atomic<std::size_t> fetched_ = 0;
   std::unique_ptr<std::atomic<bool>[]> checked_;
 };
 

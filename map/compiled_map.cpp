@@ -239,6 +239,12 @@ RoadMap read_compiled_map(std::string bytes, const std::string& name) {
   return open_map(ChunkedFile::from_bytes(std::move(bytes), name));
 }
 
+LoadedChunks loaded_chunks(const RoadMap& road_map) {
+  const ChunkedFile* file = road_map.index().by_name.file();
+  if (file == nullptr) return {};
+  return {file->chunks_in_memory(), file->chunks()};
+}
+
 VerifiedMap verify_compiled_map(const std::filesystem::path& file) {
   return verify(ChunkedFile::open(file));
 }

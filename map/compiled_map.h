@@ -31,6 +31,13 @@ RoadMap open_compiled_map(const std::filesystem::path& file);
 /// The same of bytes in memory; `name` stands for the file in messages.
 RoadMap read_compiled_map(std::string bytes, const std::string& name);
 
+/// How much of a map's compiled file has been loaded so far, in chunks of 64 KiB; nothing of a map
+/// that is not of one.
+struct LoadedChunks {
+  std::size_t loaded = 0, of = 0;
+};
+LoadedChunks loaded_chunks(const RoadMap& road_map);
+
 /// What has been looked at.
 struct VerifiedMap {
   std::size_t chunks = 0, records = 0;

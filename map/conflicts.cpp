@@ -9,6 +9,7 @@
 #include "roadbed/geometry/box_tree.h"
 #include "roadbed/geometry/cross.h"
 #include "roadbed/map/lane_piece.h"
+#include "roadbed/map/road_map_index.h"
 
 namespace roadbed::map {
 namespace {
@@ -144,8 +145,16 @@ ConflictKind kind_of(const LaneLinks& one, const LaneLinks& other) {
 
 using OverlapsByPair = std::map<std::pair<LaneId, LaneId>, std::vector<Overlap>>;
 
+/// Whether two lanes may be in conflict: neither follows the other, and they are not beside each
+/// other. Links of real files are one-sided.
+bool are_apart(const LaneGraph& graph, LaneId one, LaneId other) {
+  return !are_linked(graph.of(one), other) && !are_linked(graph.of(other), one);
+}
+
+/// @param is_asked  which pairs of lanes to look at, the lesser first.
+template <typename IsAsked>
 OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>& pieces,
-                           double headroom_m) {
+                           double headroom_m, const IsAsked& is_asked) {
   std::vector<Box> boxes;
   boxes.reserve(pieces.size());
   for (const LanePiece& piece : pieces) boxes.push_back(piece.box());
@@ -153,11 +162,10 @@ OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>&
   OverlapsByPair overlaps;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const LanePiece& one = pieces[i];
-    const LaneLinks& links = graph.of(one.lane);
     tree.visit(boxes[i], [&](std::size_t index) {
       const LanePiece& other = pieces[index];
-      if (other.lane <= one.lane || are_linked(links, other.lane)) return;
-      if (are_linked(graph.of(other.lane), one.lane)) return;  // links of real files are one-sided
+      if (other.lane <= one.lane || !is_asked(one.lane, other.lane)) return;
+      if (!are_apart(graph, one.lane, other.lane)) return;
       if (std::abs(one.z_m - other.z_m) > headroom_m) return;
       add_overlaps(one, other, overlaps[{one.lane, other.lane}]);
     });
@@ -165,24 +173,43 @@ OverlapsByPair overlaps_of(const LaneGraph& graph, const std::vector<LanePiece>&
   return overlaps;
 }
 
-}  // namespace
-
-std::vector<Conflict> find_conflicts(const RoadMap& road_map, const ConflictOptions& options) {
-  const std::vector<LanePiece> pieces = drivable_pieces(road_map);
-  const LaneGraph& graph = road_map.graph();
+std::vector<Conflict> conflicts_of(const LaneGraph& graph, OverlapsByPair by_pair,
+                                   double least_width_m) {
   std::vector<Conflict> conflicts;
-  for (auto& [pair, overlaps] : overlaps_of(graph, pieces, options.headroom_m)) {
+  for (auto& [pair, overlaps] : by_pair) {
     const auto& [one, other] = pair;
     std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
       return a.on_one.from_s_m < b.on_one.from_s_m;
     });
     for (const Overlap& overlap : overlaps) {
-      if (overlap.area_m2 < options.least_width_m * overlap.box.diagonal().norm()) continue;
+      if (overlap.area_m2 < least_width_m * overlap.box.diagonal().norm()) continue;
       conflicts.push_back({one, other, kind_of(graph.of(one), graph.of(other)), overlap.on_one,
                            overlap.on_other, overlap.area_m2});
     }
   }
   return conflicts;
+}
+
+}  // namespace
+
+std::vector<Conflict> find_conflicts(const RoadMap& road_map, const ConflictOptions& options) {
+  const auto any = [](LaneId, LaneId) { return true; };
+  return conflicts_of(
+      road_map.graph(),
+      overlaps_of(road_map.graph(), drivable_pieces(road_map), options.headroom_m, any),
+      options.least_width_m);
+}
+
+std::vector<Conflict> find_conflicts_of(const RoadMap& road_map, LaneId lane,
+                                        const ConflictOptions& options) {
+  if (road_map.lane(lane).polygon.empty()) return {};
+  const Box box = geometry::box_around(road_map.lane(lane).polygon);
+  const std::vector<LanePiece> pieces = drivable_pieces(
+      road_map, road_map.index().lanes.in_box(box.min(), box.max(), LaneTypes::drivable()));
+  const auto with_lane = [&](LaneId one, LaneId other) { return one == lane || other == lane; };
+  return conflicts_of(road_map.graph(),
+                      overlaps_of(road_map.graph(), pieces, options.headroom_m, with_lane),
+                      options.least_width_m);
 }
 
 }  // namespace roadbed::map

@@ -42,4 +42,9 @@ struct ConflictOptions {
 /// O((N + K) log N) for N vertices and K pairs of pieces that meet.
 std::vector<Conflict> find_conflicts(const RoadMap& road_map, const ConflictOptions& options = {});
 
+/// Those of one lane, on either side: looks at the lanes near it only. Areas may differ from those
+/// above in their last digits. Lanes without a polygon have none.
+std::vector<Conflict> find_conflicts_of(const RoadMap& road_map, LaneId lane,
+                                        const ConflictOptions& options = {});
+
 }  // namespace roadbed::map

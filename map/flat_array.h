@@ -55,6 +55,9 @@ class FlatArray {
     throw std::logic_error("FlatArray: " + found);
   }
 
+  /// The file that it is a section of, null in memory.
+  const ChunkedFile* file() const { return file_.get(); }
+
   /// All bytes, for writing.
   std::string_view bytes() const {
     return {reinterpret_cast<const char*>(span(0, size_)), size_ * sizeof(T)};

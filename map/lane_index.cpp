@@ -116,4 +116,16 @@ std::vector<LaneId> LaneIndex::in_box(const Eigen::Vector2d& low_in_map,
   return found;
 }
 
+geometry::Box LaneIndex::box() const {
+  geometry::Box box;
+  if (data_.nodes.size() == 0) return box;
+  const Node& root = data_.nodes[data_.nodes.size() - 1];
+  for (std::size_t i = 0; i < Node::kWidth; ++i) {
+    if (root.low_x[i] > root.high_x[i]) continue;  // nothing is there
+    box.extend(Eigen::Vector2d(root.low_x[i], root.low_y[i]));
+    box.extend(Eigen::Vector2d(root.high_x[i], root.high_y[i]));
+  }
+  return box;
+}
+
 }  // namespace roadbed::map

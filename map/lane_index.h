@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/box_tree.h"
 #include "roadbed/map/lane_index_data.h"
 #include "roadbed/map/lane_match.h"
 #include "roadbed/map/lane_types.h"
@@ -45,6 +46,9 @@ class LaneIndex {
   /// are in it and few that are not. In order of id.
   std::vector<LaneId> in_box(const Eigen::Vector2d& low_in_map, const Eigen::Vector2d& high_in_map,
                              const LaneTypes& types) const;
+
+  /// Around all lanes, of any type, with coordinates rounded outwards to float; empty without any.
+  geometry::Box box() const;
 
   const lane_index::Data& data() const { return data_; }
 

@@ -53,4 +53,12 @@ std::vector<LanePiece> drivable_pieces(const RoadMap& road_map) {
   return pieces;
 }
 
+std::vector<LanePiece> drivable_pieces(const RoadMap& road_map, std::span<const LaneId> lanes) {
+  std::vector<LanePiece> pieces;
+  for (const LaneId id : lanes) {
+    if (is_drivable(road_map.lane(id).type)) add_pieces(road_map.lane(id), pieces);
+  }
+  return pieces;
+}
+
 }  // namespace roadbed::map

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "roadbed/geometry/box_tree.h"
@@ -19,5 +20,8 @@ struct LanePiece {
 
 /// All drivable lanes piece by piece, cut where either border has a vertex; by lane, then station.
 std::vector<LanePiece> drivable_pieces(const RoadMap& road_map);
+
+/// The same of the drivable ones among some lanes, in their order.
+std::vector<LanePiece> drivable_pieces(const RoadMap& road_map, std::span<const LaneId> lanes);
 
 }  // namespace roadbed::map

@@ -1,6 +1,7 @@
 #include "roadbed/map/rule_index.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "roadbed/geometry/cross.h"
@@ -57,39 +58,54 @@ bool may_change(const std::optional<Neighbour>& to, double s_m) {
 
 }  // namespace
 
-RuleIndex::RuleIndex(const RoadMap& road_map)
-    : road_map_(&road_map), of_lane_(road_map.lanes().size()) {
-  const auto add = [&](RuleKind kind, std::size_t index, LaneId id, double s_m) {
-    of_lane_[id.index].places.push_back({kind, index, id, s_m, 0.0});
-  };
-  for (std::size_t i = 0; i < road_map.signals().size(); ++i) {
-    const Signal& signal = road_map.signals()[i];
+RuleIndex::RuleIndex(const RoadMap& road_map) : road_map_(&road_map) {
+  add_all([](LaneId) { return true; });
+}
+
+RuleIndex::RuleIndex(const RoadMap& road_map, std::span<const LaneId> lanes)
+    : road_map_(&road_map) {
+  const std::set<LaneId> wanted(lanes.begin(), lanes.end());
+  add_all([&](LaneId id) { return wanted.contains(id); });
+}
+
+template <typename Wants>
+void RuleIndex::add_all(const Wants& wants) {
+  for (std::size_t i = 0; i < road_map_->signals().size(); ++i) {
+    const Signal& signal = road_map_->signals()[i];
     for (std::size_t k = 0; k < signal.lanes.size(); ++k) {
-      add(RuleKind::signal, i, signal.lanes[k], station_of(signal, k, road_map));
+      if (!wants(signal.lanes[k])) continue;
+      add({RuleKind::signal, i, signal.lanes[k], station_of(signal, k, *road_map_), 0.0});
     }
   }
-  for (std::size_t i = 0; i < road_map.stop_lines().size(); ++i) {
-    const StopLine& stop_line = road_map.stop_lines()[i];
+  for (std::size_t i = 0; i < road_map_->stop_lines().size(); ++i) {
+    const StopLine& stop_line = road_map_->stop_lines()[i];
     if (stop_line.in_map.empty()) continue;
     for (const LaneId id : stop_line.lanes) {
-      add(RuleKind::stop_line, i, id, station_of(stop_line, road_map.lane(id)));
+      if (!wants(id)) continue;
+      add({RuleKind::stop_line, i, id, station_of(stop_line, road_map_->lane(id)), 0.0});
     }
   }
-  for (std::size_t i = 0; i < road_map.regulations().size(); ++i) {
-    for (const LaneId id : road_map.regulations()[i].lanes) {
-      add_once(of_lane_[id.index].regulations, i);
+  for (std::size_t i = 0; i < road_map_->regulations().size(); ++i) {
+    for (const LaneId id : road_map_->regulations()[i].lanes) {
+      if (wants(id)) add_once(of_lane_[id].regulations, i);
     }
   }
   sort_places();
 }
 
 void RuleIndex::sort_places() {
-  for (OfLane& of_lane : of_lane_) {
+  for (auto& [lane, of_lane] : of_lane_) {
     std::sort(of_lane.places.begin(), of_lane.places.end(),
               [](const RulePlace& a, const RulePlace& b) {
                 return std::tie(a.s_m, a.kind, a.index) < std::tie(b.s_m, b.kind, b.index);
               });
   }
+}
+
+const RuleIndex::OfLane& RuleIndex::of(LaneId lane) const {
+  static const OfLane nothing;
+  const auto found = of_lane_.find(lane);
+  return found == of_lane_.end() ? nothing : found->second;
 }
 
 RulesAt RuleIndex::at(LaneId lane, double s_m) const {
@@ -98,8 +114,8 @@ RulesAt RuleIndex::at(LaneId lane, double s_m) const {
   const LaneLinks& links = road_map_->graph().of(lane);
   rules.may_change_left = may_change(links.left, s_m);
   rules.may_change_right = may_change(links.right, s_m);
-  rules.regulations = of_lane_.at(lane.index).regulations;
-  for (RulePlace place : of_lane_.at(lane.index).places) {
+  rules.regulations = of(lane).regulations;
+  for (RulePlace place : of(lane).places) {
     if (place.s_m < s_m) continue;
     place.distance_m = place.s_m - s_m;
     auto& next = place.kind == RuleKind::signal ? rules.next_signal : rules.next_stop_line;
@@ -114,7 +130,7 @@ std::vector<RulePlace> RuleIndex::ahead(std::span<const LaneId> path, double fro
   double start_m = -from_s_m;  // of the lane, along the way
   for (const LaneId id : path) {
     if (start_m > within_m) break;
-    for (RulePlace place : of_lane_.at(id.index).places) {
+    for (RulePlace place : of(id).places) {
       place.distance_m = start_m + place.s_m;
       if (place.distance_m >= 0.0 && place.distance_m <= within_m) found.push_back(place);
     }

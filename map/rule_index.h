@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,10 @@ class RuleIndex {
   /// O(signals + stop lines + regulations), times the points of the lanes that they speak to.
   explicit RuleIndex(const RoadMap& road_map);
 
+  /// Of some lanes only; of others it says that no signal, stop line or regulation holds. Looks at
+  /// no other lane.
+  RuleIndex(const RoadMap& road_map, std::span<const LaneId> lanes);
+
   /// What holds at station `s_m` of a lane.
   RulesAt at(LaneId lane, double s_m) const;
 
@@ -48,10 +53,14 @@ class RuleIndex {
     std::vector<RulePlace> places;  ///< by station
     std::vector<std::size_t> regulations;
   };
+  template <typename Wants>
+  void add_all(const Wants& wants);
+  void add(RulePlace place) { of_lane_[place.lane].places.push_back(place); }
   void sort_places();
+  const OfLane& of(LaneId lane) const;
 
   const RoadMap* road_map_;
-  std::vector<OfLane> of_lane_;
+  std::map<LaneId, OfLane> of_lane_;  ///< of lanes for which something holds
 };
 
 }  // namespace roadbed::map

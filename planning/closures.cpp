@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "roadbed/map/road_map_index.h"
+
 namespace roadbed::planning {
 namespace {
 
@@ -50,8 +52,10 @@ std::vector<map::LaneId> lanes_touching(const map::RoadMap& road_map,
   std::vector<map::LaneId> lanes;
   if (region_in_map.size() < 3) return lanes;
   const Box region = box_of(region_in_map);
-  for (const map::Lane& lane : road_map.lanes()) {
-    if (lane.polygon.size() < 3 || !overlap(region, box_of(lane.polygon))) continue;
+  for (const map::LaneId id :
+       road_map.index().lanes.in_box(region.low, region.high, map::LaneTypes::all())) {
+    const map::Lane& lane = road_map.lane(id);
+    if (!overlap(region, box_of(lane.polygon))) continue;
     if (geometry::contains(region_in_map, lane.polygon.front()) ||
         geometry::contains(lane.polygon, region_in_map.front()) ||
         edges_cross(region_in_map, lane.polygon)) {

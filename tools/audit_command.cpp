@@ -105,7 +105,6 @@ class AuditCommand : public Command {
   struct Scene {
     std::unique_ptr<const map::OccupancySource> occupancy;
     std::optional<map::Box2> measured;
-    std::vector<geometry::Ring> lanes;  // of the map, if there is one
     const map::RoadMap* road_map;
   };
 
@@ -205,11 +204,10 @@ class AuditCommand : public Command {
 
   Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
                    const CommonOptions& common) const {
-    Scene scene{map::open_occupancy(occupancy_), {}, {}, road_map ? &*road_map : nullptr};
+    Scene scene{map::open_occupancy(occupancy_), {}, road_map ? &*road_map : nullptr};
     scene.measured = measured_bounds(*scene.occupancy);
     if (!road_map) return scene;
-    scene.lanes = drivable_rings(*road_map);
-    check_overlap(scene.lanes, scene.measured, occupancy_.string());
+    check_overlap(road_bounds(*road_map), scene.measured, occupancy_.string());
     const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy->crs();
     if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
       fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
@@ -304,13 +302,25 @@ class AuditCommand : public Command {
     return {around.min_in_source - margin_m, around.max_in_source + margin_m};
   }
 
+  // Lanes that a picture of a drive can show: it is wider or higher than the drive's box by less
+  // than three times the box's longer side.
+  std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited,
+                                          const AuditQuestion& question, const Scene& scene) const {
+    if (scene.road_map == nullptr) return {};
+    const map::Box2 box = drawn(audited, question);
+    const double side_m = (box.max_in_source - box.min_in_source).maxCoeff();
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(3.0 * side_m);
+    return drivable_rings(*scene.road_map,
+                          {box.min_in_source - margin_m, box.max_in_source + margin_m});
+  }
+
   void write_picture(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
                      const map::HeightBand& heights) const {
     if (svg_.empty()) return;
     write_output(svg_,
                  audit_svg({audited.drive, inflated_parts(question), audited.report,
                             occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
-                            scene.lanes, question.moving}));
+                            drawn_lanes(audited, question, scene), question.moving}));
   }
 
   void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
@@ -344,8 +354,9 @@ class AuditCommand : public Command {
       if (!audited.fault.empty()) continue;
       const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground),
                                            drawn(audited, question));
+      const std::vector<geometry::Ring> lanes = drawn_lanes(audited, question, scene);
       index.back().pictures =
-          close_ups(audited.report, {audited.drive, parts, occupied, scene.lanes, question.moving});
+          close_ups(audited.report, {audited.drive, parts, occupied, lanes, question.moving});
     }
     write_output(report_, audit_index_html(index, occupancy_.string(), "roadbed " ROADBED_VERSION));
   }

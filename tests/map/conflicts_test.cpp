@@ -76,6 +76,31 @@ TEST(Conflicts, OfRandomLanesAreWhereSamplingFindsThem) {
   }
 }
 
+TEST(Conflicts, OfOneLaneAreThoseOfAllThatItIsIn) {
+  std::mt19937 random(20261122);
+  const RoadMap road_map = tests::random_arc_lanes(random, 12, 8.0).build();
+  const std::vector<Conflict> all = find_conflicts(road_map);
+  std::size_t found = 0;
+  for (const Lane& lane : road_map.lanes()) {
+    std::vector<Conflict> expected;
+    std::ranges::copy_if(all, std::back_inserter(expected), [&](const Conflict& conflict) {
+      return conflict.one == lane.id || conflict.other == lane.id;
+    });
+    const std::vector<Conflict> of_lane = find_conflicts_of(road_map, lane.id);
+    ASSERT_EQ(of_lane.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(of_lane[i].one, expected[i].one);
+      EXPECT_EQ(of_lane[i].other, expected[i].other);
+      EXPECT_EQ(of_lane[i].on_one, expected[i].on_one);
+      EXPECT_EQ(of_lane[i].on_other, expected[i].on_other);
+      EXPECT_NEAR(of_lane[i].area_m2, expected[i].area_m2, 1e-9);
+    }
+    found += of_lane.size();
+  }
+  EXPECT_EQ(found, 2 * all.size());
+  EXPECT_GT(found, 10U);
+}
+
 /// Lanes 3 m wide along the x and y axes, both 40 m, that cross in the middle.
 tests::MadeMap crossroads(double height_of_second_m) {
   tests::MadeMap made;

@@ -196,6 +196,18 @@ TEST(LaneIndex, FindsEveryLaneWithACornerInABox) {
   }
 }
 
+TEST(LaneIndex, HasTheBoxOfAllLanes) {
+  const RoadMap road_map = stars();
+  geometry::Box expected;
+  for (const Lane& lane : road_map.lanes()) {
+    for (const Eigen::Vector2d& point : lane.polygon) expected.extend(point);
+  }
+  const geometry::Box box = road_map.index().lanes.box();
+  EXPECT_TRUE(box.contains(expected));
+  EXPECT_LT((box.sizes() - expected.sizes()).maxCoeff(), 1e-4);  // float, rounded outwards
+  EXPECT_TRUE(tests::MadeMap().build().index().lanes.box().isEmpty());
+}
+
 TEST(LaneIndex, LooksOnlyAtTheTypesAskedFor) {
   tests::MadeMap made = tests::straight_two_lane_road();
   made.parts.lanes[1].type = LaneType::sidewalk;

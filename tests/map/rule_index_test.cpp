@@ -72,6 +72,23 @@ TEST(RuleIndex, SaysWhatHoldsAtAStation) {
   EXPECT_TRUE(rules.at(LaneId{0}, 0.0).regulations.empty());
 }
 
+TEST(RuleIndex, OfSomeLanesSaysOfThemWhatThatOfAllSays) {
+  const RoadMap road_map = row_with_rules().build();
+  const std::array<LaneId, 2> wanted{LaneId{0}, LaneId{1}};
+  const RuleIndex all(road_map), some(road_map, wanted);
+  const auto expected = all.ahead(wanted, 10.0, 200.0), found = some.ahead(wanted, 10.0, 200.0);
+  ASSERT_EQ(expected.size(), 2U);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].kind, expected[i].kind);
+    EXPECT_EQ(found[i].index, expected[i].index);
+    EXPECT_EQ(found[i].s_m, expected[i].s_m);
+  }
+  EXPECT_EQ(some.at(LaneId{1}, 0.0).regulations, all.at(LaneId{1}, 0.0).regulations);
+  EXPECT_FALSE(all.at(LaneId{2}, 0.0).regulations.empty());
+  EXPECT_TRUE(some.at(LaneId{2}, 0.0).regulations.empty());
+}
+
 TEST(RuleIndex, LetsLanesChangeOnlyWithinTheirWindows) {
   tests::MadeMap made;
   const RoadId road = made.add_road("1");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/map/road_map_index.h"
+
 namespace roadbed::tools {
 namespace {
 
@@ -38,8 +40,11 @@ Eigen::AlignedBox2d box_of(const ReportLane& lane) {
 std::vector<ReportLane> lanes_in(const map::RoadMap& road_map,
                                  const Eigen::AlignedBox2d& box_in_source) {
   std::vector<ReportLane> lanes;
-  for (const map::Lane& lane : road_map.lanes()) {
-    if (lane.polygon.empty()) continue;  // it has no area
+  if (box_in_source.isEmpty()) return lanes;
+  for (const map::LaneId id :
+       road_map.index().lanes.in_box(road_map.to_map(box_in_source.min()),
+                                     road_map.to_map(box_in_source.max()), map::LaneTypes::all())) {
+    const map::Lane& lane = road_map.lane(id);
     ReportLane shown{.name = lane.name,
                      .type = lane.type,
                      .in_junction = lane.junction.has_value(),

@@ -38,11 +38,21 @@ bool is_one_of(const map::Signal& signal, std::span<const std::string_view> type
   return std::ranges::any_of(types, [&](std::string_view t) { return t == type || t == subtype; });
 }
 
+std::vector<LaneId> lanes_of(const planning::Route& route) {
+  std::vector<LaneId> lanes;
+  for (const RouteLeg& leg : route.legs) lanes.push_back(leg.lane);
+  return lanes;
+}
+
 class Finder {
  public:
   Finder(const map::RoadMap& road_map, const planning::Route& route,
          const planning::ReferenceLine& line, std::span<const ScenarioLight> lights)
-      : road_map_(road_map), route_(route), line_(line), lights_(lights), rules_(road_map) {}
+      : road_map_(road_map),
+        route_(route),
+        line_(line),
+        lights_(lights),
+        rules_(road_map, lanes_of(route)) {}
 
   std::vector<WaitingPlace> all() {
     for (leg_ = 0; leg_ < route_.legs.size(); ++leg_) {
@@ -119,12 +129,10 @@ class Finder {
   }
 
   void look_at_turn() {
-    if (conflicts_.empty()) conflicts_ = map::find_conflicts(road_map_);
     const LaneId turn = leg().lane;
     std::optional<map::StationRange> crossed;
-    for (const map::Conflict& conflict : conflicts_) {
+    for (const map::Conflict& conflict : map::find_conflicts_of(road_map_, turn)) {
       if (conflict.kind != map::ConflictKind::crossing) continue;
-      if (conflict.one != turn && conflict.other != turn) continue;
       const bool is_one = conflict.one == turn;
       const LaneId other = is_one ? conflict.other : conflict.one;
       if (!comes_towards(turn, other) || gives_way(other, turn)) continue;
@@ -190,7 +198,6 @@ class Finder {
   map::RuleIndex rules_;
   std::size_t leg_ = 0;
   std::set<std::string, std::less<>> seen_;  ///< signals
-  std::vector<map::Conflict> conflicts_;
   std::vector<WaitingPlace> places_;
 };
 

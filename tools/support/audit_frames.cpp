@@ -5,28 +5,27 @@
 #include <utility>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/road_map_index.h"
 
 namespace roadbed::tools {
-namespace {
 
-void extend(std::optional<map::Box2>& box, const Eigen::Vector2d& least,
-            const Eigen::Vector2d& most) {
-  if (!box) box = map::Box2{least, most};
-  box->min_in_source = box->min_in_source.cwiseMin(least);
-  box->max_in_source = box->max_in_source.cwiseMax(most);
-}
-
-}  // namespace
-
-std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map) {
+std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map, const map::Box2& around) {
   std::vector<geometry::Ring> rings;
-  for (const map::Lane& lane : road_map.lanes()) {
-    if (!is_drivable(lane.type)) continue;
-    geometry::Ring ring;
-    for (const Eigen::Vector2d& point : lane.polygon) ring.push_back(road_map.to_source(point));
-    rings.push_back(std::move(ring));
+  for (const map::LaneId id : road_map.index().lanes.in_box(road_map.to_map(around.min_in_source),
+                                                            road_map.to_map(around.max_in_source),
+                                                            map::LaneTypes::drivable())) {
+    geometry::Ring& ring = rings.emplace_back();
+    for (const Eigen::Vector2d& point : road_map.lane(id).polygon) {
+      ring.push_back(road_map.to_source(point));
+    }
   }
   return rings;
+}
+
+std::optional<map::Box2> road_bounds(const map::RoadMap& road_map) {
+  const geometry::Box box = road_map.index().lanes.box();
+  if (box.isEmpty()) return std::nullopt;
+  return map::Box2{road_map.to_source(box.min()), road_map.to_source(box.max())};
 }
 
 std::optional<map::Box2> measured_bounds(const map::OccupancySource& occupancy) {
@@ -45,12 +44,8 @@ std::string text_of(const map::Box2& box) {
                      box.max_in_source.x(), box.min_in_source.y(), box.max_in_source.y());
 }
 
-void check_overlap(const std::vector<geometry::Ring>& lanes,
-                   const std::optional<map::Box2>& measured, const std::string& occupancy) {
-  std::optional<map::Box2> roads;
-  for (const geometry::Ring& lane : lanes) {
-    for (const Eigen::Vector2d& point : lane) extend(roads, point, point);
-  }
+void check_overlap(const std::optional<map::Box2>& roads, const std::optional<map::Box2>& measured,
+                   const std::string& occupancy) {
   if (!roads || !measured || overlap(*roads, *measured)) return;
   throw map::InputError({.file = occupancy,
                          .place = {},

@@ -11,8 +11,12 @@
 
 namespace roadbed::tools {
 
-/// Drivable lanes of a map as rings in source coordinates.
-std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map);
+/// Drivable lanes of a map that meet a box, and some beside it perhaps, as rings in source
+/// coordinates.
+std::vector<geometry::Ring> drivable_rings(const map::RoadMap& road_map, const map::Box2& around);
+
+/// Box around all lanes of a map; none if there are none.
+std::optional<map::Box2> road_bounds(const map::RoadMap& road_map);
 
 /// Box around all measured space in plan view; none if nothing was measured.
 std::optional<map::Box2> measured_bounds(const map::OccupancySource& occupancy);
@@ -24,11 +28,12 @@ bool overlap(const map::Box2& a, const map::Box2& b);
 std::string text_of(const map::Box2& box);
 
 /// An occupancy apart from the roads of a map cannot be meant.
+/// @param roads      bounds of the map's.
 /// @param measured   of the occupancy.
 /// @param occupancy  the name of its file.
 /// @throws InputError if both have an extent and the two do not meet.
-void check_overlap(const std::vector<geometry::Ring>& lanes,
-                   const std::optional<map::Box2>& measured, const std::string& occupancy);
+void check_overlap(const std::optional<map::Box2>& roads, const std::optional<map::Box2>& measured,
+                   const std::string& occupancy);
 
 /// Occupied cells of a height band in plan view, as they are; they may lie above one another. Those
 /// that meet `around`, and some beside it perhaps.

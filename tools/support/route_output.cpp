@@ -7,6 +7,7 @@
 
 #include "roadbed/map/formats/svg_canvas.h"
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/road_map_index.h"
 #include "roadbed/planning/guidance.h"
 #include "roadbed/planning/route_area.h"
 #include "roadbed/planning/route_path.h"
@@ -132,7 +133,9 @@ struct Bounds {
 std::string lanes_around(const map::RoadMap& road_map, const map::SvgCanvas& canvas,
                          const Bounds& bounds) {
   std::string data;
-  for (const map::Lane& lane : road_map.lanes()) {
+  for (const map::LaneId id :
+       road_map.index().lanes.in_box(bounds.low, bounds.high, map::LaneTypes::all())) {
+    const map::Lane& lane = road_map.lane(id);
     const bool near =
         std::any_of(lane.polygon.begin(), lane.polygon.end(), [&](const Eigen::Vector2d& point) {
           return (point.array() >= bounds.low.array()).all() &&
