@@ -47,14 +47,16 @@ class OccupancyBuildCommand : public Command {
     arguments
         .add("--sensor", sensor_,
              "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
-             "the viewpoint of each .pcd counts, where the file names one")
+             "the position that a cloud has for each point counts (fields or columns sensor_x "
+             "sensor_y sensor_z, vp_x…, x_origin… or BeamOriginX…), else the viewpoint of a .pcd")
         .separated_by(',')
         .values(3)
         .excludes(
             arguments.add("--poses", poses_file_,
                           "Where the sensor was, a line for each cloud in their order (TUM: "
                           "timestamp tx ty tz qx "
-                          "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame"));
+                          "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame, "
+                          "and so are positions that they have for each point"));
     arguments.flag("--no-carving", no_carving_,
                    "Only mark hits, whatever viewpoints the files name");
     arguments.add("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
@@ -257,11 +259,26 @@ class OccupancyBuildCommand : public Command {
 
   map::PointCloud prepared(map::PointCloud cloud) const {
     map::check_is_in_metres(cloud);
-    if (filter_.does_something()) cloud = map::filtered(cloud, filter_);
+    if (no_carving_ || !sensor_.empty()) cloud.scans.clear();
+    if (filter_.does_something()) {
+      check_is_one_scan(cloud);
+      cloud = map::filtered(cloud, filter_);
+    }
     if (!crs_.empty()) cloud.crs = crs_;
     if (!sensor_.empty()) cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
     if (no_carving_) cloud.sensor_in_source.reset();
     return cloud;
+  }
+
+  // Filters do not say which point is which.
+  static void check_is_one_scan(const map::PointCloud& cloud) {
+    if (cloud.scans.empty()) return;
+    throw map::InputError({.file = cloud.name,
+                           .place = {},
+                           .element = "sensor",
+                           .found = "has a position for each point",
+                           .needed = "one for the whole cloud, to filter it",
+                           .remedy = "leave the filter out, or give --sensor or --no-carving"});
   }
 
   static void print_notes(std::ostream& err, const map::PointCloud& cloud) {
@@ -273,7 +290,7 @@ class OccupancyBuildCommand : public Command {
       note(fmt::format("{} of {} points are not finite and were left out", cloud.dropped_not_finite,
                        cloud.dropped_not_finite + cloud.points.size()));
     }
-    if (!cloud.sensor_in_source) {
+    if (!cloud.has_sensor()) {
       note("no sensor position, so all but its hits stays unknown; give --sensor X,Y,Z");
     }
   }

@@ -102,6 +102,7 @@ Json cloud_info(const map::PointCloud& cloud) {
     const Eigen::Vector3d& at = *cloud.sensor_in_source;
     info["sensor"] = {{"x_m", at.x()}, {"y_m", at.y()}, {"z_m", at.z()}};
   }
+  info["scans"] = cloud.scans.size();
   info["notes"] = cloud.notes;
   return info;
 }

@@ -1,5 +1,7 @@
 #include "roadbed/map/occupancy/cloud_formats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -20,6 +22,44 @@ void RawCloud::add(const Eigen::Vector3d& point) {
   } else {
     ++dropped_not_finite;
   }
+}
+
+void RawCloud::add(const Eigen::Vector3d& point, const Eigen::Vector3d& sensor) {
+  const std::size_t kept = points_in_source.size();
+  add(point);
+  if (points_in_source.size() == kept) return;
+  std::optional<Eigen::Vector3d> from;
+  if (sensor.allFinite() && sensor.cwiseAbs().maxCoeff() < kBeyondEarth) from = sensor;
+  if (!from) ++without_sensor;
+  if (scans.empty() || scans.back().sensor_in_source != from) scans.push_back({kept, from});
+}
+
+std::optional<FieldColumns> columns_named(const std::vector<std::string>& fields,
+                                          const std::array<std::string_view, 3>& names) {
+  FieldColumns columns{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto found = std::ranges::find(fields, names[axis]);
+    if (found == fields.end()) return std::nullopt;
+    columns[axis] = static_cast<std::size_t>(found - fields.begin());
+  }
+  return columns;
+}
+
+std::optional<FieldColumns> sensor_columns(const std::vector<std::string>& fields,
+                                           std::vector<std::string>& notes) {
+  static constexpr std::array<std::array<std::string_view, 3>, 4> usual{
+      {{"sensor_x", "sensor_y", "sensor_z"},
+       {"vp_x", "vp_y", "vp_z"},
+       {"x_origin", "y_origin", "z_origin"},
+       {"beamoriginx", "beamoriginy", "beamoriginz"}}};
+  for (const auto& names : usual) {
+    if (const auto columns = columns_named(fields, names)) return columns;
+    const auto some = std::ranges::find_first_of(fields, names);
+    if (some == fields.end()) continue;
+    notes.push_back(fmt::format("has {}, but not all of {}, {} and {}: not taken as the sensor",
+                                *some, names[0], names[1], names[2]));
+  }
+  return std::nullopt;
 }
 
 void refuse_cloud(const std::string& file, const std::string& place, const std::string& element,

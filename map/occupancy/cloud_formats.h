@@ -26,13 +26,32 @@ struct RawCloud {
   std::string crs;
   LengthUnit unit = LengthUnit::unknown;
   std::optional<Eigen::Vector3d> sensor_in_source;
+  std::vector<ScanStart> scans = {};  ///< of the points that were kept
+  std::size_t without_sensor = 0;     ///< points whose sensor position is not finite
   std::vector<std::string> notes;
 
   bool empty() const { return points_in_source.empty() && float_points_in_source.empty(); }
 
   /// Keeps the point, or counts it where a coordinate is not finite or beyond any Earth frame.
   void add(const Eigen::Vector3d& point);
+
+  /// The same for a point that was measured from `sensor`, finite or not.
+  void add(const Eigen::Vector3d& point, const Eigen::Vector3d& sensor);
 };
+
+/// Places of three fields in a point.
+using FieldColumns = std::array<std::size_t, 3>;
+
+/// Which fields have these names; none if one of them is missing.
+std::optional<FieldColumns> columns_named(const std::vector<std::string>& fields,
+                                          const std::array<std::string_view, 3>& names);
+
+/// Which fields say where a point was measured from, by the names that are in use: sensor_x, vp_x
+/// (PCL), x_origin (Paris-Lille-3D), BeamOriginX (PDAL). Adds a note where some of three are
+/// missing.
+/// @param fields  lower-case names.
+std::optional<FieldColumns> sensor_columns(const std::vector<std::string>& fields,
+                                           std::vector<std::string>& notes);
 
 /// @throws InputError, all of them: place is a line number or "byte N", element may be empty.
 [[noreturn]] void refuse_cloud(const std::string& file, const std::string& place,

@@ -71,28 +71,42 @@ CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
       carved_(options.resolution_m) {}
 
 void CloudMeasurements::add(const PointCloud& cloud) {
-  blocks_.begin_scan();
-  if (cloud.sensor_in_source) {
-    add_scan(cloud, *cloud.sensor_in_source);
-  } else {
-    add_hits(cloud);
+  const std::size_t count = cloud.points.size();
+  if (cloud.scans.empty()) add(cloud, {0, count}, cloud.sensor_in_source);
+  for (std::size_t i = 0; i < cloud.scans.size(); ++i) {
+    const std::size_t next = i + 1 < cloud.scans.size() ? cloud.scans[i + 1].first : count;
+    add(cloud, {cloud.scans[i].first, next}, cloud.scans[i].sensor_in_source);
   }
-  if (!options_.sticky_hits) weigh_scan();
+  add_carved(cloud);
 }
 
-void CloudMeasurements::add_hits(const PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+void CloudMeasurements::add(const PointCloud& cloud, Span points,
+                            const std::optional<Eigen::Vector3d>& sensor) {
+  blocks_.begin_scan();
+  if (sensor) {
+    add_scan(cloud, points, *sensor);
+  } else {
+    add_hits(cloud, points);
+  }
+  if (options_.sticky_hits) return;
+  add_carved(cloud);
+  weigh_scan();
+}
+
+void CloudMeasurements::add_hits(const PointCloud& cloud, Span points) {
+  for (std::size_t i = points.first; i < points.last; ++i) {
     blocks_.mark_hit(checked_key(cloud, "point", cloud.in_source(i)));
     if (i % 256 == 0) check_room(cloud);
   }
   check_room(cloud);
 }
 
-void CloudMeasurements::add_scan(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_source) {
+void CloudMeasurements::add_scan(const PointCloud& cloud, Span points,
+                                 const Eigen::Vector3d& sensor_in_source) {
   const CellKey from = checked_key(cloud, "sensor", sensor_in_source);
   const Eigen::Vector3f sensor = (sensor_in_source - origin_in_source_).cast<float>();
   const double range_m = options_.carve_range_m;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+  for (std::size_t i = points.first; i < points.last; ++i) {
     const CellKey key = checked_key(cloud, "point", cloud.in_source(i));
     if (!blocks_.add_end(key)) continue;
     const Eigen::Vector3f end = centre_in_tree(key, options_.resolution_m);
@@ -110,7 +124,6 @@ void CloudMeasurements::add_scan(const PointCloud& cloud, const Eigen::Vector3d&
     }
     check_room(cloud);
   }
-  add_carved(cloud);
 }
 
 void CloudMeasurements::add_carved(const PointCloud& cloud) {
@@ -140,7 +153,7 @@ void CloudMeasurements::check_room(const PointCloud& cloud) const {
   if (blocks + carved_.kept_bytes() <= most_bytes_) return;
   throw InputError({.file = cloud.name,
                     .place = {},
-                    .element = cloud.sensor_in_source ? "rays" : "points",
+                    .element = cloud.has_sensor() ? "rays" : "points",
                     .found = "cross more cells than can be kept",
                     .needed = {},
                     .remedy = "take a coarser resolution or a shorter carving range"});

@@ -24,7 +24,7 @@ struct LogOddsRule {
   float occupied_from = 0.0f;
 };
 
-/// Collects what clouds measured, cell by cell. A cloud with a sensor position is one scan: each
+/// Collects what clouds measured, cell by cell. Points with one sensor position are one scan: each
 /// cell counts once, as hit where a point lies in it, else as free where a ray crosses it.
 class CloudMeasurements {
  public:
@@ -47,8 +47,13 @@ class CloudMeasurements {
  private:
   CellKey checked_key(const PointCloud& cloud, const char* what,
                       const Eigen::Vector3d& in_source) const;
-  void add_hits(const PointCloud& cloud);
-  void add_scan(const PointCloud& cloud, const Eigen::Vector3d& sensor_in_source);
+  // Points of a cloud, from one on up to another, without that one.
+  struct Span {
+    std::size_t first, last;
+  };
+  void add(const PointCloud& cloud, Span points, const std::optional<Eigen::Vector3d>& sensor);
+  void add_hits(const PointCloud& cloud, Span points);
+  void add_scan(const PointCloud& cloud, Span points, const Eigen::Vector3d& sensor_in_source);
   void add_carved(const PointCloud& cloud);
   void check_room(const PointCloud& cloud) const;
   void weigh_scan();

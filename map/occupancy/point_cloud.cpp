@@ -124,7 +124,12 @@ PointCloud relative_to_origin(RawCloud raw) {
   cloud.unit = raw.unit;
   cloud.dropped_not_finite = raw.dropped_not_finite;
   cloud.sensor_in_source = raw.sensor_in_source;
+  cloud.scans = std::move(raw.scans);
   cloud.notes = std::move(raw.notes);
+  if (raw.without_sensor > 0) {
+    cloud.notes.push_back(fmt::format("{} points have no finite sensor position: no rays to them",
+                                      raw.without_sensor));
+  }
   return cloud;
 }
 
@@ -156,6 +161,9 @@ PointCloud placed(const PointCloud& cloud, const Eigen::Isometry3d& world_from_s
   moved.points = points.points;
   moved.origin_in_source = points.origin_in_source;
   moved.sensor_in_source = world_from_sensor.translation();
+  for (ScanStart& scan : moved.scans) {
+    if (scan.sensor_in_source) *scan.sensor_in_source = world_from_sensor * *scan.sensor_in_source;
+  }
   return moved;
 }
 
@@ -170,6 +178,10 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
   scaled.unit = LengthUnit::metre;
   scaled.dropped_not_finite = cloud.dropped_not_finite;
   if (cloud.sensor_in_source) scaled.sensor_in_source = *cloud.sensor_in_source * factor;
+  scaled.scans = cloud.scans;
+  for (ScanStart& scan : scaled.scans) {
+    if (scan.sensor_in_source) *scan.sensor_in_source *= factor;
+  }
   scaled.notes = cloud.notes;
   return scaled;
 }

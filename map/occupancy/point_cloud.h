@@ -13,6 +13,12 @@ namespace roadbed::map {
 enum class LengthUnit { unknown, metre, foot, us_survey_foot, degree };
 std::string_view name(LengthUnit unit);
 
+/// Points from `first` on were measured from here, until the next one of these.
+struct ScanStart {
+  std::size_t first = 0;
+  std::optional<Eigen::Vector3d> sensor_in_source;  ///< none: it is not known from where
+};
+
 /// Measured points in the file's own coordinates, double, relative to a local origin.
 ///
 /// The origin is 0 where every coordinate stays within 4096 of it, so that small clouds keep their
@@ -27,7 +33,12 @@ struct PointCloud {
   LengthUnit unit = LengthUnit::unknown;
   std::size_t dropped_not_finite = 0;
   std::optional<Eigen::Vector3d> sensor_in_source;  ///< of the file's viewpoint, if it names one
-  std::vector<std::string> notes;                   ///< what the user may want to know of the file
+  std::vector<ScanStart> scans;  ///< in order, from point 0 on, where the file says of each point
+                                 ///< where it was measured from; then `sensor_in_source` is unused
+  std::vector<std::string> notes;  ///< what the user may want to know of the file
+
+  /// Whether rays can be drawn to some of its points.
+  bool has_sensor() const { return sensor_in_source.has_value() || !scans.empty(); }
 
   Eigen::Vector3d in_source(std::size_t i) const {
     return origin_in_source + points[i].cast<double>();

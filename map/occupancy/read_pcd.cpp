@@ -1,6 +1,7 @@
 // PCD 0.5 to 0.7: https://pointclouds.org/documentation/tutorials/pcd_file_format.html
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -36,6 +37,9 @@ struct Header {
   std::size_t body_offset = 0;
   std::size_t lines = 0;
 };
+
+// The fields of a vector.
+using Axes = std::array<const Field*, 3>;
 
 class PcdParser {
  public:
@@ -184,11 +188,40 @@ class PcdParser {
       header_.point_elements += field.count;
       header_.point_size += field.size * field.count;
     }
-    for (const char* axis : {"x", "y", "z"}) {
-      const Field& field = field_of(axis);
-      if (field.count != 1) {
-        refuse("COUNT", fmt::format("{} of field {}", field.count, axis), "1", "mend the header");
-      }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string name(1, "xyz"[axis]);
+      axes_[axis] = &field_of(name);
+      if (axes_[axis]->count == 1) continue;
+      refuse("COUNT", fmt::format("{} of field {}", axes_[axis]->count, name), "1",
+             "mend the header");
+    }
+    find_sensor();
+  }
+
+  void find_sensor() {
+    std::vector<std::string> names;
+    for (const Field& field : header_.fields) {
+      names.push_back(field.count == 1 ? field.name : std::string());
+    }
+    const auto columns = sensor_columns(names, cloud_.notes);
+    if (!columns) return;
+    sensor_.emplace();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      (*sensor_)[axis] = &header_.fields[(*columns)[axis]];
+    }
+    cloud_.sensor_in_source.reset();
+  }
+
+  // Takes a point whose fields are `value(field)`.
+  template <typename Value>
+  void add_point(const Value& value) {
+    const auto vector_of = [&](const Axes& axes) {
+      return Eigen::Vector3d(value(*axes[0]), value(*axes[1]), value(*axes[2]));
+    };
+    if (sensor_) {
+      cloud_.add(vector_of(axes_), vector_of(*sensor_));
+    } else {
+      cloud_.add(vector_of(axes_));
     }
   }
 
@@ -226,14 +259,12 @@ class PcdParser {
 
   void read_ascii() {
     check_body(2 * header_.point_elements - 1, header_.body.size() + 1);
-    const std::array<std::size_t, 3> wanted{
-        field_of("x").first_element, field_of("y").first_element, field_of("z").first_element};
     TextScanner lines(header_.body);
     std::uint64_t read = 0;
     while (read < *header_.points && !lines.done()) {
       std::string_view line = lines.next_line();
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-      cloud_.add(ascii_point(line, wanted, header_.lines + lines.line_number()));
+      add_ascii_point(line, header_.lines + lines.line_number());
       ++read;
     }
     if (read < *header_.points) {
@@ -243,56 +274,48 @@ class PcdParser {
     note_trailing(lines.rest().size());
   }
 
-  Eigen::Vector3d ascii_point(std::string_view line, const std::array<std::size_t, 3>& wanted,
-                              std::size_t number) const {
-    Eigen::Vector3d point;
-    for (std::size_t element = 0; element < header_.point_elements; ++element) {
+  void add_ascii_point(std::string_view line, std::size_t number) {
+    words_.clear();
+    while (words_.size() < header_.point_elements) {
       const std::string_view word = next_word(line);
       if (word.empty()) {
-        refuse_cloud(name_, std::to_string(number), "point", fmt::format("has {} values", element),
-                     fmt::format("{} as FIELDS and COUNT say", header_.point_elements),
-                     "mend the line");
+        refuse_cloud(
+            name_, std::to_string(number), "point", fmt::format("has {} values", words_.size()),
+            fmt::format("{} as FIELDS and COUNT say", header_.point_elements), "mend the line");
       }
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (wanted[axis] != element) continue;
-        const auto value = parse_number(word);
-        if (!value) {
-          refuse_cloud(name_, std::to_string(number), "point",
-                       fmt::format("\"{}\" is not a number", word.substr(0, 40)), "",
-                       "mend the line");
-        }
-        point[static_cast<int>(axis)] = *value;
-      }
+      words_.push_back(word);
     }
-    return point;
+    add_point([&](const Field& field) {
+      const std::string_view word = words_[field.first_element];
+      if (const auto value = parse_number(word)) return *value;
+      refuse_cloud(name_, std::to_string(number), "point",
+                   fmt::format("\"{}\" is not a number", word.substr(0, 40)), "", "mend the line");
+    });
   }
 
   void read_binary() {
     check_body(header_.point_size, header_.body.size());
-    const Field &x = field_of("x"), &y = field_of("y"), &z = field_of("z");
-    const bool are_floats = std::endian::native == std::endian::little &&
-                            x.scalar == ScalarType::f32 && y.scalar == ScalarType::f32 &&
-                            z.scalar == ScalarType::f32;
-    if (are_floats) {
+    const bool are_floats = std::ranges::all_of(
+        axes_, [](const Field* axis) { return axis->scalar == ScalarType::f32; });
+    if (are_floats && !sensor_ && std::endian::native == std::endian::little) {
       add_float_points({.first = header_.body.data(),
                         .count = *header_.points,
                         .size = header_.point_size,
-                        .x_offset = x.offset,
-                        .y_offset = y.offset,
-                        .z_offset = z.offset},
+                        .x_offset = axes_[0]->offset,
+                        .y_offset = axes_[1]->offset,
+                        .z_offset = axes_[2]->offset},
                        cloud_);
     } else {
-      read_scalars(x, y, z);
+      read_scalars();
     }
     note_trailing(header_.body.size() - *header_.points * header_.point_size);
   }
 
-  void read_scalars(const Field& x, const Field& y, const Field& z) {
+  void read_scalars() {
     cloud_.points_in_source.reserve(*header_.points);
     for (std::uint64_t i = 0; i < *header_.points; ++i) {
       const char* point = header_.body.data() + i * header_.point_size;
-      cloud_.add({read_scalar(point + x.offset, x.scalar), read_scalar(point + y.offset, y.scalar),
-                  read_scalar(point + z.offset, z.scalar)});
+      add_point([&](const Field& f) { return read_scalar(point + f.offset, f.scalar); });
     }
   }
 
@@ -324,12 +347,12 @@ class PcdParser {
 
   void read_columns(const std::string& body) {
     const std::uint64_t points = *header_.points;
-    const auto value = [&](const Field& field, std::uint64_t i) {
-      return read_scalar(body.data() + field.offset * points + i * field.size, field.scalar);
-    };
-    const Field &x = field_of("x"), &y = field_of("y"), &z = field_of("z");
     cloud_.points_in_source.reserve(points);
-    for (std::uint64_t i = 0; i < points; ++i) cloud_.add({value(x, i), value(y, i), value(z, i)});
+    for (std::uint64_t i = 0; i < points; ++i) {
+      add_point([&](const Field& f) {
+        return read_scalar(body.data() + f.offset * points + i * f.size, f.scalar);
+      });
+    }
   }
 
   void note_trailing(std::size_t size) {
@@ -341,6 +364,9 @@ class PcdParser {
   std::string_view bytes_;
   const std::string& name_;
   Header header_;
+  Axes axes_{};
+  std::optional<Axes> sensor_;           // where the file has its position for each point
+  std::vector<std::string_view> words_;  // of a point in ascii
   RawCloud cloud_;
 };
 

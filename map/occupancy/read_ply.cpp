@@ -174,25 +174,34 @@ class PlyParser {
   }
 
   void read_vertices(const Element& element) {
-    std::array<std::size_t, 3> wanted{};
-    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto& all = element.properties;
-      const auto found = std::find_if(all.begin(), all.end(), [&](const Property& p) {
-        return p.name == axes[axis] && !p.list_count;
-      });
-      if (found == all.end()) {
-        refuse("element vertex", fmt::format("has no property {}", axes[axis]), "x, y and z",
-               "check that it is a point cloud");
-      }
-      wanted[axis] = static_cast<std::size_t>(found - all.begin());
+    std::vector<std::string> names;
+    for (const Property& p : element.properties) {
+      names.push_back(p.list_count ? std::string() : p.name);
     }
+    const FieldColumns axes = axes_of(names);
+    const std::optional<FieldColumns> sensor = sensor_columns(names, cloud_.notes);
     cloud_.points_in_source.reserve(element.count);
     std::vector<double> values;
+    const auto vector_at = [&](const FieldColumns& columns) {
+      return Eigen::Vector3d(values[columns[0]], values[columns[1]], values[columns[2]]);
+    };
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_row(element, i, values);
-      cloud_.add({values[wanted[0]], values[wanted[1]], values[wanted[2]]});
+      if (sensor) {
+        cloud_.add(vector_at(axes), vector_at(*sensor));
+      } else {
+        cloud_.add(vector_at(axes));
+      }
     }
+  }
+
+  FieldColumns axes_of(const std::vector<std::string>& names) const {
+    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    if (const auto columns = columns_named(names, axes)) return *columns;
+    const auto missing = std::ranges::find_if(
+        axes, [&](std::string_view axis) { return std::ranges::find(names, axis) == names.end(); });
+    refuse("element vertex", fmt::format("has no property {}", *missing), "x, y and z",
+           "check that it is a point cloud");
   }
 
   // Values of one row, a list's as the number of its entries.

@@ -1,4 +1,5 @@
-// Text with a point per line: x, y, z first, or in the columns that a header line names so.
+// Text with a point per line: x, y, z first, or in the columns that a header line names so; it may
+// name columns of the sensor as well.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 
 namespace roadbed::map {
 namespace {
-
-using Columns = std::array<std::size_t, 3>;
 
 std::vector<std::string_view> split(std::string_view line) {
   constexpr std::string_view space = " \t", separators = ",;";
@@ -36,17 +35,10 @@ std::string axis_of(std::string_view word) {
   return small;
 }
 
-std::optional<Columns> columns_named(const std::vector<std::string_view>& words) {
-  Columns columns{};
-  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto found = std::find_if(words.begin(), words.end(), [&](std::string_view word) {
-      return axis_of(word) == axes[axis];
-    });
-    if (found == words.end()) return std::nullopt;
-    columns[axis] = static_cast<std::size_t>(found - words.begin());
-  }
-  return columns;
+std::vector<std::string> field_names(const std::vector<std::string_view>& words) {
+  std::vector<std::string> names;
+  for (const std::string_view word : words) names.push_back(axis_of(word));
+  return names;
 }
 
 bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
@@ -61,7 +53,12 @@ class XyzParser {
       const std::string_view line = lines_.next_line();
       const auto words = split(line);
       if (words.empty() || take_header(line, words)) continue;
-      cloud_.add(point(words));
+      const Eigen::Vector3d point = numbers(words, columns_, "x, y and z");
+      if (sensor_columns_) {
+        cloud_.add(point, numbers(words, *sensor_columns_, "the sensor's x, y and z"));
+      } else {
+        cloud_.add(point);
+      }
     }
     return std::move(cloud_);
   }
@@ -70,24 +67,32 @@ class XyzParser {
   // Comments anywhere; column names or a number of points before the first point.
   bool take_header(std::string_view line, const std::vector<std::string_view>& words) {
     const bool before_points = cloud_.points_in_source.empty() && cloud_.dropped_not_finite == 0;
-    const auto named = before_points ? columns_named(words) : std::nullopt;
-    if (named) columns_ = *named;
-    if (named || is_comment(line)) return true;
+    const bool is_named = before_points && take_names(field_names(words));
+    if (is_named || is_comment(line)) return true;
     return before_points && words.size() == 1 && parse_count(words[0]).has_value();
   }
 
-  Eigen::Vector3d point(const std::vector<std::string_view>& words) const {
-    Eigen::Vector3d point;
+  bool take_names(const std::vector<std::string>& names) {
+    const auto named = columns_named(names, {"x", "y", "z"});
+    if (!named) return false;
+    columns_ = *named;
+    sensor_columns_ = sensor_columns(names, cloud_.notes);
+    return true;
+  }
+
+  Eigen::Vector3d numbers(const std::vector<std::string_view>& words, const FieldColumns& columns,
+                          const char* needed) const {
+    Eigen::Vector3d numbers;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (columns_[axis] >= words.size()) {
-        refuse(fmt::format("has {} values", words.size()), "x, y and z");
+      if (columns[axis] >= words.size()) {
+        refuse(fmt::format("has {} values", words.size()), needed);
       }
-      const std::string_view word = words[columns_[axis]];
+      const std::string_view word = words[columns[axis]];
       const auto value = parse_number(word);
-      if (!value) refuse(fmt::format("\"{}\" is not a number", word.substr(0, 40)), "x, y and z");
-      point[static_cast<int>(axis)] = *value;
+      if (!value) refuse(fmt::format("\"{}\" is not a number", word.substr(0, 40)), needed);
+      numbers[static_cast<int>(axis)] = *value;
     }
-    return point;
+    return numbers;
   }
 
   [[noreturn]] void refuse(const std::string& found, const std::string& needed) const {
@@ -97,7 +102,8 @@ class XyzParser {
 
   TextScanner lines_;
   const std::string& name_;
-  Columns columns_{0, 1, 2};
+  FieldColumns columns_{0, 1, 2};
+  std::optional<FieldColumns> sensor_columns_;
   RawCloud cloud_;
 };
 

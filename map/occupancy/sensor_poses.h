@@ -21,7 +21,7 @@ std::vector<Eigen::Isometry3d> read_sensor_poses(const std::filesystem::path& fi
 std::vector<Eigen::Isometry3d> parse_sensor_poses(std::string_view bytes, const std::string& name);
 
 /// A cloud in its sensor's frame, moved to where the sensor stood: the sensor is at the pose's
-/// origin, whatever viewpoint the file named.
+/// origin, whatever viewpoint the file named; sensor positions of single points move along.
 PointCloud placed(const PointCloud& cloud, const Eigen::Isometry3d& world_from_sensor);
 
 }  // namespace roadbed::map

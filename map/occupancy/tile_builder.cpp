@@ -104,10 +104,13 @@ std::filesystem::path TileBuilder::aside_file(const Place& place) const {
 // None where the cloud lies within the range of keys; else a multiple of a quarter of it.
 TileBuilder::Shift TileBuilder::shift_of(const PointCloud& cloud) const {
   Box3 box = bounds(cloud);
-  if (cloud.sensor_in_source) {
-    box.min_in_source = box.min_in_source.cwiseMin(*cloud.sensor_in_source);
-    box.max_in_source = box.max_in_source.cwiseMax(*cloud.sensor_in_source);
-  }
+  const auto add_sensor = [&](const std::optional<Eigen::Vector3d>& sensor) {
+    if (!sensor) return;
+    box.min_in_source = box.min_in_source.cwiseMin(*sensor);
+    box.max_in_source = box.max_in_source.cwiseMax(*sensor);
+  };
+  add_sensor(cloud.sensor_in_source);
+  for (const ScanStart& scan : cloud.scans) add_sensor(scan.sensor_in_source);
   Shift shift{};
   for (int axis = 0; axis < 3; ++axis) {
     const double from =

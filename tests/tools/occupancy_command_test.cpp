@@ -202,5 +202,31 @@ TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   EXPECT_EQ(run_roadbed({"audit", "--unknown", "maybe"}).status, 2);
 }
 
+TEST(OccupancyBuild, CarvesFromTheSensorOfEachPointUnlessToldOtherwise) {
+  const TemporaryFolder folder;
+  const std::string cloud = folder.write(
+      "shots.csv", "x,y,z,vp_x,vp_y,vp_z\n5,0.05,0.05,0,0.05,0.05\n5,3.05,0.05,0,3.05,0.05\n");
+  int built = 0;
+  const auto free_m3 = [&](std::vector<std::string> more) {
+    const std::string octree = folder / (std::to_string(++built) + ".bt");
+    more.insert(more.begin(), {"occupancy", "build", cloud, "-o", octree});
+    const ProgramRun run = run_roadbed(more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    const ProgramRun info = run_roadbed({"occupancy", "info", octree, "--json"});
+    return Json::parse(info.out).at("free").at("volume_m3").get<double>();
+  };
+  EXPECT_NEAR(free_m3({}), 2 * 5.0 * 0.01, 1e-9);
+  EXPECT_NEAR(free_m3({"--sensor", "5.0,0.05,0.05"}), 3.0 * 0.01, 0.2 * 0.01);
+  EXPECT_NEAR(free_m3({"--no-carving"}), 0.0, 1e-9);
+  const ProgramRun info = run_roadbed({"occupancy", "info", cloud, "--json"});
+  EXPECT_EQ(Json::parse(info.out).at("scans"), 2);
+  const std::string out = folder / "out.bt";
+  const ProgramRun filtered =
+      run_roadbed({"occupancy", "build", cloud, "-o", out, "--voxel", "0.2"});
+  EXPECT_EQ(filtered.status, 1);
+  EXPECT_THAT(filtered.err, HasSubstr("position for each point"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 }  // namespace
 }  // namespace roadbed::tests

@@ -1,0 +1,2 @@
+#include "map/occupancy/tile_builder.cpp"
+#include "map/occupancy/tiled_occupancy.cpp"
