@@ -1,10 +1,13 @@
 """What users type, and what they read when it cannot be used."""
 
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from batches import job, run, write_jobs
+
+RECIPES = Path(__file__).parents[3] / "tools" / "cluster" / "recipes"
 
 
 @pytest.mark.parametrize(
@@ -32,6 +35,22 @@ def test_wrong_usage_is_told_with_status_2(tmp_path: Path, arguments: list[str],
     assert ended.returncode == 2
     assert said in ended.stderr.splitlines()[-1]
     assert not (tmp_path / "out").exists()
+
+
+def test_certificates_that_are_none_are_told_with_status_2(tmp_path: Path) -> None:
+    jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
+    for folder in ("one", "other"):
+        subprocess.run([RECIPES / "certificates", tmp_path / folder], check=True)
+    one, key = tmp_path / "one", tmp_path / "other" / "cluster.key"
+    for ca, said in (
+        (jobs, f"--tls-ca: {jobs}: is no certificate (.pem)"),
+        (one / "ca.pem", f"{one}/cluster.pem and {key} are no certificate and its key (.pem)"),
+    ):
+        files = ["--tls-ca", ca, "--tls-cert", one / "cluster.pem", "--tls-key", key]
+        ended = run(jobs, "-o", tmp_path / "out", "--scheduler", "tls://127.0.0.1:1", *files)
+        assert ended.returncode == 2
+        assert ended.stderr.rstrip("\n").endswith(said)
+        assert not (tmp_path / "out").exists()
 
 
 def test_unusable_jobs_are_told_with_status_1_and_leave_nothing(tmp_path: Path) -> None:

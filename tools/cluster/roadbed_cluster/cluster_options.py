@@ -1,6 +1,7 @@
 """Where a cluster is, and the files that prove who one is there."""
 
 import re
+import ssl
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,7 +29,8 @@ class ClusterOptions:
         """Check that the options fit each other.
 
         Raises:
-            UsageError: if they do not, the address is none, or a file of TLS is not there.
+            UsageError: if they do not, the address is none, or a file of TLS is not there
+                or not what it should be.
         """
         if self.scheduler is not None:
             _check_address(self.scheduler)
@@ -46,6 +48,22 @@ class ClusterOptions:
                 raise UsageError(f"{name} needs --scheduler tls://HOST:PORT")
             if file is not None and not file.is_file():
                 raise UsageError(f"{name}: {file}: no such file")
+        if self.is_encrypted:
+            self._check_certificates()
+
+    def _check_certificates(self) -> None:
+        assert self.tls_ca is not None and self.tls_cert is not None
+        try:
+            context = ssl.create_default_context(cafile=self.tls_ca)
+        except ssl.SSLError as error:
+            raise UsageError(f"--tls-ca: {self.tls_ca}: is no certificate (.pem)") from error
+        try:
+            context.load_cert_chain(self.tls_cert, self.tls_key, password="")
+        except (ssl.SSLError, ValueError) as error:
+            raise UsageError(
+                f"--tls-cert, --tls-key: {self.tls_cert} and {self.tls_key} are no certificate and "
+                "its key (.pem)"
+            ) from error
 
 
 def _check_address(address: str) -> None:

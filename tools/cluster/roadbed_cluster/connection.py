@@ -33,7 +33,7 @@ def connect(options: ClusterOptions) -> Iterator[Client]:
     key made for this run and kept in memory.
 
     Raises:
-        RunStopped: if the scheduler cannot be reached.
+        RunStopped: if the scheduler cannot be reached, or none can be started.
     """
     security = _security(options)
     with dask.config.set(_CONFIG):
@@ -45,7 +45,10 @@ def connect(options: ClusterOptions) -> Iterator[Client]:
         try:
             client = Client(options.scheduler, timeout=_TIMEOUT_S, security=security)
         except (OSError, TimeoutError, ValueError) as error:
-            raise RunStopped(f"{options.scheduler}: no scheduler answers: {error}") from error
+            raise RunStopped(
+                f"{options.scheduler}: no scheduler answers ({str(error) or 'no handshake'}); "
+                "start one there, and name it with tls:// where it has certificates, else with tcp://"
+            ) from error
         try:
             yield client
             # Workers outlive the run; what they started for it does not.
@@ -63,17 +66,20 @@ def _silence() -> None:
 
 
 def _own_cluster(options: ClusterOptions) -> LocalCluster:
-    return LocalCluster(
-        n_workers=options.workers,
-        threads_per_worker=1,
-        processes=True,
-        host="127.0.0.1",
-        protocol="tls://",
-        security=Security.temporary(),
-        dashboard_address=None,
-        memory_limit=0,
-        silence_logs=logging.CRITICAL,
-    )
+    try:
+        return LocalCluster(
+            n_workers=options.workers,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            protocol="tls://",
+            security=Security.temporary(),
+            dashboard_address=None,
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        )
+    except (OSError, RuntimeError) as error:
+        raise RunStopped(f"no cluster could be started on 127.0.0.1: {error}") from error
 
 
 def _security(options: ClusterOptions) -> Security | None:
