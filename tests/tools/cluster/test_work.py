@@ -1,6 +1,7 @@
 """A chunk's process: kept for the next job, replaced when it dies."""
 
 import json
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,6 +78,23 @@ def test_files_of_a_job_that_died_are_removed(tmp_path: Path) -> None:
     run_chunk([asked_job], options(tmp_path))
     end_idle_processes()
     assert [path.name for path in folder.iterdir()] == ["another.json"]
+
+
+def test_a_worker_that_outlives_its_run_leaves_the_files_of_the_next_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(serve, "_SEEN_S", 0.0)
+    mine = options(tmp_path)
+    slow, after = asked(job(1, "crash", seconds=1.0), job(2))
+    (tmp_path / "files" / slow.hash[:2]).mkdir(parents=True)
+    kept = tmp_path / "files" / slow.hash[:2] / f".{slow.hash}.part"
+    kept.touch()
+    next_run = threading.Timer(0.5, (tmp_path / "unfinished").write_text, ["of the next run"])
+    next_run.start()
+    with pytest.raises(WrongWorker, match="is not the same folder"):
+        run_chunk([slow, after], replace(mine, tries=1))
+    end_idle_processes()
+    assert kept.exists()
 
 
 def test_another_folder_under_the_same_path_stops_the_run(

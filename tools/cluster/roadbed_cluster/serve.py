@@ -65,9 +65,25 @@ def _check(options: ServeOptions) -> None:
         raise WrongWorker(
             f"{options.program[0]} is {found!r} on a worker, {options.version!r} here"
         )
-    mark = Path(options.output) / MARK
+    check_folder(options)
+
+
+def is_at_work(options: ServeOptions) -> bool:
+    """Return whether the folder of results is, as seen here, that of the run, and no later one."""
+    try:
+        return (Path(options.output) / MARK).read_text(encoding="ascii") == options.mark
+    except OSError:
+        return False
+
+
+def check_folder(options: ServeOptions) -> None:
+    """Refuse a folder of results that is not the run's, or has become that of a later run.
+
+    Raises:
+        WrongWorker: if it stays so.
+    """
     end = time.monotonic() + _SEEN_S
-    while not mark.is_file() or mark.read_text(encoding="ascii") != options.mark:
+    while not is_at_work(options):
         if time.monotonic() > end:
             raise WrongWorker(f"{options.output} is not the same folder on a worker as here")
         time.sleep(0.1)

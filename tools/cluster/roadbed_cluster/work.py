@@ -8,7 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from roadbed_cluster.job import Job, Result, failed_line
-from roadbed_cluster.serve import NoAnswer, ServeOptions, ServeProcess
+from roadbed_cluster.serve import (
+    NoAnswer,
+    ServeOptions,
+    ServeProcess,
+    check_folder,
+    is_at_work,
+)
 
 #: Processes that no chunk came for in this time are ended.
 _IDLE_S = 60.0
@@ -58,6 +64,7 @@ class _Slot:
         A job whose process dies is tried again in a new one, `tries` times in all, and has then
         failed; one past its time has failed at once. The jobs beside it do not notice.
         """
+        check_folder(self._options)
         begin = time.monotonic()
         for _ in range(self._options.tries):
             try:
@@ -65,7 +72,9 @@ class _Slot:
                 break
             except NoAnswer as none:
                 self._end_process()
-                remove_files_of(job.hash, self._options.output)
+                # A worker may outlive its scheduler; by now these may be files of a later run.
+                if is_at_work(self._options):
+                    remove_files_of(job.hash, self._options.output)
                 line = failed_line(job, none.reason, none.cause)
                 if none.cause != "crash":
                     break
