@@ -54,7 +54,8 @@ double mean_unknown_share(const map::ClearanceField& field, const Probe& probe,
       sum += field.unknown_share(body.box_at(probe.state_at(segment, at_m / motion_m).pose()));
       ++poses;
     }
-    moved_m = std::fmod(moved_m + motion_m, apart_m);
+    moved_m += motion_m;
+    if (moved_m >= apart_m) moved_m = std::fmod(moved_m, apart_m);
   }
   return sum / static_cast<double>(poses);
 }
@@ -214,13 +215,17 @@ AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& 
                   std::span<const MovingObstacle> moving_in_source) {
   check(field, drive_in_source, part, options);
   const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
-  const geometry::Trajectory drive = with_rows_at_changes(drive_in_source, moving_in_source);
+  std::optional<geometry::Trajectory> with_changes;
+  if (!moving_in_source.empty()) {
+    with_changes = with_rows_at_changes(drive_in_source, moving_in_source);
+  }
+  const geometry::Trajectory& drive = with_changes ? *with_changes : drive_in_source;
   const BodyProbe probe(field, drive, body, obstacles(options.unknown));
 
   AuditReport report;
   Auditor auditor(options, drive, report);
   auditor.ask(probe);
-  if (!moving_in_source.empty()) {
+  if (with_changes) {
     auditor.ask(MovingProbe(drive, body, moving_in_source, field.horizon_m()));
   }
   report.beyond_horizon = !report.witness;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "roadbed/map/occupancy/distance_transform.h"
 #include "roadbed/map/occupancy/rectangle_cover.h"
@@ -15,6 +16,15 @@ CellWindow window_in(const CellRange& held, const CellRange& seen) {
           static_cast<std::size_t>(held.from_y - seen.from_y),
           static_cast<std::size_t>(held.to_x - seen.from_x),
           static_cast<std::size_t>(held.to_y - seen.from_y)};
+}
+
+// Of whole bands of rows that the cells touch; the bits know of these cells.
+bool any_in(const CellBits& bits, const CellRange& cells) {
+  const std::int64_t last = floor_div(cells.to_y - 1, CellBits::kBandRows);
+  for (std::int64_t band = floor_div(cells.from_y, CellBits::kBandRows); band <= last; ++band) {
+    if (bits.any_in_band(band, cells.from_x, cells.to_x - 1)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -184,23 +194,56 @@ std::optional<NearCell> PlanGrid::nearest(const geometry::Rectangle& rectangle, 
   return outside;
 }
 
-double PlanGrid::measured_share(std::int64_t x, std::int64_t y) const {
-  if (!extent_.seen.holds(x, y)) return 0.0;
-  return static_cast<double>(known_layers_[extent_.seen.index(x, y)]) / layers_;
+// Needs no distances to unknown cells, which cost more to make than these.
+const PlanGrid::Measured& PlanGrid::measured() const {
+  std::call_once(measured_once_, [this] {
+    std::vector<std::uint8_t> set(known_layers_.size());
+    const auto bits_where = [&](auto holds) {
+      for (std::size_t i = 0; i < set.size(); ++i) set[i] = holds(known_layers_[i]);
+      return CellBits(extent_.seen, set);
+    };
+    measured_ = {bits_where([](std::uint16_t known) { return known > 0; }),
+                 bits_where([this](std::uint16_t known) { return known < layers_; })};
+  });
+  return measured_;
+}
+
+bool PlanGrid::is_any_unknown(const CellRange& cells) const {
+  const CellRange inside = cells.cut(extent_.seen);
+  return inside.count() < cells.count() || any_in(measured().not_in_all, inside);
+}
+
+bool PlanGrid::is_any_measured(const CellRange& cells) const {
+  const CellRange inside = cells.cut(extent_.seen);
+  return !inside.empty() && any_in(measured().in_part, inside);
+}
+
+// How many cells' worth of a rectangle's part of the band were never measured. Column by column, so
+// that many of them are added up at once.
+double PlanGrid::unknown_cells(const RectangleCover& cover) const {
+  const CellRange& cells = cover.range();
+  const CellRange inside = cells.cut(extent_.seen);
+  const auto width = static_cast<std::size_t>(cells.width());
+  std::vector<std::uint16_t> known(width);
+  std::vector<double> by_column(width);
+  for (std::int64_t y = cells.from_y; y < cells.to_y; ++y) {
+    std::ranges::fill(known, std::uint16_t{0});
+    if (!inside.empty() && y >= inside.from_y && y < inside.to_y) {
+      std::copy_n(&known_layers_[extent_.seen.index(inside.from_x, y)], inside.width(),
+                  &known[static_cast<std::size_t>(inside.from_x - cells.from_x)]);
+    }
+    const double* shares = cover.row(y);
+    for (std::size_t i = 0; i < width; ++i) by_column[i] += shares[i] * (layers_ - known[i]);
+  }
+  return std::accumulate(by_column.begin(), by_column.end(), 0.0) / layers_;
 }
 
 double PlanGrid::unknown_share(const geometry::Rectangle& rectangle) const {
-  if (lower_bound_m(rectangle.centre, ObstacleKind::unknown) > rectangle.radius_m()) return 0.0;
-  const RectangleCover cover(rectangle, cell_m_);
-  const CellRange& cells = cover.range();
-  double unknown = 0.0;
-  for (std::int64_t y = cells.from_y; y < cells.to_y; ++y) {
-    for (std::int64_t x = cells.from_x; x < cells.to_x; ++x) {
-      unknown += (1.0 - measured_share(x, y)) * cover.share(x, y);
-    }
-  }
+  const CellRange touched = RectangleCover::cells_touched(rectangle, cell_m_);
+  if (!is_any_unknown(touched)) return 0.0;
+  if (!is_any_measured(touched)) return 1.0;
   const double whole = 4.0 * rectangle.half_length_m * rectangle.half_width_m / (cell_m_ * cell_m_);
-  return std::min(1.0, unknown / whole);
+  return std::min(1.0, unknown_cells(RectangleCover(rectangle, cell_m_)) / whole);
 }
 
 }  // namespace roadbed::map

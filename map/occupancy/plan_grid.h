@@ -15,6 +15,8 @@
 
 namespace roadbed::map {
 
+class RectangleCover;
+
 /// A leaf of the octree within a height band: its cells, and how many layers of the band it fills.
 struct Slab {
   CellRange cells;
@@ -58,6 +60,9 @@ class PlanGrid {
     CellBits bits;                 // of cells seen
     std::vector<float> distances;  // of cells held: in cells, from centre to centre
   };
+  struct Measured {
+    CellBits in_part, not_in_all;  // of its layers
+  };
   struct Cell {
     std::int64_t x, y;
   };
@@ -66,8 +71,10 @@ class PlanGrid {
   void paint(const Slab& slab, std::vector<std::uint8_t>& occupied);
   Layer layer_of(const std::vector<std::uint8_t>& set) const;
   const Layer& layer(ObstacleKind kind) const;
-  // Of a cell's part of the band; 1 where a layer is occupied.
-  double measured_share(std::int64_t x, std::int64_t y) const;
+  const Measured& measured() const;
+  bool is_any_unknown(const CellRange& cells) const;
+  bool is_any_measured(const CellRange& cells) const;
+  double unknown_cells(const RectangleCover& cover) const;
   double bound_m(const Cell& cell, const Eigen::Vector2d& point, const Layer& layer) const;
   double bound_from_outside_m(const Eigen::Vector2d& point, ObstacleKind kind) const;
   double upper_bound_m(const Eigen::Vector2d& point, const Layer& layer) const;
@@ -83,6 +90,8 @@ class PlanGrid {
   Layer occupied_;
   mutable std::once_flag unknown_once_;
   mutable Layer unknown_;
+  mutable std::once_flag measured_once_;
+  mutable Measured measured_;
 };
 
 }  // namespace roadbed::map

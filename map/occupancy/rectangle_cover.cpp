@@ -14,12 +14,16 @@ Eigen::Vector2d half_extent_m(const geometry::Rectangle& rectangle) {
 }
 
 // A column more on the right takes what lies beyond the last cell.
-RectangleCover::RectangleCover(const geometry::Rectangle& rectangle, double cell_m) {
+CellRange RectangleCover::cells_touched(const geometry::Rectangle& rectangle, double cell_m) {
   const Eigen::Vector2d half = half_extent_m(rectangle);
   const Eigen::Vector2d least = (rectangle.centre - half) / cell_m,
                         most = (rectangle.centre + half) / cell_m;
-  range_ = {whole_below(least.x()), whole_below(least.y()), whole_below(most.x()) + 3,
-            whole_below(most.y()) + 1};
+  return {whole_below(least.x()), whole_below(least.y()), whole_below(most.x()) + 3,
+          whole_below(most.y()) + 1};
+}
+
+RectangleCover::RectangleCover(const geometry::Rectangle& rectangle, double cell_m)
+    : range_(cells_touched(rectangle, cell_m)) {
   shares_.resize(range_.count() + 1);
   const std::array<Eigen::Vector2d, 4> corners = rectangle.corners();
   const Eigen::Vector2d first(static_cast<double>(range_.from_x),

@@ -21,8 +21,14 @@ class RectangleCover {
   /// @param rectangle  in metres from the corner of cell (0, 0).
   RectangleCover(const geometry::Rectangle& rectangle, double cell_m);
 
-  const CellRange& range() const { return range_; }  ///< of cells that it may touch
+  /// Cells that a rectangle may touch, with up to two columns more on the right.
+  static CellRange cells_touched(const geometry::Rectangle& rectangle, double cell_m);
+
+  const CellRange& range() const { return range_; }  ///< of `cells_touched`
   double share(std::int64_t x, std::int64_t y) const { return shares_[range_.index(x, y)]; }
+
+  /// Shares of a row's cells, from the first of the range on.
+  const double* row(std::int64_t y) const { return &shares_[range_.index(range_.from_x, y)]; }
 
  private:
   void add_side(const Eigen::Vector2d& from, const Eigen::Vector2d& to);

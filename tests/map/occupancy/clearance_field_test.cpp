@@ -211,12 +211,10 @@ TEST(ClearanceField, RefusesABodyThatItsTilesAreTooSmallFor) {
   EXPECT_THROW(tiles.unknown_share({5000.0, -20.0, 0.0}, VehicleShape{}), std::invalid_argument);
 }
 
-TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
-  // A box of free cells 0 ≤ x, y < 10 m, over the lower half of the band only where x < 5 m.
+/// A box of free cells 0 ≤ x, y < 10 m, 2 m high, only 1 m where x < 5 m.
+OccupancyMap partly_measured() {
   PointCloud cloud;
-  std::string nothing;
   const double cell_m = 0.5;
-  const HeightBand band{0.0, 2.0};
   for (double x = 0.25; x < 10.0; x += cell_m) {
     for (double y = 0.25; y < 10.0; y += cell_m) {
       for (double z = 0.25; z < (x < 5.0 ? 1.0 : 2.0); z += cell_m) {
@@ -233,7 +231,12 @@ TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
     }
     bytes[i] = static_cast<char>(byte);
   }
-  const OccupancyMap free = OccupancyMap::parse(bytes, "free.bt");
+  return OccupancyMap::parse(bytes, "free.bt");
+}
+
+TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
+  const HeightBand band{0.0, 2.0};
+  const OccupancyMap free = partly_measured();
   ASSERT_EQ(free.at({1, 1, 0.25}), CellState::free);
   const ClearanceField field(free, band);
   const VehicleShape box{
@@ -255,6 +258,55 @@ TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
   EXPECT_EQ(to_unknown({4.0, 5.0, 0.0}), 0.0);
   EXPECT_EQ(to_unknown({40.0, 5.0, 0.0}), 0.0);
   EXPECT_LE(field.distance_bound_m({9.9, 5.0}, ObstacleKind::unknown), 0.1);
+}
+
+/// Area of the part of a convex polygon, counter-clockwise, that lies in a box.
+double area_between(std::vector<Eigen::Vector2d> polygon, const Eigen::Array2d& least,
+                    const Eigen::Array2d& most) {
+  const auto cut = [&](const Eigen::Vector2d& inwards, double at) {
+    std::vector<Eigen::Vector2d> left;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double in_a = inwards.dot(a) - at, in_b = inwards.dot(b) - at;
+      if (in_a >= 0.0) left.push_back(a);
+      if ((in_a >= 0.0) != (in_b >= 0.0)) left.push_back(a + in_a / (in_a - in_b) * (b - a));
+    }
+    polygon = left;
+  };
+  cut({1, 0}, least.x());
+  cut({0, 1}, least.y());
+  cut({-1, 0}, -most.x());
+  cut({0, -1}, -most.y());
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
+
+TEST(ClearanceField, UnknownShareIsThatOfClippedAreas) {
+  std::mt19937 random(20261122);
+  const OccupancyMap free = partly_measured();
+  const ClearanceField field(free, HeightBand{0.0, 2.0});
+  const VehicleShape shape{
+      .length_m = 3.3, .width_m = 1.4, .rear_overhang_m = 0.7, .wheelbase_m = 2.0};
+  std::uniform_real_distribution<double> place(-6.0, 16.0), turn(-4.0, 4.0);
+  int none = 0, all = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Pose2 pose{place(random), place(random), turn(random)};
+    const Quad vehicle = vehicle_quad(pose, shape);
+    const std::vector<Eigen::Vector2d> body(vehicle.begin(), vehicle.end());
+    const double whole = shape.length_m * shape.width_m;
+    const double measured =
+        0.5 * area_between(body, {0, 0}, {5, 10}) + area_between(body, {5, 0}, {10, 10});
+    const double share = field.unknown_share(pose, shape);
+    ASSERT_NEAR(share, 1.0 - measured / whole, 1e-9);
+    none += share == 0.0;
+    all += share == 1.0;
+  }
+  EXPECT_GT(none, 50);
+  EXPECT_GT(all, 100);
 }
 
 TEST(ClearanceField, UnknownShareOfARotatedVehicleEqualsDenseSampling) {

@@ -93,9 +93,11 @@ TEST(OctreeBuild, WithoutStickyHitsTheTreeIsThatOfInsertPointCloudNodeForNode) {
 std::vector<PointCloud> scans_on_lattice(std::mt19937& random, int scans, int points,
                                          double resolution_m) {
   std::uniform_int_distribution<int> sensor_place(-20, 20), point_place(-90, 90);
+  // In float all along: OctoMap takes no sensor that is not.
   const auto on_lattice = [&](std::uniform_int_distribution<int>& place) {
-    const int x = place(random), y = place(random), z = place(random);
-    return Eigen::Vector3f((0.5 * resolution_m * Eigen::Vector3d(x, y, z)).cast<float>());
+    Eigen::Vector3f at;
+    for (float& value : at) value = static_cast<float>(place(random));
+    return Eigen::Vector3f(static_cast<float>(0.5 * resolution_m) * at);
   };
   std::vector<PointCloud> clouds;
   for (int i = 0; i < scans; ++i) {
