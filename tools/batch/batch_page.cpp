@@ -55,6 +55,7 @@ td.line {{ text-align: right; white-space: nowrap; }}
 td.status {{ white-space: nowrap; font-weight: 600; }}
 td.about {{ color: var(--quiet); font-size: 12.5px; }}
 td.files {{ font-size: 12.5px; }}
+th, td.files a {{ white-space: nowrap; }}
 a {{ color: var(--accent); }}
 .note, footer {{ color: var(--quiet); }}
 footer {{ margin-top: 26px; }}
