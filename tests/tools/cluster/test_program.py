@@ -33,10 +33,13 @@ def _needs_roadbed() -> None:
 
 def mixed_jobs(folder: Path, audits: int) -> Path:
     """Write jobs of every kind, of which some cannot be done."""
-    drive = folder / "drive"
-    assert roadbed("--quiet", "simulate", DATA / "drive.json", "-o", drive).returncode == 0
+    drive, walls = folder / "drive", folder / "walls.bt"
+    gap = DATA / "scenarios" / "narrow_gap.json"
+    assert roadbed("--quiet", "simulate", gap, "-o", drive).returncode == 0
+    cloud = [gap.with_suffix(".pcd"), "--resolution", 0.4]
+    assert roadbed("occupancy", "build", *cloud, "-o", walls).returncode == 0
     town = str(DATA / "town.xodr")
-    audit = {"occupancy": str(DATA / "town.bt"), "trajectory": str(drive / "trajectory.csv")}
+    audit = {"occupancy": str(walls), "trajectory": str(drive / "trajectory.csv")}
     way = {"from": "150,198", "to": "lane:7/0/1@35"}
     jobs = [
         {"job": "import", "inputs": [town]},
@@ -65,6 +68,7 @@ def sequential(jobs: Path, output: Path) -> dict[str, bytes]:
     assert roadbed("batch", jobs, "-o", output, "--threads", 1).returncode == 1  # some failed
     tables = start("tables", output)
     assert len(tables.communicate(timeout=300)[0].splitlines()) == 5
+    assert tables.wait() == 0
     return contents(output)
 
 
