@@ -118,9 +118,9 @@ CarvedCells::Page& CarvedCells::add_page(std::uint64_t code) {
   return page;
 }
 
+// The last one first: what it was put behind is still there.
 void CarvedCells::forget() {
-  std::ranges::fill(slots_, Slot{});
-  codes_.clear();
+  for (; !codes_.empty(); codes_.pop_back()) slot_of(codes_.back()) = {};
 }
 
 void CarvedCells::mark(const CellKey& key) {
