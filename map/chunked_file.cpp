@@ -206,10 +206,12 @@ void ChunkedFile::let_go() const {
   if (body_ != nullptr) ::madvise(body_, body_size_, MADV_DONTNEED);
 }
 
-void ChunkedFile::need_all() const {
+void ChunkedFile::check_all() const {
   for (std::uint64_t chunk = 0; chunk < hashes_.size(); ++chunk) {
     if (!checked_[chunk].load(std::memory_order_acquire)) fetch(chunk);
+    let_go_of_many();
   }
+  let_go();
 }
 
 void ChunkedFile::refuse(const std::string& element, const std::string& found) const {

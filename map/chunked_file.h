@@ -61,8 +61,8 @@ class ChunkedFile {
     }
   }
 
-  /// Fetches and checks every chunk.
-  void need_all() const;
+  /// Checks every chunk, a few in memory at once, and lets go of all; see let_go().
+  void check_all() const;
 
   std::size_t chunks() const { return hashes_.size(); }
 
@@ -72,6 +72,11 @@ class ChunkedFile {
   /// Lets go of all chunks, which are fetched again when needed: for who goes through a file that
   /// memory does not hold. Whatever data() pointed to is gone; nobody may be reading meanwhile.
   void let_go() const;
+
+  /// The same where more are in memory than stand in the way of nobody.
+  void let_go_of_many() const {
+    if (chunks_in_memory() > kMany) let_go();
+  }
   const std::string& name() const { return name_; }
 
   /// Throws InputError that asks for the file to be compiled again.
@@ -80,6 +85,8 @@ class ChunkedFile {
  private:
   class Source;
   ChunkedFile(std::unique_ptr<const Source> source, std::string name);
+
+  static constexpr std::size_t kMany = 512;  // 32 MiB
 
   void read_header();
   void fetch(std::uint64_t chunk) const;

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "roadbed/map/byte_io.h"
 #include "roadbed/map/chunked_file.h"
 #include "roadbed/map/map_fields.h"
+#include "roadbed/map/map_totals.h"
 #include "roadbed/map/road_map_index.h"
 
 namespace roadbed::map {
@@ -18,7 +19,7 @@ namespace {
 
 using File = std::shared_ptr<const ChunkedFile>;
 
-constexpr std::string_view kNames = "names", kAppendix = "appendix";
+constexpr std::string_view kNames = "names", kTotals = "totals", kAppendix = "appendix";
 
 // Where the records of a list begin; one more than there are records.
 std::string places(std::string_view list) { return fmt::format("{}.at", list); }
@@ -138,11 +139,15 @@ LazyList<T> open_list(const File& file, std::string_view name, const Fields& fie
   });
 }
 
+IdLimits limits_of(const File& file) {
+  return {.lanes = ListSections(file, "lanes").size(),
+          .roads = ListSections(file, "roads").size(),
+          .junctions = ListSections(file, "junctions").size()};
+}
+
 LazyMapContent open_content(const File& file) {
   const FlatArray<char> head(file, "head");
-  const IdLimits limits{.lanes = ListSections(file, "lanes").size(),
-                        .roads = ListSections(file, "roads").size(),
-                        .junctions = ListSections(file, "junctions").size()};
+  const IdLimits limits = limits_of(file);
   LazyMapContent content;
   try {
     ByteReader reader(head.bytes(), limits);
@@ -163,8 +168,11 @@ RoadMapIndex open_index(const File& file) {
     array = std::remove_reference_t<decltype(array)>(file, name);
   };
   lane_index::visit(open, data);
-  return {LaneIndex(std::move(data)), FlatArray<std::uint32_t>(file, kNames),
-          file->has(kAppendix) ? FlatArray<char>(file, kAppendix) : FlatArray<char>()};
+  const auto optional = [&](std::string_view name) {
+    return file->has(name) ? FlatArray<char>(file, name) : FlatArray<char>();
+  };
+  return {LaneIndex(std::move(data)), FlatArray<std::uint32_t>(file, kNames), optional(kTotals),
+          optional(kAppendix)};
 }
 
 RoadMap open_map(const File& file) {
@@ -175,23 +183,37 @@ RoadMap open_map(const File& file) {
   }
 }
 
-std::size_t touch_all(const RoadMap& road_map) {
-  std::size_t records = 0;
-  const auto touch = [&](std::string_view, const auto&, const auto& list) {
-    std::for_each(list.begin(), list.end(), [&](const auto&) { ++records; });
-  };
-  fields::lists(touch, road_map.content());
-  return records;
+// Makes every record of a list, one at a time, so that neither they nor the chunks that they lie
+// in gather in memory. Returns how many there are.
+template <typename T, typename Fields, typename Visit>
+std::size_t visit_records(const File& file, std::string_view name, const Fields& fields,
+                          const IdLimits& limits, const Visit& visit) {
+  const ListSections sections(file, name);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    visit(read_record<T>(*file, name, sections, fields, limits, i));
+    file->let_go_of_many();
+  }
+  return sections.size();
 }
 
 VerifiedMap verify(const File& file) {
-  file->need_all();
+  file->check_all();
   const RoadMap road_map = open_map(file);
-  VerifiedMap verified{file->chunks(), touch_all(road_map)};
-  try {
-    road_map.index().check(road_map.lanes());
-  } catch (const std::invalid_argument& error) {
-    file->refuse("index", error.what());
+  const IdLimits limits = limits_of(file);
+  VerifiedMap verified{file->chunks(), 0};
+  RoadMapIndexCheck index(road_map.index());
+  TotalsCounter totals;
+  const auto visit = [&](std::string_view name, const auto& fields, const auto& list) {
+    using T = ItemOf<decltype(list)>;
+    verified.records += visit_records<T>(file, name, fields, limits, [&](const T& item) {
+      totals.add(item);
+      if constexpr (std::is_same_v<T, Lane>) index.add(item);
+    });
+  };
+  fields::lists(visit, road_map.content());
+  if (!index.holds()) file->refuse("index", "the index does not belong to these lanes");
+  if (!are_stored_as(road_map, std::move(totals).totals())) {
+    file->refuse(std::string(kTotals), "not what its things add up to");
   }
   return verified;
 }
@@ -212,7 +234,8 @@ void write_compiled_map(const RoadMap& road_map, std::string_view appendix, Byte
   std::string head;
   ByteWriter head_writer(head);
   fields::head(head_writer, road_map.content());
-  std::vector<Output> outputs{output_of("head", head)};
+  const std::string totals = write_totals(totals_of(road_map));
+  std::vector<Output> outputs{output_of("head", head), output_of(std::string(kTotals), totals)};
   const auto add_array = [&](std::string_view name, const auto& array) {
     outputs.push_back(output_of(std::string(name), array.bytes()));
   };

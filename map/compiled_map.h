@@ -43,7 +43,9 @@ struct VerifiedMap {
   std::size_t chunks = 0, records = 0;
 };
 
-/// Checks all of a compiled map: every chunk, every record of every list, and the index.
+/// Checks all of a compiled map: every chunk, every record of every list, the index, and the totals
+/// but areas. Goes through the file piece by piece: what it keeps in memory is 32 MiB of chunks
+/// and, of each lane, its name and the boxes of its cells in the index.
 /// @throws InputError if anything is wrong.
 VerifiedMap verify_compiled_map(const std::filesystem::path& file);
 VerifiedMap verify_compiled_map(std::string bytes, const std::string& name);

@@ -1,54 +1,42 @@
 #include "roadbed/map/components.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace roadbed::map {
-namespace {
-
-/// Groups that grow together; a group is named by its least member.
-class Groups {
- public:
-  explicit Groups(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  std::uint32_t find(std::uint32_t member) {
-    while (parent_[member] != member) {
-      parent_[member] = parent_[parent_[member]];
-      member = parent_[member];
-    }
-    return member;
-  }
-
-  void join(std::uint32_t one, std::uint32_t other) {
-    const std::uint32_t a = find(one), b = find(other);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-void join_with_linked(const RoadMap& road_map, LaneId lane, Groups& groups) {
-  const auto join = [&](LaneId other) {
-    if (is_drivable(road_map.lane(other).type)) groups.join(lane.index, other.index);
-  };
-  const LaneLinks& links = road_map.graph().of(lane);
-  for (const LaneId successor : links.successors) join(successor);
-  for (const LaneId predecessor : links.predecessors) join(predecessor);
-  for (const auto& neighbour : {links.left, links.right}) {
-    if (neighbour && neighbour->same_direction && neighbour->change_allowed())
-      join(neighbour->lane);
-  }
+LaneGroups::LaneGroups(std::size_t lanes) : parent_(lanes) {
+  std::iota(parent_.begin(), parent_.end(), 0U);
 }
 
-}  // namespace
+std::uint32_t LaneGroups::find(std::uint32_t lane) {
+  while (parent_[lane] != lane) {
+    parent_[lane] = parent_[parent_[lane]];
+    lane = parent_[lane];
+  }
+  return lane;
+}
+
+void LaneGroups::join(std::uint32_t one, std::uint32_t other) {
+  const std::uint32_t a = find(one), b = find(other);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+std::vector<std::uint64_t> LaneGroups::sizes(const std::vector<bool>& counts) {
+  std::vector<std::uint64_t> sizes(parent_.size(), 0);
+  for (std::uint32_t lane = 0; lane < parent_.size(); ++lane) {
+    if (counts[lane]) ++sizes[find(lane)];
+  }
+  std::erase(sizes, 0U);
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
+  return sizes;
+}
 
 std::vector<std::vector<LaneId>> drivable_components(const RoadMap& road_map) {
-  Groups groups(road_map.lanes().size());
+  LaneGroups groups(road_map.lanes().size());
+  const auto wants = [&](LaneId id) { return is_drivable(road_map.lane(id).type); };
   for (const Lane& lane : road_map.lanes()) {
-    if (is_drivable(lane.type)) join_with_linked(road_map, lane.id, groups);
+    if (wants(lane.id)) groups.join(lane.id, road_map.graph().of(lane.id), wants);
   }
   std::vector<std::vector<LaneId>> by_least(road_map.lanes().size());
   for (const Lane& lane : road_map.lanes()) {

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "roadbed/map/lane_index_check.h"
 #include "roadbed/map/lane_index_data.h"
 
 namespace roadbed::map::lane_index {
@@ -77,35 +79,93 @@ std::vector<std::uint32_t> cuts(std::size_t count, std::size_t pieces, const Poi
   return made;
 }
 
+// Cells along a Hilbert curve through their boxes' middles.
+std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
+  Box whole = kNothing;
+  for (const Box& box : boxes) extend(whole, box);
+  const auto scaled = [](float low, float high, float from, float to) {
+    const float share = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
+    return static_cast<std::uint32_t>(std::min(std::max(0.0F, share), 1.0F) * 65535.0F);
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // place along the curve, cell
+  places.reserve(boxes.size());
+  for (const Box& box : boxes) {
+    places.emplace_back(hilbert_place(scaled(box.low_x, box.high_x, whole.low_x, whole.high_x),
+                                      scaled(box.low_y, box.high_y, whole.low_y, whole.high_y)),
+                        static_cast<std::uint32_t>(places.size()));
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::uint32_t> order;
+  order.reserve(places.size());
+  for (const auto& [place, cell] : places) order.push_back(cell);
+  return order;
+}
+
+std::vector<Node> build_nodes(const std::vector<Box>& of_cells,
+                              const std::vector<std::uint32_t>& order) {
+  std::vector<Box> boxes;
+  for (const std::uint32_t cell : order) boxes.push_back(of_cells[cell]);
+  std::vector<Node> nodes;
+  while (!boxes.empty()) {
+    std::vector<Box> upper;
+    for (std::size_t first = 0; first < boxes.size(); first += Node::kWidth) {
+      Node& node = nodes.emplace_back();
+      Box& around = upper.emplace_back(kNothing);
+      for (std::size_t i = 0; i < Node::kWidth; ++i) {
+        const Box box = first + i < boxes.size() ? boxes[first + i] : kNothing;
+        node.low_x[i] = box.low_x;
+        node.low_y[i] = box.low_y;
+        node.high_x[i] = box.high_x;
+        node.high_y[i] = box.high_y;
+        extend(around, box);
+      }
+    }
+    if (upper.size() == 1) break;
+    boxes = std::move(upper);
+  }
+  return nodes;
+}
+
+void add_boxes(const std::vector<Cell>& cells, std::vector<Box>& boxes) {
+  for (const Cell& cell : cells) boxes.push_back(cell.ring);
+}
+
+// What stands lane by lane in the index.
+struct Arrays {
+  std::vector<LaneRecord> lanes;
+  std::vector<Cell> cells;
+  std::vector<Point> ring_points, centre_points;
+  std::vector<double> centre_stations_m;
+};
+
 class Builder {
  public:
   void add(const Lane& lane) {
     LaneRecord record{};
-    record.first_ring_point = ring_points_.size();
-    record.first_centre_point = centre_points_.size();
-    record.first_cell = static_cast<std::uint32_t>(cells_.size());
+    record.first_ring_point = ring_points_before_ + arrays_.ring_points.size();
+    record.first_centre_point = centre_points_before_ + arrays_.centre_points.size();
+    record.first_cell = static_cast<std::uint32_t>(cells_before_ + arrays_.cells.size());
     if (lane.polygon.size() >= 3) {
       add_points(lane);
       add_cells(lane);
     }
-    record.ring_points = static_cast<std::uint32_t>(ring_points_.size() - record.first_ring_point);
-    record.centre_points =
-        static_cast<std::uint32_t>(centre_points_.size() - record.first_centre_point);
-    record.cells = static_cast<std::uint32_t>(cells_.size() - record.first_cell);
-    lanes_.push_back(record);
+    record.ring_points = static_cast<std::uint32_t>(
+        ring_points_before_ + arrays_.ring_points.size() - record.first_ring_point);
+    record.centre_points = static_cast<std::uint32_t>(
+        centre_points_before_ + arrays_.centre_points.size() - record.first_centre_point);
+    record.cells =
+        static_cast<std::uint32_t>(cells_before_ + arrays_.cells.size() - record.first_cell);
+    arrays_.lanes.push_back(record);
   }
 
-  Data take() {
-    Data data;
-    std::vector<std::uint32_t> order = hilbert_order();
-    data.nodes = FlatArray<Node>(build_nodes(order));
-    data.order = FlatArray<std::uint32_t>(std::move(order));
-    data.lanes = FlatArray<LaneRecord>(std::move(lanes_));
-    data.cells = FlatArray<Cell>(std::move(cells_));
-    data.ring_points = FlatArray<Point>(std::move(ring_points_));
-    data.centre_points = FlatArray<Point>(std::move(centre_points_));
-    data.centre_stations_m = FlatArray<double>(std::move(centre_stations_m_));
-    return data;
+  const Arrays& arrays() const { return arrays_; }
+
+  // Of the lanes added since the last time; the next ones go on behind them.
+  Arrays take() {
+    cells_before_ += arrays_.cells.size();
+    ring_points_before_ += arrays_.ring_points.size();
+    centre_points_before_ += arrays_.centre_points.size();
+    return std::exchange(arrays_, {});
   }
 
  private:
@@ -113,12 +173,13 @@ class Builder {
     ring_ = lane.polygon;
     const std::size_t start = nearest_vertex(ring_, lane.right.in_map.points().front(), 0);
     std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(start), ring_.end());
-    for (const Eigen::Vector2d& p : ring_) ring_points_.push_back({p.x(), p.y()});
+    for (const Eigen::Vector2d& p : ring_) arrays_.ring_points.push_back({p.x(), p.y()});
     for (const Eigen::Vector2d& p : lane.centre.in_map.points()) {
-      centre_points_.push_back({p.x(), p.y()});
+      arrays_.centre_points.push_back({p.x(), p.y()});
     }
     const auto& stations = lane.centre.in_map.stations_m();
-    centre_stations_m_.insert(centre_stations_m_.end(), stations.begin(), stations.end());
+    arrays_.centre_stations_m.insert(arrays_.centre_stations_m.end(), stations.begin(),
+                                     stations.end());
   }
 
   void add_cells(const Lane& lane) {
@@ -149,60 +210,63 @@ class Builder {
       extend(cell.ring, ring_, cell.right_from, cell.right_to);
       extend(cell.ring, ring_, cell.left_to, cell.left_from);
       extend(cell.centre, centre, cell.centre_from, cell.centre_to);
-      cells_.push_back(cell);
+      arrays_.cells.push_back(cell);
     }
-  }
-
-  std::vector<std::uint32_t> hilbert_order() const {
-    Box whole = kNothing;
-    for (const Cell& cell : cells_) extend(whole, cell.ring);
-    const auto scaled = [](float low, float high, float from, float to) {
-      const float share = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
-      return static_cast<std::uint32_t>(std::min(std::max(0.0F, share), 1.0F) * 65535.0F);
-    };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // place along the curve, cell
-    places.reserve(cells_.size());
-    for (const Cell& cell : cells_) {
-      const Box& box = cell.ring;
-      places.emplace_back(hilbert_place(scaled(box.low_x, box.high_x, whole.low_x, whole.high_x),
-                                        scaled(box.low_y, box.high_y, whole.low_y, whole.high_y)),
-                          static_cast<std::uint32_t>(places.size()));
-    }
-    std::sort(places.begin(), places.end());
-    std::vector<std::uint32_t> order;
-    for (const auto& [place, cell] : places) order.push_back(cell);
-    return order;
-  }
-
-  std::vector<Node> build_nodes(const std::vector<std::uint32_t>& order) const {
-    std::vector<Box> boxes;
-    for (const std::uint32_t cell : order) boxes.push_back(cells_[cell].ring);
-    std::vector<Node> nodes;
-    while (!boxes.empty()) {
-      std::vector<Box> upper;
-      for (std::size_t first = 0; first < boxes.size(); first += Node::kWidth) {
-        Node& node = nodes.emplace_back();
-        Box& around = upper.emplace_back(kNothing);
-        for (std::size_t i = 0; i < Node::kWidth; ++i) {
-          const Box box = first + i < boxes.size() ? boxes[first + i] : kNothing;
-          node.low_x[i] = box.low_x;
-          node.low_y[i] = box.low_y;
-          node.high_x[i] = box.high_x;
-          node.high_y[i] = box.high_y;
-          extend(around, box);
-        }
-      }
-      if (upper.size() == 1) break;
-      boxes = std::move(upper);
-    }
-    return nodes;
   }
 
   geometry::Ring ring_;  // of the lane that is being added
-  std::vector<LaneRecord> lanes_;
-  std::vector<Cell> cells_;
-  std::vector<Point> ring_points_, centre_points_;
-  std::vector<double> centre_stations_m_;
+  Arrays arrays_;
+  std::uint64_t cells_before_ = 0, ring_points_before_ = 0, centre_points_before_ = 0;
+};
+
+class Comparison : public Check {
+ public:
+  explicit Comparison(const Data& data) : data_(data) {}
+
+  void add(const Lane& lane) override {
+    constexpr std::size_t kPoints = 16 * 1024;
+    builder_.add(lane);
+    if (builder_.arrays().ring_points.size() > kPoints) compare();
+  }
+
+  bool holds() override {
+    compare();
+    const std::vector<std::uint32_t> order = hilbert_order(boxes_);
+    go_on(data_.nodes, build_nodes(boxes_, order), nodes_);
+    go_on(data_.order, order, order_);
+    return same_ && lanes_ == data_.lanes.size() && cells_ == data_.cells.size() &&
+           ring_points_ == data_.ring_points.size() &&
+           centre_points_ == data_.centre_points.size() &&
+           stations_ == data_.centre_stations_m.size() && nodes_ == data_.nodes.size() &&
+           order_ == data_.order.size();
+  }
+
+ private:
+  void compare() {
+    const Arrays arrays = builder_.take();
+    go_on(data_.lanes, arrays.lanes, lanes_);
+    go_on(data_.cells, arrays.cells, cells_);
+    go_on(data_.ring_points, arrays.ring_points, ring_points_);
+    go_on(data_.centre_points, arrays.centre_points, centre_points_);
+    go_on(data_.centre_stations_m, arrays.centre_stations_m, stations_);
+    add_boxes(arrays.cells, boxes_);
+  }
+
+  // Compares the next items of an array.
+  template <typename T>
+  void go_on(const FlatArray<T>& array, const std::vector<T>& items, std::uint64_t& at) {
+    same_ = same_ && items.size() <= array.size() - at &&
+            (items.empty() || std::memcmp(array.span(at, items.size()), items.data(),
+                                          items.size() * sizeof(T)) == 0);
+    if (same_) at += items.size();
+  }
+
+  const Data& data_;
+  Builder builder_;
+  std::vector<Box> boxes_;  // of cells
+  bool same_ = true;
+  std::uint64_t lanes_ = 0, cells_ = 0, ring_points_ = 0, centre_points_ = 0, stations_ = 0,
+                nodes_ = 0, order_ = 0;  // how far each has been compared
 };
 
 }  // namespace
@@ -236,7 +300,21 @@ std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y) {
 Data build(const LazyList<Lane>& lanes) {
   Builder builder;
   for (const Lane& lane : lanes) builder.add(lane);
-  return builder.take();
+  Arrays arrays = builder.take();
+  std::vector<Box> boxes;
+  add_boxes(arrays.cells, boxes);
+  std::vector<std::uint32_t> order = hilbert_order(boxes);
+  Data data;
+  data.nodes = FlatArray<Node>(build_nodes(boxes, order));
+  data.order = FlatArray<std::uint32_t>(std::move(order));
+  data.lanes = FlatArray<LaneRecord>(std::move(arrays.lanes));
+  data.cells = FlatArray<Cell>(std::move(arrays.cells));
+  data.ring_points = FlatArray<Point>(std::move(arrays.ring_points));
+  data.centre_points = FlatArray<Point>(std::move(arrays.centre_points));
+  data.centre_stations_m = FlatArray<double>(std::move(arrays.centre_stations_m));
+  return data;
 }
+
+std::unique_ptr<Check> make_check(const Data& data) { return std::make_unique<Comparison>(data); }
 
 }  // namespace roadbed::map::lane_index

@@ -37,14 +37,31 @@ std::optional<LaneId> RoadMapIndex::find(const LazyList<Lane>& in, std::string_v
   return LaneId{by_name[first]};
 }
 
-void RoadMapIndex::check(const LazyList<Lane>& against) const {
-  const RoadMapIndex right = of(against);
-  bool same = by_name.bytes() == right.by_name.bytes();
-  const auto compare = [&same](const char*, const auto& mine, const auto& its) {
-    same = same && mine.bytes() == its.bytes();
-  };
-  lane_index::visit(compare, lanes.data(), right.lanes.data());
-  if (!same) throw std::invalid_argument("the index does not belong to these lanes");
+void RoadMapIndexCheck::add(const Lane& lane) {
+  lanes_->add(lane);
+  names_ += lane.name;
+  name_at_.push_back(names_.size());
 }
+
+std::string_view RoadMapIndexCheck::name(std::uint32_t lane) const {
+  return std::string_view(names_).substr(name_at_[lane], name_at_[lane + 1] - name_at_[lane]);
+}
+
+// As many as there are lanes, each after the one before: then every lane is there once.
+bool RoadMapIndexCheck::are_names_in_order() const {
+  const FlatArray<std::uint32_t>& by_name = index_.by_name;
+  const std::size_t lanes = name_at_.size() - 1;
+  if (by_name.size() != lanes) return false;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::uint32_t id = by_name[i];
+    if (id >= lanes) return false;
+    if (i == 0) continue;
+    const std::uint32_t before = by_name[i - 1];
+    if (std::tuple(name(before), before) >= std::tuple(name(id), id)) return false;
+  }
+  return true;
+}
+
+bool RoadMapIndexCheck::holds() { return lanes_->holds() && are_names_in_order(); }
 
 }  // namespace roadbed::map

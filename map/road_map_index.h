@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/map/flat_array.h"
 #include "roadbed/map/lane_index.h"
+#include "roadbed/map/lane_index_check.h"
 #include "roadbed/map/lazy_list.h"
 
 namespace roadbed::map {
@@ -14,6 +18,8 @@ namespace roadbed::map {
 struct RoadMapIndex {
   LaneIndex lanes;
   FlatArray<std::uint32_t> by_name;  ///< lanes in order of name, of equal names the first id first
+  /// What the map amounts to (map_totals.h), as bytes. Empty: has to be added up.
+  FlatArray<char> totals = {};
   /// What a user of the map has made of it and wants to find again in its compiled form: bytes that
   /// the map does not look into. Empty: nothing.
   FlatArray<char> appendix = {};
@@ -22,9 +28,29 @@ struct RoadMapIndex {
 
   /// O(log lanes).
   std::optional<LaneId> find(const LazyList<Lane>& in, std::string_view name) const;
+};
 
-  /// @throws std::invalid_argument if it is not what of() makes of these lanes.
-  void check(const LazyList<Lane>& against) const;
+/// Compares an index with what of() makes of lanes, which come one by one, in order of id: neither
+/// of them has to be in memory. Keeps a box per cell of the index and the names of the lanes.
+class RoadMapIndexCheck {
+ public:
+  /// @param index  outlives it.
+  explicit RoadMapIndexCheck(const RoadMapIndex& index)
+      : index_(index), lanes_(lane_index::make_check(index.lanes.data())) {}
+
+  void add(const Lane& lane);
+
+  /// Whether the index is that of the lanes added, which were all.
+  bool holds();
+
+ private:
+  bool are_names_in_order() const;
+  std::string_view name(std::uint32_t lane) const;
+
+  const RoadMapIndex& index_;
+  std::unique_ptr<lane_index::Check> lanes_;
+  std::string names_;                      // one after the other
+  std::vector<std::uint64_t> name_at_{0};  // where each begins, and the end
 };
 
 }  // namespace roadbed::map

@@ -1,18 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "roadbed/map/area_centreline.h"
 #include "roadbed/map/compiled_map.h"
-#include "roadbed/map/components.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/map_totals.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/map/surface.h"
 #include "roadbed/tools/command.h"
@@ -23,69 +21,35 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Bounds {
-  Eigen::Vector2d low, high;
-};
-
-/// Of all lane borders and areas, in source coordinates; none for a map without any.
-std::optional<Bounds> bounds_of(const map::RoadMap& road_map) {
-  std::optional<Bounds> bounds;
-  const auto add = [&](const std::vector<Eigen::Vector2d>& points_in_map) {
-    for (const Eigen::Vector2d& point : points_in_map) {
-      const Eigen::Vector2d in_source = road_map.to_source(point);
-      if (!bounds) bounds = Bounds{in_source, in_source};
-      bounds->low = bounds->low.cwiseMin(in_source);
-      bounds->high = bounds->high.cwiseMax(in_source);
-    }
-  };
-  for (const map::Lane& lane : road_map.lanes()) {
-    add(lane.left.in_map.points());
-    add(lane.right.in_map.points());
-  }
-  for (const map::Area& area : road_map.areas()) {
-    for (const geometry::Polygon& polygon : area.in_map) add(polygon.outer);
-  }
-  return bounds;
-}
-
 double area_m2(const std::vector<geometry::Polygon>& polygons) {
   double sum_m2 = 0.0;
   for (const geometry::Polygon& polygon : polygons) sum_m2 += geometry::area_m2(polygon);
   return sum_m2;
 }
 
-Json lane_counts(const map::RoadMap& road_map) {
-  std::map<map::LaneType, int> counts;
-  for (const map::Lane& lane : road_map.lanes()) ++counts[lane.type];
+Json lane_counts(const map::MapTotals& totals) {
   Json json = Json::object();
-  for (const auto& [type, count] : counts) json[std::string(name(type))] = count;
-  return json;
-}
-
-Json remark_counts(const map::RoadMap& road_map) {
-  std::map<std::string, int> counts;
-  for (const map::ImportRemark& remark : road_map.remarks()) ++counts[remark.rule];
-  Json json = Json::object();
-  for (const auto& [rule, count] : counts) json[rule] = count;
-  return json;
-}
-
-Json lengths_m(const map::RoadMap& road_map) {
-  double roads_m = 0.0, drivable_m = 0.0;
-  for (const map::Road& road : road_map.roads()) roads_m += road.length_m;
-  for (const map::Lane& lane : road_map.lanes()) {
-    if (is_drivable(lane.type)) drivable_m += lane.length_m();
+  for (std::size_t i = 0; i < totals.lanes_of_type.size(); ++i) {
+    const std::uint64_t count = totals.lanes_of_type[i];
+    if (count > 0) json[std::string(name(static_cast<map::LaneType>(i)))] = count;
   }
-  return {{"roads_m", roads_m}, {"drivable_lanes_m", drivable_m}};
+  return json;
 }
 
-Json areas_m2(const map::RoadMap& road_map) {
-  double junctions_m2 = 0.0;
+Json remark_counts(const map::MapTotals& totals) {
+  Json json = Json::object();
+  for (const auto& [rule, count] : totals.remarks) json[rule] = count;
+  return json;
+}
+
+/// By exact unions where the totals have none.
+map::MapTotals::Areas areas_of(const map::RoadMap& road_map, const map::MapTotals& totals) {
+  if (totals.areas) return *totals.areas;
+  map::MapTotals::Areas areas{.drivable_m2 = area_m2(map::drivable_surface(road_map))};
   for (const map::Junction& junction : road_map.junctions()) {
-    junctions_m2 += area_m2(map::junction_surface(road_map, junction.id));
+    areas.junctions_m2 += area_m2(map::junction_surface(road_map, junction.id));
   }
-  return {{"drivable_m2", area_m2(map::drivable_surface(road_map))},
-          {"junctions_m2", junctions_m2}};
+  return areas;
 }
 
 /// Road areas without lanes: their joint area, and the lines in the middle of them.
@@ -104,13 +68,11 @@ Json road_areas_json(const map::RoadMap& road_map) {
           {"mean_width_m", length_m > 0.0 ? Json(width_m2 / length_m) : Json()}};
 }
 
-Json bounds_json(const map::RoadMap& road_map) {
-  const std::optional<Bounds> bounds = bounds_of(road_map);
-  if (!bounds) return nullptr;
-  return {{"min_x_m", bounds->low.x()},
-          {"min_y_m", bounds->low.y()},
-          {"max_x_m", bounds->high.x()},
-          {"max_y_m", bounds->high.y()}};
+Json bounds_json(const map::RoadMap& road_map, const map::MapTotals& totals) {
+  if (!totals.bounds) return nullptr;
+  const Eigen::Vector2d low = road_map.to_source(totals.bounds->low_in_map);
+  const Eigen::Vector2d high = road_map.to_source(totals.bounds->high_in_map);
+  return {{"min_x_m", low.x()}, {"min_y_m", low.y()}, {"max_x_m", high.x()}, {"max_y_m", high.y()}};
 }
 
 Json unused_counts(const map::RoadMap& road_map) {
@@ -119,15 +81,9 @@ Json unused_counts(const map::RoadMap& road_map) {
   return json;
 }
 
-Json component_sizes(const map::RoadMap& road_map) {
-  Json sizes = Json::array();
-  for (const auto& component : map::drivable_components(road_map)) {
-    sizes.push_back(component.size());
-  }
-  return sizes;
-}
-
 Json info_json(const map::RoadMap& road_map) {
+  const map::MapTotals totals = map::totals_of(road_map);
+  const map::MapTotals::Areas areas = areas_of(road_map, totals);
   Json info;
   info["format"] = road_map.format();
   info["crs"] = road_map.crs().empty() ? Json() : Json(road_map.crs());
@@ -140,15 +96,13 @@ Json info_json(const map::RoadMap& road_map) {
   info["objects"] = road_map.objects().size();
   info["areas_without_lanes"] = road_map.areas().size();
   info["lanes"] = road_map.lanes().size();
-  info["lanes_by_type"] = lane_counts(road_map);
-  info["lengths"] = lengths_m(road_map);
-  info["areas"] = areas_m2(road_map);
-  info["bounds"] = bounds_json(road_map);
-  const bool has_road_areas = std::any_of(road_map.areas().begin(), road_map.areas().end(),
-                                          [](const map::Area& area) { return area.is_road; });
-  if (has_road_areas) info["road_areas"] = road_areas_json(road_map);
-  info["drivable_component_lanes"] = component_sizes(road_map);
-  info["remarks"] = remark_counts(road_map);
+  info["lanes_by_type"] = lane_counts(totals);
+  info["lengths"] = {{"roads_m", totals.roads_m}, {"drivable_lanes_m", totals.drivable_lanes_m}};
+  info["areas"] = {{"drivable_m2", areas.drivable_m2}, {"junctions_m2", areas.junctions_m2}};
+  info["bounds"] = bounds_json(road_map, totals);
+  if (totals.has_road_areas) info["road_areas"] = road_areas_json(road_map);
+  info["drivable_component_lanes"] = totals.component_lanes;
+  info["remarks"] = remark_counts(totals);
   info["unused"] = unused_counts(road_map);
   return info;
 }

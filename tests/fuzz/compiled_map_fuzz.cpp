@@ -5,6 +5,7 @@
 
 #include "roadbed/map/compiled_map.h"
 #include "roadbed/map/input_error.h"
+#include "roadbed/map/map_totals.h"
 #include "roadbed/map/road_map_index.h"
 #include "roadbed/tests/support/reseal.h"
 
@@ -39,6 +40,7 @@ void use(const RoadMap& road_map) {
   guarded([&] { road_map.find_lane("1/0/-1"); });
   guarded([&] { road_map.on_surface({0.0, 0.0}, 10.0); });
   guarded([&] { road_map.parts(); });
+  guarded([&] { totals_of(road_map); });
 }
 
 }  // namespace

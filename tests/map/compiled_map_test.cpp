@@ -8,6 +8,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/map_totals.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/made_open_drive.h"
 #include "roadbed/tests/support/program_run.h"
@@ -39,6 +40,7 @@ void use(const RoadMap& road_map) {
     road_map.find_lane(lane.name);
     road_map.locate(lane.pose_at(0.0).position(), 50.0, false);
   }
+  EXPECT_LT(totals_of(road_map).lanes_of_type.size(), 100U);
   for (const Road& road : road_map.roads()) EXPECT_LE(road.lanes.size(), road_map.lanes().size());
 }
 

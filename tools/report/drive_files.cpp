@@ -1,10 +1,8 @@
 #include "roadbed/tools/report/drive_files.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/report/scene_svg.h"
@@ -12,6 +10,7 @@
 #include "roadbed/tools/simulation/common_road_world.h"
 #include "roadbed/tools/simulation/metrics.h"
 #include "roadbed/tools/simulation/solution_xml.h"
+#include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 
 namespace roadbed::tools {
@@ -20,10 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 ReportSource source(const std::string& role, const fs::path& file) {
-  const std::string bytes = map::read_file(file);
-  return {.role = role,
-          .name = file.filename().string(),
-          .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
+  return {.role = role, .name = file.filename().string(), .xxhash = certified_file(file).xxhash};
 }
 
 std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {

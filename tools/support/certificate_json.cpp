@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -261,14 +262,30 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
   if (has_moving) audit.from_moving = read_times(node.at("from_moving"));
 }
 
+// Piece by piece: a map may be larger than memory.
+std::string hash_of_file(const std::filesystem::path& file) {
+  struct Free {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  constexpr std::size_t kPiece = std::size_t{1} << 18;
+  const std::unique_ptr<XXH3_state_t, Free> state(XXH3_createState());
+  XXH3_64bits_reset(state.get());
+  std::string piece = map::read_file_start(file, kPiece);  // refuses what is no file of bytes
+  std::ifstream stream(file, std::ios::binary);
+  do {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(stream.gcount()));
+  } while (stream);
+  return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
+}
+
 }  // namespace
 
 CertifiedFile certified_file(const std::filesystem::path& file) {
   // The index of a tiled occupancy holds the hashes of its tiles.
-  const std::string bytes =
-      map::read_file(map::is_tiled_occupancy(file) ? map::tiles_index_file(file) : file);
-  return {.name = file.string(),
-          .xxhash = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))};
+  return {
+      .name = file.string(),
+      .xxhash = hash_of_file(map::is_tiled_occupancy(file) ? map::tiles_index_file(file) : file)};
 }
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
