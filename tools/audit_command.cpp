@@ -205,6 +205,12 @@ class AuditCommand : public Command {
   Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
                    const CommonOptions& common) const {
     Scene scene{map::open_occupancy(occupancy_), {}, road_map ? &*road_map : nullptr};
+    if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
+      fmt::print(streams.err,
+                 "note: {} was built with --remove-seen-through {}: {} cells with points count as "
+                 "free\n",
+                 occupancy_.string(), removed->clouds, removed->cells);
+    }
     scene.measured = measured_bounds(*scene.occupancy);
     if (!road_map) return scene;
     check_overlap(road_bounds(*road_map), scene.measured, occupancy_.string());
@@ -232,7 +238,7 @@ class AuditCommand : public Command {
     write_index(audits, question, scene);
     write_files(audits, question, scene);
     if (json_) {
-      streams.out << text_of_json(audits_json(audits));
+      streams.out << text_of_json(with_removal(audits_json(audits), scene));
     } else {
       streams.out << audits_table(audits);
     }
@@ -262,11 +268,19 @@ class AuditCommand : public Command {
     write_certificate(audited, question, surrounded, audit, ground);
     write_files({audited}, question, scene);
     if (json_) {
-      streams.out << text_of_json(audit_json(audited));
+      streams.out << text_of_json(with_removal(audit_json(audited), scene));
     } else {
       streams.out << audit_text(audited.report);
     }
     return audited.is_clear() ? Exit::ok : Exit::failed;
+  }
+
+  static nlohmann::ordered_json with_removal(nlohmann::ordered_json json, const Scene& scene) {
+    if (const auto removed = scene.occupancy->seen_through()) {
+      json["occupancy_seen_through"] = {{"clouds", removed->clouds},
+                                        {"removed_cells", removed->cells}};
+    }
+    return json;
   }
 
   // File names may hold bytes that are no UTF-8.

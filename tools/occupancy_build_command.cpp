@@ -61,8 +61,17 @@ class OccupancyBuildCommand : public Command {
                    "Only mark hits, whatever viewpoints the files name");
     arguments.add("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
         .positive();
-    arguments.flag("--no-sticky", no_sticky_,
-                   "Let rays carve hits away again, as OctoMap's insertPointCloud does");
+    arguments
+        .add("--remove-seen-through", remove_seen_through_,
+             "Take away what moved: a cell with points counts as free if at least so many clouds, "
+             "and more clouds than have a point in it, have a ray across it and no point in it. "
+             "No matter in which order, so that what was there only at first or last goes as well. "
+             "Thin things, edges, and surfaces that rays graze go too, the sooner the fewer clouds "
+             "are asked for: audits over such a file say so")
+        .within(1, 255)
+        .excludes(
+            arguments.flag("--no-sticky", no_sticky_,
+                           "Let rays carve hits away again, as OctoMap's insertPointCloud does"));
     arguments.add("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
         .within(1e-3, 1e3);
     arguments
@@ -106,6 +115,7 @@ class OccupancyBuildCommand : public Command {
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(), made.file.nodes,
                  made.resolution_m, made.file.bytes.size());
+      print_removed(streams.err, made.file.seen_through);
     }
     return Exit::ok;
   }
@@ -116,10 +126,17 @@ class OccupancyBuildCommand : public Command {
     double resolution_m;
   };
 
+  static void print_removed(std::ostream& err, const std::optional<map::SeenThrough>& removed) {
+    if (!removed) return;
+    fmt::print(err, "{} cells with points count as free: {} clouds or more saw through them\n",
+               removed->cells, removed->clouds);
+  }
+
   bool wants_log_odds() const { return output_.extension() == ".ot"; }
 
   Made written(const map::OccupancyMap& occupancy) const {
-    return {{wants_log_odds() ? occupancy.to_ot() : occupancy.to_bt(), occupancy.node_count()},
+    return {{wants_log_odds() ? occupancy.to_ot() : occupancy.to_bt(), occupancy.node_count(),
+             occupancy.seen_through()},
             occupancy.resolution_m()};
   }
 
@@ -132,7 +149,9 @@ class OccupancyBuildCommand : public Command {
       clouds.push_back(cloud_of(i, bytes, poses));
       if (!quiet) print_notes(err, clouds.back());
     }
-    map::OccupancyOptions options{.resolution_m = resolution_m_, .sticky_hits = !no_sticky_};
+    map::OccupancyOptions options{.resolution_m = resolution_m_,
+                                  .sticky_hits = !no_sticky_,
+                                  .remove_seen_through = remove_seen_through_};
     if (carve_range_m_) options.carve_range_m = *carve_range_m_;
     if (wants_log_odds()) return written(map::OccupancyMap::build(clouds, options));
     return {map::OccupancyMap::build_bt(clouds, options), resolution_m_};
@@ -149,7 +168,11 @@ class OccupancyBuildCommand : public Command {
 
   map::PointCloud cloud_to_tile(std::size_t i, const std::vector<Eigen::Isometry3d>& poses) const {
     const std::string bytes = map::read_file(clouds_[i]);
-    if (!map::is_occupancy_file(bytes)) return cloud_of(i, bytes, poses);
+    if (!map::is_occupancy_file(bytes)) {
+      map::PointCloud cloud = cloud_of(i, bytes, poses);
+      if (no_sticky_ && !cloud.scans.empty()) refuse_log_odds(cloud);
+      return cloud;
+    }
     throw map::InputError({.file = clouds_[i].string(),
                            .place = {},
                            .element = "--tiles",
@@ -163,6 +186,8 @@ class OccupancyBuildCommand : public Command {
                                        std::ostream& err, bool quiet) const {
     map::TileBuilder::Plan plan{.folder = output_, .resolution_m = resolution_m_, .crs = {}};
     if (carve_range_m_) plan.carve_range_m = *carve_range_m_;
+    plan.sticky_hits = !no_sticky_;
+    plan.remove_seen_through = remove_seen_through_;
     plan.side_cells = map::tile_side_cells(*tiles_m_, resolution_m_);
     map::Box3 all;
     for (std::size_t i = 0; i < clouds_.size(); ++i) {
@@ -180,6 +205,16 @@ class OccupancyBuildCommand : public Command {
     return plan;
   }
 
+  // Each point would have to be put aside by itself.
+  [[noreturn]] static void refuse_log_odds(const map::PointCloud& cloud) {
+    throw map::InputError({.file = cloud.name,
+                           .place = {},
+                           .element = "--no-sticky with --tiles",
+                           .found = "each point is a scan with a sensor position of its own",
+                           .needed = "one position for the cloud",
+                           .remedy = "leave one of the two out, or give --sensor"});
+  }
+
   [[noreturn]] void refuse_crs(const map::PointCloud& cloud, const std::string& crs) const {
     throw map::InputError({.file = cloud.name,
                            .place = {},
@@ -190,7 +225,6 @@ class OccupancyBuildCommand : public Command {
   }
 
   Exit build_tiles(const Streams& streams, const CommonOptions& common) const {
-    check_is_for_tiles();
     if (std::filesystem::exists(output_)) make_output_folder(output_, force_);
     const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
     const map::TileBuilder::Plan plan = plan_of_tiles(poses, streams.err, common.quiet);
@@ -200,6 +234,7 @@ class OccupancyBuildCommand : public Command {
       if (!common.quiet) {
         fmt::print(streams.err, "{}: {} tiles of {} m\n", output_.string(), index.tiles.size(),
                    index.side_m());
+        print_removed(streams.err, index.seen_through);
       }
     } catch (...) {
       std::error_code ignored;
@@ -207,16 +242,6 @@ class OccupancyBuildCommand : public Command {
       throw;
     }
     return Exit::ok;
-  }
-
-  void check_is_for_tiles() const {
-    if (!no_sticky_) return;
-    throw map::InputError({.file = "--no-sticky",
-                           .place = {},
-                           .element = "--tiles",
-                           .found = "depends on the order of all clouds at every cell",
-                           .needed = {},
-                           .remedy = "leave one of the two out"});
   }
 
   // The index last: without it there are no tiles.
@@ -252,6 +277,14 @@ class OccupancyBuildCommand : public Command {
                              .element = {},
                              .found = "is an octree beside other files",
                              .needed = "one octree alone, or point clouds",
+                             .remedy = "give the clouds that the octree was built from"});
+    }
+    if (remove_seen_through_ > 0) {
+      throw map::InputError({.file = file.string(),
+                             .place = {},
+                             .element = "--remove-seen-through",
+                             .found = "is an octree, which does not say how often a cell was hit",
+                             .needed = "point clouds",
                              .remedy = "give the clouds that the octree was built from"});
     }
     return map::OccupancyMap::parse(bytes, file.string());
@@ -302,6 +335,7 @@ class OccupancyBuildCommand : public Command {
   std::optional<double> carve_range_m_, scale_, tiles_m_;
   map::CloudFilter filter_;
   std::string crs_;
+  int remove_seen_through_ = 0;
   bool no_carving_ = false, no_sticky_ = false, force_ = false;
 };
 

@@ -47,6 +47,11 @@ struct Space {
   }
 };
 
+Json seen_through_json(const std::optional<map::SeenThrough>& removed) {
+  if (!removed) return {};
+  return {{"clouds", removed->clouds}, {"removed_cells", removed->cells}};
+}
+
 Json octree_info(const map::OccupancyMap& occupancy) {
   Space occupied, free, known;
   for (const map::OccupancyCell& cell : occupancy.cells()) {
@@ -60,6 +65,7 @@ Json octree_info(const map::OccupancyMap& occupancy) {
                     {"y_m", occupancy.origin_in_source().y()},
                     {"z_m", occupancy.origin_in_source().z()}};
   info["resolution_m"] = occupancy.resolution_m();
+  info["seen_through"] = seen_through_json(occupancy.seen_through());
   info["nodes"] = occupancy.node_count();
   info["leaves"] = known.leaves;
   info["bounds"] = known.json().at("bounds");
@@ -80,6 +86,7 @@ Json tiles_info(const map::TiledOccupancy& tiles) {
                     {"y_m", index.origin_in_source.y()},
                     {"z_m", index.origin_in_source.z()}};
   info["resolution_m"] = index.resolution_m;
+  info["seen_through"] = seen_through_json(index.seen_through);
   info["side_m"] = index.side_m();
   info["overlap_m"] = 0.0;
   info["tiles"] = index.tiles.size();
@@ -119,13 +126,17 @@ std::string bounds_text(const Json& bounds) {
   return text;
 }
 
-std::string text_of(const Json& value) {
-  if (value.is_null()) return "unknown";
+std::string text_of(const std::string& key, const Json& value) {
+  if (value.is_null()) return key == "seen_through" ? "every hit was kept" : "unknown";
   if (value.is_string()) return value.get<std::string>();
   if (value.contains("min_x_m")) return bounds_text(value);
   if (value.contains("leaves")) {
     return fmt::format("{} leaves, {:.3f} m3, {}", value.at("leaves").get<std::size_t>(),
                        value.at("volume_m3").get<double>(), bounds_text(value.at("bounds")));
+  }
+  if (key == "seen_through") {
+    return fmt::format("{} clouds or more, {} cells with points count as free",
+                       value.at("clouds").get<int>(), value.at("removed_cells").get<std::size_t>());
   }
   if (value.contains("x_m")) {
     return fmt::format("{}, {}, {}", value.at("x_m").get<double>(), value.at("y_m").get<double>(),
@@ -152,7 +163,7 @@ class OccupancyInfoCommand : public Command {
       streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
       for (const auto& [key, value] : info.items()) {
-        fmt::print(streams.out, "{:<14}{}\n", key, text_of(value));
+        fmt::print(streams.out, "{:<14}{}\n", key, text_of(key, value));
       }
     }
     return Exit::ok;

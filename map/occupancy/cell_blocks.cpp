@@ -26,7 +26,7 @@ void set_bit(BlockBits& bits, std::uint32_t cell) {
 }  // namespace
 
 void CellBlocks::begin_scan() {
-  ++scan_;
+  first_view_ = ++view_;
   touched_.clear();
 }
 
@@ -47,10 +47,10 @@ CellBlock& CellBlocks::block_at(const CellKey& key) {
     if (block_count_ % kChunk == 0) chunks_.push_back(std::make_unique<CellBlock[]>(kChunk));
     block = &chunks_.back()[block_count_++ % kChunk];
   }
-  if (block->scan != scan_) {
-    block->scan = scan_;
+  if (block->view != view_) {
+    if (block->view < first_view_) touched_.push_back(block);
+    block->view = view_;
     block->ends = {};
-    touched_.push_back(block);
   }
   return *block;
 }
@@ -65,12 +65,13 @@ bool CellBlocks::add_end(const CellKey& key) {
 
 void CellBlocks::mark_hit(const CellKey& key) { set_bit(block_at(key).hit, cell_place(key)); }
 
-void CellBlocks::merge(const CellKey& first, const BlockBits& hit, const BlockBits& free) {
+CellBlock& CellBlocks::merge(const CellKey& first, const BlockBits& hit, const BlockBits& free) {
   CellBlock& block = block_at(first);
   for (std::size_t word = 0; word < hit.size(); ++word) {
     block.hit[word] |= hit[word];
     block.free[word] |= free[word];
   }
+  return block;
 }
 
 std::vector<CellBlocks::Placed> CellBlocks::regions() const {

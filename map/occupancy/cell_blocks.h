@@ -16,8 +16,8 @@ namespace roadbed::map {
 /// A cube of 8×8×8 cells: what was measured at each, a bit a cell.
 struct CellBlock {
   BlockBits hit{}, free{};
-  BlockBits ends{};        ///< cells that a point of the current scan lies in
-  std::uint32_t scan = 0;  ///< the last one that came here
+  BlockBits ends{};        ///< cells that a point of the current view lies in
+  std::uint32_t view = 0;  ///< the last one that came here
 
   /// With `sticky` off: the log-odds of each cell, NaN where nothing was measured.
   std::unique_ptr<std::array<float, 512>> log_odds;
@@ -34,13 +34,17 @@ class CellBlocks {
   /// What follows is one scan: of several points in a cell only the first is new.
   void begin_scan();
 
+  /// The same scan goes on from elsewhere: points are new again, `touched` stays.
+  void begin_view() { ++view_; }
+
   /// Marks that a point of the scan lies in the cell, and says whether it is the first.
   bool add_end(const CellKey& key);
 
   void mark_hit(const CellKey& key);
 
-  /// Adds what was measured elsewhere to a block. @param first  key of its first cell.
-  void merge(const CellKey& first, const BlockBits& hit, const BlockBits& free);
+  /// Adds what was measured elsewhere to a block, which is returned.
+  /// @param first  key of its first cell.
+  CellBlock& merge(const CellKey& first, const BlockBits& hit, const BlockBits& free);
 
   /// What blocks and regions take of memory [bytes], without log-odds.
   std::size_t kept_bytes() const {
@@ -80,7 +84,7 @@ class CellBlocks {
   std::vector<Near> near_;  // by the lower bits of their codes
   std::vector<std::unique_ptr<CellBlock[]>> chunks_;
   std::size_t block_count_ = 0;
-  std::uint32_t scan_ = 0;
+  std::uint32_t view_ = 0, first_view_ = 0;  // now, and of the scan
   std::vector<CellBlock*> touched_;
 };
 

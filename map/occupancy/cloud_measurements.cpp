@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <limits>
-#include <memory>
+#include <cstdint>
+#include <utility>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/cell_range.h"
@@ -33,20 +31,6 @@ double length_of(const Eigen::Vector3f& way) {
   return std::sqrt(static_cast<double>(way.x() * way.x() + way.y() * way.y() + way.z() * way.z()));
 }
 
-template <typename Visit>
-void for_each_bit(std::uint64_t word, const Visit& visit) {
-  for (; word != 0; word &= word - 1) visit(static_cast<std::size_t>(std::countr_zero(word)));
-}
-
-BlockBits bits_where(const std::array<float, 512>& values, bool (*holds)(float, float),
-                     float than) {
-  BlockBits bits{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (holds(values[i], than)) bits[i / 64] |= std::uint64_t{1} << i % 64;
-  }
-  return bits;
-}
-
 }  // namespace
 
 std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m) {
@@ -62,35 +46,41 @@ std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_
 }
 
 CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
-                                     const OccupancyOptions& options, const LogOddsRule& rule,
+                                     const OccupancyOptions& options, ScanSum sum,
                                      std::size_t points)
     : origin_in_source_(origin_in_source),
       options_(options),
-      rule_(rule),
       most_bytes_(most_bytes(points)),
+      sum_(std::move(sum)),
       carved_(options.resolution_m) {}
 
 void CloudMeasurements::add(const PointCloud& cloud) {
   const std::size_t count = cloud.points.size();
+  blocks_.begin_scan();
   if (cloud.scans.empty()) add(cloud, {0, count}, cloud.sensor_in_source);
   for (std::size_t i = 0; i < cloud.scans.size(); ++i) {
     const std::size_t next = i + 1 < cloud.scans.size() ? cloud.scans[i + 1].first : count;
     add(cloud, {cloud.scans[i].first, next}, cloud.scans[i].sensor_in_source);
   }
   add_carved(cloud);
+  if (sum_.takes_clouds()) take_touched();
 }
 
 void CloudMeasurements::add(const PointCloud& cloud, Span points,
                             const std::optional<Eigen::Vector3d>& sensor) {
-  blocks_.begin_scan();
+  if (sum_.takes_scans()) {
+    blocks_.begin_scan();
+  } else {
+    blocks_.begin_view();
+  }
   if (sensor) {
     add_scan(cloud, points, *sensor);
   } else {
     add_hits(cloud, points);
   }
-  if (options_.sticky_hits) return;
+  if (!sum_.takes_scans()) return;
   add_carved(cloud);
-  weigh_scan();
+  take_touched();
 }
 
 void CloudMeasurements::add_hits(const PointCloud& cloud, Span points) {
@@ -148,8 +138,7 @@ CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what
 }
 
 void CloudMeasurements::check_room(const PointCloud& cloud) const {
-  const std::size_t log_odds = options_.sticky_hits ? 0 : sizeof(std::array<float, 512>);
-  const std::size_t blocks = blocks_.kept_bytes() + blocks_.block_count() * log_odds;
+  const std::size_t blocks = blocks_.kept_bytes() + sum_.kept_bytes(blocks_.block_count());
   if (blocks + carved_.kept_bytes() <= most_bytes_) return;
   throw InputError({.file = cloud.name,
                     .place = {},
@@ -159,35 +148,12 @@ void CloudMeasurements::check_room(const PointCloud& cloud) const {
                     .remedy = "take a coarser resolution or a shorter carving range"});
 }
 
-// A cell that was hit in a scan was not free in it.
-void CloudMeasurements::weigh_scan() {
-  for (CellBlock* block : blocks_.touched()) {
-    if (!block->log_odds) {
-      block->log_odds = std::make_unique<std::array<float, 512>>();
-      block->log_odds->fill(std::numeric_limits<float>::quiet_NaN());
-    }
-    const auto add = [&](std::size_t cell, float change) {
-      float& value = (*block->log_odds)[cell];
-      value = std::clamp((std::isnan(value) ? 0.0f : value) + change, rule_.least, rule_.most);
-    };
-    for (std::size_t word = 0; word < block->hit.size(); ++word) {
-      const std::uint64_t hit = block->hit[word], free = block->free[word] & ~hit;
-      for_each_bit(free, [&](std::size_t bit) { add(64 * word + bit, rule_.miss); });
-      for_each_bit(hit, [&](std::size_t bit) { add(64 * word + bit, rule_.hit); });
-    }
-    block->hit = block->free = {};
-  }
+void CloudMeasurements::take_touched() {
+  for (CellBlock* block : blocks_.touched()) sum_.take(*block);
 }
 
 OctreeBytes CloudMeasurements::bt() {
-  if (!options_.sticky_hits) {
-    blocks_.for_each([&](CellBlock& block) {
-      block.hit = bits_where(
-          *block.log_odds, [](float a, float b) { return a >= b; }, rule_.occupied_from);
-      block.free = bits_where(
-          *block.log_odds, [](float a, float b) { return a < b; }, rule_.occupied_from);
-    });
-  }
+  sum_.settle(blocks_);
   return bt_data(blocks_);
 }
 

@@ -11,26 +11,21 @@
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/map/occupancy/octree_bytes.h"
 #include "roadbed/map/occupancy/point_cloud.h"
+#include "roadbed/map/occupancy/scan_sum.h"
 
 namespace roadbed::map {
 
 /// The key of the cell that a point lies in; none beyond OctoMap's ±32768 cells.
 std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m);
 
-/// How measurements change the log-odds of a cell that is not sticky; OctoMap's own numbers.
-struct LogOddsRule {
-  float hit = 0.0f, miss = 0.0f;    ///< are added
-  float least = 0.0f, most = 0.0f;  ///< and the sum is kept between these
-  float occupied_from = 0.0f;
-};
-
 /// Collects what clouds measured, cell by cell. Points with one sensor position are one scan: each
 /// cell counts once, as hit where a point lies in it, else as free where a ray crosses it.
 class CloudMeasurements {
  public:
+  /// @param sum     of the same options; or of none, to keep what was measured as it is.
   /// @param points  of all clouds that will come: what they may take of memory depends on it.
   CloudMeasurements(const Eigen::Vector3d& origin_in_source, const OccupancyOptions& options,
-                    const LogOddsRule& rule, std::size_t points);
+                    ScanSum sum, std::size_t points);
 
   /// @throws InputError if a point or the sensor lies out of range, or what was measured lies in
   ///         too many places to be kept.
@@ -40,6 +35,9 @@ class CloudMeasurements {
 
   /// Of a `.bt`; to be called once, when all clouds are there.
   OctreeBytes bt();
+
+  /// Cells whose hits went since clouds saw through them; known after `bt`.
+  std::size_t removed() const { return sum_.removed(); }
 
   /// Of an `.ot`. @pre hits are not sticky.
   OctreeBytes ot() const;
@@ -56,13 +54,13 @@ class CloudMeasurements {
   void add_scan(const PointCloud& cloud, Span points, const Eigen::Vector3d& sensor_in_source);
   void add_carved(const PointCloud& cloud);
   void check_room(const PointCloud& cloud) const;
-  void weigh_scan();
+  void take_touched();
 
   Eigen::Vector3d origin_in_source_;
   OccupancyOptions options_;
-  LogOddsRule rule_;
   std::size_t most_bytes_;
   CellBlocks blocks_;
+  ScanSum sum_;
   CarvedCells carved_;  // by the scan that is being added
 };
 

@@ -22,11 +22,12 @@ struct OccupancyMap::Tree {
   octomap::OcTree octree;
   Eigen::Vector3d origin_in_source{0, 0, 0};
   std::string crs;
+  std::optional<SeenThrough> seen_through;
 
   explicit Tree(double resolution_m) : octree(resolution_m) {}
 
   OctreeHeader header(std::size_t nodes) const {
-    return {octree.getResolution(), nodes, origin_in_source, crs};
+    return {octree.getResolution(), nodes, origin_in_source, crs, seen_through};
   }
 };
 
@@ -68,6 +69,13 @@ void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) 
     throw std::invalid_argument(fmt::format(
         "OccupancyMap: carving range must be positive, got {} m", options.carve_range_m));
   }
+  const int least = options.remove_seen_through;
+  if (least < 0 || least > static_cast<int>(BlockCounts::kMost) ||
+      (least > 0 && !options.sticky_hits)) {
+    throw std::invalid_argument(fmt::format(
+        "OccupancyMap: 0 to {} clouds may see through sticky hits to take them away, got {}",
+        BlockCounts::kMost, least));
+  }
   const bool all_hold_points = std::all_of(clouds.begin(), clouds.end(),
                                            [](const PointCloud& c) { return !c.points.empty(); });
   if (clouds.empty() || !all_hold_points) {
@@ -97,15 +105,6 @@ struct Measured {
   CloudMeasurements cells;
 };
 
-LogOddsRule log_odds_rule() {
-  const octomap::OcTree usual(1.0);
-  return {.hit = usual.getProbHitLog(),
-          .miss = usual.getProbMissLog(),
-          .least = usual.getClampingThresMinLog(),
-          .most = usual.getClampingThresMaxLog(),
-          .occupied_from = usual.getOccupancyThresLog()};
-}
-
 Measured measure(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
   check(clouds, options);
   std::size_t points = 0;
@@ -113,9 +112,15 @@ Measured measure(std::span<const PointCloud> clouds, const OccupancyOptions& opt
   std::string crs = common_crs(clouds);
   const Eigen::Vector3d origin = choose_origin(clouds, options.resolution_m);
   Measured measured{origin, std::move(crs),
-                    CloudMeasurements(origin, options, log_odds_rule(), points)};
+                    CloudMeasurements(origin, options, ScanSum(options), points)};
   for (const PointCloud& cloud : clouds) measured.cells.add(cloud);
   return measured;
+}
+
+std::optional<SeenThrough> seen_through_of(const OccupancyOptions& options,
+                                           const CloudMeasurements& cells) {
+  if (options.remove_seen_through == 0) return std::nullopt;
+  return SeenThrough{options.remove_seen_through, cells.removed()};
 }
 
 }  // namespace
@@ -132,6 +137,7 @@ OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
   tree->crs = measured.crs;
   tree->origin_in_source = measured.origin_in_source;
   OctreeBytes bytes = options.sticky_hits ? measured.cells.bt() : measured.cells.ot();
+  tree->seen_through = seen_through_of(options, measured.cells);
   if (bytes.nodes > 0) {
     std::istringstream data{std::move(bytes.data)};
     if (options.sticky_hits) {
@@ -147,12 +153,14 @@ OccupancyMap::File OccupancyMap::build_bt(std::span<const PointCloud> clouds,
                                           const OccupancyOptions& options) {
   Measured measured = measure(clouds, options);
   const OctreeBytes bytes = measured.cells.bt();
+  const auto seen_through = seen_through_of(options, measured.cells);
   return {octree_header(OctreeForm::bt, {.resolution_m = options.resolution_m,
                                          .nodes = bytes.nodes,
                                          .origin_in_source = measured.origin_in_source,
-                                         .crs = measured.crs}) +
+                                         .crs = measured.crs,
+                                         .seen_through = seen_through}) +
               bytes.data,
-          bytes.nodes};
+          bytes.nodes, seen_through};
 }
 
 OccupancyMap OccupancyMap::load(const std::filesystem::path& file) {
@@ -164,6 +172,7 @@ OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name
   auto tree = std::make_unique<Tree>(file.resolution_m);
   tree->origin_in_source = file.origin_in_source;
   tree->crs = file.crs;
+  tree->seen_through = file.seen_through;
   if (file.nodes > 0) {
     std::istringstream data{std::string(file.data)};
     if (file.form == OctreeForm::bt) {
@@ -179,6 +188,7 @@ OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name
 double OccupancyMap::resolution_m() const { return tree_->octree.getResolution(); }
 const Eigen::Vector3d& OccupancyMap::origin_in_source() const { return tree_->origin_in_source; }
 const std::string& OccupancyMap::crs() const { return tree_->crs; }
+std::optional<SeenThrough> OccupancyMap::seen_through() const { return tree_->seen_through; }
 std::size_t OccupancyMap::node_count() const { return tree_->octree.size(); }
 
 CellState OccupancyMap::at(const Eigen::Vector3d& in_source) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,11 @@ struct OccupancyOptions {
   /// A cell with a hit is occupied. Off: as in OctoMap, each cloud changes the log-odds of a cell
   /// once, so that later rays carve it away, and hits beyond the carving range do not count.
   bool sticky_hits = true;
+  /// To take away what moved: a cell with hits is free if so many clouds, and more than have a
+  /// point in it, saw through it, which is to have a ray across it and no point in it. Clouds are
+  /// counted up to 255. In no order; it takes away what is thin, or that rays graze, as well. 0:
+  /// never.
+  int remove_seen_through = 0;
 };
 
 /// Obstacle occupancy, kept as an OctoMap. A measured hit is sticky: rays never carve it away,
@@ -31,12 +37,14 @@ class OccupancyMap final : public OccupancySource {
   /// Cost: a step per cell that a ray crosses; of points in the same cell one ray is drawn.
   /// @throws InputError if a point or sensor lies beyond OctoMap's ±32768 cells of the origin, or
   ///         the rays cross too many cells to be kept.
-  /// @throws std::invalid_argument if there is no point or an option is not positive.
+  /// @throws std::invalid_argument if there is no point, an option is not positive, or
+  ///         `remove_seen_through` is not 0 to 255 or comes with hits that are not sticky.
   static OccupancyMap build(std::span<const PointCloud> clouds, const OccupancyOptions& options);
 
   struct File {
     std::string bytes;
     std::size_t nodes;
+    std::optional<SeenThrough> seen_through = {};
   };
 
   /// The bytes of `build(…).to_bt()`, without making the tree: half the time and a quarter of the
@@ -58,6 +66,7 @@ class OccupancyMap final : public OccupancySource {
   double resolution_m() const override;
   const Eigen::Vector3d& origin_in_source() const override;
   const std::string& crs() const override;
+  std::optional<SeenThrough> seen_through() const override;
   std::size_t node_count() const;
 
   std::optional<Box3> bounds() const override;
@@ -71,11 +80,12 @@ class OccupancyMap final : public OccupancySource {
   /// In the same order. O(leaves in the box).
   std::vector<OccupancyCell> cells_in(const Box3& box) const override;
 
-  /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`. Log-odds of an `.ot`
+  /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`, and one
+  /// `# roadbed seen-through CLOUDS removed CELLS` where hits were taken away. Log-odds of an `.ot`
   /// become free and occupied at OctoMap's threshold, 0.
   std::string to_bt() const;
 
-  /// The bytes of a standard `.ot`, with the log-odds, and the same line.
+  /// The bytes of a standard `.ot`, with the log-odds, and the same lines.
   std::string to_ot() const;
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,14 @@ struct OccupancyCell {
   CellState state;
 };
 
+/// Hits that were taken away since clouds saw through their cells.
+struct SeenThrough {
+  int clouds = 0;         ///< at least so many, and more than hit it
+  std::size_t cells = 0;  ///< that count as free though a point lies in them
+
+  bool operator==(const SeenThrough&) const = default;
+};
+
 /// Where cells of occupied and free space come from.
 class OccupancySource {
  public:
@@ -28,6 +37,9 @@ class OccupancySource {
   virtual const Eigen::Vector3d& origin_in_source() const = 0;
 
   virtual const std::string& crs() const = 0;
+
+  /// What was taken away of what was measured; none where every hit was kept.
+  virtual std::optional<SeenThrough> seen_through() const = 0;
 
   /// Around all leaves; none if there is none.
   virtual std::optional<Box3> bounds() const = 0;

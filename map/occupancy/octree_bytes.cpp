@@ -206,11 +206,15 @@ std::string on_one_line(std::string text) {
 
 std::string octree_header(OctreeForm form, const OctreeHeader& header) {
   const Eigen::Vector3d& origin = header.origin_in_source;
+  const std::string seen_through =
+      header.seen_through ? fmt::format("# roadbed seen-through {} removed {}\n",
+                                        header.seen_through->clouds, header.seen_through->cells)
+                          : "";
   return fmt::format(
-      "# Octomap OcTree {}file\n# roadbed origin {} {} {} {}\nid OcTree\nsize {}\nres {}\n"
+      "# Octomap OcTree {}file\n# roadbed origin {} {} {} {}\n{}id OcTree\nsize {}\nres {}\n"
       "data\n",
       form == OctreeForm::bt ? "binary " : "", origin.x(), origin.y(), origin.z(),
-      on_one_line(header.crs), header.nodes, header.resolution_m);
+      on_one_line(header.crs), seen_through, header.nodes, header.resolution_m);
 }
 
 OctreeBytes bt_data(const CellBlocks& blocks) { return written<BtWriter>(blocks); }

@@ -4,9 +4,11 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "roadbed/map/occupancy/cell_blocks.h"
+#include "roadbed/map/occupancy/occupancy_source.h"
 #include "roadbed/map/occupancy/octree_file.h"
 
 namespace roadbed::map {
@@ -23,9 +25,11 @@ struct OctreeHeader {
   std::size_t nodes;
   Eigen::Vector3d origin_in_source;
   std::string crs;
+  std::optional<SeenThrough> seen_through = {};
 };
 
-/// The header of an OctoMap file, up to its data; origin and CRS are a comment in it.
+/// The header of an OctoMap file, up to its data; origin, CRS and hits that were taken away are
+/// comments in it.
 std::string octree_header(OctreeForm form, const OctreeHeader& header);
 
 /// The data of a `.bt`: a cell with a hit is occupied, else one that is free is free. Written

@@ -93,7 +93,10 @@ class OctreeParser {
   }
 
   void read_comment(std::string_view line) {
-    if (next_word(line) != "roadbed" || next_word(line) != "origin") return;
+    if (next_word(line) != "roadbed") return;
+    const std::string_view what = next_word(line);
+    if (what == "seen-through") read_seen_through(line);
+    if (what != "origin") return;
     for (int axis = 0; axis < 3; ++axis) {
       const auto value = parse_number(next_word(line));
       if (!value || !(std::abs(*value) < 1e9)) {
@@ -103,6 +106,18 @@ class OctreeParser {
     }
     if (!line.empty()) line.remove_prefix(1);
     file_.crs = line;
+  }
+
+  void read_seen_through(std::string_view line) {
+    constexpr std::uint64_t most = 255;
+    const auto clouds = parse_count(next_word(line));
+    const bool is_removed = next_word(line) == "removed";
+    const auto cells = parse_count(next_word(line));
+    if (!clouds || *clouds > most || !is_removed || !cells) {
+      refuse_header("seen-through", "is not two whole numbers",
+                    "# roadbed seen-through CLOUDS removed CELLS");
+    }
+    file_.seen_through = SeenThrough{static_cast<int>(*clouds), *cells};
   }
 
   void check_header() const {

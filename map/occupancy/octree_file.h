@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "roadbed/map/occupancy/occupancy_source.h"
 
 namespace roadbed::map {
 
@@ -22,7 +25,8 @@ struct OctreeFile {
   std::size_t nodes = 0;
   Eigen::Vector3d origin_in_source{0, 0, 0};  ///< of a line `# roadbed origin X Y Z CRS`
   std::string crs;
-  std::string_view data;  ///< part of the bytes that were parsed
+  std::optional<SeenThrough> seen_through;  ///< of a line `# roadbed seen-through N removed M`
+  std::string_view data;                    ///< part of the bytes that were parsed
 };
 
 /// Whether the bytes begin as an OctoMap file does.

@@ -124,28 +124,42 @@ TileBuilder::Shift TileBuilder::shift_of(const PointCloud& cloud) const {
   return shift;
 }
 
+OccupancyOptions TileBuilder::options() const {
+  return {.resolution_m = plan_.resolution_m,
+          .carve_range_m = plan_.carve_range_m,
+          .sticky_hits = plan_.sticky_hits,
+          .remove_seen_through = plan_.remove_seen_through};
+}
+
+std::optional<SeenThrough> TileBuilder::seen_through(std::size_t removed) const {
+  if (plan_.remove_seen_through == 0) return std::nullopt;
+  return SeenThrough{plan_.remove_seen_through, removed};
+}
+
 void TileBuilder::start(const Shift& shift) {
   shift_ = shift;
   const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
                               static_cast<double>(shift[2]));
-  const OccupancyOptions options{.resolution_m = plan_.resolution_m,
-                                 .carve_range_m = plan_.carve_range_m};
   measured_ = std::make_unique<CloudMeasurements>(
-      plan_.origin_in_source + plan_.resolution_m * moved, options, LogOddsRule{},
+      plan_.origin_in_source + plan_.resolution_m * moved, options(), ScanSum(),
       plan_.most_points + plan_.most_bytes / 64);
 }
 
 void TileBuilder::add(const PointCloud& cloud) {
+  if (!plan_.sticky_hits && !cloud.scans.empty()) {
+    throw std::invalid_argument("TileBuilder: log-odds need one sensor position a cloud");
+  }
   const Shift shift = shift_of(cloud);
   if (measured_ && shift != shift_) put_aside();
   if (!measured_) start(shift);
   measured_->add(cloud);
-  if (measured_->blocks().kept_bytes() > plan_.most_bytes) put_aside();
+  if (keeps_clouds_apart() || measured_->blocks().kept_bytes() > plan_.most_bytes) put_aside();
 }
 
 void TileBuilder::put_aside() {
   std::map<Place, std::string> bytes;
   for_each_block(measured_->blocks(), [&](std::uint64_t code, const CellBlock& block) {
+    if (block.hit == BlockBits{} && block.free == BlockBits{}) return;
     AsideBlock aside{.at = {}, .hit = block.hit, .free = block.free};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t region = axis_of(code >> 9, static_cast<int>(axis));
@@ -169,8 +183,9 @@ void TileBuilder::put_aside() {
   }
 }
 
-OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) const {
+OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
   CellBlocks blocks;
+  ScanSum sum(options());
   std::ifstream file(aside_file(place), std::ios::binary);
   std::error_code error;
   if (std::filesystem::file_size(aside_file(place), error) !=
@@ -189,10 +204,14 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) con
                                           kBlockSide * aside.at[1] - first_y + middle,
                                           kBlockSide * aside.at[2] + middle};
     if (key[2] < 0 || key[2] >= 2 * middle) refuse_height(plan_.folder);
-    blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
-                  static_cast<std::uint16_t>(key[2])},
-                 aside.hit, aside.free);
+    CellBlock& block =
+        blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
+                      static_cast<std::uint16_t>(key[2])},
+                     aside.hit, aside.free);
+    if (keeps_clouds_apart()) sum.take(block);
   }
+  sum.settle(blocks);
+  removed_ += sum.removed();
   const OctreeBytes data = bt_data(blocks);
   const Eigen::Vector3d corner(static_cast<double>(first_x), static_cast<double>(first_y), 0.0);
   const std::string bytes =
@@ -200,7 +219,8 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) con
                     {.resolution_m = plan_.resolution_m,
                      .nodes = data.nodes,
                      .origin_in_source = plan_.origin_in_source + plan_.resolution_m * corner,
-                     .crs = plan_.crs}) +
+                     .crs = plan_.crs,
+                     .seen_through = seen_through(sum.removed())}) +
       data.data;
   OccupancyTile tile{.x = place.second,
                      .y = place.first,
@@ -221,6 +241,7 @@ TilesIndex TileBuilder::finish(const Write& write) {
                    .side_cells = plan_.side_cells,
                    .tiles = {}};
   for (const auto& [place, blocks] : blocks_aside_) index.tiles.push_back(make_tile(place, write));
+  index.seen_through = seen_through(removed_);
   return index;
 }
 

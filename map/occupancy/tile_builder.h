@@ -31,14 +31,17 @@ std::int64_t tile_side_cells(double side_m, double resolution_m);
 
 /// Builds an occupancy in tiles from clouds that come one after the other. What they measure is
 /// kept up to a bound of memory, then added to a file per tile; in the end each tile is put
-/// together by itself. The cells are those of `OccupancyMap::build`; the whole may be larger than
-/// an octree's range, as every tile has an origin of its own.
+/// together by itself. Where a cell is more than the hits and free cells of all clouds together,
+/// each cloud is put aside by itself. The cells are those of `OccupancyMap::build`; the whole may
+/// be larger than an octree's range, as every tile has an origin of its own.
 class TileBuilder {
  public:
   struct Plan {
     std::filesystem::path folder;  ///< for files in between; they are removed in the end
     double resolution_m = 0.1;
     double carve_range_m = std::numeric_limits<double>::infinity();
+    bool sticky_hits = true;  ///< and the next: as in OccupancyOptions
+    int remove_seen_through = 0;
     Eigen::Vector3d origin_in_source{0, 0, 0};  ///< of `tree_origin`
     std::string crs;
     std::int64_t side_cells = 1024;       ///< of `tile_side_cells`
@@ -52,6 +55,8 @@ class TileBuilder {
   TileBuilder& operator=(const TileBuilder&) = delete;
 
   /// @throws InputError as `OccupancyMap::build` does, or if a file cannot be written.
+  /// @throws std::invalid_argument if hits are not sticky and each point has its own sensor
+  /// position.
   void add(const PointCloud& cloud);
 
   /// Hands out the bytes of each tile, in the order of the index that it returns.
@@ -66,12 +71,16 @@ class TileBuilder {
   void start(const Shift& shift);
   void put_aside();
   std::filesystem::path aside_file(const Place& place) const;
-  OccupancyTile make_tile(const Place& place, const Write& write) const;
+  OccupancyOptions options() const;
+  std::optional<SeenThrough> seen_through(std::size_t removed) const;
+  bool keeps_clouds_apart() const { return !plan_.sticky_hits || plan_.remove_seen_through > 0; }
+  OccupancyTile make_tile(const Place& place, const Write& write);
 
   Plan plan_;
   Shift shift_{};
   std::unique_ptr<CloudMeasurements> measured_;
   std::map<Place, std::size_t> blocks_aside_;  // how many, by tile
+  std::size_t removed_ = 0;
 };
 
 }  // namespace roadbed::map

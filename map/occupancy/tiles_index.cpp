@@ -30,6 +30,27 @@ constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
                     .remedy = "build the tiles again"});
 }
 
+/// Remembers the keys of every open object.
+class NoKeyTwice {
+ public:
+  explicit NoKeyTwice(const std::string& name) : name_(&name) {}
+
+  bool operator()(int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys_.pop_back();
+    if (event != Json::parse_event_t::key) return true;
+    const auto& key = parsed.get_ref<const std::string&>();
+    if (!keys_.back().insert(key).second) {
+      refuse_index(*name_, "key \"" + key + "\"", "stands twice in one object", "each once");
+    }
+    return true;
+  }
+
+ private:
+  const std::string* name_;
+  std::vector<std::set<std::string>> keys_;
+};
+
 Ordered json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
 /// Takes values out of a document, and says where one is not what it should be.
@@ -47,6 +68,8 @@ class IndexReader {
                      .side_cells = whole(json_, "side_cells"),
                      .tiles = {}};
     check(index);
+    if (json_.contains("seen_through"))
+      index.seen_through = seen_through_of(at(json_, "seen_through"));
     std::set<std::pair<std::int64_t, std::int64_t>> places;
     for (const Json& tile : list(json_, "tiles")) {
       index.tiles.push_back(tile_of(tile));
@@ -83,6 +106,15 @@ class IndexReader {
       refuse_index(name_, "file", "\"" + tile.file + "\"", tile_file_name(tile.x, tile.y));
     }
     return tile;
+  }
+
+  SeenThrough seen_through_of(const Json& json) const {
+    const std::int64_t clouds = whole(json, "clouds"), cells = whole(json, "removed_cells");
+    if (clouds < 1 || clouds > 255 || cells < 0) {
+      refuse_index(name_, "seen_through", fmt::format("{} clouds, {} cells", clouds, cells),
+                   "1 to 255 clouds, 0 cells or more");
+    }
+    return {static_cast<int>(clouds), static_cast<std::size_t>(cells)};
   }
 
   const Json& at(const Json& json, const char* key) const {
@@ -149,6 +181,10 @@ std::string write_tiles_index(const TilesIndex& index) {
   json["crs"] = index.crs;
   json["side_cells"] = index.side_cells;
   json["overlap_cells"] = 0;
+  if (index.seen_through) {
+    json["seen_through"] = {{"clouds", index.seen_through->clouds},
+                            {"removed_cells", index.seen_through->cells}};
+  }
   json["tiles"] = Ordered::array();
   for (const OccupancyTile& tile : index.tiles) {
     json["tiles"].push_back(Ordered{{"file", tile.file},
@@ -168,7 +204,7 @@ TilesIndex parse_tiles_index(std::string_view bytes, const std::string& name) {
     refuse_index(name, "size", fmt::format("{} bytes", bytes.size()),
                  fmt::format("at most {}", most_bytes));
   }
-  const Json json = Json::parse(bytes, nullptr, false);
+  const Json json = Json::parse(bytes, NoKeyTwice(name), false);
   if (json.is_discarded()) refuse_index(name, "", "is no JSON document", "");
   return IndexReader(json, name).read();
 }

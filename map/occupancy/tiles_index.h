@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/occupancy/occupancy_source.h"
 #include "roadbed/map/occupancy/point_cloud.h"
 
 namespace roadbed::map {
@@ -28,6 +30,7 @@ struct TilesIndex {
   std::string crs;
   std::int64_t side_cells = 0;  ///< of a tile, a power of two
   std::vector<OccupancyTile> tiles;
+  std::optional<SeenThrough> seen_through = {};  ///< of all tiles
 
   double side_m() const { return resolution_m * static_cast<double>(side_cells); }
 };

@@ -202,6 +202,45 @@ TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   EXPECT_EQ(run_roadbed({"audit", "--unknown", "maybe"}).status, 2);
 }
 
+TEST(OccupancyBuild, SaysInEveryPlaceThatHitsWereTakenAway) {
+  const TemporaryFolder folder;
+  const std::string wall = "10.05 0.05 0.55\n", post = "5.05 0.05 0.55\n";
+  std::vector<std::string> build{"occupancy", "build"};
+  for (const auto& points : {post, wall, wall}) {
+    build.push_back(folder.write("cloud_" + std::to_string(build.size()) + ".xyz", points));
+  }
+  const std::string octree = folder / "made.bt", tiles = folder / "made.tiles";
+  build.insert(build.end(), {"--sensor", "0.05,0.05,0.55", "--remove-seen-through", "2"});
+  std::vector<std::string> tiled = build;
+  build.insert(build.end(), {"-o", octree});
+  tiled.insert(tiled.end(), {"-o", tiles, "--tiles", "10"});
+  const std::string drive = folder.write("drive.csv", straight_csv(0, 3, 0));
+  for (const auto& [command, file] : {std::pair(build, octree), std::pair(tiled, tiles)}) {
+    const ProgramRun run = run_roadbed(command);
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("1 cells with points count as free: 2 clouds or more"));
+    const ProgramRun info = run_roadbed({"occupancy", "info", file, "--json"});
+    EXPECT_EQ(Json::parse(info.out).at("seen_through").at("removed_cells"), 1);
+    EXPECT_THAT(run_roadbed({"occupancy", "info", file}).out,
+                HasSubstr("2 clouds or more, 1 cells with points count as free"));
+    const ProgramRun audit = run_roadbed(
+        {"audit", "--occupancy", file, "--trajectory", drive, "--unknown", "free", "--json"});
+    EXPECT_EQ(Json::parse(audit.out).at("occupancy_seen_through").at("clouds"), 2);
+    EXPECT_EQ(Json::parse(audit.out).at("verdict"), "clear");
+    EXPECT_THAT(audit.err, HasSubstr("was built with --remove-seen-through 2: 1 cells"));
+  }
+  const std::string again = folder / "again.bt";
+  EXPECT_EQ(run_roadbed({"occupancy", "build", octree, "-o", again}).status, 0);
+  const ProgramRun info = run_roadbed({"occupancy", "info", again, "--json"});
+  EXPECT_EQ(Json::parse(info.out).at("seen_through").at("clouds"), 2);
+  const ProgramRun refused = run_roadbed(
+      {"occupancy", "build", octree, "-o", folder / "no.bt", "--remove-seen-through", "2"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("give the clouds"));
+  build.emplace_back("--no-sticky");
+  EXPECT_EQ(run_roadbed(build).status, 2);
+}
+
 TEST(OccupancyBuild, CarvesFromTheSensorOfEachPointUnlessToldOtherwise) {
   const TemporaryFolder folder;
   const std::string cloud = folder.write(

@@ -97,8 +97,10 @@ TEST_F(OccupancyTiles, NothingIsWrittenWhereACloudIsUnusable) {
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.err, HasSubstr("bad.pcd"));
   EXPECT_FALSE(std::filesystem::exists(tiles_));
+  const std::string shots =
+      folder_.write("shots.csv", "x,y,z,vp_x,vp_y,vp_z\n1,2,3,0,0,0\n4,2,3,1,0,0\n");
   const ProgramRun log_odds =
-      run_roadbed({"occupancy", "build", good, "-o", tiles_, "--tiles", "20", "--no-sticky"});
+      run_roadbed({"occupancy", "build", shots, "-o", tiles_, "--tiles", "20", "--no-sticky"});
   EXPECT_EQ(log_odds.status, 1);
   EXPECT_THAT(log_odds.err, HasSubstr("--no-sticky"));
   EXPECT_FALSE(std::filesystem::exists(tiles_));

@@ -40,7 +40,7 @@ class TiledOccupancyTest : public testing::Test {
   }
 
   TilesIndex build(const std::vector<PointCloud>& clouds, std::int64_t side_cells,
-                   std::size_t most_bytes) const {
+                   std::size_t most_bytes, const OccupancyOptions& options = {}) const {
     Box3 all = bounds(clouds.front());
     std::size_t most_points = 0;
     for (const PointCloud& cloud : clouds) {
@@ -50,6 +50,9 @@ class TiledOccupancyTest : public testing::Test {
     }
     TileBuilder builder({.folder = folder_,
                          .resolution_m = kSide_m,
+                         .carve_range_m = options.carve_range_m,
+                         .sticky_hits = options.sticky_hits,
+                         .remove_seen_through = options.remove_seen_through,
                          .origin_in_source = tree_origin(all, kSide_m),
                          .crs = "EPSG:25832",
                          .side_cells = side_cells,
@@ -115,6 +118,30 @@ TEST_F(TiledOccupancyTest, HoldsTheCellsOfTheWholeWhateverTheSideAndTheMemory) {
       ASSERT_EQ(finest(tiles), finest(whole));
       EXPECT_TRUE(tiles.bounds()->min_in_source.isApprox(whole.bounds()->min_in_source, 1e-12));
       EXPECT_TRUE(tiles.bounds()->max_in_source.isApprox(whole.bounds()->max_in_source, 1e-12));
+    }
+  }
+}
+
+TEST_F(TiledOccupancyTest, HoldsTheCellsOfTheWholeByLogOddsAndWithoutWhatWasSeenThrough) {
+  std::mt19937 random(20261123);
+  for (const std::int64_t side : {64, 256}) {
+    for (const double range_m : {1e9, 4.0}) {
+      const auto clouds = scans_around(random, {500'000.0, 5'800'000.0, 100.0}, 6.0);
+      for (const int removed : {0, 1, 2}) {
+        const OccupancyOptions options{.resolution_m = kSide_m,
+                                       .carve_range_m = range_m,
+                                       .sticky_hits = removed > 0,
+                                       .remove_seen_through = removed};
+        const OccupancyMap whole = OccupancyMap::build(clouds, options);
+        build(clouds, side, 500'000, options);
+        const TiledOccupancy tiles(folder_);
+        ASSERT_EQ(finest(tiles), finest(whole));
+        EXPECT_EQ(tiles.seen_through(), whole.seen_through());
+        EXPECT_EQ(tiles.seen_through().has_value(), removed > 0);
+        if (removed == 1) {
+          EXPECT_GT(tiles.seen_through()->cells, 0u);
+        }
+      }
     }
   }
 }
@@ -289,7 +316,10 @@ TEST(TilesIndex, RefusesWhatIsNone) {
   for (const std::string& bad :
        {std::string("{"), std::string("[]"), with("tiles 1", "tiles 9"), with("0.1", "-1.0"),
         with("256", "100"), with("tile_0_0.bt", "../secret.bt"), with("\"x\": 0", "\"x\": 0.5"),
-        with("\"tiles\": [", "\"tile\": ["), with("\"xxhash\": \"00\"", "\"xxhash\": 0")}) {
+        with("\"tiles\": [", "\"tile\": ["), with("\"crs\"", "\"side_cells\": 64, \"crs\""),
+        with("\"crs\"", "\"seen_through\": {\"clouds\": 0, \"removed_cells\": 1}, \"crs\""),
+        with("\"crs\"", "\"seen_through\": 3, \"crs\""),
+        with("\"xxhash\": \"00\"", "\"xxhash\": 0")}) {
     EXPECT_THROW(parse_tiles_index(bad, "index.json"), InputError) << bad;
   }
 }
