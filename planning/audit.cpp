@@ -28,9 +28,13 @@ void check(const map::ClearanceField& field, const geometry::Trajectory& drive,
     throw std::invalid_argument(fmt::format("audit: {} is out of range, got {} m", option, value));
   };
   const auto is_length = [](double value) { return value >= 0.0 && std::isfinite(value); };
-  if (!(options.clearance_m < 0.5 * field.horizon_m())) refuse("clearance_m", options.clearance_m);
   if (!is_length(options.clearance_m)) refuse("clearance_m", options.clearance_m);
   if (!is_length(options.inflate_m)) refuse("inflate_m", options.inflate_m);
+  // A circle is looked at from its middle.
+  const double radius_m = geometry::inflated(part, options.inflate_m).radius_m;
+  const double seen_m = field.horizon_m() - radius_m;
+  if (!(seen_m > 0.0)) refuse("the circle's radius", radius_m);
+  if (!(options.clearance_m < 0.5 * seen_m)) refuse("clearance_m", options.clearance_m);
   if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
 }
 
@@ -190,10 +194,13 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options) {
   constexpr double least_horizon_m = 50.0;
-  double farthest_m = 0.0, radius_m = 0.0;
+  double farthest_m = 0.0, radius_m = 0.0, circle_m = 0.0;
   for (const geometry::BodyPart& part : parts) {
     const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
-    farthest_m = std::max(farthest_m, body.reach_m());
+    // The box around a circle, which unknown space is shared out in, reaches beyond it.
+    const double box_m = std::sqrt(2.0) * body.radius_m;
+    farthest_m = std::max({farthest_m, body.reach_m(), body.middle_in_vehicle().norm() + box_m});
+    circle_m = std::max(circle_m, body.radius_m);
     radius_m = std::max(radius_m, std::sqrt(2.0) * body.circumradius_m());  // of the box around it
   }
   const Eigen::Vector2d reach_m = Eigen::Vector2d::Constant(farthest_m);
@@ -206,7 +213,7 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
   around.min_in_source -= reach_m;
   around.max_in_source += reach_m;
   return {.around = around,
-          .horizon_m = std::max(least_horizon_m, 3.0 * options.clearance_m),
+          .horizon_m = std::max(least_horizon_m, 3.0 * options.clearance_m) + circle_m,
           .body_radius_m = radius_m};
 }
 

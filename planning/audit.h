@@ -93,7 +93,7 @@ inline AuditReport audit(const map::ClearanceField& field,
 }
 
 /// The part of an occupancy that matters to the audit of a drive: wherever the inflated parts may
-/// be, with a horizon of 50 m, or more where the clearance asks for it.
+/// be, with a horizon of 50 m, or more where the clearance or a circle asks for it.
 map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options);

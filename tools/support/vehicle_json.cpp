@@ -73,7 +73,7 @@ std::vector<BodyPart> mirrors(const JsonNode& node, const VehicleShape& shape) {
 
 BodyPart circle(const JsonNode& node, std::size_t number) {
   node.require_object({"x_m", "y_m", "radius_m", "from_height_m", "to_height_m"});
-  constexpr Range radius{1e-3, 1000.0};
+  constexpr Range radius{1e-3, 500.0};
   const double x_m = node.at("x_m").number(kPlace_m), y_m = node.number_or("y_m", 0.0, kPlace_m);
   BodyPart part{.name = fmt::format("circle {}", number),
                 .rear_m = x_m,
