@@ -86,6 +86,14 @@ AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditRe
   return whole;
 }
 
+// The first band with the same heights.
+std::size_t first_alike(const std::vector<map::HeightBand>& bands, std::size_t i) {
+  const auto first = std::ranges::find_if(bands, [&](const map::HeightBand& band) {
+    return band.from_m == bands[i].from_m && band.to_m == bands[i].to_m;
+  });
+  return static_cast<std::size_t>(first - bands.begin());
+}
+
 }  // namespace
 
 VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
@@ -94,13 +102,16 @@ VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
     : surface_(ground.surface), parts_(std::move(parts)) {
   for (const BodyPart& part : parts_) {
     bands_.push_back(ground.band(part.from_height_m, part.to_height_m));
-    const auto same = std::ranges::find_if(bands_, [&](const map::HeightBand& band) {
-      return band.from_m == bands_.back().from_m && band.to_m == bands_.back().to_m;
-    });
-    const auto at = static_cast<std::size_t>(same - bands_.begin());
-    fields_.push_back(at < fields_.size() ? fields_[at]
-                                          : std::make_shared<const map::ClearanceField>(
-                                                occupancy, bands_.back(), region));
+  }
+  std::size_t apart = 0;  // bands
+  for (std::size_t i = 0; i < bands_.size(); ++i) apart += first_alike(bands_, i) == i;
+  map::FieldRegion share = region;
+  share.most_cells /= std::max<std::size_t>(1, apart);
+  for (std::size_t i = 0; i < bands_.size(); ++i) {
+    const std::size_t alike = first_alike(bands_, i);
+    fields_.push_back(
+        alike < i ? fields_[alike]
+                  : std::make_shared<const map::ClearanceField>(occupancy, bands_[i], share));
   }
 }
 

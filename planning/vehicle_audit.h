@@ -30,7 +30,7 @@ struct GroundUnder {
 /// The parts of a vehicle, each with the occupied space of its own heights above the ground.
 class VehicleSurroundings {
  public:
-  /// Parts of the same heights share a field.
+  /// Parts of the same heights share a field, and all fields the region's cells.
   /// @param ground  what the parts' heights are above.
   /// @throws InputError if a field would have too many cells.
   VehicleSurroundings(const map::OccupancySource& occupancy, const GroundUnder& ground,

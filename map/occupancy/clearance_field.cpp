@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -75,8 +76,9 @@ struct ClearanceField::Grid {
     const auto margin = static_cast<std::int64_t>(std::ceil(horizon_m / slicer.cell_m())) + 3;
     const CellRange seen = held.grown(margin);
     constexpr std::size_t most_at_once = 20'000'000;
-    if (region.tile_m == 0.0 && is_small(seen) && seen.count() <= most_at_once) {
-      whole = grid_of({held, seen, false}, slicer.slabs_in(seen));
+    if (region.tile_m == 0.0 && is_small(seen) &&
+        seen.count() <= std::min(most_at_once, region.most_cells)) {
+      whole = grid_of({held, seen, false});
     } else {
       make_tiles(region);
     }
@@ -85,7 +87,12 @@ struct ClearanceField::Grid {
   void make_whole() {
     const std::vector<Slab> slabs = slicer.slabs();
     const CellRange all = range_of(slabs);
-    whole = grid_of({all, all, true}, slabs);
+    whole = grid_of({all, all, true}, [&](const CellRange& range) {
+      std::vector<Slab> in_range;
+      std::ranges::copy_if(slabs, std::back_inserter(in_range),
+                           [&](const Slab& slab) { return !slab.cells.cut(range).empty(); });
+      return in_range;
+    });
   }
 
   // A box within the horizon of a body whose centre lies in a tile has its centre at most horizon,
@@ -96,23 +103,28 @@ struct ClearanceField::Grid {
     const auto margin =
         static_cast<std::int64_t>(std::ceil((horizon_m + body_radius_m) / cell_m)) + 3;
     constexpr std::int64_t longest = 10'000;  // of a side with both margins: kMostCells in all
-    const std::int64_t usual =
-        std::max<std::int64_t>(1, std::min(2 * margin, longest - 2 * margin));
+    const auto of_two = static_cast<std::int64_t>(
+        std::sqrt(static_cast<double>(std::min(region.most_cells, kMostCells)) / 2.0));
+    const std::int64_t least = std::clamp<std::int64_t>(longest - 2 * margin, 1, margin);
+    const std::int64_t usual = std::clamp(of_two - 2 * margin, least, std::max(least, 2 * margin));
     const std::int64_t side =
         region.tile_m > 0.0 ? static_cast<std::int64_t>(std::ceil(region.tile_m / cell_m)) : usual;
     const CellRange first = CellRange{0, 0, side, side}.grown(margin);
     check_size(first, slicer.layers(), cell_m);
     tiles = std::make_unique<const GridTiles>(
-        side, std::max<std::size_t>(1, kMostCells / first.count()), [this, margin](CellRange tile) {
-          const CellRange seen = tile.grown(margin);
-          return grid_of({tile, seen, false}, slicer.slabs_in(seen));
+        side, std::max<std::size_t>(1, std::min(region.most_cells, kMostCells) / first.count()),
+        [this, margin](CellRange tile) {
+          return grid_of({tile, tile.grown(margin), false});
         });
   }
 
-  std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent,
-                                          const std::vector<Slab>& slabs) const {
+  std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent) const {
+    return grid_of(extent, [this](const CellRange& range) { return slicer.slabs_in(range); });
+  }
+
+  std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent, const SlabsIn& slabs_in) const {
     check_size(extent.seen, slicer.layers(), slicer.cell_m());
-    return std::make_shared<const PlanGrid>(slabs, extent, slicer.layers(), slicer.cell_m());
+    return std::make_shared<const PlanGrid>(slabs_in, extent, slicer.layers(), slicer.cell_m());
   }
 
   // What a grid around the point says.

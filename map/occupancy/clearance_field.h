@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -41,6 +42,10 @@ struct FieldRegion {
   /// side, only where queries come; 0: of a fitting side. Given, it is made in tiles in any case.
   double tile_m = 0.0;
   double body_radius_m = 10.0;  ///< tiles are made for rectangles within such a circle
+
+  /// Cells that may be alive at a time, over which a tile by itself may be; less than
+  /// `ClearanceField::kMostCells` where several fields are in use at the same time.
+  std::size_t most_cells = 100'000'000;
 };
 
 /// What a distance is measured to.

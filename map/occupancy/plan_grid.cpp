@@ -27,9 +27,21 @@ bool any_in(const CellBits& bits, const CellRange& cells) {
   return false;
 }
 
+// Of about a million cells each, one above the other.
+std::vector<CellRange> strips_of(const CellRange& range) {
+  constexpr std::int64_t at_once = 1 << 20;
+  std::vector<CellRange> strips;
+  if (range.empty()) return strips;
+  const std::int64_t rows = std::max<std::int64_t>(1, at_once / range.width());
+  for (std::int64_t y = range.from_y; y < range.to_y; y += rows) {
+    strips.push_back({range.from_x, y, range.to_x, std::min(y + rows, range.to_y)});
+  }
+  return strips;
+}
+
 }  // namespace
 
-PlanGrid::PlanGrid(const std::vector<Slab>& slabs, const GridExtent& extent, std::int64_t layers,
+PlanGrid::PlanGrid(const SlabsIn& slabs_in, const GridExtent& extent, std::int64_t layers,
                    double cell_m)
     : cell_m_(cell_m),
       per_cell_(1.0 / cell_m),
@@ -37,13 +49,16 @@ PlanGrid::PlanGrid(const std::vector<Slab>& slabs, const GridExtent& extent, std
       layers_(static_cast<std::uint16_t>(layers)),
       known_layers_(extent.seen.count()) {
   std::vector<std::uint8_t> occupied(known_layers_.size());
-  for (const Slab& slab : slabs) paint(slab, occupied);
+  for (const CellRange& strip : strips_of(extent.seen)) {
+    for (const Slab& slab : slabs_in(strip)) paint(slab, strip, occupied);
+  }
   occupied_ = layer_of(occupied);
 }
 
 // Leaves do not overlap, so that the layers of free ones add up.
-void PlanGrid::paint(const Slab& slab, std::vector<std::uint8_t>& occupied) {
-  const CellRange cells = slab.cells.cut(extent_.seen);
+void PlanGrid::paint(const Slab& slab, const CellRange& range,
+                     std::vector<std::uint8_t>& occupied) {
+  const CellRange cells = slab.cells.cut(range);
   if (cells.empty()) return;
   for (std::int64_t y = cells.from_y; y < cells.to_y; ++y) {
     std::size_t i = extent_.seen.index(cells.from_x, y);

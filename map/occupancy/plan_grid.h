@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -24,6 +25,9 @@ struct Slab {
   bool occupied;
 };
 
+/// The slabs that meet a range, and others perhaps.
+using SlabsIn = std::function<std::vector<Slab>(const CellRange& range)>;
+
 /// Which cells a grid knows of.
 struct GridExtent {
   CellRange held;  ///< distances are kept for these
@@ -36,8 +40,8 @@ struct GridExtent {
 /// that a cell has the same numbers in every grid that knows of it.
 class PlanGrid {
  public:
-  PlanGrid(const std::vector<Slab>& slabs, const GridExtent& extent, std::int64_t layers,
-           double cell_m);
+  /// Asks for slabs a million cells at a time, so that they take little memory beside the grid.
+  PlanGrid(const SlabsIn& slabs_in, const GridExtent& extent, std::int64_t layers, double cell_m);
 
   double cell_m() const { return cell_m_; }
   Eigen::Vector2d centre(std::int64_t x, std::int64_t y) const {
@@ -68,7 +72,7 @@ class PlanGrid {
   };
 
   Cell cell_at(const Eigen::Vector2d& point) const;
-  void paint(const Slab& slab, std::vector<std::uint8_t>& occupied);
+  void paint(const Slab& slab, const CellRange& range, std::vector<std::uint8_t>& occupied);
   Layer layer_of(const std::vector<std::uint8_t>& set) const;
   const Layer& layer(ObstacleKind kind) const;
   const Measured& measured() const;

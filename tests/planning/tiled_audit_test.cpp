@@ -117,6 +117,12 @@ TEST(TiledAudit, EqualsTheAuditOverTheWholeBitForBitForAnySideOfTiles) {
       expect_equal(same.from_unknown, proof.from_unknown);
       if (HasFailure()) return;
     }
+    // So small a part of the memory that there is one tile at a time.
+    region.tile_m = 0.0;
+    region.most_cells = 1;
+    expect_equal(audit(map::ClearanceField(occupancy, kHeights, region), drive, vehicle, options),
+                 expected);
+    if (HasFailure()) return;
     EXPECT_TRUE(check_certificate(proof, occupancy.cells(), 0.1, drive).empty());
     ++verdicts[static_cast<std::size_t>(expected.verdict)];
   }

@@ -103,8 +103,9 @@ planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy
                                            const geometry::Trajectory& drive,
                                            const planning::GroundUnder& ground,
                                            const AuditQuestion& question) {
-  return {occupancy, ground, question.parts,
-          planning::audited_region(drive, question.parts, question.options)};
+  map::FieldRegion region = planning::audited_region(drive, question.parts, question.options);
+  region.most_cells /= question.drives_at_once;
+  return {occupancy, ground, question.parts, region};
 }
 
 map::HeightBand AuditQuestion::heights(const planning::GroundUnder& under) const {
@@ -136,8 +137,11 @@ std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
                                     const AuditQuestion& question, int threads,
                                     const std::function<void()>& done_one) {
   std::vector<AuditedDrive> audited(subjects.size());
+  AuditQuestion shared = question;
+  shared.drives_at_once =
+      std::clamp<std::size_t>(subjects.size(), 1, static_cast<std::size_t>(std::max(1, threads)));
   in_threads(subjects.size(), threads, [&](std::size_t i) {
-    audited[i] = audit_one(occupancy, subjects[i], question);
+    audited[i] = audit_one(occupancy, subjects[i], shared);
     done_one();
   });
   return audited;

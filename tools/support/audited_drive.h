@@ -38,6 +38,7 @@ struct AuditQuestion {
   GroundRule ground;
   planning::AuditOptions options;
   std::vector<planning::MovingObstacle> moving = {};  ///< in source coordinates
+  std::size_t drives_at_once = 1;                     ///< that share the memory for fields
 
   /// From the lowest part's underside to the highest top.
   map::HeightBand heights(const planning::GroundUnder& under) const;

@@ -10,11 +10,13 @@
 namespace roadbed::map {
 namespace {
 
+std::vector<Slab> no_slabs(const CellRange&) { return {}; }
+
 TEST(GridTiles, KeepsNoMoreTilesAliveThanAllowedAndTheLastUsedOnes) {
   std::vector<std::weak_ptr<const PlanGrid>> made;
   const GridTiles tiles(10, 3, [&](const CellRange& tile) {
-    auto grid = std::make_shared<const PlanGrid>(std::vector<Slab>{},
-                                                 GridExtent{tile, tile.grown(1), false}, 1, 0.1);
+    auto grid =
+        std::make_shared<const PlanGrid>(no_slabs, GridExtent{tile, tile.grown(1), false}, 1, 0.1);
     made.push_back(grid);
     return grid;
   });
@@ -37,8 +39,7 @@ TEST(GridTiles, ATileHoldsTheCellsThatAskForIt) {
   CellRange asked;
   const GridTiles tiles(7, 1, [&](const CellRange& tile) {
     asked = tile;
-    return std::make_shared<const PlanGrid>(std::vector<Slab>{}, GridExtent{tile, tile, false}, 1,
-                                            0.1);
+    return std::make_shared<const PlanGrid>(no_slabs, GridExtent{tile, tile, false}, 1, 0.1);
   });
   for (std::int64_t x = -20; x < 20; ++x) {
     tiles.at(x, -x);
