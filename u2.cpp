@@ -1,2 +1,0 @@
-#include "map/occupancy/tile_builder.cpp"
-#include "map/occupancy/tiled_occupancy.cpp"
