@@ -9,7 +9,6 @@
 #include <cstring>
 #include <string>
 #include <system_error>
-#include <utility>
 
 namespace roadbed::tools {
 namespace {
@@ -33,6 +32,24 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
+/// Where a link leads, so that it is not the link that is replaced.
+std::filesystem::path behind_links(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(file, error)) return file;
+  const std::filesystem::path target = std::filesystem::canonical(file, error);
+  return error ? file : target;
+}
+
+/// Replaced by a file, a device such as /dev/null would be lost to all programs.
+void refuse_other_than_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (std::filesystem::is_directory(status)) refuse(file, "is a folder", "name a file in it");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    refuse(file, "is a device or a pipe, which a file would replace", "name a file");
+  }
+}
+
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;  // the file itself is synced; some systems refuse to open folders
@@ -43,12 +60,12 @@ void sync_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 void check_writable(const std::filesystem::path& file, bool force) {
-  const auto folder = folder_of(file);
+  const auto folder = folder_of(behind_links(file));
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) {
     refuse(file, "cannot be written: its folder does not exist", "make the folder first");
   }
-  if (std::filesystem::is_directory(file, error)) refuse(file, "is a folder", "name a file in it");
+  refuse_other_than_file(file);
   if (std::filesystem::exists(file, error) && !force) {
     refuse(file, "exists already", "give --force to replace it");
   }
@@ -76,7 +93,8 @@ void make_output_folder(const std::filesystem::path& folder, bool force) {
   }
 }
 
-OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+OutputFile::OutputFile(const std::filesystem::path& file) : file_(behind_links(file)) {
+  refuse_other_than_file(file_);
   // Not by mkstemp: its files have rights of their own, and the process's mask, which says what
   // they should be, can only be read by changing it under the feet of other threads.
   static std::atomic<unsigned> next = 0;

@@ -17,8 +17,8 @@ class OutputError : public map::InputError {
 };
 
 /// Checks before the work begins that `file` can be written later.
-/// @throws OutputError if its folder is missing or not writable, or the file exists and `force` is
-///         not set.
+/// @throws OutputError if its folder is missing or not writable, the file is a device or a pipe, or
+///         it exists and `force` is not set.
 void check_writable(const std::filesystem::path& file, bool force);
 
 /// Makes the folder (with its parents) that a command writes several files to.
@@ -27,11 +27,11 @@ void make_output_folder(const std::filesystem::path& folder, bool force);
 
 /// A file that is written piece by piece: to a temporary file beside it, which is synced and
 /// renamed in the end. At every moment there is the old file, or the new one, whole; without
-/// `commit` nothing is left behind.
+/// `commit` nothing is left behind. Of a link, what it leads to is replaced.
 class OutputFile : public map::ByteSink {
  public:
   /// @throws OutputError if it cannot be written.
-  explicit OutputFile(std::filesystem::path file);
+  explicit OutputFile(const std::filesystem::path& file);
   ~OutputFile() override;
 
   /// @throws OutputError if it cannot be written.

@@ -1,12 +1,15 @@
 #include "roadbed/tools/support/output_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "roadbed/tests/support/program_run.h"
 
@@ -53,6 +56,26 @@ TEST(OutputFile, MayBeWrittenInAnyOrder) {
   output.write(0, "head");
   output.commit();
   EXPECT_EQ(tests::bytes_of(file), "headbody");
+}
+
+TEST(OutputFile, ThroughALinkReplacesWhatItLeadsTo) {
+  const tests::TemporaryFolder folder;
+  const auto file = folder / "file.txt", link = folder / "link.txt";
+  folder.write("file.txt", "old");
+  std::filesystem::create_symlink("file.txt", link);
+  write_output(link, "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(tests::bytes_of(file), "new");
+}
+
+TEST(OutputFile, IsNeverPutInThePlaceOfAPipe) {
+  const tests::TemporaryFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(check_writable(pipe, true), OutputError);
+  EXPECT_THROW(write_output(pipe, "bytes"), OutputError);
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_EQ(tests::files_below(folder.path()), std::vector<std::string>{});
 }
 
 }  // namespace
