@@ -193,6 +193,8 @@ TEST_F(SimulateCommand, CommonRoadTakesNoiseBySeedAndAnotherVehicle) {
   const std::string small = folder_.write("small.json", R"({"length_m": 3.6})");
   EXPECT_NE(drive("small", {"--vehicle", small}), drive("plain", {}));
   EXPECT_FALSE(std::filesystem::exists(out("small") / "solution.xml"));
+  EXPECT_NE(drive("one", {"--vehicle", small, "--force"}), one);
+  EXPECT_FALSE(std::filesystem::exists(out("one") / "solution.xml")) << "that of the first drive";
 }
 
 TEST_F(SimulateCommand, RefusesChangesThatCannotBeMade) {
