@@ -54,6 +54,7 @@ class AuditCommand : public Command {
              "that it meets")
         .reads();
     std::vector<Argument> not_with_check = subjects_.declare(arguments);
+    arguments.heading("Question");
     const Argument vehicle =
         arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
             .reads();
@@ -141,6 +142,7 @@ class AuditCommand : public Command {
   }
 
   void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
+    arguments.heading("Outputs");
     arguments.flag("--json", json_, "Print one JSON document");
     const Argument svg =
         arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")

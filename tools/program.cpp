@@ -16,6 +16,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/build_id.h"
+#include "roadbed/tools/support/help_format.h"
 
 namespace roadbed::tools {
 namespace {
@@ -84,6 +85,7 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
 int run_program(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
+  app.formatter(make_help_format());
   app.set_version_flag(
       "--version", "roadbed " ROADBED_VERSION " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
   app.require_subcommand(1);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace roadbed::tools {
 namespace {
@@ -86,6 +87,8 @@ Argument& Argument::writes(const std::string& suffix) {
 
 void Arguments::description(const std::string& text) { app_->description(text); }
 
+std::string Arguments::heading(const std::string& text) { return std::exchange(*group_, text); }
+
 void Arguments::example(const std::string& lines) { app_->footer("Example:\n" + lines); }
 
 Argument Arguments::add(const std::string& names, std::string& value, const std::string& help) {
@@ -148,6 +151,8 @@ void Arguments::require(std::function<std::string()> fault) {
 }
 
 Argument Arguments::note(CLI::Option& option, ArgumentInfo::Kind kind) {
+  if (kind == ArgumentInfo::Kind::path) option.type_name("PATH");
+  option.group(*group_);
   declared_->push_back(
       {.name = option.get_single_name(), .kind = kind, .is_positional = option.get_positional()});
   return {option, declared_->back()};
@@ -160,9 +165,10 @@ Argument Arguments::choose(const std::string& names, const std::vector<std::stri
     const auto found = std::find(words.begin(), words.end(), CLI::detail::to_lower(word));
     take(static_cast<std::size_t>(found - words.begin()));
   };
-  CLI::Option* option = app_->add_option_function<std::string>(names, take_word, help);
+  CLI::Option* option = app_->add_option_function<std::string>(
+      names, take_word, fmt::format("{} ({}; default {})", help, fmt::join(words, "|"), standing));
   option->check(CLI::IsMember(words, CLI::ignore_case));
-  option->option_text(fmt::format("{} [{}]", fmt::join(words, "|"), standing));
+  option->option_text("WORD");
   return note(*option, ArgumentInfo::Kind::value);
 }
 

@@ -76,9 +76,13 @@ class Argument {
 class Arguments {
  public:
   explicit Arguments(CLI::App& app)
-      : app_(&app), declared_(std::make_shared<std::deque<ArgumentInfo>>()) {}
+      : app_(&app),
+        declared_(std::make_shared<std::deque<ArgumentInfo>>()),
+        group_(std::make_shared<std::string>("Options")) {}
 
   void description(const std::string& text);
+  /// Under which the help lists what is declared from now on. Returns the one before.
+  std::string heading(const std::string& text);
   /// Command lines that a reader of the help can copy.
   void example(const std::string& lines);
 
@@ -128,6 +132,7 @@ class Arguments {
 
   CLI::App* app_;
   std::shared_ptr<std::deque<ArgumentInfo>> declared_;  // elements stay where they are
+  std::shared_ptr<std::string> group_;
 };
 
 /// Arguments whose words come from elsewhere than the program's command line.

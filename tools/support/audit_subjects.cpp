@@ -46,6 +46,7 @@ geometry::Trajectory AuditSubject::drive() const {
 }
 
 std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
+  arguments.heading("Drives");
   Argument trajectory =
       arguments
           .add("--trajectory", trajectory_,

@@ -112,6 +112,7 @@ std::vector<Argument> RouteRules::declare_prices(Arguments& arguments) {
 }
 
 std::vector<Argument> RouteRules::declare(Arguments& arguments, bool with_cost) {
+  const std::string outer = arguments.heading("Rules of the route");
   std::vector<Argument> declared{
       arguments
           .add("--avoid", avoid_,
@@ -126,6 +127,7 @@ std::vector<Argument> RouteRules::declare(Arguments& arguments, bool with_cost) 
   for (const auto& part : {declare_speeds(arguments), declare_prices(arguments)}) {
     declared.insert(declared.end(), part.begin(), part.end());
   }
+  arguments.heading(outer);
   return declared;
 }
 
