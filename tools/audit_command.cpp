@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "roadbed/map/input_error.h"
-#include "roadbed/map/load_map.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/map/occupancy/occupancy_source.h"
-#include "roadbed/map/occupancy/tiled_occupancy.h"
+#include "roadbed/map/road_map.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tools/command.h"
@@ -82,21 +81,22 @@ class AuditCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
+    inputs_ = common.inputs;
     if (!check_.empty()) {
       const bool holds = check_certificate_file(check_, occupancy_, subjects_.file(), obstacles_,
-                                                json_, streams.out);
+                                                json_, *inputs_, streams.out);
       return holds ? Exit::ok : Exit::failed;
     }
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
       if (!output.empty()) check_writable(output, force_);
     }
     AuditQuestion question = asked();
-    std::optional<map::RoadMap> road_map;
-    if (!map_.empty()) road_map = map::load_map(map_);
-    question.ground = ground_rule(ground_, road_map ? &*road_map : nullptr);
+    std::shared_ptr<const map::RoadMap> road_map;
+    if (!map_.empty()) road_map = inputs_->road_map(map_);
+    question.ground = ground_rule(ground_, road_map.get());
     question.ground.body = reach_of(question);
-    const std::vector<AuditSubject> subjects = subjects_.list(road_map ? &*road_map : nullptr);
-    const Scene scene = make_scene(road_map, streams, common);
+    const std::vector<AuditSubject> subjects = subjects_.list(road_map.get());
+    const Scene scene = make_scene(road_map.get(), streams, common);
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
                                  : run_one(subjects.front(), question, scene, streams, common);
   }
@@ -104,7 +104,7 @@ class AuditCommand : public Command {
  private:
   /// What all drives are audited against.
   struct Scene {
-    std::unique_ptr<const map::OccupancySource> occupancy;
+    std::shared_ptr<const map::OccupancySource> occupancy;
     std::optional<map::Box2> measured;
     const map::RoadMap* road_map;
   };
@@ -200,13 +200,13 @@ class AuditCommand : public Command {
                            .parts = vehicle.parts(from_height_m_),
                            .ground = {},
                            .options = options_};
-    if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_);
+    if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_, *inputs_);
     return question;
   }
 
-  Scene make_scene(const std::optional<map::RoadMap>& road_map, const Streams& streams,
+  Scene make_scene(const map::RoadMap* road_map, const Streams& streams,
                    const CommonOptions& common) const {
-    Scene scene{map::open_occupancy(occupancy_), {}, road_map ? &*road_map : nullptr};
+    Scene scene{inputs_->occupancy(occupancy_), {}, road_map};
     if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
       fmt::print(streams.err,
                  "note: {} was built with --remove-seen-through {}: {} cells with points count as "
@@ -214,7 +214,7 @@ class AuditCommand : public Command {
                  occupancy_.string(), removed->clouds, removed->cells);
     }
     scene.measured = measured_bounds(*scene.occupancy);
-    if (!road_map) return scene;
+    if (road_map == nullptr) return scene;
     check_overlap(road_bounds(*road_map), scene.measured, occupancy_.string());
     const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy->crs();
     if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
@@ -258,7 +258,9 @@ class AuditCommand : public Command {
     }
     audited.ground = ground_under(*scene.occupancy, audited.drive, question.ground);
     const planning::GroundUnder& ground = audited.ground;
-    if (!common.quiet) print_ground(streams.err, ground, question, scene.occupancy->resolution_m());
+    if (!common.quiet) {
+      fmt::print(streams.err, "{}", ground_note(ground, question, scene.occupancy->resolution_m()));
+    }
     const planning::VehicleSurroundings surrounded =
         surroundings(*scene.occupancy, audited.drive, ground, question);
     const planning::VehicleAudit audit =
@@ -288,26 +290,6 @@ class AuditCommand : public Command {
   // File names may hold bytes that are no UTF-8.
   static std::string text_of_json(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  }
-
-  // With cells as high as the vehicle's underside the ground itself reaches into the band.
-  static void print_ground(std::ostream& err, const planning::GroundUnder& ground,
-                           const AuditQuestion& question, double cell_m) {
-    if (question.ground.kind == GroundRule::Kind::level) return;
-    const bool is_map = question.ground.kind == GroundRule::Kind::map;
-    const double low_m = ground.surface ? ground.surface->lowest_m() : ground.level_m;
-    const double high_m = ground.surface ? ground.surface->highest_m() : ground.level_m;
-    fmt::print(err, "note: heights are above the {}, z {:.2f} m to {:.2f} m along the drive\n",
-               is_map ? "map's road" : "measured ground", low_m, high_m);
-    const double underside_m =
-        std::ranges::min(question.parts, {}, &geometry::BodyPart::from_height_m).from_height_m -
-        ground.margin_m;
-    const bool is_exact = !ground.surface && ground.margin_m == 0.0;
-    if (is_exact || underside_m > cell_m) return;
-    fmt::print(err,
-               "note: cells of {} m: the ground's own reach up to where heights begin, {:.3g} m; "
-               "raise --from-height, or build finer cells\n",
-               cell_m, underside_m);
   }
 
   // What a picture of a drive can show.
@@ -354,9 +336,11 @@ class AuditCommand : public Command {
                            .command = "roadbed audit --occupancy " + occupancy_.string(),
                            .version = "roadbed " ROADBED_VERSION,
                            .crs = scene.occupancy->crs(),
-                           .sources = {source("occupancy", occupancy_)}};
+                           .sources = {source("occupancy", certified_once(occupancy_))}};
     if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
-    if (!subjects_.is_swept()) page.sources.push_back(source("trajectory", subjects_.file()));
+    if (!subjects_.is_swept()) {
+      page.sources.push_back(source("trajectory", certified_file(subjects_.file())));
+    }
     write_output(report_, drive_report_html(report_of_audit(audited.drive, audited.report, page)));
   }
 
@@ -377,9 +361,15 @@ class AuditCommand : public Command {
     write_output(report_, audit_index_html(index, occupancy_.string(), "roadbed " ROADBED_VERSION));
   }
 
-  static ReportSource source(const char* role, const std::filesystem::path& file) {
-    const CertifiedFile certified = certified_file(file);
-    return {.role = role, .name = certified.name, .xxhash = certified.xxhash};
+  static ReportSource source(const char* role, const CertifiedFile& file) {
+    return {.role = role, .name = file.name, .xxhash = file.xxhash};
+  }
+
+  // Of what many audits share.
+  CertifiedFile certified_once(const std::filesystem::path& file) const {
+    return *inputs_->of<CertifiedFile>("certified file", {file}, [&] {
+      return std::make_shared<const CertifiedFile>(certified_file(file));
+    });
   }
 
   void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
@@ -389,14 +379,14 @@ class AuditCommand : public Command {
     if (certificate_.empty()) return;
     const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
     CertificateFile file{.program = "roadbed " ROADBED_VERSION,
-                         .occupancy = certified_file(occupancy_),
+                         .occupancy = certified_once(occupancy_),
                          .trajectory = certified_file(drive),
                          .ground = ground.surface,
                          .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
                                                             audit, question.moving)};
     if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
-    if (!map_.empty()) file.roads = certified_file(map_);
+    if (!map_.empty()) file.roads = certified_once(map_);
     write_output(certificate_, write_certificate_json(file));
   }
 
@@ -408,6 +398,7 @@ class AuditCommand : public Command {
     }
   }
 
+  std::shared_ptr<const Inputs> inputs_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_, svg_, report_, certificate_, junit_,
       geojson_, saved_drive_, check_;
   AuditSubjects subjects_;

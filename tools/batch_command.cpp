@@ -2,6 +2,7 @@
 #include <fmt/ostream.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -20,6 +21,10 @@
 namespace roadbed::tools {
 namespace {
 
+std::string counted(std::size_t count, const char* thing) {
+  return with_commas(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
 std::string memory_fault(const std::string& text) {
   return parse_memory_size(text) ? "" : "is no size such as 4GB or 512MB";
 }
@@ -28,6 +33,12 @@ std::uint64_t default_memory() {
   constexpr double share = 0.8;
   const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
   return static_cast<std::uint64_t>(share * pages * static_cast<double>(::sysconf(_SC_PAGESIZE)));
+}
+
+// There may be one such process for each core.
+std::uint64_t default_memory_of_server() {
+  const auto cores = static_cast<std::uint64_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
+  return default_memory() / cores;
 }
 
 class BatchCommand : public Command {
@@ -44,7 +55,8 @@ class BatchCommand : public Command {
     arguments
         .add("--memory", memory_,
              "No job starts while the resident memory of the batch is above this and another one "
-             "runs, such as 4GB; default: 80 % of the machine's")
+             "runs, such as 4GB; maps and occupancies stay loaded in half of it; default: 80 % of "
+             "the machine's, with --serve a core's part of that")
         .checked(memory_fault);
     arguments.flag("--isolate", isolates_,
                    "Run jobs in processes of their own: one that crashes is one that failed");
@@ -87,11 +99,12 @@ class BatchCommand : public Command {
 
  private:
   std::string fault() const {
-    const bool has_limits = isolates_ || time_limit_s_ || !memory_.empty();
+    const bool runs_apart = isolates_ || time_limit_s_;
     if (serves_) {
-      const bool is_alone = jobs_file_.empty() && !has_limits && !merges_ && !lists_ && !json_;
-      return is_alone ? "" : "--serve takes -o and --job-memory only";
+      const bool is_alone = jobs_file_.empty() && !runs_apart && !merges_ && !lists_ && !json_;
+      return is_alone ? "" : "--serve takes -o, --memory and --job-memory only";
     }
+    const bool has_limits = runs_apart || !memory_.empty();
     if (jobs_file_.empty()) return "JOBS is required";
     if (lists_ && (has_limits || merges_ || json_)) return "--list-missing takes JOBS and -o only";
     if (merges_ && has_limits) return "--merge runs no job, so it takes no limits";
@@ -104,15 +117,22 @@ class BatchCommand : public Command {
   Exit run_server(const Streams& streams) const {
     make_output_folder(folder_, true);
     if (!job_memory_.empty()) limit_memory(*parse_memory_size(job_memory_));
-    serve(std::cin, streams.out, {.folder = folder_, .job_memory = job_memory_});
+    serve(std::cin, streams.out,
+          {.folder = folder_,
+           .job_memory = job_memory_,
+           .memory_bytes = memory_bytes(default_memory_of_server())});
     return Exit::ok;
+  }
+
+  std::uint64_t memory_bytes(std::uint64_t otherwise) const {
+    return memory_.empty() ? otherwise : *parse_memory_size(memory_);
   }
 
   BatchOptions options(const CommonOptions& common) const {
     return {.jobs_file = jobs_file_,
             .folder = folder_,
             .threads = common.threads,
-            .memory_bytes = memory_.empty() ? default_memory() : *parse_memory_size(memory_),
+            .memory_bytes = memory_bytes(default_memory()),
             .isolates = isolates_,
             .limits = {.time_s = time_limit_s_, .memory = job_memory_},
             .merges = merges_};
@@ -133,7 +153,10 @@ class BatchCommand : public Command {
     }
     const BatchSummary summary = write_results(store, run.order(), folder_);
     mark.remove();
-    report(streams.out, summary, run.were_there());
+    report(streams.out, summary,
+           merges_ ? fmt::format("merged from {}", counted(store.journals(), "journal"))
+                   : fmt::format("{} were there already", with_commas(run.were_there())));
+    if (!common.quiet) note_where(streams.err, summary);
     const bool is_all_done = summary.count(JobStatus::done) == summary.count();
     return is_all_done ? Exit::ok : Exit::failed;
   }
@@ -148,15 +171,28 @@ class BatchCommand : public Command {
                with_commas(store.size()));
   }
 
-  void report(std::ostream& out, const BatchSummary& summary, std::size_t were_there) const {
+  void report(std::ostream& out, const BatchSummary& summary, const std::string& origin) const {
     if (json_) {
       out << summary.document(kMostInSummary);
       return;
     }
-    fmt::print(out, "{} jobs: {} done, {} no, {} failed; {} were there already\n",
-               with_commas(summary.count()), with_commas(summary.count(JobStatus::done)),
+    fmt::print(out, "{}: {} done, {} no, {} failed; {}\n", counted(summary.count(), "job"),
+               with_commas(summary.count(JobStatus::done)),
                with_commas(summary.count(JobStatus::no)),
-               with_commas(summary.count(JobStatus::failed)), with_commas(were_there));
+               with_commas(summary.count(JobStatus::failed)), origin);
+  }
+
+  // All that went wrong is in the page; the first of it is worth a line here.
+  void note_where(std::ostream& err, const BatchSummary& summary) const {
+    std::optional<WorstCase> first;
+    for (const auto& [name, kind] : summary.kinds()) {
+      for (const WorstCase& job : kind.worst()) {
+        if (job.status != JobStatus::failed) break;  // these come first
+        if (!first || job.line < first->line) first = job;
+      }
+    }
+    if (first) fmt::print(err, "note: line {} failed: {}\n", first->line, first->text);
+    fmt::print(err, "wrote {}\n", (folder_ / "index.html").string());
   }
 
   std::filesystem::path jobs_file_, folder_;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "roadbed/tools/support/arguments.h"
+#include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {
 
@@ -21,6 +22,8 @@ struct CommonOptions {
   int threads = 1;
   /// Whether the process runs this command only, which may then set up its heap.
   bool is_alone = true;
+  /// Where it gets what it may share with other runs in the process; never null.
+  std::shared_ptr<const Inputs> inputs = std::make_shared<const Inputs>();
 };
 
 /// Where a command prints: results to `out`, everything else to `err`.

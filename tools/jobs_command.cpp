@@ -20,6 +20,7 @@
 #include "roadbed/tools/batch/counted.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
+#include "roadbed/tools/batch/run_job.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/output_file.h"
@@ -47,6 +48,15 @@ std::string line_of_job(const Json& job) {
   } catch (const Json::type_error&) {  // another name would not be found again
     refuse_jobs(job.dump(-1, ' ', false, Json::error_handler_t::replace),
                 "holds a text that is no UTF-8", "rename the file");
+  }
+}
+
+// Of a product most faults are in the first ones; to try all would take longer than to write them.
+constexpr std::size_t kTried = 1000;
+
+void refuse_fault(const Job& job, const std::string& line) {
+  if (const std::string fault = fault_of_options(job); !fault.empty()) {
+    refuse_jobs(line, fault, fmt::format("see: roadbed {} --help", job.kind->name));
   }
 }
 
@@ -240,14 +250,17 @@ class JobsCommand : public Command {
     const KindOptions& options = *std::ranges::find_if(options_, &KindOptions::given);
     check_writable(options.file(), options.force());
     BufferedOutput lines(options.file());
+    std::size_t written = 0;
     const std::size_t count = options.for_each_job([&](const Json& job) {
       const std::string line = line_of_job(job);
-      parse_job(line, kinds_);
+      const Job parsed = parse_job(line, kinds_);
+      if (++written <= kTried) refuse_fault(parsed, line);
       lines.add(line + "\n");
     });
     lines.commit();
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} jobs\n", options.file().string(), with_commas(count));
+      fmt::print(streams.err, "{}: {} {}\n", options.file().string(), with_commas(count),
+                 count == 1 ? "job" : "jobs");
     }
     return Exit::ok;
   }

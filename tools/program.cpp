@@ -94,7 +94,11 @@ int run_program(int argc, char** argv) {
   CommonOptions common;
   app.add_flag("--quiet", common.quiet, "No progress and no notes; errors are still printed");
   app.add_option("--threads", common.threads, "Threads to use; the output is the same for any")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) {
+        int threads = 0;
+        const bool is_count = CLI::detail::lexical_cast(text, threads) && threads > 0;
+        return is_count ? std::string() : text + " is no whole number greater than 0";
+      })
       ->capture_default_str();
 
   std::vector<Registered> commands;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/load_map.h"
+#include "roadbed/map/road_map.h"
 #include "roadbed/planning/alternatives.h"
 #include "roadbed/planning/route.h"
 #include "roadbed/planning/route_area.h"
@@ -71,7 +71,8 @@ class RouteCommand : public Command {
       check_writable(output_, force_);
     }
     if (!batch_.empty()) return run_batch(streams, common);
-    const map::RoadMap road_map = map::load_map(map_file_);
+    const auto kept_map = common.inputs->road_map(map_file_);
+    const map::RoadMap& road_map = *kept_map;
     const RouteQuestion::Asked asked = question_.on(road_map);
     planning::Router router(road_map, asked.options);
     const planning::RouteAnswer answer = router.find(asked.places());
@@ -106,7 +107,8 @@ class RouteCommand : public Command {
   }
 
   Exit run_batch(const Streams& streams, const CommonOptions& common) const {
-    const map::RoadMap road_map = map::load_map(map_file_);
+    const auto kept_map = common.inputs->road_map(map_file_);
+    const map::RoadMap& road_map = *kept_map;
     const BatchAnswer answer =
         route_batch(road_map, batch_, question_.rules().on(road_map),
                     {.matrix = matrix_, .json = json_, .threads = common.threads});

@@ -81,12 +81,19 @@ void note_times(std::vector<double> cycle_ms, Row& row) {
   row.median_ms = cycle_ms[cycle_ms.size() / 2];
 }
 
+struct DriveOptions {
+  fs::path output;
+  DriveChoice choice;
+  std::shared_ptr<const Inputs> inputs;
+  int threads;
+};
+
 /// Drives one; whatever is wrong with it is its own outcome.
 /// @throws OutputError, std::bad_alloc  which say nothing of the scenario.
-void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
+void drive_row(const DriveOptions& options, Row& row) {
   try {
-    const DrivenScenario driven = drive_scenario(row.file, choice);
-    const fs::path folder = output / row.file.stem();
+    const DrivenScenario driven = drive_scenario(row.file, options.choice, *options.inputs);
+    const fs::path folder = options.output / row.file.stem();
     make_output_folder(folder, true);
     write_files(driven, folder);
     row.outcome = name(driven.verdict.outcome);
@@ -104,15 +111,9 @@ void drive_row(const fs::path& output, const DriveChoice& choice, Row& row) {
   }
 }
 
-struct DriveOptions {
-  fs::path output;
-  DriveChoice choice;
-  int threads;
-};
-
 void drive_all(std::vector<Row>& rows, const DriveOptions& options, ProgressBar& progress) {
   in_threads(rows.size(), options.threads, [&](std::size_t i) {
-    drive_row(options.output, options.choice, rows[i]);
+    drive_row(options, rows[i]);
     progress.done_one();
   });
 }
@@ -194,7 +195,7 @@ class SimulateCommand : public Command {
   }
 
   Exit run_one(const Streams& streams, const CommonOptions& common) const {
-    const DrivenScenario driven = drive_scenario(scenario_file_, choice_);
+    const DrivenScenario driven = drive_scenario(scenario_file_, choice_, *common.inputs);
     make_output_folder(folder_, force_);
     write_files(driven, folder_);
     if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
@@ -228,7 +229,7 @@ class SimulateCommand : public Command {
     }
     make_output_folder(folder_, force_);
     ProgressBar progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
-    drive_all(rows, {folder_, choice_, common.threads}, progress);
+    drive_all(rows, {folder_, choice_, common.inputs, common.threads}, progress);
     write_output(folder_ / "drives.csv", table_csv(rows));
     if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
     json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);

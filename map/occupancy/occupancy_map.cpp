@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -23,6 +24,8 @@ struct OccupancyMap::Tree {
   Eigen::Vector3d origin_in_source{0, 0, 0};
   std::string crs;
   std::optional<SeenThrough> seen_through;
+  std::once_flag bounded;  // of the bounds, for which all leaves are looked at
+  std::optional<Box3> bounds;
 
   explicit Tree(double resolution_m) : octree(resolution_m) {}
 
@@ -222,14 +225,16 @@ std::vector<OccupancyCell> OccupancyMap::cells_in(const Box3& box) const {
 }
 
 std::optional<Box3> OccupancyMap::bounds() const {
-  std::optional<Box3> box;
-  for (const OccupancyCell& cell : cells()) {
-    const Eigen::Vector3d least = cell.centre_in_source.array() - 0.5 * cell.size_m;
-    const Eigen::Vector3d most = cell.centre_in_source.array() + 0.5 * cell.size_m;
-    if (!box) box = Box3{least, most};
-    box = Box3{box->min_in_source.cwiseMin(least), box->max_in_source.cwiseMax(most)};
-  }
-  return box;
+  std::call_once(tree_->bounded, [&] {
+    std::optional<Box3>& box = tree_->bounds;
+    for (const OccupancyCell& cell : cells()) {
+      const Eigen::Vector3d least = cell.centre_in_source.array() - 0.5 * cell.size_m;
+      const Eigen::Vector3d most = cell.centre_in_source.array() + 0.5 * cell.size_m;
+      if (!box) box = Box3{least, most};
+      box = Box3{box->min_in_source.cwiseMin(least), box->max_in_source.cwiseMax(most)};
+    }
+  });
+  return tree_->bounds;
 }
 
 std::string OccupancyMap::to_bt() const {

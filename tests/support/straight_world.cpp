@@ -1,5 +1,6 @@
 #include "roadbed/tests/support/straight_world.h"
 
+#include <memory>
 #include <utility>
 
 #include "roadbed/planning/reference_line.h"
@@ -14,12 +15,13 @@ tools::World straight_world(const StraightRoad& road, std::vector<planning::Obst
   const double y_m = 0.5 * road.width_m, from_m = road.from_x_m, to_m = road.to_x_m;
   const map::LaneId lane = made.add_lane(made.add_road("1"), "-1", {{from_m, y_m}, {to_m, y_m}},
                                          {{from_m, -y_m}, {to_m, -y_m}});
-  map::RoadMap road_map = made.build();
+  auto kept_map = std::make_shared<const map::RoadMap>(made.build());
+  const map::RoadMap& road_map = *kept_map;
   planning::Route route = *planning::find_route(road_map, {lane, road.start_x_m - from_m},
                                                 {lane, road.goal_x_m - from_m})
                                .route;
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
-  return {.road_map = std::move(road_map),
+  return {.kept_map = std::move(kept_map),
           .occupancy = {},
           .field = {},
           .start = {road.start_x_m, 0.0, 0.0},

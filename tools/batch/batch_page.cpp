@@ -45,17 +45,25 @@ h2 {{ font-size: 15px; margin: 26px 0 8px; }}
 .counts .done, td.done {{ background: var(--good-soft); color: var(--good); }}
 .counts .no, td.no {{ background: var(--open-soft); color: var(--open); }}
 .counts .failed, td.failed {{ background: var(--bad-soft); color: var(--bad); }}
-table {{ width: 100%; border-collapse: collapse; background: var(--card); }}
+table {{
+  width: 100%; min-width: 760px; table-layout: fixed; border-collapse: collapse;
+  background: var(--card);
+}}
 th, td {{
   padding: 5px 10px; border: 1px solid var(--line); text-align: left; vertical-align: top;
   overflow-wrap: anywhere;
 }}
 th {{ color: var(--quiet); font-weight: 600; font-size: 12px; }}
+th:nth-child(1) {{ width: 5.5em; }}
+th:nth-child(2) {{ width: 8.5em; }}
+th:nth-child(4) {{ width: 30%; }}
+th:nth-child(5) {{ width: 24%; }}
 td.line {{ text-align: right; white-space: nowrap; }}
 td.status {{ white-space: nowrap; font-weight: 600; }}
 td.about {{ color: var(--quiet); font-size: 12.5px; }}
 td.files {{ font-size: 12.5px; }}
 th, td.files a {{ white-space: nowrap; }}
+td.files a {{ display: inline-block; margin-right: 0.8em; }}
 a {{ color: var(--accent); }}
 .note, footer {{ color: var(--quiet); }}
 footer {{ margin-top: 26px; }}

@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <set>
 #include <thread>
@@ -43,9 +44,14 @@ std::ifstream open_jobs(const fs::path& file) {
   return stream;
 }
 
-std::unique_ptr<JobRunner> make_runner(const BatchOptions& options) {
-  if (options.isolates) return std::make_unique<ProcessRunner>(options.folder, options.limits);
-  return std::make_unique<ThreadRunner>(options.folder);
+std::unique_ptr<JobRunner> make_runner(const BatchOptions& options,
+                                       const std::shared_ptr<const Inputs>& inputs) {
+  if (!options.isolates) return std::make_unique<ThreadRunner>(options.folder, inputs);
+  JobLimits limits = options.limits;
+  const auto processes = static_cast<std::uint64_t>(options.threads);
+  limits.process_memory =
+      fmt::format("{}B", std::max<std::uint64_t>(1, options.memory_bytes / processes));
+  return std::make_unique<ProcessRunner>(options.folder, std::move(limits));
 }
 
 std::string too_long(const JobLines::Line& line) {
@@ -88,11 +94,13 @@ BatchRun::BatchRun(const BatchOptions& options, ResultStore& store, ProgressBar&
     : options_(options),
       store_(store),
       progress_(progress),
+      inputs_(std::make_shared<const InputCache>(files_, options.memory_bytes / 2,
+                                                 [this] { return resident(); })),
       timings_(options.folder / "timings.jsonl"),
       stream_(open_jobs(options.jobs_file)),
       lines_(stream_),
-      gate_(options.memory_bytes, [this] { return resident(); }) {
-  for (int i = 0; i < options.threads; ++i) runners_.push_back(make_runner(options));
+      gate_(options.memory_bytes, [this] { return least_resident(); }) {
+  for (int i = 0; i < options.threads; ++i) runners_.push_back(make_runner(options, inputs_));
 }
 
 void BatchRun::run() {
@@ -194,6 +202,12 @@ std::uint64_t BatchRun::resident() const {
     }
   }
   return bytes;
+}
+
+// What waits for memory first takes that of inputs that no job has in use.
+std::uint64_t BatchRun::least_resident() const {
+  inputs_->shrink(options_.memory_bytes);
+  return resident();
 }
 
 void BatchRun::fail(std::exception_ptr error) {

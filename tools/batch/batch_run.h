@@ -15,6 +15,7 @@
 
 #include "roadbed/tools/batch/appended_file.h"
 #include "roadbed/tools/batch/file_hashes.h"
+#include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/job_runner.h"
 #include "roadbed/tools/batch/memory_gate.h"
@@ -26,7 +27,7 @@ namespace roadbed::tools {
 struct BatchOptions {
   std::filesystem::path jobs_file, folder;
   int threads = 1;
-  std::uint64_t memory_bytes = 0;  ///< of this process and those of its jobs
+  std::uint64_t memory_bytes = 0;  ///< of this process and those of its jobs; half of it for inputs
   bool isolates = false;           ///< jobs run in processes of their own
   JobLimits limits;                ///< kept with `isolates` only
   bool merges = false;             ///< no job runs, and what has failed stands
@@ -79,6 +80,7 @@ class BatchRun {
                   JobRunner& runner);
   void keep_time(const Job& job, const std::string& hash, double wall_s);
   std::uint64_t resident() const;
+  std::uint64_t least_resident() const;
   void fail(std::exception_ptr error);
 
   const BatchOptions& options_;
@@ -86,6 +88,7 @@ class BatchRun {
   ProgressBar& progress_;
   JobKinds kinds_;
   FileHashes files_;
+  std::shared_ptr<const InputCache> inputs_;
   AppendedFile timings_;
   std::ifstream stream_;
   JobLines lines_;

@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPiece = std::size_t{1} << 18;
-constexpr std::size_t kMostKnown = 10'000;  // some 3 MB; more are read again
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
 struct FreeState {
@@ -67,12 +66,6 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
-template <typename Value>
-void keep(std::map<std::string, Value>& known, const fs::path& file, Value value) {
-  if (known.size() >= kMostKnown) known.clear();
-  known[file.native()] = std::move(value);
-}
-
 // The job itself says what is wrong with a file that cannot be read.
 std::vector<fs::path> names_in(const fs::path& path, const FilesNamed& named) {
   try {
@@ -93,32 +86,42 @@ FileHashes::Stamp FileHashes::stamp_of(const fs::path& file) {
           .changed_ns = nanoseconds(status.st_ctim)};
 }
 
-std::string FileHashes::of(const fs::path& path) {
+std::string FileHashes::of(const fs::path& path) { return text_of(path, false); }
+
+std::string FileHashes::state_of(const fs::path& path) { return text_of(path, true); }
+
+std::string FileHashes::text_of(const fs::path& path, bool with_stamp) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) return of_folder(path);
-  if (fs::is_regular_file(status)) return of_file(path);
+  if (fs::is_directory(status)) return of_folder(path, with_stamp);
+  if (fs::is_regular_file(status)) return text_of(of_file(path), with_stamp);
   return fs::exists(status) ? "no regular file" : "missing";
 }
 
-std::string FileHashes::of_file(const fs::path& file) {
+std::string FileHashes::text_of(const Known& known, bool with_stamp) {
+  if (!with_stamp) return known.hash;
+  const Stamp& stamp = known.stamp;
+  return fmt::format("{} {} {} {} {}", known.hash, stamp.size, stamp.inode, stamp.modified_ns,
+                     stamp.changed_ns);
+}
+
+FileHashes::Known FileHashes::of_file(const fs::path& file) {
   const Stamp stamp = stamp_of(file);
   {
     const std::scoped_lock lock(mutex_);
-    const auto known = hashes_.find(file.native());
-    if (known != hashes_.end() && known->second.stamp == stamp) return known->second.hash;
+    const Known* const known = hashes_.find(file.native());
+    if (known != nullptr && known->stamp == stamp) return *known;
   }
-  const std::string hash = read_and_hash(file);
+  Known read{.stamp = stamp, .hash = read_and_hash(file)};
   const std::scoped_lock lock(mutex_);
-  keep(hashes_, file, {stamp, hash});
-  return hash;
+  return hashes_.put(file.native(), std::move(read));
 }
 
-std::string FileHashes::of_folder(const fs::path& folder) {
+std::string FileHashes::of_folder(const fs::path& folder, bool with_stamp) {
   std::string names_and_hashes;
   for (const fs::path& file : files_below(folder)) {
-    names_and_hashes +=
-        file.lexically_relative(folder).generic_string() + '\0' + of_file(file) + '\n';
+    names_and_hashes += file.lexically_relative(folder).generic_string() + '\0' +
+                        text_of(of_file(file), with_stamp) + '\n';
   }
   return hash_text(names_and_hashes);
 }
@@ -130,13 +133,12 @@ std::vector<fs::path> FileHashes::named_in(const fs::path& path, const FilesName
   const Stamp stamp = stamp_of(path);
   {
     const std::scoped_lock lock(mutex_);
-    const auto known = names_.find(path.native());
-    if (known != names_.end() && known->second.stamp == stamp) return known->second.names;
+    const KnownNames* const known = names_.find(path.native());
+    if (known != nullptr && known->stamp == stamp) return known->names;
   }
   std::vector<fs::path> names = names_in(path, named);
   const std::scoped_lock lock(mutex_);
-  keep(names_, path, {stamp, names});
-  return names;
+  return names_.put(path.native(), {stamp, std::move(names)}).names;
 }
 
 }  // namespace roadbed::tools

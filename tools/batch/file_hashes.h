@@ -1,23 +1,28 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "roadbed/tools/batch/recently_used.h"
 #include "roadbed/tools/support/arguments.h"
 
 namespace roadbed::tools {
 
-/// Hashes of what files hold, remembered by path, size and time of last change, of 10,000 files at
-/// most. May be asked by several threads.
+/// Hashes of what files hold, remembered by path, size and time of last change, of the 100,000
+/// files that were asked for last. May be asked by several threads.
 class FileHashes {
  public:
   /// XXH3 (128 bits, hexadecimal) of a file's bytes, or of the names and bytes of all files below a
   /// folder. Of what is neither, or cannot be read, a word that says so: the job says why.
   std::string of(const std::filesystem::path& path);
+
+  /// The same with the times of change: differs, too, from that of a file which has been changed
+  /// and changed back since.
+  std::string state_of(const std::filesystem::path& path);
 
   /// The files that `path` names in turn, remembered in the same way.
   std::vector<std::filesystem::path> named_in(const std::filesystem::path& path,
@@ -39,13 +44,17 @@ class FileHashes {
     std::vector<std::filesystem::path> names;
   };
 
+  static constexpr std::size_t kMost = 100'000;  // some 30 MB
+
   static Stamp stamp_of(const std::filesystem::path& file);
-  std::string of_file(const std::filesystem::path& file);
-  std::string of_folder(const std::filesystem::path& folder);
+  static std::string text_of(const Known& known, bool with_stamp);
+  std::string text_of(const std::filesystem::path& path, bool with_stamp);
+  Known of_file(const std::filesystem::path& file);
+  std::string of_folder(const std::filesystem::path& folder, bool with_stamp);
 
   std::mutex mutex_;
-  std::map<std::string, Known> hashes_;
-  std::map<std::string, KnownNames> names_;
+  RecentlyUsed<Known> hashes_{kMost};
+  RecentlyUsed<KnownNames> names_{kMost};
 };
 
 }  // namespace roadbed::tools

@@ -9,12 +9,12 @@
 namespace roadbed::tools {
 
 std::string ThreadRunner::run(const Job& job, const std::string& hash, const std::string&) {
-  return line_of(job, run_job(job, hash, folder_));
+  return line_of(job, run_job(job, hash, folder_, inputs_));
 }
 
 std::string ProcessRunner::run(const Job& job, const std::string& hash, const std::string& text) {
   const int answered_before = process_.process() == 0 ? 0 : process_.answered();
-  const ServeProcess::Answer answer = process_.ask(text, limits_.time_s);
+  const ServeProcess::Answer answer = process_.ask(hash + "\t" + text, limits_.time_s);
   const auto failed = [&](Cause cause, const std::string& reason) {
     remove_files_of(hash, folder_);
     return line_of(job, failure(hash, cause, {}, reason));
@@ -25,9 +25,8 @@ std::string ProcessRunner::run(const Job& job, const std::string& hash, const st
   if (!answer.death.empty()) return failed(Cause::crash, answer.death);
   const auto head = read_head(answer.line);
   if (!head) return failed(Cause::internal, "its process answered with no result");
-  if (const std::string other = text_of(head->hash); other != hash) {
-    remove_files_of(other, folder_);
-    return failed(Cause::changed, "an input changed while the job ran");
+  if (text_of(head->hash) != hash) {
+    return failed(Cause::internal, "its process answered with the result of another job");
   }
   if (head->cause != Cause::memory) return answer.line;
   process_.end();  // its heap may be in pieces

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/serve_process.h"
+#include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {
 
@@ -31,24 +33,30 @@ class JobRunner {
 /// In the thread that asks.
 class ThreadRunner : public JobRunner {
  public:
-  explicit ThreadRunner(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// @param inputs  that it shares with other threads.
+  ThreadRunner(std::filesystem::path folder, std::shared_ptr<const Inputs> inputs)
+      : folder_(std::move(folder)), inputs_(std::move(inputs)) {}
   std::string run(const Job& job, const std::string& hash, const std::string& text) override;
 
  private:
   std::filesystem::path folder_;
+  std::shared_ptr<const Inputs> inputs_;
 };
 
 /// What a job may take.
 struct JobLimits {
   std::optional<double> time_s = {};  ///< wall clock
   std::string memory = {};            ///< a size; empty: no limit
+  std::string process_memory = {};    ///< a size: that of its process when inputs stay loaded in it
 };
 
 /// In a process of its own, which is started anew when a job brings it down.
 class ProcessRunner : public JobRunner {
  public:
   ProcessRunner(std::filesystem::path folder, JobLimits limits)
-      : folder_(folder), limits_(std::move(limits)), process_(std::move(folder), limits_.memory) {}
+      : folder_(folder),
+        limits_(std::move(limits)),
+        process_(std::move(folder), limits_.memory, limits_.process_memory) {}
   std::string run(const Job& job, const std::string& hash, const std::string& text) override;
   void finish() override { process_.end(); }
   pid_t process() const override { return process_.process(); }

@@ -26,8 +26,9 @@ std::optional<std::uint64_t> parse_memory_size(std::string_view text) {
   if (error != std::errc()) return {};
   std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (unit.starts_with(' ')) unit.remove_prefix(1);
-  const auto* const found =
-      std::ranges::find(kUnits, unit.empty() ? "B" : unit, &decltype(kUnits)::value_type::first);
+  const auto* const found = std::ranges::find_if(kUnits, [&](const auto& known) {
+    return unit == known.first || unit == known.first.substr(0, known.first.size() - 1);
+  });
   if (found == kUnits.end()) return {};
   const double bytes = number * found->second;
   if (!(bytes >= 1.0 && bytes <= kMost)) return {};

@@ -9,7 +9,7 @@
 
 namespace roadbed::tools {
 
-/// "4GB", "512 MB", "65536": bytes, in powers of 1000. None if it is no such text, or 0.
+/// "4GB", "4G", "512 MB", "65536": bytes, in powers of 1000. None if it is no such text, or 0.
 std::optional<std::uint64_t> parse_memory_size(std::string_view text);
 
 /// "2 GB", "1.5 MB": of parse_memory_size's units.

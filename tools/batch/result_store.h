@@ -45,6 +45,9 @@ class ResultStore {
 
   std::size_t size() const { return entries_.size(); }
 
+  /// Journals that were there.
+  std::size_t journals() const { return journals_.size() - 1; }
+
  private:
   struct Entry {
     std::uint32_t journal;

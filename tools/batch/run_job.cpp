@@ -57,19 +57,28 @@ void remove_old(const std::vector<JobOutput>& outputs) {
   }
 }
 
+// Makes the job's command with its options. Returns what it says of them.
+std::string parse_options(const Job& job, const std::vector<JobOutput>& outputs,
+                          std::unique_ptr<Command>& command, ArgumentSet& set) {
+  command = job.kind->make();
+  command->declare(set.arguments());
+  return set.parse(words_of(job, outputs));
+}
+
 /// Runs the command; what it throws goes on.
-JobResult run_command(const Job& job, const std::string& hash, const fs::path& folder) {
+JobResult run_command(const Job& job, const std::string& hash, const fs::path& folder,
+                      const std::shared_ptr<const Inputs>& inputs) {
   const std::vector<JobOutput> outputs = outputs_of(job, hash, folder);
   ArgumentSet set;
-  const std::unique_ptr<Command> command = job.kind->make();
-  command->declare(set.arguments());
-  if (const std::string fault = set.parse(words_of(job, outputs)); !fault.empty()) {
+  std::unique_ptr<Command> command;
+  if (const std::string fault = parse_options(job, outputs, command, set); !fault.empty()) {
     return failure(hash, Cause::line, kUsage, fault);
   }
   if (!outputs.empty()) make_folder(folder_of_files(hash, folder));
   remove_old(outputs);
   std::ostringstream out, err;
-  const Exit exit = command->run({out, err}, {.quiet = true, .threads = 1, .is_alone = false});
+  const Exit exit =
+      command->run({out, err}, {.quiet = true, .threads = 1, .is_alone = false, .inputs = inputs});
   if (exit != Exit::ok && out.view().empty()) {
     return failure(hash, Cause::input, static_cast<int>(exit), err.str());
   }
@@ -87,9 +96,10 @@ JobResult run_command(const Job& job, const std::string& hash, const fs::path& f
   return result;
 }
 
-JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& folder) {
+JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& folder,
+                      const std::shared_ptr<const Inputs>& inputs) {
   try {
-    return run_command(job, hash, folder);
+    return run_command(job, hash, folder, inputs);
   } catch (const OutputError& error) {
     return failure(hash, Cause::disk, kFailed, error.what());
   } catch (const map::InputError& error) {
@@ -103,8 +113,16 @@ JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& f
 
 }  // namespace
 
-JobResult run_job(const Job& job, const std::string& hash, const fs::path& folder) {
-  JobResult result = run_guarded(job, hash, folder);
+std::string fault_of_options(const Job& job) {
+  const std::string any_hash(32, '0');
+  ArgumentSet set;
+  std::unique_ptr<Command> command;
+  return parse_options(job, outputs_of(job, any_hash, "any"), command, set);
+}
+
+JobResult run_job(const Job& job, const std::string& hash, const fs::path& folder,
+                  const std::shared_ptr<const Inputs>& inputs) {
+  JobResult result = run_guarded(job, hash, folder, inputs);
   if (result.status == JobStatus::failed) remove_files_of(hash, folder);
   return result;
 }

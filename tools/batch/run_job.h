@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "roadbed/tools/batch/job_result.h"
+#include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {
 
@@ -11,6 +13,11 @@ namespace roadbed::tools {
 /// result; then none of its files is left.
 /// @param hash    the job's, see hash_of.
 /// @param folder  of the batch; the job's files go below `files/`.
-JobResult run_job(const Job& job, const std::string& hash, const std::filesystem::path& folder);
+/// @param inputs  where it gets what it reads.
+JobResult run_job(const Job& job, const std::string& hash, const std::filesystem::path& folder,
+                  const std::shared_ptr<const Inputs>& inputs);
+
+/// What the job's command says of its options, before it reads anything; nothing if all is well.
+std::string fault_of_options(const Job& job);
 
 }  // namespace roadbed::tools

@@ -1,30 +1,64 @@
 #include "roadbed/tools/batch/serve.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <iostream>
+#include <memory>
 
 #include "roadbed/map/input_error.h"
+#include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/job_lines.h"
+#include "roadbed/tools/batch/memory_size.h"
+#include "roadbed/tools/batch/result_head.h"
 #include "roadbed/tools/batch/run_job.h"
 #include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
 namespace {
 
-std::string answer(const JobLines::Line& line, const JobKinds& kinds, FileHashes& files,
-                   const ServeOptions& options) {
+constexpr std::size_t kHashAndTab = 33;
+
+/// What all jobs of a process share.
+struct Shared {
+  JobKinds kinds;
+  FileHashes files;
+  std::shared_ptr<const InputCache> inputs;
+};
+
+JobResult result_of(const Job& job, const std::string& hash, const Shared& shared,
+                    const ServeOptions& options) {
+  JobResult result = run_job(job, hash, options.folder, shared.inputs);
+  // What stayed loaded of other jobs is not to be this one's lack of memory.
+  const bool may_be_others = result.cause == Cause::memory && shared.inputs->shrink(0);
+  return may_be_others ? run_job(job, hash, options.folder, shared.inputs) : result;
+}
+
+// The hash before a job, if there is one; cut off from the line.
+std::string take_hash(std::string& text) {
+  const std::size_t tab = text.find('\t');
+  if (tab == std::string::npos || !parse_hash(std::string_view(text).substr(0, tab))) return {};
+  std::string hash = text.substr(0, tab);
+  text.erase(0, tab + 1);
+  return hash;
+}
+
+std::string answer(JobLines::Line& line, Shared& shared, const ServeOptions& options) {
   if (line.is_too_long) {
     return line_of_bad_line(line.text,
                             fmt::format("job: is longer than {} bytes", line.text.size()));
   }
+  const std::string asked = take_hash(line.text);
   try {
-    const Job job = parse_job(line.text, kinds);
-    const std::string hash = hash_of(job, files);
-    JobResult result = run_job(job, hash, options.folder);
-    if (hash_of(job, files) != hash) {
+    const Job job = parse_job(line.text, shared.kinds);
+    const std::string hash = hash_of(job, shared.files);
+    if (!asked.empty() && asked != hash) {
+      return line_of(job, failure(asked, Cause::changed, {}, "an input has changed meanwhile"));
+    }
+    JobResult result = result_of(job, hash, shared, options);
+    if (hash_of(job, shared.files) != hash) {
       remove_files_of(hash, options.folder);
       result = failure(hash, Cause::changed, {}, "an input changed while the job ran");
     }
@@ -40,11 +74,13 @@ std::string answer(const JobLines::Line& line, const JobKinds& kinds, FileHashes
 }  // namespace
 
 void serve(std::istream& in, std::ostream& out, const ServeOptions& options) {
-  const JobKinds kinds;
-  FileHashes files;
-  JobLines lines(in);
-  while (const auto line = lines.next()) {
-    out << answer(*line, kinds, files, options) << '\n' << std::flush;
+  Shared shared{.kinds = {}, .files = {}, .inputs = nullptr};
+  shared.inputs = std::make_shared<const InputCache>(shared.files, options.memory_bytes / 2, [] {
+    return memory_of_process(::getpid()).resident;
+  });
+  JobLines lines(in, JobLines::kLongest + kHashAndTab);
+  while (auto line = lines.next()) {
+    out << answer(*line, shared, options) << '\n' << std::flush;
     if (!out) {
       throw OutputError({.file = "standard output",
                          .place = {},

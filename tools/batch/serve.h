@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <string>
@@ -9,11 +10,14 @@ namespace roadbed::tools {
 struct ServeOptions {
   std::filesystem::path folder;
   std::string job_memory = {};  ///< what the process was limited to, as a size; empty: it was not
+  std::uint64_t memory_bytes = 0;  ///< of this process; inputs stay loaded while it has half of it
 };
 
 /// Runs the jobs of the lines of `in` one after the other, and prints the line of each result at
-/// once, until there is no more line. Files go below
-/// `options.folder`.
+/// once, until there is no more line. Files go below `options.folder`.
+///
+/// Before a job there may stand a hash and a tab: what it is known by to whoever asks. Its files go
+/// by that name, and if its inputs are not those of that hash, they have changed.
 /// @throws OutputError if a result cannot be printed.
 void serve(std::istream& in, std::ostream& out, const ServeOptions& options);
 

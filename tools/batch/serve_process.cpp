@@ -127,14 +127,15 @@ Reading read_line(int descriptor, const std::optional<Clock::time_point>& deadli
 
 }  // namespace
 
-ServeProcess::ServeProcess(std::filesystem::path folder, std::string job_memory)
-    : folder_(std::move(folder)), job_memory_(std::move(job_memory)) {}
+ServeProcess::ServeProcess(std::filesystem::path folder, std::string job_memory, std::string memory)
+    : folder_(std::move(folder)), job_memory_(std::move(job_memory)), memory_(std::move(memory)) {}
 
 ServeProcess::~ServeProcess() { end(); }
 
 void ServeProcess::start() {
   std::vector<std::string> texts{"roadbed", "batch", "--serve", "--quiet", "-o", folder_.string()};
   if (!job_memory_.empty()) texts.insert(texts.end(), {"--job-memory", job_memory_});
+  if (!memory_.empty()) texts.insert(texts.end(), {"--memory", memory_});
   std::vector<char*> words;
   for (std::string& text : texts) words.push_back(text.data());
   words.push_back(nullptr);

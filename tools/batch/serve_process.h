@@ -15,7 +15,8 @@ namespace roadbed::tools {
 class ServeProcess {
  public:
   /// @param job_memory  a size for `--job-memory`; empty: none.
-  ServeProcess(std::filesystem::path folder, std::string job_memory);
+  /// @param memory  a size for `--memory`; empty: none.
+  ServeProcess(std::filesystem::path folder, std::string job_memory, std::string memory);
   ~ServeProcess();
   ServeProcess(const ServeProcess&) = delete;
   ServeProcess& operator=(const ServeProcess&) = delete;
@@ -45,7 +46,7 @@ class ServeProcess {
   std::string reap();
 
   std::filesystem::path folder_;
-  std::string job_memory_;
+  std::string job_memory_, memory_;
   std::atomic<pid_t> process_ = 0;
   int input_ = -1, output_ = -1, answered_ = 0;
 };

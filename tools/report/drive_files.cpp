@@ -91,9 +91,10 @@ void refuse_other_xml(const fs::path& file) {
 
 }  // namespace
 
-DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice) {
+DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice,
+                              const Inputs& inputs) {
   if (is_common_road(file)) {
-    CommonRoadDrive problem = read_common_road_drive(file, choice.changes);
+    CommonRoadDrive problem = read_common_road_drive(file, choice.changes, inputs);
     Driven driven = drive_and_describe(problem.scenario, problem.world, choice);
     if (!choice.changes.vehicle) {
       driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
@@ -103,7 +104,7 @@ DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice) {
   refuse_other_xml(file);
   Scenario scenario = read_scenario(file);
   choice.changes.apply_to(scenario);
-  World world = make_world(scenario);
+  World world = make_world(scenario, inputs);
   return drive_and_describe(scenario, world, choice).result;
 }
 

@@ -9,6 +9,7 @@
 #include "roadbed/planning/audit.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario_changes.h"
+#include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {
 
@@ -33,6 +34,7 @@ struct DriveChoice {
 /// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml, unless
 /// the vehicle is another than the one that it names.
 /// @throws InputError if the scenario is unusable.
-DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {});
+DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {},
+                              const Inputs& inputs = Inputs());
 
 }  // namespace roadbed::tools

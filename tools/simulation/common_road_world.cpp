@@ -366,7 +366,7 @@ bool is_common_road(const std::filesystem::path& file) {
 }
 
 CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
-                                       const ScenarioChanges& changes) {
+                                       const ScenarioChanges& changes, const Inputs& inputs) {
   const std::string bytes = map::read_file(file);
   const map::common_road::Scenario from = map::common_road::parse_scenario(bytes, file.string());
   if (from.planning_problems.empty()) {
@@ -377,7 +377,8 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                            .needed = "one to solve",
                            .remedy = "add a planningProblem"});
   }
-  map::RoadMap road_map = map::parse_map(bytes, file.string());
+  auto kept_map = inputs.road_map(file);
+  const map::RoadMap& road_map = *kept_map;
   const PlanningProblem& problem = from.planning_problems.front();
   const Source source{file.string(), road_map, problem, from.time_step_s};
   if (!(from.time_step_s >= kLeastStep_s && from.time_step_s <= kMostStep_s)) {
@@ -411,7 +412,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
           ? std::min(last.to_s_m, kBeyondGoal_m)
           : road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
   const double road_end_s_m = line.goal_s_m() + beyond_m;
-  World world{.road_map = std::move(road_map),
+  World world{.kept_map = std::move(kept_map),
               .occupancy = {},
               .field = {},
               .start = start,

@@ -27,6 +27,7 @@ bool is_common_road(const std::filesystem::path& file);
 /// @throws InputError if the file is unusable, has no planning problem, the start or the goal is
 ///         off the road, no route leads to the goal, or an obstacle touches the ego at the start.
 CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
-                                       const ScenarioChanges& changes = {});
+                                       const ScenarioChanges& changes = {},
+                                       const Inputs& inputs = Inputs());
 
 }  // namespace roadbed::tools

@@ -8,8 +8,6 @@
 
 #include "roadbed/geometry/rectangle.h"
 #include "roadbed/map/input_error.h"
-#include "roadbed/map/load_map.h"
-#include "roadbed/map/occupancy/load_occupancy.h"
 #include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/support/place.h"
@@ -50,11 +48,6 @@ Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
            "choose another start or goal");
   }
   return *std::move(answer.route);
-}
-
-std::unique_ptr<const map::OccupancyMap> occupancy_of(const Scenario& scenario) {
-  if (scenario.occupancy_files.empty()) return nullptr;
-  return std::make_unique<map::OccupancyMap>(map::load_occupancy(scenario.occupancy_files));
 }
 
 /// Makes obstacles of the scenario's; one instance per world.
@@ -172,8 +165,9 @@ std::vector<Obstacle> World::obstacles_at(double t_s) const {
   return there;
 }
 
-World make_world(const Scenario& scenario) {
-  map::RoadMap road_map = map::load_map(scenario.map_file);
+World make_world(const Scenario& scenario, const Inputs& inputs) {
+  auto kept_map = inputs.road_map(scenario.map_file);
+  const map::RoadMap& road_map = *kept_map;
   const Place start = find(scenario, road_map, scenario.start);
   // Without a heading the vehicle stands as its lane runs.
   const bool against = start.sense == planning::Sense::against;
@@ -190,16 +184,15 @@ World make_world(const Scenario& scenario) {
       drivers.push_back(maker.driver_of(obstacle.id, *traffic));
     }
   }
-  std::unique_ptr<const map::OccupancyMap> occupancy = occupancy_of(scenario);
-  std::unique_ptr<const map::ClearanceField> field;
-  if (occupancy) {
-    field = std::make_unique<map::ClearanceField>(
-        *occupancy,
-        map::HeightBand{.from_m = map::HeightBand{}.from_m, .to_m = scenario.vehicle.height_m});
+  std::shared_ptr<const map::OccupancyMap> occupancy;
+  std::shared_ptr<const map::ClearanceField> field;
+  if (!scenario.occupancy_files.empty()) {
+    occupancy = inputs.occupancy_of(scenario.occupancy_files);
+    field = inputs.field_of(scenario.occupancy_files, scenario.vehicle.height_m);
   }
   refuse_unknown_signals(scenario, road_map);
   std::vector<WaitingPlace> places = waiting_places(road_map, route, line, scenario.lights);
-  World world{.road_map = std::move(road_map),
+  World world{.kept_map = std::move(kept_map),
               .occupancy = std::move(occupancy),
               .field = std::move(field),
               .start = start.map_from_vehicle,

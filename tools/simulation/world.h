@@ -15,6 +15,7 @@
 #include "roadbed/tools/simulation/timed_goal.h"
 #include "roadbed/tools/simulation/traffic_flow.h"
 #include "roadbed/tools/simulation/waiting_places.h"
+#include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {
 
@@ -26,9 +27,10 @@ struct Presence {
 /// What a scenario means: its files loaded, its places found, its obstacles set in motion. All
 /// poses are in the map's frame.
 struct World {
-  map::RoadMap road_map;
-  std::unique_ptr<const map::OccupancyMap> occupancy;  ///< none where there is no file of it
-  std::unique_ptr<const map::ClearanceField> field;    ///< of the occupancy, which it refers to
+  std::shared_ptr<const map::RoadMap> kept_map;
+  const map::RoadMap& road_map = *kept_map;
+  std::shared_ptr<const map::OccupancyMap> occupancy;  ///< none where there is no file of it
+  std::shared_ptr<const map::ClearanceField> field;    ///< of the occupancy
   geometry::Pose2 start;                               ///< of the ego's rear axle
   planning::Route route;
   planning::ReferenceLine line;
@@ -52,6 +54,6 @@ struct World {
 
 /// @throws InputError if a file is unusable, a place is not on the map, there is no route to the
 ///         goal, or an obstacle touches the ego at the start; it names the place in the scenario.
-World make_world(const Scenario& scenario);
+World make_world(const Scenario& scenario, const Inputs& inputs = Inputs());
 
 }  // namespace roadbed::tools

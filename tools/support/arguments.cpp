@@ -17,6 +17,13 @@ std::string refuse_nan(const std::string& text) {
   return is_nan ? "is not a number" : "";
 }
 
+// CLI11's own check names the greatest number that there is.
+std::string refuse_not_positive(const std::string& text) {
+  double number = 0.0;
+  const bool is_positive = CLI::detail::lexical_cast(text, number) && number > 0.0;
+  return is_positive ? "" : text + " is not greater than 0";
+}
+
 }  // namespace
 
 Argument& Argument::required() {
@@ -38,7 +45,7 @@ Argument& Argument::within(double least, double most) {
 
 Argument& Argument::positive() {
   option_->check(refuse_nan);
-  option_->check(CLI::PositiveNumber);
+  option_->check(refuse_not_positive);
   return *this;
 }
 

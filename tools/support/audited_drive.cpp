@@ -89,6 +89,27 @@ planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
   return under;
 }
 
+std::string ground_note(const planning::GroundUnder& ground, const AuditQuestion& question,
+                        double cell_m) {
+  if (question.ground.kind == GroundRule::Kind::level) return {};
+  const bool is_map = question.ground.kind == GroundRule::Kind::map;
+  const double low_m = ground.surface ? ground.surface->lowest_m() : ground.level_m;
+  const double high_m = ground.surface ? ground.surface->highest_m() : ground.level_m;
+  const std::string note =
+      fmt::format("note: heights are above the {}, z {:.2f} m to {:.2f} m along the drive\n",
+                  is_map ? "map's road" : "measured ground", low_m, high_m);
+  const double underside_m =
+      std::ranges::min(question.parts, {}, &geometry::BodyPart::from_height_m).from_height_m -
+      ground.margin_m;
+  // With cells as high as the vehicle's underside the ground itself reaches into the band.
+  const bool is_exact = !ground.surface && ground.margin_m == 0.0;
+  if (is_exact || underside_m > cell_m) return note;
+  return note + fmt::format(
+                    "note: cells of {} m: the ground's own reach up to where heights begin, "
+                    "{:.3g} m; raise --from-height, or build finer cells\n",
+                    cell_m, underside_m);
+}
+
 planning::BodyReach reach_of(const AuditQuestion& question) {
   planning::BodyReach reach;
   for (const geometry::BodyPart& part : question.parts) {

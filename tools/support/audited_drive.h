@@ -58,6 +58,11 @@ planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy
 planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
                                    const geometry::Trajectory& drive, const GroundRule& rule);
 
+/// What heights are above, where that is no level, and whether cells of this size are too coarse
+/// for it; in lines, none where there is nothing to say.
+std::string ground_note(const planning::GroundUnder& ground, const AuditQuestion& question,
+                        double cell_m);
+
 /// The vehicle's parts as audited, with the margin.
 std::vector<geometry::BodyPart> inflated_parts(const AuditQuestion& question);
 

@@ -74,14 +74,14 @@ std::vector<std::string> faults_of_ground(const CertificateFile& file,
 
 std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
                                    const fs::path& trajectory_file, const fs::path& obstacles_file,
-                                   const fs::path& name) {
+                                   const fs::path& name, const Inputs& inputs) {
   std::vector<std::string> faults;
   compare(file.occupancy, certified_file(occupancy_file), faults);
   compare(file.trajectory, certified_file(trajectory_file), faults);
   std::vector<planning::MovingObstacle> moving;
   if (file.obstacles) {
     const fs::path from = obstacles_file.empty() ? fs::path(file.obstacles->name) : obstacles_file;
-    moving = read_moving_obstacles(from);
+    moving = read_moving_obstacles(from, inputs);
     compare(*file.obstacles, certified_obstacles(from, moving), faults);
   } else if (!obstacles_file.empty()) {
     faults.push_back(fmt::format("the certificate is not about what moves in {}, nor anywhere else",
@@ -92,7 +92,7 @@ std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& 
   if (!faults.empty()) return faults;
   const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
   faults = faults_of_ground(file, drive);
-  const std::unique_ptr<const map::OccupancySource> occupancy = map::open_occupancy(occupancy_file);
+  const auto occupancy = inputs.occupancy(occupancy_file);
   try {
     const std::vector<map::OccupancyCell> cells = cells_for(*occupancy, file, drive);
     for (const planning::AuditCertificate& part : file.parts) {
@@ -172,12 +172,12 @@ void print(std::ostream& out, const CertificateFile& file, const std::string& qu
 
 bool check_certificate_file(const fs::path& certificate, const fs::path& occupancy,
                             const fs::path& trajectory, const fs::path& obstacles, bool json,
-                            std::ostream& out) {
+                            const Inputs& inputs, std::ostream& out) {
   const CertificateFile file = read_certificate_json(certificate);
   const fs::path drive = trajectory.empty() ? fs::path(file.trajectory.name) : trajectory;
   const std::vector<std::string> faults =
       faults_of(file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy, drive,
-                obstacles, certificate);
+                obstacles, certificate, inputs);
   const std::string question = question_of(file, drive);
   if (json) {
     out << nlohmann::ordered_json{{"holds", faults.empty()},

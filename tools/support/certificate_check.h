@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <ostream>
 
+#include "roadbed/tools/support/inputs.h"
+
 namespace roadbed::tools {
 
 /// Whether every claim of a certificate holds, by brute force; what does not is printed. Empty
@@ -11,6 +13,7 @@ namespace roadbed::tools {
 bool check_certificate_file(const std::filesystem::path& certificate,
                             const std::filesystem::path& occupancy,
                             const std::filesystem::path& trajectory,
-                            const std::filesystem::path& obstacles, bool json, std::ostream& out);
+                            const std::filesystem::path& obstacles, bool json, const Inputs& inputs,
+                            std::ostream& out);
 
 }  // namespace roadbed::tools

@@ -17,8 +17,8 @@ namespace {
 
 using planning::MovingObstacle;
 
-std::vector<MovingObstacle> of_scenario(const std::filesystem::path& file) {
-  const World world = make_world(read_scenario(file));
+std::vector<MovingObstacle> of_scenario(const std::filesystem::path& file, const Inputs& inputs) {
+  const World world = make_world(read_scenario(file), inputs);
   std::vector<MovingObstacle> obstacles;
   for (const planning::Obstacle& obstacle : world.obstacles) {
     obstacles.push_back({obstacle_in_source(world.road_map, obstacle)});
@@ -28,12 +28,13 @@ std::vector<MovingObstacle> of_scenario(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<MovingObstacle> read_moving_obstacles(const std::filesystem::path& file) {
+std::vector<MovingObstacle> read_moving_obstacles(const std::filesystem::path& file,
+                                                  const Inputs& inputs) {
   if (is_common_road(file)) {
     const std::string name = file.string();
     return recorded_boxes(map::common_road::parse_scenario(map::read_file(file), name), name);
   }
-  if (file.extension() == ".json") return of_scenario(file);
+  if (file.extension() == ".json") return of_scenario(file, inputs);
   return parse_obstacles_csv(map::read_file(file), file.string());
 }
 

@@ -67,7 +67,7 @@ void in_threads(std::size_t count, int threads, const Make& make, const Work& wo
 class Batch {
  public:
   Batch(const map::RoadMap& road_map, const planning::RouteOptions& rules,
-        const BatchOptions& options)
+        const RouteBatchOptions& options)
       : road_map_(road_map),
         options_(options),
         router_(road_map, rules),
@@ -196,7 +196,7 @@ class Batch {
   }
 
   const map::RoadMap& road_map_;
-  const BatchOptions& options_;
+  const RouteBatchOptions& options_;
   planning::Router router_;
   const planning::RouteSolver& solver_;
 };
@@ -219,7 +219,7 @@ std::string header(const planning::RouteOptions& rules, bool matrix) {
 }  // namespace
 
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
-                        const planning::RouteOptions& rules, const BatchOptions& options) {
+                        const planning::RouteOptions& rules, const RouteBatchOptions& options) {
   std::vector<Row> rows = read_rows(file);
   const Batch batch(road_map, rules, options);
   batch.place(rows);

@@ -8,7 +8,7 @@
 
 namespace roadbed::tools {
 
-struct BatchOptions {
+struct RouteBatchOptions {
   bool matrix = false;  ///< from every `from` to every `to` instead of row by row
   bool json = false;    ///< make the JSON text, too
   int threads = 1;
@@ -27,6 +27,6 @@ struct BatchAnswer {
 /// hierarchy where there are many, see planning/README.md.
 /// @throws InputError if the file is missing, has no such header or no row at all.
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
-                        const planning::RouteOptions& rules, const BatchOptions& options);
+                        const planning::RouteOptions& rules, const RouteBatchOptions& options);
 
 }  // namespace roadbed::tools

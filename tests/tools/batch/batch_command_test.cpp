@@ -93,6 +93,33 @@ TEST(BatchCommand, DrivesEachScenarioWithEachVehicleAndSeed) {
   EXPECT_THAT(batch(jobs, folder.path()).out, HasSubstr("2 were there already"));
 }
 
+TEST(BatchCommand, GivesDrivesThatShareMapAndOccupancyWhatTheCommandAloneDoes) {
+  const TemporaryFolder inputs, folder, alone;
+  const std::string scenario = (data_folder() / "drive.json").string();
+  const std::string cars[] = {inputs.write("low.json", R"({"height_m": 1.2})"),
+                              inputs.write("high.json", R"({"height_m": 2.4, "width_m": 1.8})")};
+  std::string lines;
+  for (const std::string& car : cars) {
+    lines += json({{"job", "simulate"}, {"inputs", {scenario}}, {"options", {{"vehicle", car}}}})
+                 .dump() +
+             "\n";
+  }
+  batch(inputs.write("jobs.jsonl", lines), folder.path(), {"--threads", "2"});
+  const auto results = results_in(folder.path());
+  ASSERT_EQ(results.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string out = (alone / std::to_string(i)).string();
+    run_roadbed({"simulate", scenario, "--vehicle", cars[i], "-o", out});
+    ASSERT_EQ(results[i]["files"].size(), 4U);
+    for (const auto& file : results[i]["files"]) {
+      const std::filesystem::path name = file.get<std::string>();
+      EXPECT_TRUE(bytes_of(folder / name.string()) ==
+                  bytes_of(std::filesystem::path(out) / name.filename()))
+          << name;
+    }
+  }
+}
+
 TEST(BatchCommand, RunsAgainOnlyWhatChanged) {
   const TemporaryFolder inputs, folder;
   const std::string jobs = inputs.write("jobs.jsonl", jobs_of_all_kinds(inputs));
@@ -197,6 +224,18 @@ TEST(BatchCommand, RefusesWrongUsage) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(BatchCommand, SaysWhatFailedFirstAndWhereTheRestIs) {
+  const TemporaryFolder inputs, folder;
+  const std::string lines = route_job_of("lane:1/0/-1@10", "lane:7/0/1@55").dump() +
+                            "\n{\"job\":\"fly\"}\n{\"job\":\"import\"}\n";
+  const std::string jobs = inputs.write("jobs.jsonl", lines);
+  const ProgramRun run = batch(jobs, folder.path());
+  EXPECT_THAT(run.out, HasSubstr("3 jobs: 1 done, 0 no, 2 failed"));
+  EXPECT_THAT(run.err, HasSubstr("note: line 2 failed: job:/job: is \"fly\""));
+  EXPECT_THAT(run.err, HasSubstr("wrote " + (folder / "index.html").string()));
+  EXPECT_EQ(batch(jobs, folder.path(), {"--quiet"}).err, "");
+}
+
 TEST(BatchCommand, DoesNothingOfAnEmptyFileOfJobs) {
   const TemporaryFolder inputs, folder;
   const ProgramRun run = batch(inputs.write("jobs.jsonl", "\n \n"), folder.path());
@@ -226,7 +265,7 @@ TEST(BatchCommand, MergesWhatOthersHaveRun) {
   const std::size_t runs = lines_below(folder / "journal");
   const ProgramRun merge = batch(jobs, folder.path(), {"--merge"});
   EXPECT_EQ(merge.status, 1) << merge.err;  // as some jobs have failed
-  EXPECT_THAT(merge.out, HasSubstr("13 were there already"));
+  EXPECT_THAT(merge.out, HasSubstr("merged from 2 journals"));
   EXPECT_EQ(lines_below(folder / "journal"), runs);
   EXPECT_TRUE(outputs_of_batch(folder.path()) == outputs_of_batch(calm.path()));
 }

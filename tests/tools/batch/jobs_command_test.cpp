@@ -103,6 +103,24 @@ TEST(JobsCommand, RefusesAPatternThatMatchesNothingAndAnUnknownOutput) {
   EXPECT_EQ(run_roadbed({"jobs", "import", "--spped", "1", "-o", out}).status, 2);
 }
 
+TEST(JobsCommand, RefusesWhatTheCommandItselfWouldNotTake) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "jobs.jsonl").string();
+  const std::string scenario = folder.write("a.json", "");
+  const auto refusal = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "jobs");
+    words.insert(words.end(), {"-o", out});
+    const ProgramRun run = run_roadbed(words);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_FALSE(std::filesystem::exists(out));
+    return run.err;
+  };
+  EXPECT_THAT(refusal({"simulate", scenario, "--seed", "1", "2,3"}),
+              HasSubstr("--seed: is no whole number"));
+  EXPECT_THAT(refusal({"route", scenario}), HasSubstr("--from and --to are required"));
+  EXPECT_THAT(refusal({"audit", "--occupancy", scenario}), HasSubstr("roadbed audit --help"));
+}
+
 TEST(JobsCommand, RefusesMoreJobsThanAFileShouldHold) {
   const TemporaryFolder folder;
   const std::string out = (folder / "jobs.jsonl").string();

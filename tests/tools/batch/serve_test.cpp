@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <streambuf>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
@@ -161,6 +164,74 @@ TEST(Serve, TakesNothingThatAKilledProcessLeftForFilesOfTheJob) {
   folder.write(own + "older.csv", "");
   EXPECT_EQ(served(line, folder.path()).at(0), first);
   EXPECT_FALSE(std::filesystem::exists(folder / (own + "older.csv")));
+}
+
+/// Lines, before each of which something happens.
+class LinesAndDeeds : public std::streambuf {
+ public:
+  struct Entry {
+    std::function<void()> deed;
+    std::string line;
+  };
+  explicit LinesAndDeeds(std::vector<Entry> entries) : entries_(std::move(entries)) {}
+
+ protected:
+  int_type underflow() override {
+    if (next_ == entries_.size()) return traits_type::eof();
+    Entry& entry = entries_[next_++];
+    entry.deed();
+    entry.line += '\n';
+    setg(entry.line.data(), entry.line.data(), entry.line.data() + entry.line.size());
+    return traits_type::to_int_type(entry.line.front());
+  }
+
+ private:
+  std::vector<Entry> entries_;
+  std::size_t next_ = 0;
+};
+
+TEST(Serve, AnswersFromTheMapAsItIsWhenTheJobBegins) {
+  const TemporaryFolder folder, inputs;
+  const std::string town = bytes_of(kTownMap);
+  json job = route_job("lane:7/0/1@55");
+  job["inputs"] = {inputs.write("town.xodr", town)};
+  const auto write = [&](const std::string& bytes) {
+    return [&inputs, bytes] { inputs.write("town.xodr", bytes); };
+  };
+  const auto nothing = [] {};
+  LinesAndDeeds bytes({{nothing, job.dump()},
+                       {nothing, job.dump()},
+                       {write("<OpenDRIVE/>"), job.dump()},
+                       {write(town), job.dump()}});
+  std::istream in(&bytes);
+  std::stringstream out;
+  tools::serve(in, out, {.folder = folder.path(), .memory_bytes = 4'000'000'000});
+  std::vector<json> results;
+  for (std::string line; std::getline(out, line);) results.push_back(json::parse(line));
+  ASSERT_EQ(results.size(), 4U);
+  EXPECT_EQ(results[0]["status"], "done");
+  EXPECT_EQ(results[1], results[0]);
+  EXPECT_EQ(results[2]["status"], "failed");
+  EXPECT_EQ(results[3], results[0]);
+}
+
+TEST(Serve, TakesTheHashThatWhoeverAsksKnowsAJobBy) {
+  const TemporaryFolder folder;
+  const std::string line = json{{"job", "import"}, {"inputs", {kTownMap}}}.dump();
+  const json plain = served(line, folder.path()).at(0);
+  const auto hash = plain["hash"].get<std::string>();
+  EXPECT_EQ(served(hash + "\t" + line, folder.path()).at(0), plain);
+}
+
+TEST(Serve, SaysThatAnInputHasChangedSinceItsHashWasTakenAndLeavesNoFile) {
+  const TemporaryFolder folder;
+  const std::string line = json{{"job", "import"}, {"inputs", {kTownMap}}}.dump();
+  const std::string other(32, 'a');
+  const json result = served(other + "\t" + line, folder.path()).at(0);
+  EXPECT_EQ(result["hash"], other);
+  EXPECT_EQ(result["status"], "failed");
+  EXPECT_EQ(result["cause"], "changed");
+  EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
 TEST(Serve, SaysThatAnInputChangedWhileTheJobRan) {

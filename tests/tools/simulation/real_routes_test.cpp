@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/support/place.h"
@@ -87,8 +86,9 @@ class RealRoutes : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  map::RoadMap road_map =
-      map::load_map(folder / "opendrive/BerkeleyLearnVerify+Scenic" / GetParam());
+  const auto kept_map =
+      Inputs().road_map(folder / "opendrive/BerkeleyLearnVerify+Scenic" / GetParam());
+  const map::RoadMap& road_map = *kept_map;
   std::mt19937 random(20261121);
   for (int i = 0; i < route_count(); ++i) {
     Trip trip = random_trip(road_map, random);
@@ -99,7 +99,7 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
     Scenario scenario;
     scenario.duration_s = std::min(3600.0, 60.0 + trip.route.length_m);
     planning::ReferenceLine line = planning::ReferenceLine::along(road_map, trip.route);
-    World world{.road_map = std::move(road_map),
+    World world{.kept_map = kept_map,
                 .occupancy = {},
                 .field = {},
                 .start = {},
@@ -108,7 +108,6 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
                 .obstacles = {}};
     world.start = find_place(world.road_map, from).map_from_vehicle;
     const Result result = measure(drive(scenario, world));
-    road_map = std::move(world.road_map);
     fmt::print(
         "{:7.1f} m {} changes | off {:.1f} m, track {:.2f} m, lat {:.2f} m/s², replanned "
         "{}, "
