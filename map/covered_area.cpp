@@ -238,6 +238,19 @@ std::pair<std::vector<RingPart>, std::vector<RingPart>> halves(std::vector<RingP
   return both;
 }
 
+/// Whether a ring of at most four points turns one way only, so that it cannot cross itself.
+bool is_convex(const geometry::Ring& ring) {
+  if (ring.size() > 4) return false;
+  int left = 0, right = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d& corner = ring[(i + 1) % ring.size()];
+    const Eigen::Vector2d in = corner - ring[i], out = ring[(i + 2) % ring.size()] - corner;
+    const double turn = in.x() * out.y() - in.y() * out.x();
+    (turn < 0.0 ? right : left) += turn != 0.0;
+  }
+  return left == 0 || right == 0;
+}
+
 CoveredArea alone(const RingPart& piece) {
   const double area_m2 = std::abs(geometry::signed_area_m2(piece.ring));
   return {area_m2, piece.group == GroupedRing::kNoGroup ? 0.0 : area_m2};
@@ -255,7 +268,7 @@ CoveredArea area_of(std::vector<RingPart> pieces, Budget& budget) {
   }
   budget.spend(points);
   if (pieces.empty() || budget.is_spent) return {};
-  if (pieces.size() == 1) return alone(pieces.front());
+  if (pieces.size() == 1 && is_convex(pieces.front().ring)) return alone(pieces.front());
   const int axis = window.sizes().x() >= window.sizes().y() ? 0 : 1;
   const double middle = window.center()[axis];
   constexpr std::size_t kFew = 40, kFewEach = 10;

@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::size_t kLaneTypes = static_cast<std::size_t>(LaneType::other) + 1;
 
+/// An import of fewer lanes would take half as long again with their areas, and the exact union is
+/// soon made when somebody asks for it.
+constexpr std::size_t kLanesForAreas = 10'000;
+
 constexpr auto length_field = [](auto& io, auto& value) {
   io(value);
   io.check(std::isfinite(value) && value >= 0.0);
@@ -65,17 +69,6 @@ std::vector<std::uint32_t> junction_of_lanes(const RoadMap& road_map) {
   return of_lane;
 }
 
-std::optional<MapTotals::Areas> areas_of(const RoadMap& road_map) {
-  const std::vector<std::uint32_t> junctions = junction_of_lanes(road_map);
-  std::vector<GroupedRing> rings;
-  for (const Lane& lane : road_map.lanes()) {
-    if (is_drivable(lane.type)) rings.push_back({&lane.polygon, junctions[lane.id.index]});
-  }
-  const std::optional<CoveredArea> covered = covered_area(rings);
-  if (!covered) return std::nullopt;
-  return MapTotals::Areas{covered->all_m2, covered->groups_m2};
-}
-
 }  // namespace
 
 TotalsCounter::TotalsCounter() { totals_.lanes_of_type.assign(kLaneTypes, 0); }
@@ -124,6 +117,17 @@ MapTotals TotalsCounter::totals() && {
   return std::move(totals_);
 }
 
+std::optional<MapTotals::Areas> covered_areas(const RoadMap& road_map) {
+  const std::vector<std::uint32_t> junctions = junction_of_lanes(road_map);
+  std::vector<GroupedRing> rings;
+  for (const Lane& lane : road_map.lanes()) {
+    if (is_drivable(lane.type)) rings.push_back({&lane.polygon, junctions[lane.id.index]});
+  }
+  const std::optional<CoveredArea> covered = covered_area(rings);
+  if (!covered) return std::nullopt;
+  return MapTotals::Areas{covered->all_m2, covered->groups_m2};
+}
+
 MapTotals totals_of(const RoadMap& road_map) {
   if (road_map.index().totals.size() > 0) return stored_totals(road_map.index());
   TotalsCounter counter;
@@ -132,7 +136,7 @@ MapTotals totals_of(const RoadMap& road_map) {
   };
   fields::lists(count, road_map.content());
   MapTotals totals = std::move(counter).totals();
-  totals.areas = areas_of(road_map);
+  if (road_map.lanes().size() >= kLanesForAreas) totals.areas = covered_areas(road_map);
   return totals;
 }
 

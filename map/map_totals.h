@@ -26,7 +26,7 @@ struct MapTotals {
   std::vector<std::uint64_t> lanes_of_type;  ///< by LaneType, one number for each
   double roads_m = 0.0;                      ///< of all reference lines
   double drivable_lanes_m = 0.0;
-  std::optional<Areas> areas;    ///< none where lanes lie upon each other by the thousand
+  std::optional<Areas> areas;    ///< none of small maps, and where `covered_areas` has none
   std::optional<Bounds> bounds;  ///< of lane borders and areas
   std::vector<std::uint64_t> component_lanes;  ///< of `drivable_components`, the largest first
   std::vector<std::pair<std::string, std::uint64_t>> remarks;  ///< by rule, in order of rule
@@ -59,6 +59,9 @@ class TotalsCounter {
   std::optional<LaneGroups> groups_;
   std::uint32_t links_ = 0;
 };
+
+/// None where lanes lie upon each other by the thousand.
+std::optional<MapTotals::Areas> covered_areas(const RoadMap& road_map);
 
 /// The totals of a map: those in its compiled form, else added up now, which touches everything.
 /// @throws InputError if the compiled map is damaged.

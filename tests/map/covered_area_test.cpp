@@ -96,6 +96,13 @@ TEST(CoveredArea, CountsEqualTouchingAndNestedRingsOnce) {
   EXPECT_EQ(covered_area({})->all_m2, 0.0);
 }
 
+TEST(CoveredArea, OfARingThatCrossesItselfIsThatOfItsOddWindingsAloneOrNot) {
+  std::vector<Ring> rings{{{0, 0}, {2, 2}, {2, 0}, {0, 2}}};
+  EXPECT_NEAR(covered_area(all_of(rings))->all_m2, 2.0, 1e-9);
+  rings.push_back(rectangle({0.5, -5}, {0.6, -4}));
+  EXPECT_NEAR(covered_area(all_of(rings))->all_m2, 2.1, 1e-9);
+}
+
 TEST(CoveredArea, IsTheSameFarOutAndTurned) {
   std::mt19937 random(20261122);
   std::vector<Ring> rings;

@@ -24,12 +24,13 @@ TEST(MapTotals, OfARowOfRoadsAreThoseOfItsDrawing) {
   tests::MadeMap made = tests::three_roads_in_a_row();
   made.lane(LaneId{2}).type = LaneType::sidewalk;
   made.parts.remarks = {{"b", false, "", 0, ""}, {"a", true, "", 0, ""}, {"b", false, "", 0, ""}};
-  const MapTotals totals = totals_of(made.build());
+  const RoadMap row = made.build();
+  const MapTotals totals = totals_of(row);
   EXPECT_EQ(totals.lanes_of_type.at(static_cast<std::size_t>(LaneType::driving)), 2U);
   EXPECT_EQ(totals.lanes_of_type.at(static_cast<std::size_t>(LaneType::sidewalk)), 1U);
   EXPECT_NEAR(totals.drivable_lanes_m, 100.0, 1e-9);
-  EXPECT_NEAR(totals.areas.value().drivable_m2, 400.0, 1e-9);
-  EXPECT_NEAR(totals.areas.value().junctions_m2, 200.0, 1e-9);
+  EXPECT_NEAR(covered_areas(row).value().drivable_m2, 400.0, 1e-9);
+  EXPECT_NEAR(covered_areas(row).value().junctions_m2, 200.0, 1e-9);
   EXPECT_EQ(totals.bounds.value().low_in_map, Eigen::Vector2d(0.0, -2.0));
   EXPECT_EQ(totals.bounds.value().high_in_map, Eigen::Vector2d(150.0, 2.0));
   EXPECT_EQ(totals.component_lanes, std::vector<std::uint64_t>{2});
@@ -57,7 +58,7 @@ TEST(MapTotals, HaveTheAreasOfTheExactSurfaceButWhatWasWelded) {
     junctions_m2 += area_m2(junction_surface(town, junction.id));
   }
   const double welded_m2 = SurfaceOptions{}.weld_m * border_m;
-  const MapTotals::Areas areas = totals_of(town).areas.value();
+  const MapTotals::Areas areas = covered_areas(town).value();
   EXPECT_NEAR(areas.drivable_m2, area_m2(surface.polygons), welded_m2);
   EXPECT_NEAR(areas.junctions_m2, junctions_m2, welded_m2);
   EXPECT_LT(welded_m2, 2e-3 * areas.drivable_m2);

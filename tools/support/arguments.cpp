@@ -45,7 +45,7 @@ Argument& Argument::within(double least, double most) {
 
 Argument& Argument::positive() {
   option_->check(refuse_nan);
-  option_->check(refuse_not_positive);
+  option_->check(refuse_not_positive, "POSITIVE");
   return *this;
 }
 

@@ -4,15 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace roadbed::tools {
 namespace {
 
 constexpr std::size_t kColumns = 100, kExplanationAt = 30;
-/// More options than this are not listed as those that may not stand beside one.
+/// An option that excludes more than this says so itself.
 constexpr std::size_t kFew = 3;
 
 /// Words in lines of at most kColumns; all but the first are indented.
@@ -88,18 +90,25 @@ std::string narrowing(const CLI::Option& option) {
     if (!option.get_default_str().empty()) notes.push_back("default " + option.get_default_str());
   }
   if (option.get_required() && option.nonpositional()) notes.emplace_back("required");
-  const auto& excluded = option.get_excludes();
-  if (!excluded.empty() && excluded.size() <= kFew) {
-    std::vector<std::string> names;
-    for (const CLI::Option* other : excluded) names.push_back(other->get_name());
-    std::sort(names.begin(), names.end());  // a set of pointers has no order of its own
-    notes.push_back(fmt::format("not with {}", fmt::join(names, ", ")));
+  std::vector<std::string> others;
+  for (const CLI::Option* other : option.get_excludes()) {
+    if (other->get_excludes().size() <= kFew) others.push_back(other->get_name());
+  }
+  if (!others.empty() && others.size() <= kFew) {
+    std::sort(others.begin(), others.end());  // a set of pointers has no order of its own
+    notes.push_back(fmt::format("not with {}", fmt::join(others, ", ")));
   }
   return notes.empty() ? "" : fmt::format(" ({})", fmt::join(notes, "; "));
 }
 
 class HelpFormat : public CLI::Formatter {
  public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string help = Formatter::make_help(app, std::move(name), mode);
+    return CLI::detail::find_and_replace(help, "\n\n\n", "\n\n");
+  }
+
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     return line(make_option_name(option, is_positional) + value_word(*option),
                 option->get_description() + narrowing(*option));
