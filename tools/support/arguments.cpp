@@ -173,7 +173,7 @@ Argument Arguments::choose(const std::string& names, const std::vector<std::stri
     take(static_cast<std::size_t>(found - words.begin()));
   };
   CLI::Option* option = app_->add_option_function<std::string>(
-      names, take_word, fmt::format("{} ({}; default {})", help, fmt::join(words, "|"), standing));
+      names, take_word, fmt::format("{} ({}; default {})", help, fmt::join(words, ", "), standing));
   option->check(CLI::IsMember(words, CLI::ignore_case));
   option->option_text("WORD");
   return note(*option, ArgumentInfo::Kind::value);

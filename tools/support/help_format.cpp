@@ -48,8 +48,11 @@ std::string line(const std::string& name, const std::string& explanation) {
   return text + wrapped(explanation, kExplanationAt, kExplanationAt) + '\n';
 }
 
-/// What CLI11 writes behind a type, as "FLOAT in [0.1 - 1000]".
+/// What CLI11 writes behind a type, as "FLOAT in [0.1 - 1000]" or "{a,b}".
 std::string limits(std::string_view check) {
+  if (check.starts_with('{') && check.ends_with('}')) {
+    return CLI::detail::find_and_replace(std::string(check.substr(1, check.size() - 2)), ",", ", ");
+  }
   if (check == "POSITIVE") return "above 0";
   if (check == "NONNEGATIVE") return "0 or more";
   const std::size_t open = check.find(" in ["), dash = check.find(" - ");
