@@ -31,6 +31,9 @@ class CarvedCells {
   /// What pages take of memory [bytes].
   std::size_t kept_bytes() const { return chunks_.size() * kChunk * sizeof(Page); }
 
+  /// Of these what the pages of rays take that were not yet drained [bytes].
+  std::size_t used_bytes() const { return codes_.size() * sizeof(Page); }
+
   /// Calls `visit(first, bits)` for each block that a ray crossed, with the key of its first cell,
   /// and forgets them all.
   template <typename Visit>

@@ -16,6 +16,10 @@ namespace {
 // What cells may take of memory.
 std::size_t most_bytes(std::size_t points) { return 160'000'000 + 64 * points; }
 
+// Pages of rays that lie far apart are nearly empty: where they take more, they become blocks
+// before the scan has ended.
+constexpr std::size_t kMostCarvedBytes = 32'000'000;
+
 // As OctoMap, in float.
 Eigen::Vector3f centre_in_tree(const CellKey& key, double resolution_m) {
   Eigen::Vector3f centre;
@@ -112,6 +116,7 @@ void CloudMeasurements::add_scan(const PointCloud& cloud, Span points,
         carved_.carve(sensor, from, cut, *to);
       }
     }
+    if (carved_.used_bytes() > kMostCarvedBytes) add_carved(cloud);
     check_room(cloud);
   }
 }

@@ -189,6 +189,39 @@ TEST(OctreeBuild, WhatMeasuredNothingIsAnEmptyFileThatIsReadAsOne) {
   }
 }
 
+/// Points around a sensor, so far apart that their rays share few cells.
+PointCloud scattered(std::mt19937& random, int points) {
+  std::normal_distribution<float> spread(0.0f, 1.0f);
+  PointCloud cloud;
+  cloud.sensor_in_source = Eigen::Vector3d(0.25, -0.125, 0.5);
+  for (int i = 0; i < points; ++i) {
+    const Eigen::Vector3f way(spread(random), spread(random), spread(random));
+    cloud.points.push_back(50.0f * way.normalized());
+  }
+  return cloud;
+}
+
+TEST(OctreeBuild, RaysFarApartAreThoseOfOctoMapThoughMemoryIsForFewAtATime) {
+  std::mt19937 random(20261122);
+  const PointCloud cloud = scattered(random, 200);
+  octomap::OcTree theirs(0.05);
+  insert(theirs, cloud, -1.0);
+  theirs.toMaxLikelihood();
+  theirs.prune();
+  std::ostringstream binary;
+  theirs.writeBinaryData(binary);
+  const auto file =
+      OccupancyMap::build_bt(std::vector{cloud}, {.resolution_m = 0.05, .sticky_hits = false});
+  EXPECT_EQ(file.nodes, theirs.size());
+  EXPECT_TRUE(file.bytes.ends_with("\ndata\n" + binary.str()));
+}
+
+TEST(OctreeBuild, RaysFarApartAreNotRefusedForWhatTheyTakeOnTheWay) {
+  std::mt19937 random(20261122);
+  const PointCloud cloud = scattered(random, 1500);
+  EXPECT_NO_THROW(OccupancyMap::build_bt(std::vector{cloud}, {.resolution_m = 0.05}));
+}
+
 TEST(OctreeBuild, PointsInMorePlacesThanMemoryIsForAreRefused) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> place(-300.0f, 300.0f);
