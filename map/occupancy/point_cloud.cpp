@@ -112,6 +112,24 @@ void take_doubles(const std::vector<Eigen::Vector3d>& points, PointCloud& cloud)
   }
 }
 
+/// A position left at zero in every point says nothing, like a viewpoint left at its default.
+void take_sensors(RawCloud& raw, PointCloud& cloud) {
+  cloud.sensor_in_source = raw.sensor_in_source;
+  if (raw.scans.empty()) return;
+  const std::optional<Eigen::Vector3d>& first = raw.scans.front().sensor_in_source;
+  if (raw.scans.size() == 1 && first && first->isZero(0.0)) {
+    raw.notes.emplace_back(
+        "its points' sensor position is 0 0 0 in all of them and is not taken: give --sensor 0,0,0 "
+        "if the sensor was there");
+    return;
+  }
+  if (cloud.sensor_in_source) {
+    raw.notes.emplace_back("its viewpoint is not taken, as its points have sensor positions");
+  }
+  cloud.sensor_in_source.reset();
+  cloud.scans = std::move(raw.scans);
+}
+
 PointCloud relative_to_origin(RawCloud raw) {
   PointCloud cloud;
   if (!raw.float_points_in_source.empty()) {
@@ -123,8 +141,7 @@ PointCloud relative_to_origin(RawCloud raw) {
   cloud.crs = std::move(raw.crs);
   cloud.unit = raw.unit;
   cloud.dropped_not_finite = raw.dropped_not_finite;
-  cloud.sensor_in_source = raw.sensor_in_source;
-  cloud.scans = std::move(raw.scans);
+  take_sensors(raw, cloud);
   cloud.notes = std::move(raw.notes);
   if (raw.without_sensor > 0) {
     cloud.notes.push_back(fmt::format("{} points have no finite sensor position: no rays to them",

@@ -209,7 +209,6 @@ class PcdParser {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       (*sensor_)[axis] = &header_.fields[(*columns)[axis]];
     }
-    cloud_.sensor_in_source.reset();
   }
 
   // Takes a point whose fields are `value(field)`.

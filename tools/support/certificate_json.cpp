@@ -276,6 +276,14 @@ std::string hash_of_file(const std::filesystem::path& file) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(stream.gcount()));
   } while (stream);
+  if (stream.bad()) {
+    throw map::InputError({.file = file.string(),
+                           .place = {},
+                           .element = {},
+                           .found = "cannot be read to its end",
+                           .needed = {},
+                           .remedy = "check the disk, or copy the file to another one"});
+  }
   return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 

@@ -104,6 +104,20 @@ octomap::point3d to_octomap(const Eigen::Vector3f& point) {
 
 const OccupancyOptions kNotSticky{.resolution_m = kCell_m, .sticky_hits = false};
 
+TEST(SensorOfEachPoint, LeftAtZeroInAllPointsSaysNothing) {
+  const std::string header =
+      "VERSION 0.7\nFIELDS x y z vp_x vp_y vp_z\nSIZE 4 4 4 4 4 4\nTYPE F F F F F F\nWIDTH 2\n"
+      "HEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nDATA ascii\n";
+  const PointCloud left = parse_point_cloud(header + "4 5 6 0 0 0\n7 8 9 0 0 0\n", "left.pcd");
+  EXPECT_TRUE(left.scans.empty());
+  EXPECT_EQ(left.sensor_in_source, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(left.notes.size(), 1U);
+  const PointCloud set = parse_point_cloud(header + "4 5 6 0 0 0\n7 8 9 0 0 1\n", "set.pcd");
+  EXPECT_EQ(set.scans.size(), 2U);
+  EXPECT_FALSE(set.sensor_in_source);
+  EXPECT_EQ(set.notes.size(), 1U);
+}
+
 TEST(SensorOfEachPoint, EveryFormatGivesTheTreeOfInsertPointCloudForEachRun) {
   std::mt19937 random(1);
   const auto runs = random_runs(random, 60, 9);
