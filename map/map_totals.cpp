@@ -117,7 +117,7 @@ MapTotals TotalsCounter::totals() && {
   return std::move(totals_);
 }
 
-std::optional<MapTotals::Areas> covered_areas(const RoadMap& road_map) {
+std::optional<MapAreas> covered_areas(const RoadMap& road_map) {
   const std::vector<std::uint32_t> junctions = junction_of_lanes(road_map);
   std::vector<GroupedRing> rings;
   for (const Lane& lane : road_map.lanes()) {
@@ -125,7 +125,7 @@ std::optional<MapTotals::Areas> covered_areas(const RoadMap& road_map) {
   }
   const std::optional<CoveredArea> covered = covered_area(rings);
   if (!covered) return std::nullopt;
-  return MapTotals::Areas{covered->all_m2, covered->groups_m2};
+  return MapAreas{covered->all_m2, covered->groups_m2};
 }
 
 MapTotals totals_of(const RoadMap& road_map) {

@@ -12,13 +12,14 @@
 
 namespace roadbed::map {
 
+struct MapAreas {
+  double drivable_m2 = 0.0;   ///< under drivable lanes, what several cover once
+  double junctions_m2 = 0.0;  ///< of each junction the same of its connecting roads' lanes
+};
+
 /// What a map amounts to: what `info` says of it besides the lengths of its lists. Stands in its
 /// compiled form, so that a large map says it without being read.
 struct MapTotals {
-  struct Areas {
-    double drivable_m2 = 0.0;   ///< under drivable lanes, what several cover once
-    double junctions_m2 = 0.0;  ///< of each junction the same of its connecting roads' lanes
-  };
   struct Bounds {
     Eigen::Vector2d low_in_map, high_in_map;
   };
@@ -26,8 +27,8 @@ struct MapTotals {
   std::vector<std::uint64_t> lanes_of_type;  ///< by LaneType, one number for each
   double roads_m = 0.0;                      ///< of all reference lines
   double drivable_lanes_m = 0.0;
-  std::optional<Areas> areas;    ///< none of small maps, and where `covered_areas` has none
-  std::optional<Bounds> bounds;  ///< of lane borders and areas
+  std::optional<MapAreas> areas;  ///< none of small maps, and where `covered_areas` has none
+  std::optional<Bounds> bounds;   ///< of lane borders and areas
   std::vector<std::uint64_t> component_lanes;  ///< of `drivable_components`, the largest first
   std::vector<std::pair<std::string, std::uint64_t>> remarks;  ///< by rule, in order of rule
   bool has_road_areas = false;
@@ -61,7 +62,7 @@ class TotalsCounter {
 };
 
 /// None where lanes lie upon each other by the thousand.
-std::optional<MapTotals::Areas> covered_areas(const RoadMap& road_map);
+std::optional<MapAreas> covered_areas(const RoadMap& road_map);
 
 /// The totals of a map: those in its compiled form, else added up now, which touches everything.
 /// @throws InputError if the compiled map is damaged.

@@ -49,8 +49,8 @@ geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
     }
   }
   std::ranges::sort(rows, {}, &geometry::TrajectoryPoint::t_s);
-  const auto doubles = std::ranges::unique(rows, {}, &geometry::TrajectoryPoint::t_s);
-  rows.erase(doubles.begin(), doubles.end());
+  const auto is_at_once = [](const auto& a, const auto& b) { return a.t_s == b.t_s; };
+  rows.erase(std::unique(rows.begin(), rows.end(), is_at_once), rows.end());
   return geometry::Trajectory(std::move(rows));
 }
 

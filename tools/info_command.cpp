@@ -43,9 +43,9 @@ Json remark_counts(const map::MapTotals& totals) {
 }
 
 /// By exact unions where the totals have none.
-map::MapTotals::Areas areas_of(const map::RoadMap& road_map, const map::MapTotals& totals) {
+map::MapAreas areas_of(const map::RoadMap& road_map, const map::MapTotals& totals) {
   if (totals.areas) return *totals.areas;
-  map::MapTotals::Areas areas{.drivable_m2 = area_m2(map::drivable_surface(road_map))};
+  map::MapAreas areas{.drivable_m2 = area_m2(map::drivable_surface(road_map))};
   for (const map::Junction& junction : road_map.junctions()) {
     areas.junctions_m2 += area_m2(map::junction_surface(road_map, junction.id));
   }
@@ -83,7 +83,7 @@ Json unused_counts(const map::RoadMap& road_map) {
 
 Json info_json(const map::RoadMap& road_map) {
   const map::MapTotals totals = map::totals_of(road_map);
-  const map::MapTotals::Areas areas = areas_of(road_map, totals);
+  const map::MapAreas areas = areas_of(road_map, totals);
   Json info;
   info["format"] = road_map.format();
   info["crs"] = road_map.crs().empty() ? Json() : Json(road_map.crs());

@@ -58,7 +58,7 @@ TEST(MapTotals, HaveTheAreasOfTheExactSurfaceButWhatWasWelded) {
     junctions_m2 += area_m2(junction_surface(town, junction.id));
   }
   const double welded_m2 = SurfaceOptions{}.weld_m * border_m;
-  const MapTotals::Areas areas = covered_areas(town).value();
+  const MapAreas areas = covered_areas(town).value();
   EXPECT_NEAR(areas.drivable_m2, area_m2(surface.polygons), welded_m2);
   EXPECT_NEAR(areas.junctions_m2, junctions_m2, welded_m2);
   EXPECT_LT(welded_m2, 2e-3 * areas.drivable_m2);

@@ -57,8 +57,7 @@ std::vector<std::string> matching_files(const std::string& pattern) {
   std::vector<std::string> found;
   match({}, parts.begin(), parts.end(), found);
   std::ranges::sort(found);
-  const auto twice = std::ranges::unique(found);
-  found.erase(twice.begin(), twice.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
