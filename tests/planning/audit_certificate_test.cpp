@@ -6,12 +6,12 @@
 #include <random>
 
 #include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
 namespace {
 
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using geometry::VehicleShape;
 using map::ClearanceField;
 using map::OccupancyMap;
@@ -45,17 +45,9 @@ OccupancyMap measured_world(std::mt19937& random, int poles) {
 }
 
 Trajectory any_drive(std::mt19937& random) {
-  std::uniform_real_distribution<double> place(-9.0, 9.0), turn(-1.2, 1.2), way(-3.0, 3.0);
-  std::vector<TrajectoryPoint> rows{
-      {.t_s = 0, .x_m = place(random), .y_m = place(random), .heading_rad = 3.0 * turn(random)}};
-  for (auto more = random() % 4; more > 0; --more) {
-    const TrajectoryPoint& last = rows.back();
-    rows.push_back({.t_s = last.t_s + 0.7,
-                    .x_m = last.x_m + way(random),
-                    .y_m = last.y_m + way(random),
-                    .heading_rad = last.heading_rad + turn(random)});
-  }
-  return Trajectory(std::move(rows));
+  const auto first = tests::random_start(random, {0.0, 0.0}, 9.0, 3.6);
+  return tests::random_drive(random, first,
+                             {.rows = random() % 4, .step_s = 0.7, .way_m = 3.0, .turn_rad = 1.2});
 }
 
 struct Audited {

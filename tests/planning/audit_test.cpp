@@ -9,13 +9,13 @@
 
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
 namespace {
 
 using geometry::Pose2;
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using geometry::VehicleShape;
 using map::ClearanceField;
 using map::OccupancyMap;
@@ -57,19 +57,10 @@ Trajectory straight(const Pose2& from, const Pose2& to) {
                      {.t_s = 1, .x_m = to.x_m, .y_m = to.y_m, .heading_rad = to.heading_rad}});
 }
 
-Trajectory random_drive(std::mt19937& random) {
-  std::uniform_real_distribution<double> place(-6.0, 6.0), turn(-1.2, 1.2), way(-3.0, 3.0);
-  std::vector<TrajectoryPoint> rows{
-      {.t_s = 0, .x_m = place(random), .y_m = place(random), .heading_rad = 3.0 * turn(random)}};
-  const auto count = 1 + random() % 3;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TrajectoryPoint& last = rows.back();
-    rows.push_back({.t_s = last.t_s + 1.0,
-                    .x_m = last.x_m + way(random),
-                    .y_m = last.y_m + way(random),
-                    .heading_rad = last.heading_rad + turn(random)});
-  }
-  return Trajectory(std::move(rows));
+Trajectory drive_of_few_rows(std::mt19937& random) {
+  const auto first = tests::random_start(random, {0.0, 0.0}, 6.0, 3.6);
+  return tests::random_drive(random, first,
+                             {.rows = 1 + random() % 3, .way_m = 3.0, .turn_rad = 1.2});
 }
 
 /// Distances at times so dense that no point of the body moves over `step_m` between two.
@@ -109,7 +100,7 @@ TEST(Audit, AgreesWithADenseSweepOverThousandsOfRandomObstaclesAndDrives) {
     const World world = world_of(hits);
     const ClearanceField field(world.occupancy, kBand);
     for (int i = 0; i < 10; ++i) {
-      const Trajectory drive = random_drive(random);
+      const Trajectory drive = drive_of_few_rows(random);
       const AuditOptions options{.clearance_m = i % 2 == 0 ? 0.0 : margin(random),
                                  .unknown = UnknownPolicy::free};
       const AuditReport report = audit(field, drive, shape, options);
@@ -153,7 +144,7 @@ TEST(Audit, EveryConflictIsRealAndItsWitnessStandsWhereItSays) {
     for (int i = 0; i < 10; ++i) hits.emplace_back(place(random), place(random));
     const World world = world_of(hits);
     const ClearanceField field(world.occupancy, kBand);
-    const Trajectory drive = random_drive(random);
+    const Trajectory drive = drive_of_few_rows(random);
     const AuditReport report =
         audit(field, drive, shape, {.clearance_m = 0.3, .unknown = UnknownPolicy::free});
     double last_s = -1.0;

@@ -12,6 +12,7 @@
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/planning/vehicle_audit.h"
 #include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
 namespace {
@@ -19,7 +20,6 @@ namespace {
 using geometry::BodyPart;
 using geometry::Pose2;
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using map::OccupancyMap;
 using testing::IsEmpty;
 using tests::Quad;
@@ -58,17 +58,9 @@ OccupancyMap world_with_gaps(std::mt19937& random) {
 }
 
 Trajectory drive_in_the_middle(std::mt19937& random) {
-  std::uniform_real_distribution<double> place(-3.0, 3.0), turn(-1.2, 1.2), way(-2.0, 2.0);
-  std::vector<TrajectoryPoint> rows{
-      {.t_s = 0, .x_m = place(random), .y_m = place(random), .heading_rad = 3.0 * turn(random)}};
-  for (auto more = 1 + random() % 2; more > 0; --more) {
-    const TrajectoryPoint last = rows.back();
-    rows.push_back({.t_s = last.t_s + 1.0,
-                    .x_m = last.x_m + way(random),
-                    .y_m = last.y_m + way(random),
-                    .heading_rad = last.heading_rad + turn(random)});
-  }
-  return Trajectory(std::move(rows));
+  const auto first = tests::random_start(random, {0.0, 0.0}, 3.0, 3.6);
+  return tests::random_drive(random, first,
+                             {.rows = 1 + random() % 2, .way_m = 2.0, .turn_rad = 1.2});
 }
 
 /// Level, at another height, or of planes that lean; the latter two with a margin at times.

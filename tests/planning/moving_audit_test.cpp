@@ -10,13 +10,13 @@
 #include "roadbed/planning/audit_certificate.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
 namespace {
 
 using geometry::Pose2;
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using geometry::VehicleShape;
 using testing::Contains;
 using testing::HasSubstr;
@@ -33,20 +33,9 @@ map::OccupancyMap far_post() {
 }
 
 Trajectory any_motion(std::mt19937& random, double spread_m, std::size_t rows, double from_s) {
-  std::uniform_real_distribution<double> place(-spread_m, spread_m), turn(-1.0, 1.0),
-      way(-4.0, 4.0);
-  std::vector<TrajectoryPoint> points{{.t_s = from_s,
-                                       .x_m = place(random),
-                                       .y_m = place(random),
-                                       .heading_rad = 3.0 * turn(random)}};
-  while (points.size() < rows) {
-    const TrajectoryPoint last = points.back();
-    points.push_back({.t_s = last.t_s + 0.6,
-                      .x_m = last.x_m + way(random),
-                      .y_m = last.y_m + way(random),
-                      .heading_rad = last.heading_rad + turn(random)});
-  }
-  return Trajectory(std::move(points));
+  auto first = tests::random_start(random, {0.0, 0.0}, spread_m, 3.0);
+  first.t_s = from_s;
+  return tests::random_drive(random, first, {.rows = rows - 1, .step_s = 0.6, .way_m = 4.0});
 }
 
 /// A box that comes at any time, before the drive too, and may go before its end.

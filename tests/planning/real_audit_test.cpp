@@ -10,13 +10,13 @@
 #include "roadbed/planning/audit_certificate.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/random_drive.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::planning {
 namespace {
 
 using geometry::Trajectory;
-using geometry::TrajectoryPoint;
 using geometry::VehicleShape;
 using map::CellState;
 using map::OccupancyCell;
@@ -63,19 +63,8 @@ class EveryBox {
 };
 
 Trajectory drive_near(const Eigen::Vector2d& place, std::mt19937& random) {
-  std::uniform_real_distribution<double> aside(-3.0, 3.0), turn(-0.8, 0.8), way(-1.0, 1.0);
-  std::vector<TrajectoryPoint> rows{{.t_s = 0.0,
-                                     .x_m = place.x() + aside(random),
-                                     .y_m = place.y() + aside(random),
-                                     .heading_rad = 4.0 * turn(random)}};
-  for (int i = 0; i < 2; ++i) {
-    const TrajectoryPoint last = rows.back();
-    rows.push_back({.t_s = last.t_s + 1.0,
-                    .x_m = last.x_m + way(random),
-                    .y_m = last.y_m + way(random),
-                    .heading_rad = last.heading_rad + turn(random)});
-  }
-  return Trajectory(std::move(rows));
+  const auto first = tests::random_start(random, place, 3.0, 3.2);
+  return tests::random_drive(random, first, {.rows = 2, .turn_rad = 0.8});
 }
 
 // Every box is measured at every step, which takes twenty minutes under sanitizers.
