@@ -1,23 +1,29 @@
 #include "roadbed/map/occupancy/cell_blocks.h"
 
 #include <algorithm>
+#include <array>
 
 #include "roadbed/map/occupancy/morton.h"
 
 namespace roadbed::map {
 namespace {
 
+constexpr std::array<std::uint8_t, 8> kSpread{0, 1, 8, 9, 64, 65, 72, 73};  // spread_bits
+
 std::uint32_t region_code(const CellKey& key) {
   return morton(key[0] >> 6, key[1] >> 6, key[2] >> 6);
 }
 
-std::uint32_t block_place(const CellKey& key) {
-  return morton(key[0] >> 3 & 7u, key[1] >> 3 & 7u, key[2] >> 3 & 7u);
+std::uint32_t place_in_cube(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return kSpread[x & 7u] | std::uint32_t{kSpread[y & 7u]} << 1 |
+         std::uint32_t{kSpread[z & 7u]} << 2;
 }
 
-std::uint32_t cell_place(const CellKey& key) {
-  return morton(key[0] & 7u, key[1] & 7u, key[2] & 7u);
+std::uint32_t block_place(const CellKey& key) {
+  return place_in_cube(key[0] >> 3, key[1] >> 3, key[2] >> 3);
 }
+
+std::uint32_t cell_place(const CellKey& key) { return place_in_cube(key[0], key[1], key[2]); }
 
 void set_bit(BlockBits& bits, std::uint32_t cell) {
   bits[cell >> 6] |= std::uint64_t{1} << (cell & 63u);
@@ -55,12 +61,21 @@ CellBlock& CellBlocks::block_at(const CellKey& key) {
   return *block;
 }
 
-bool CellBlocks::add_end(const CellKey& key) {
-  CellBlock& block = block_at(key);
-  const std::uint32_t cell = cell_place(key);
-  const bool is_new = (block.ends[cell >> 6] >> (cell & 63u) & 1u) == 0;
-  set_bit(block.ends, cell);
-  return is_new;
+// First all blocks, then their cells: the processor waits for many blocks at a time.
+std::span<const CellBlocks::End> CellBlocks::add_ends(std::span<const CellKey> keys) {
+  ends_.clear();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i > 0 && keys[i] == keys[i - 1]) continue;
+    ends_.push_back({i, &block_at(keys[i]), cell_place(keys[i])});
+  }
+  std::erase_if(ends_, [](const End& end) {
+    std::uint64_t& word = end.block->ends[end.cell >> 6];
+    const std::uint64_t bit = std::uint64_t{1} << (end.cell & 63u);
+    const bool is_known = (word & bit) != 0;
+    word |= bit;
+    return is_known;
+  });
+  return ends_;
 }
 
 void CellBlocks::mark_hit(const CellKey& key) { set_bit(block_at(key).hit, cell_place(key)); }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -37,8 +38,15 @@ class CellBlocks {
   /// The same scan goes on from elsewhere: points are new again, `touched` stays.
   void begin_view() { ++view_; }
 
-  /// Marks that a point of the scan lies in the cell, and says whether it is the first.
-  bool add_end(const CellKey& key);
+  struct End {
+    std::size_t index;  ///< of its key
+    CellBlock* block;
+    std::uint32_t cell;  ///< its place in the block
+    void mark_hit() const { block->hit[cell >> 6] |= std::uint64_t{1} << (cell & 63u); }
+  };
+  /// Marks that points of the scan lie in cells, and says which of these cells are new. Valid until
+  /// the next call.
+  std::span<const End> add_ends(std::span<const CellKey> keys);
 
   void mark_hit(const CellKey& key);
 
@@ -86,6 +94,7 @@ class CellBlocks {
   std::size_t block_count_ = 0;
   std::uint32_t view_ = 0, first_view_ = 0;  // now, and of the scan
   std::vector<CellBlock*> touched_;
+  std::vector<End> ends_;
 };
 
 }  // namespace roadbed::map

@@ -20,6 +20,8 @@ std::size_t most_bytes(std::size_t points) { return 160'000'000 + 64 * points; }
 // before the scan has ended.
 constexpr std::size_t kMostCarvedBytes = 32'000'000;
 
+constexpr std::size_t kAtOnce = 256;  // points whose cells are looked up together
+
 // As OctoMap, in float.
 Eigen::Vector3f centre_in_tree(const CellKey& key, double resolution_m) {
   Eigen::Vector3f centre;
@@ -35,18 +37,24 @@ double length_of(const Eigen::Vector3f& way) {
   return std::sqrt(static_cast<double>(way.x() * way.x() + way.y() * way.y() + way.z() * way.z()));
 }
 
+// Whether there is a key. Without branches, as points come by the million.
+bool find_key(const Eigen::Vector3d& in_tree, double per_cell, CellKey& key) {
+  bool is_in_range = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = in_tree[axis] * per_cell;
+    const bool is_in = (cells >= -kHalfRange) & (cells < kHalfRange);
+    is_in_range &= is_in;
+    key[static_cast<std::size_t>(axis)] = static_cast<std::uint16_t>(
+        whole_below(is_in ? cells : 0.0) + static_cast<std::int64_t>(kHalfRange));
+  }
+  return is_in_range;
+}
+
 }  // namespace
 
 std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_m) {
-  const double per_cell = 1.0 / resolution_m;
   CellKey key;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cells = in_tree[axis] * per_cell;
-    if (!(cells >= -kHalfRange && cells < kHalfRange)) return std::nullopt;
-    key[static_cast<std::size_t>(axis)] =
-        static_cast<std::uint16_t>(whole_below(cells) + static_cast<std::int64_t>(kHalfRange));
-  }
-  return key;
+  return find_key(in_tree, 1.0 / resolution_m, key) ? std::optional(key) : std::nullopt;
 }
 
 CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
@@ -88,36 +96,43 @@ void CloudMeasurements::add(const PointCloud& cloud, Span points,
 }
 
 void CloudMeasurements::add_hits(const PointCloud& cloud, Span points) {
-  for (std::size_t i = points.first; i < points.last; ++i) {
-    blocks_.mark_hit(checked_key(cloud, "point", cloud.in_source(i)));
-    if (i % 256 == 0) check_room(cloud);
+  for (Span some{points.first, 0}; some.first < points.last; some.first = some.last) {
+    some.last = std::min(some.first + kAtOnce, points.last);
+    for (const CellKey& key : keys_of(cloud, some)) blocks_.mark_hit(key);
+    check_room(cloud);
   }
-  check_room(cloud);
 }
 
 void CloudMeasurements::add_scan(const PointCloud& cloud, Span points,
                                  const Eigen::Vector3d& sensor_in_source) {
   const CellKey from = checked_key(cloud, "sensor", sensor_in_source);
   const Eigen::Vector3f sensor = (sensor_in_source - origin_in_source_).cast<float>();
-  const double range_m = options_.carve_range_m;
-  for (std::size_t i = points.first; i < points.last; ++i) {
-    const CellKey key = checked_key(cloud, "point", cloud.in_source(i));
-    if (!blocks_.add_end(key)) continue;
-    const Eigen::Vector3f end = centre_in_tree(key, options_.resolution_m);
-    const double length_m = length_of(end - sensor);
-    if (!(length_m > range_m)) {
-      blocks_.mark_hit(key);
-      carved_.carve(sensor, from, end, key);
-    } else {
-      if (options_.sticky_hits) blocks_.mark_hit(key);
-      const Eigen::Vector3f direction = (end - sensor) / static_cast<float>(length_m);
-      const Eigen::Vector3f cut = sensor + direction * static_cast<float>(range_m);
-      if (const auto to = key_at(cut.cast<double>(), options_.resolution_m)) {
-        carved_.carve(sensor, from, cut, *to);
-      }
+  for (Span some{points.first, 0}; some.first < points.last; some.first = some.last) {
+    some.last = std::min(some.first + kAtOnce, points.last);
+    const std::span<const CellKey> keys = keys_of(cloud, some);
+    for (const CellBlocks::End& end : blocks_.add_ends(keys)) {
+      add_ray(sensor, from, keys[end.index], end);
+      if (carved_.used_bytes() > kMostCarvedBytes) add_carved(cloud);
+      check_room(cloud);
     }
-    if (carved_.used_bytes() > kMostCarvedBytes) add_carved(cloud);
-    check_room(cloud);
+  }
+}
+
+void CloudMeasurements::add_ray(const Eigen::Vector3f& sensor, const CellKey& from,
+                                const CellKey& key, const CellBlocks::End& end) {
+  const double range_m = options_.carve_range_m;
+  const Eigen::Vector3f centre = centre_in_tree(key, options_.resolution_m);
+  const double length_m = length_of(centre - sensor);
+  if (!(length_m > range_m)) {
+    end.mark_hit();
+    carved_.carve(sensor, from, centre, key);
+    return;
+  }
+  if (options_.sticky_hits) end.mark_hit();
+  const Eigen::Vector3f direction = (centre - sensor) / static_cast<float>(length_m);
+  const Eigen::Vector3f cut = sensor + direction * static_cast<float>(range_m);
+  if (const auto to = key_at(cut.cast<double>(), options_.resolution_m)) {
+    carved_.carve(sensor, from, cut, *to);
   }
 }
 
@@ -126,6 +141,22 @@ void CloudMeasurements::add_carved(const PointCloud& cloud) {
     blocks_.merge(first, {}, free);
     check_room(cloud);
   });
+}
+
+// Valid until the next call.
+std::span<const CellKey> CloudMeasurements::keys_of(const PointCloud& cloud, Span points) {
+  keys_.resize(points.last - points.first);
+  const double per_cell = 1.0 / options_.resolution_m;
+  bool are_in_range = true;
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    are_in_range &=
+        find_key(cloud.in_source(points.first + i) - origin_in_source_, per_cell, keys_[i]);
+  }
+  if (are_in_range) return keys_;
+  for (std::size_t i = points.first; i < points.last; ++i) {
+    checked_key(cloud, "point", cloud.in_source(i));
+  }
+  return keys_;
 }
 
 CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what,

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "roadbed/map/occupancy/carved_cells.h"
 #include "roadbed/map/occupancy/cell_blocks.h"
@@ -49,9 +51,12 @@ class CloudMeasurements {
   struct Span {
     std::size_t first, last;
   };
+  std::span<const CellKey> keys_of(const PointCloud& cloud, Span points);
   void add(const PointCloud& cloud, Span points, const std::optional<Eigen::Vector3d>& sensor);
   void add_hits(const PointCloud& cloud, Span points);
   void add_scan(const PointCloud& cloud, Span points, const Eigen::Vector3d& sensor_in_source);
+  void add_ray(const Eigen::Vector3f& sensor, const CellKey& from, const CellKey& key,
+               const CellBlocks::End& end);
   void add_carved(const PointCloud& cloud);
   void check_room(const PointCloud& cloud) const;
   void take_touched();
@@ -62,6 +67,7 @@ class CloudMeasurements {
   CellBlocks blocks_;
   ScanSum sum_;
   CarvedCells carved_;  // by the scan that is being added
+  std::vector<CellKey> keys_;
 };
 
 }  // namespace roadbed::map
