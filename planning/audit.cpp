@@ -47,19 +47,16 @@ std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
 double mean_unknown_share(const map::ClearanceField& field, const Probe& probe,
                           const geometry::BodyPart& body) {
   constexpr double least_apart_m = 0.5, most_poses = 20'000;
-  double whole_m = 0.0;
-  for (std::size_t i = 0; i < probe.segments(); ++i) whole_m += probe.motion_bound_m({i, 0.0, 1.0});
-  const double apart_m = std::max(least_apart_m, 2.0 * whole_m / most_poses);
-  double sum = field.unknown_share(body.box_at(probe.state_at(0, 0.0).pose())), moved_m = 0.0;
-  std::size_t poses = 1;
-  for (std::size_t segment = 0; segment < probe.segments(); ++segment) {
-    const double motion_m = 2.0 * probe.motion_bound_m({segment, 0.0, 1.0});
-    for (double at_m = apart_m - moved_m; at_m <= motion_m; at_m += apart_m) {
-      sum += field.unknown_share(body.box_at(probe.state_at(segment, at_m / motion_m).pose()));
-      ++poses;
-    }
-    moved_m += motion_m;
-    if (moved_m >= apart_m) moved_m = std::fmod(moved_m, apart_m);
+  const std::vector<double>& moved_m = probe.moved_m();
+  const double apart_m = std::max(least_apart_m, moved_m.back() / most_poses);
+  const auto poses = 1 + static_cast<std::size_t>(moved_m.back() / apart_m);
+  double sum = 0.0;
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < poses; ++i) {
+    const double at_m = apart_m * static_cast<double>(i);
+    while (segment + 1 < probe.segments() && moved_m[segment + 1] < at_m) ++segment;
+    const double share = (at_m - moved_m[segment]) / (moved_m[segment + 1] - moved_m[segment]);
+    sum += field.unknown_share(body.box_at(probe.state_at(segment, std::min(share, 1.0)).pose()));
   }
   return sum / static_cast<double>(poses);
 }

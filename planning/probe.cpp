@@ -2,8 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadbed::planning {
+
+Probe::Probe(const geometry::Trajectory& drive, double reach_m)
+    : drive_(drive), reach_m_(reach_m), moved_m_(segments() + 1) {
+  for (std::size_t segment = 0; segment < segments(); ++segment) {
+    const double motion_m = 2.0 * Probe::motion_bound_m({segment, 0.0, 1.0});
+    moved_m_[segment + 1] = moved_m_[segment] + motion_m;
+  }
+}
 
 std::size_t Probe::segments() const { return std::max<std::size_t>(1, drive_.points().size() - 1); }
 
@@ -20,12 +29,13 @@ double Probe::time_at(std::size_t segment, double share) const {
 
 std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
   ++segment;
-  if (!is_continuous()) return segment;
-  for (; segment < segments(); ++segment) {
-    spare_m -= 2.0 * motion_bound_m({segment, 0.0, 1.0});
-    if (!(spare_m >= 0.0)) break;
-  }
-  return segment;
+  if (!is_continuous() || !(spare_m >= 0.0)) return segment;
+  const double rounding_m = std::numeric_limits<double>::epsilon() *
+                            static_cast<double>(segments()) * moved_m_.back();  // of the sums
+  const auto after = moved_m_.begin() + static_cast<std::ptrdiff_t>(segment) + 1;
+  const auto beyond =
+      std::upper_bound(after, moved_m_.end(), moved_m_[segment] + spare_m - rounding_m);
+  return static_cast<std::size_t>(beyond - moved_m_.begin()) - 1;
 }
 
 geometry::Pose2 Probe::middle_pose_of(const Span& span) const {

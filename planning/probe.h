@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/map/occupancy/clearance_field.h"
@@ -24,7 +25,8 @@ struct Span {
 /// a span, and how much that may change within it.
 class Probe {
  public:
-  Probe(const geometry::Trajectory& drive, double reach_m) : drive_(drive), reach_m_(reach_m) {}
+  /// O(rows).
+  Probe(const geometry::Trajectory& drive, double reach_m);
   virtual ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
@@ -36,8 +38,13 @@ class Probe {
   }
   double time_at(std::size_t segment, double share) const;
 
+  /// Of each row, and its last one once more if that is the only one: no point of the body moves
+  /// farther up to there [m], but for rounding.
+  const std::vector<double>& moved_m() const { return moved_m_; }
+
   /// The first segment after `segment` that is not settled with it: where the distance is nowhere
   /// in `segment` within `spare_m` of what counts, it needs that much of motion to come there.
+  /// O(log rows).
   std::size_t next_after(std::size_t segment, double spare_m) const;
 
   /// The distance changes by no more than this between the span's middle and any other time of it.
@@ -69,6 +76,7 @@ class Probe {
  private:
   const geometry::Trajectory& drive_;
   double reach_m_;
+  std::vector<double> moved_m_;
 };
 
 }  // namespace roadbed::planning
