@@ -1,12 +1,12 @@
-// bench_batch [JOBS]: what a batch costs beside the jobs themselves, what shared inputs save, and
-// how busy two threads are. JOBS (default 1000) audits of one occupancy, ten times as many routes
-// on one map and a third as many drives of one scenario by seed. CPU time of this process; the
-// machine may be loaded by others.
+// What a batch costs beside the jobs themselves, what shared inputs save, and how busy two threads
+// are.
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -231,7 +231,18 @@ void measure_busy(const char* name, const Lines& lines) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::stoi(argv[1]) : 1000;
+  int count = 1000;
+  CLI::App app{
+      "Times batches of JOBS audits of one occupancy, ten times as many routes on one map and "
+      "three "
+      "tenths as many drives of one scenario by seed. CPU time of this process."};
+  app.add_option("JOBS", count)->capture_default_str()->check(CLI::Range(10, 1'000'000));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // each line when it is there
   const tests::TemporaryFolder folder;
   const Lines of_audits = audits(folder, count), of_drives = drives(folder, count * 3 / 10);
   compare("audits of one occupancy", of_audits);

@@ -1,16 +1,14 @@
-// Times occupancy, clearance fields and audits on a made street, beside OctoMap, PCL and FCL;
-// prints a Markdown table. CPU time of one thread, medians.
-//
-//   bench_occupancy [--scans N] [--reps R] [--dump DIR]
+// Times occupancy, clearance fields and audits on a made street, beside OctoMap, PCL and FCL, as a
+// Markdown table.
+
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <malloc.h>
 #include <octomap/octomap.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <functional>
@@ -301,31 +299,30 @@ void bench_reading(const std::vector<map::PointCloud>& scans, int reps) {
       median_s(reps, [&] { map::parse_point_cloud(pcd, "street.pcd"); }), "M points/s");
 }
 
-std::string text_of(int argc, char** argv, const char* option) {
-  for (int i = 1; i + 1 < argc; ++i) {
-    if (std::strcmp(argv[i], option) == 0) return argv[i + 1];
-  }
-  return {};
-}
-
-int number_of(int argc, char** argv, const char* option, int otherwise) {
-  for (int i = 1; i + 1 < argc; ++i) {
-    if (std::strcmp(argv[i], option) != 0) continue;
-    std::from_chars(argv[i + 1], argv[i + 1] + std::strlen(argv[i + 1]), otherwise);
-  }
-  return std::max(1, otherwise);
-}
-
 }  // namespace
 }  // namespace roadbed
 
 int main(int argc, char** argv) {
   using namespace roadbed;
-  const auto scans = street_scans(number_of(argc, argv, "--scans", 50));
-  const int reps = number_of(argc, argv, "--reps", 3);
+  int scans_wanted = 50, reps = 3;
+  std::string dump_folder;
+  CLI::App app{
+      "Times occupancy, clearance fields and audits on a made street, beside OctoMap, PCL and FCL; "
+      "prints a Markdown table. CPU time of one thread, medians."};
+  app.add_option("--scans", scans_wanted, "of 64 by 1800 beams")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000));
+  app.add_option("--reps", reps, "of each row")->capture_default_str()->check(CLI::Range(1, 1000));
+  app.add_option("--dump", dump_folder, "where boxes.csv and poses.csv go, for other checkers");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const auto scans = street_scans(scans_wanted);
   fmt::print("{} scans, {:.2f} M points\n\n| what | rate | CPU time |\n|---|---|---|\n",
              scans.size(), points_in(scans) / 1e6);
   bench_reading(scans, reps);
   bench_building(scans, reps);
-  bench_audit(scans, reps, text_of(argc, argv, "--dump"));
+  bench_audit(scans, reps, dump_folder);
 }
