@@ -2,8 +2,11 @@
 
 // Private to planning.
 
+#include <cstddef>
 #include <optional>
+#include <queue>
 #include <string>
+#include <tuple>
 
 #include "roadbed/planning/probe.h"
 
@@ -18,9 +21,41 @@ struct LeastClearance {
   std::string obstacle = {};         ///< the witness's id, if it moves
 };
 
-/// Best first in each thousand segments: the span that may hold the least distance is halved until
-/// its motion bound closes the bracket. Distance as a function of time is Lipschitz with the motion
-/// bound [Piyavskii 1972, doi:10.1016/0041-5553(72)90115-2].
-LeastClearance find_least_clearance(const Probe& probe, double tolerance_m);
+/// Looks for the least distance over the parts of a drive that it is given, best first in each: the
+/// span that may hold the least distance is halved until its motion bound closes the bracket.
+/// Distance as a function of time is Lipschitz with the motion bound
+/// [Piyavskii 1972, doi:10.1016/0041-5553(72)90115-2].
+class LeastClearanceSearch {
+ public:
+  LeastClearanceSearch(const Probe& probe, double tolerance_m);
+
+  /// Segments from one on up to another, without that one.
+  void search(std::size_t from, std::size_t to);
+
+  LeastClearance found() const;
+
+ private:
+  struct Open {
+    Span span;
+    double lower_m;  // no time of the span has less
+
+    // For a queue that hands out the lowest bound first, ties in order of time.
+    friend bool operator<(const Open& a, const Open& b) {
+      return std::tie(b.lower_m, b.span.segment, b.span.from) <
+             std::tie(a.lower_m, a.span.segment, a.span.from);
+    }
+  };
+
+  void guess();
+  double look_at(const Span& span);
+  bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
+  double open(const Span& span, double known_lower_m);
+  void examine(const Open& lowest);
+
+  const Probe& probe_;
+  double tolerance_m_;
+  LeastClearance best_;
+  std::priority_queue<Open> queue_;
+};
 
 }  // namespace roadbed::planning

@@ -2,6 +2,8 @@
 
 // Private to planning.
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "roadbed/planning/audit.h"
@@ -15,10 +17,41 @@ struct NearStretches {
   std::vector<Stretch> undecided;  ///< apart from `near`
 };
 
-/// Halves every span until it is proven clear of `clearance_m`, shown to be too near to within
-/// `tolerance_m` of motion, or too short to go on (1 mm of motion): undecided. An overlap or touch
-/// is always too near. Drives of over 40 km get a coarser tolerance, a millionth of their length.
-/// @pre clearance_m is less than the field's horizon.
-NearStretches find_near_stretches(const Probe& probe, double clearance_m, double tolerance_m);
+/// Goes along a drive and halves every span until it is proven clear of `clearance_m`, shown to be
+/// too near to within `tolerance_m` of motion, or too short to go on (1 mm of motion): undecided.
+/// An overlap or touch is always too near. Drives of over 40 km get a coarser tolerance, a
+/// millionth of their length.
+class NearStretchSearch {
+ public:
+  /// @pre clearance_m is less than the field's horizon.
+  NearStretchSearch(const Probe& probe, double clearance_m, double tolerance_m);
+
+  /// From where it stopped on up to a segment, without that one; it may go farther.
+  void search(std::size_t to);
+
+  /// Of what was gone along.
+  NearStretches found() const;
+
+ private:
+  enum class Label { clear, near, undecided };
+
+  /// Neighbouring spans of one label.
+  struct Run {
+    Label label;
+    Stretch time;
+    std::optional<Conflict> worst;  // of a near one
+  };
+
+  void label(std::size_t segment);
+  bool is_far(double distance_m) const { return distance_m > 0.0 && distance_m >= clearance_m_; }
+  bool settle(const Span& span);
+  bool append(const Span& span, Label label, const std::optional<Conflict>& worst = std::nullopt);
+
+  const Probe& probe_;
+  double clearance_m_, tolerance_m_;
+  std::size_t next_ = 0;  // segment
+  double spare_m_ = 0.0;  // of the segment that is being labelled, where it is clear as a whole
+  std::vector<Run> runs_;
+};
 
 }  // namespace roadbed::planning

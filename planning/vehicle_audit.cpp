@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
+
+#include "roadbed/planning/part_audit.h"
 
 namespace roadbed::planning {
 namespace {
@@ -118,11 +121,17 @@ VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
 VehicleAudit audit_vehicle(const VehicleSurroundings& around,
                            const geometry::Trajectory& drive_in_source, const AuditOptions& options,
                            std::span<const MovingObstacle> moving_in_source) {
-  VehicleAudit result;
+  std::vector<std::unique_ptr<PartAudit>> audits;
   for (std::size_t i = 0; i < around.parts().size(); ++i) {
-    result.of_parts.push_back(
-        audit(around.field_of(i), drive_in_source, around.parts()[i], options, moving_in_source));
+    audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive_in_source,
+                                                 around.parts()[i], options, moving_in_source));
   }
+  bool goes_on = !audits.empty();
+  while (goes_on) {
+    for (const auto& audit : audits) goes_on = audit->advance();
+  }
+  VehicleAudit result;
+  for (const auto& audit : audits) result.of_parts.push_back(audit->report());
   result.whole = merged(around.parts(), result.of_parts);
   return result;
 }

@@ -1,0 +1,227 @@
+#include "roadbed/planning/part_audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roadbed/planning/body_side.h"
+#include "roadbed/planning/moving_probe.h"
+#include "roadbed/planning/prediction.h"
+
+namespace roadbed::planning {
+namespace {
+
+using map::ObstacleKind;
+
+// Of a drive that is looked at together: about a tile of a field.
+constexpr std::size_t kMostSegments = 1024;
+constexpr double kStretch_m = 100.0;
+
+// @returns the part, inflated.
+geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Trajectory& drive,
+                           const geometry::BodyPart& part, const AuditOptions& options) {
+  part.check();
+  if (drive.empty()) throw std::invalid_argument("audit: the drive needs at least 1 point, got 0");
+  const auto refuse = [](const char* option, double value) {
+    throw std::invalid_argument(fmt::format("audit: {} is out of range, got {} m", option, value));
+  };
+  const auto is_length = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  if (!is_length(options.clearance_m)) refuse("clearance_m", options.clearance_m);
+  if (!is_length(options.inflate_m)) refuse("inflate_m", options.inflate_m);
+  // A circle is looked at from its middle.
+  const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
+  const double seen_m = field.horizon_m() - body.radius_m;
+  if (!(seen_m > 0.0)) refuse("the circle's radius", body.radius_m);
+  if (!(options.clearance_m < 0.5 * seen_m)) refuse("clearance_m", options.clearance_m);
+  if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
+  return body;
+}
+
+std::optional<geometry::Trajectory> changed(const geometry::Trajectory& drive,
+                                            std::span<const MovingObstacle> moving) {
+  if (moving.empty()) return std::nullopt;
+  return with_rows_at_changes(drive, moving);
+}
+
+std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
+  if (policy == UnknownPolicy::occupied) return {ObstacleKind::occupied, ObstacleKind::unknown};
+  return {ObstacleKind::occupied};
+}
+
+// A row is the start of its segment; the last one the end of the last.
+Span at_row(const Probe& probe, std::size_t row) {
+  if (row < probe.segments()) return {row, 0.0, 0.0};
+  return {probe.segments() - 1, 1.0, 1.0};
+}
+
+std::size_t rows_apart(const geometry::Trajectory& drive) {
+  constexpr std::size_t most_samples = 5000;
+  return 1 + drive.points().size() / most_samples;
+}
+
+double clearance_at(const Probe& probe, std::size_t row) {
+  constexpr double exact_below_m = 5.0;
+  const Span at = at_row(probe, row);
+  const double bound_m = probe.lower_bound_m(at, exact_below_m);
+  if (bound_m >= exact_below_m) return bound_m;
+  const auto nearest = probe.nearest(at, exact_below_m);
+  return nearest ? nearest->distance_m : std::min(exact_below_m, probe.horizon_m());
+}
+
+// Poses half a metre of motion apart, or farther on a long drive.
+double poses_apart_m(const Probe& probe) {
+  constexpr double least_apart_m = 0.5, most_poses = 20'000;
+  return std::max(least_apart_m, probe.moved_m().back() / most_poses);
+}
+
+// Times that cannot be proven to be over measured space count as unknown.
+std::vector<Stretch> unknown_times(const NearStretches& found) {
+  std::vector<Stretch> stretches = found.undecided;
+  for (const Conflict& near : found.near) stretches.push_back({near.from_s, near.to_s});
+  std::ranges::sort(stretches, {}, &Stretch::from_s);
+  return stretches;
+}
+
+geometry::Rectangle thing_at(double t_s, const map::Box2& witness, const std::string& id,
+                             std::span<const MovingObstacle> moving) {
+  for (const MovingObstacle& mover : moving) {
+    if (id.empty() || mover.obstacle.id != id) continue;
+    const geometry::Pose2 centre = mover.obstacle.motion.at(t_s).pose();
+    return body_around(centre, mover.obstacle.length_m, mover.obstacle.width_m);
+  }
+  const Eigen::Vector2d half = 0.5 * (witness.max_in_source - witness.min_in_source);
+  return {.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
+          .half_length_m = half.x(),
+          .half_width_m = half.y()};
+}
+
+std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witness,
+                    const std::string& id, std::span<const MovingObstacle> moving,
+                    const geometry::BodyPart& body) {
+  if (body.is_circle()) return body.name;
+  return std::string(side_towards(thing_at(at.t_s, witness, id, moving), body.core_at(at.pose())));
+}
+
+}  // namespace
+
+PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
+                     const geometry::BodyPart& part, const AuditOptions& options,
+                     std::span<const MovingObstacle> moving_in_source)
+    : field_(field),
+      options_(options),
+      moving_(moving_in_source),
+      body_(checked(field, drive_in_source, part, options)),
+      with_changes_(changed(drive_in_source, moving_in_source)),
+      drive_(with_changes_ ? *with_changes_ : drive_in_source),
+      probe_(field, drive_, body_, obstacles(options.unknown)),
+      least_(probe_, options.tolerance_m) {
+  if (options.unknown != UnknownPolicy::report) return;
+  unknown_probe_.emplace(field, drive_, body_, std::vector{ObstacleKind::unknown});
+  unknown_.emplace(*unknown_probe_, options.clearance_m, options.tolerance_m);
+}
+
+bool PartAudit::advance() {
+  const std::size_t from = done_;
+  if (from == probe_.segments()) return false;
+  done_ = stretch_end();
+  least_.search(from, done_);
+  if (unknown_) unknown_->search(done_);
+  take_samples(done_);
+  take_unknown_shares(done_);
+  return true;
+}
+
+std::size_t PartAudit::stretch_end() const {
+  const auto& rows = drive_.points();
+  const std::size_t most = std::min(done_ + kMostSegments, probe_.segments());
+  std::size_t end = done_ + 1;
+  for (double way_m = 0.0; end < most && way_m < kStretch_m; ++end) {
+    way_m +=
+        std::abs(rows[end].x_m - rows[end - 1].x_m) + std::abs(rows[end].y_m - rows[end - 1].y_m);
+  }
+  return end;
+}
+
+void PartAudit::take_samples(std::size_t to) {
+  const auto& rows = drive_.points();
+  const std::size_t end = to == probe_.segments() ? rows.size() : to, apart = rows_apart(drive_);
+  for (std::size_t row = apart * report_.profile.size(); row < end; row += apart) {
+    report_.profile.push_back({rows[row].t_s, clearance_at(probe_, row)});
+  }
+}
+
+void PartAudit::take_unknown_shares(std::size_t to) {
+  const std::vector<double>& moved_m = probe_.moved_m();
+  const double apart_m = poses_apart_m(probe_);
+  for (;; ++poses_) {
+    const double at_m = apart_m * static_cast<double>(poses_);
+    if (at_m > moved_m[to]) return;
+    while (poses_segment_ + 1 < to && moved_m[poses_segment_ + 1] < at_m) ++poses_segment_;
+    const double from_m = moved_m[poses_segment_], to_m = moved_m[poses_segment_ + 1];
+    const auto state =
+        probe_.state_at(poses_segment_, std::min((at_m - from_m) / (to_m - from_m), 1.0));
+    unknown_sum_ += field_.unknown_share(body_.box_at(state.pose()));
+  }
+}
+
+void PartAudit::take_least(const LeastClearance& least) {
+  report_.least_clearance_m = least.found_m;
+  report_.least_clearance_at_s = least.at.t_s;
+  report_.witness = least.witness;
+  report_.obstacle = least.obstacle;
+}
+
+void PartAudit::take_near(const Probe& probe) {
+  NearStretchSearch search(probe, options_.clearance_m, options_.tolerance_m);
+  search.search(probe.segments());
+  const NearStretches found = search.found();
+  const auto add = [](auto& to, const auto& more) {
+    to.insert(to.end(), more.begin(), more.end());
+    std::ranges::stable_sort(to, {}, [](const auto& stretch) { return stretch.from_s; });
+  };
+  add(report_.conflicts, found.near);
+  add(report_.undecided, found.undecided);
+}
+
+void PartAudit::ask_about_moving() {
+  const MovingProbe probe(drive_, body_, moving_, field_.horizon_m());
+  LeastClearanceSearch search(probe, options_.tolerance_m);
+  for (std::size_t from = 0; from < probe.segments(); from += kMostSegments) {
+    search.search(from, std::min(from + kMostSegments, probe.segments()));
+  }
+  const LeastClearance least = search.found();
+  if (least.found_m < report_.least_clearance_m) take_least(least);
+  report_.proven_clearance_m = std::min(report_.proven_clearance_m, least.proven_m);
+  if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) take_near(probe);
+  for (std::size_t i = 0; i < report_.profile.size(); ++i) {
+    double& clearance_m = report_.profile[i].clearance_m;
+    clearance_m = std::min(clearance_m, clearance_at(probe, i * rows_apart(drive_)));
+  }
+}
+
+AuditReport PartAudit::report() {
+  const LeastClearance least = least_.found();
+  take_least(least);
+  report_.proven_clearance_m = least.proven_m;
+  if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) take_near(probe_);
+  if (with_changes_) ask_about_moving();
+  report_.beyond_horizon = !report_.witness;
+  if (report_.witness) {
+    report_.part = part_of(drive_.at(report_.least_clearance_at_s), *report_.witness,
+                           report_.obstacle, moving_, body_);
+  }
+  for (Conflict& conflict : report_.conflicts) {
+    conflict.part = part_of(conflict.at, conflict.witness, conflict.obstacle, moving_, body_);
+  }
+  if (unknown_) report_.unknown = unknown_times(unknown_->found());
+  report_.unknown_share = unknown_sum_ / static_cast<double>(poses_);
+  report_.verdict = judge(report_);
+  return std::move(report_);
+}
+
+}  // namespace roadbed::planning

@@ -1,0 +1,60 @@
+#pragma once
+
+// Private to planning.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "roadbed/geometry/body_part.h"
+#include "roadbed/geometry/trajectory.h"
+#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/planning/audit.h"
+#include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/least_clearance.h"
+#include "roadbed/planning/near_stretches.h"
+
+namespace roadbed::planning {
+
+/// The audit of one part of a vehicle, stretch by stretch along the drive: all that is asked about
+/// one stretch is asked together, so that a field's tiles are made once, for several parts too.
+class PartAudit {
+ public:
+  /// As `audit`, which see. What is given has to outlive it.
+  PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
+            const geometry::BodyPart& part, const AuditOptions& options,
+            std::span<const MovingObstacle> moving_in_source);
+  PartAudit(const PartAudit&) = delete;
+  PartAudit& operator=(const PartAudit&) = delete;
+
+  /// Goes on by a stretch, whose ends are the same for all parts; false at the end of the drive.
+  bool advance();
+
+  /// @pre advance() says that this is the end.
+  AuditReport report();
+
+ private:
+  std::size_t stretch_end() const;
+  void take_samples(std::size_t to);
+  void take_unknown_shares(std::size_t to);
+  void take_least(const LeastClearance& least);
+  void take_near(const Probe& probe);
+  void ask_about_moving();
+
+  const map::ClearanceField& field_;
+  const AuditOptions& options_;
+  std::span<const MovingObstacle> moving_;
+  geometry::BodyPart body_;  // inflated
+  std::optional<geometry::Trajectory> with_changes_;
+  const geometry::Trajectory& drive_;
+  BodyProbe probe_;
+  LeastClearanceSearch least_;
+  std::optional<BodyProbe> unknown_probe_;  // where unknown space is reported
+  std::optional<NearStretchSearch> unknown_;
+  std::size_t done_ = 0;  // segments
+  std::size_t poses_ = 0, poses_segment_ = 0;
+  double unknown_sum_ = 0.0;  // of the poses' shares
+  AuditReport report_;
+};
+
+}  // namespace roadbed::planning
