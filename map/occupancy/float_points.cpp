@@ -52,6 +52,7 @@ std::size_t sift(float* values, std::size_t points) {
 }  // namespace
 
 void add_float_points(const FloatRecords& records, RawCloud& cloud) {
+  if (records.count == 0) return;
   std::vector<Eigen::Vector3f>& points = cloud.float_points_in_source;
   const std::size_t before = points.size();
   points.resize(before + records.count);  // not set to 0: a vector of Eigen's is left as it is
