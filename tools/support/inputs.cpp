@@ -44,7 +44,7 @@ std::shared_ptr<const map::ClearanceField> Inputs::field_of(const std::vector<fs
                                    auto occupancy = occupancy_of(files);
                                    map::ClearanceField field(*occupancy, {.to_m = height_m});
                                    auto both = std::make_shared<const FieldWithOccupancy>(
-                                       std::move(occupancy), std::move(field));
+                                       FieldWithOccupancy{std::move(occupancy), std::move(field)});
                                    return {both, &both->field};
                                  });
 }
