@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "roadbed/planning/part_audit.h"
 
@@ -54,9 +55,10 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                   const geometry::BodyPart& part, const AuditOptions& options,
                   std::span<const MovingObstacle> moving_in_source) {
-  PartAudit whole(field, drive_in_source, part, options, moving_in_source);
-  while (whole.advance()) continue;
-  return whole.report();
+  const auto whole =
+      std::make_unique<PartAudit>(field, drive_in_source, part, options, moving_in_source);
+  PartAudit::go_along({&whole, 1});
+  return whole->report();
 }
 
 }  // namespace roadbed::planning

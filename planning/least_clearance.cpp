@@ -1,14 +1,14 @@
 #include "roadbed/planning/least_clearance.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace roadbed::planning {
 
 LeastClearanceSearch::LeastClearanceSearch(const Probe& probe, double tolerance_m)
-    : probe_(probe), tolerance_m_(tolerance_m) {
+    : probe_(probe), tolerance_m_(tolerance_m), first_bound_m_(probe.horizon_m()) {
   best_.found_m = best_.proven_m = probe.horizon_m();
   best_.at = probe.state_at(0, 0.0);
-  guess();
 }
 
 LeastClearance LeastClearanceSearch::found() const {
@@ -17,7 +17,16 @@ LeastClearance LeastClearanceSearch::found() const {
   return found;
 }
 
+void LeastClearanceSearch::glance(std::size_t segment) {
+  const Span whole{segment, 0.0, 1.0};
+  const double bound_m = probe_.lower_bound_m(whole, first_bound_m_);
+  if (bound_m >= first_bound_m_) return;
+  first_bound_m_ = bound_m;
+  first_ = whole;
+}
+
 void LeastClearanceSearch::search(std::size_t from, std::size_t to) {
+  if (first_) look_at(*std::exchange(first_, std::nullopt));
   for (std::size_t segment = from; segment < to;) {
     const double lower_m = open({segment, 0.0, 1.0}, 0.0);
     segment = probe_.next_after(segment, lower_m - best_.found_m);
@@ -29,22 +38,6 @@ void LeastClearanceSearch::search(std::size_t from, std::size_t to) {
   }
   if (!queue_.empty()) best_.proven_m = std::min(best_.proven_m, queue_.top().lower_m);
   queue_ = {};
-}
-
-// Some places all along the drive: a low distance to begin with puts most spans aside at once.
-void LeastClearanceSearch::guess() {
-  constexpr std::size_t looks = 64;
-  const std::size_t step = 1 + probe_.segments() / looks;
-  Span lowest;
-  double lowest_m = best_.found_m;
-  for (std::size_t segment = 0; segment < probe_.segments(); segment += step) {
-    const Span whole{segment, 0.0, 1.0};
-    const double bound_m = probe_.lower_bound_m(whole, lowest_m);
-    if (bound_m >= lowest_m) continue;
-    lowest_m = bound_m;
-    lowest = whole;
-  }
-  look_at(lowest);
 }
 
 // Distance in the middle of the span, or what was found before if that is less.

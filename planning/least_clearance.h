@@ -29,6 +29,10 @@ class LeastClearanceSearch {
  public:
   LeastClearanceSearch(const Probe& probe, double tolerance_m);
 
+  /// Looks at a segment from far: the search begins where such a look found the least room, as a
+  /// low distance to begin with puts most others aside at once.
+  void glance(std::size_t segment);
+
   /// Segments from one on up to another, without that one.
   void search(std::size_t from, std::size_t to);
 
@@ -46,7 +50,6 @@ class LeastClearanceSearch {
     }
   };
 
-  void guess();
   double look_at(const Span& span);
   bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
   double open(const Span& span, double known_lower_m);
@@ -55,6 +58,8 @@ class LeastClearanceSearch {
   const Probe& probe_;
   double tolerance_m_;
   LeastClearance best_;
+  std::optional<Span> first_;  // where to begin
+  double first_bound_m_;
   std::priority_queue<Open> queue_;
 };
 

@@ -125,6 +125,20 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
   unknown_.emplace(*unknown_probe_, options.clearance_m, options.tolerance_m);
 }
 
+void PartAudit::go_along(std::span<const std::unique_ptr<PartAudit>> parts) {
+  if (parts.empty()) return;
+  constexpr std::size_t glances = 64;
+  const std::size_t segments = parts.front()->probe_.segments();
+  for (std::size_t segment = 0; segment < segments; segment += 1 + segments / glances) {
+    for (const auto& part : parts) part->least_.glance(segment);
+  }
+  bool goes_on = true;
+  while (goes_on) {
+    for (const auto& part : parts) goes_on = part->advance();
+  }
+}
+
+// By a stretch, whose ends are the same for all parts.
 bool PartAudit::advance() {
   const std::size_t from = done_;
   if (from == probe_.segments()) return false;

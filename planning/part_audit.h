@@ -3,6 +3,7 @@
 // Private to planning.
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -27,13 +28,14 @@ class PartAudit {
   PartAudit(const PartAudit&) = delete;
   PartAudit& operator=(const PartAudit&) = delete;
 
-  /// Goes on by a stretch, whose ends are the same for all parts; false at the end of the drive.
-  bool advance();
+  /// Audits all parts of a vehicle, which are on the same drive.
+  static void go_along(std::span<const std::unique_ptr<PartAudit>> parts);
 
-  /// @pre advance() says that this is the end.
+  /// @pre The part has gone along the drive.
   AuditReport report();
 
  private:
+  bool advance();
   std::size_t stretch_end() const;
   void take_samples(std::size_t to);
   void take_unknown_shares(std::size_t to);

@@ -126,10 +126,7 @@ VehicleAudit audit_vehicle(const VehicleSurroundings& around,
     audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive_in_source,
                                                  around.parts()[i], options, moving_in_source));
   }
-  bool goes_on = !audits.empty();
-  while (goes_on) {
-    for (const auto& audit : audits) goes_on = audit->advance();
-  }
+  PartAudit::go_along(audits);
   VehicleAudit result;
   for (const auto& audit : audits) result.of_parts.push_back(audit->report());
   result.whole = merged(around.parts(), result.of_parts);

@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tests/support/brute_force_distance.h"
@@ -211,6 +215,54 @@ TEST(VehicleAudit, EachPartKeepsItsDistanceFromWhatMoves) {
   EXPECT_NEAR(audit.of_parts[1].least_clearance_m, 0.05, 0.02);
   EXPECT_NEAR(audit.of_parts[2].least_clearance_m, 1.1 + 0.805, 0.02);
   EXPECT_NEAR(audit.of_parts[3].least_clearance_m, 0.0, 1e-9);
+}
+
+/// Counts how often each place is asked for.
+class CountedOccupancy : public map::OccupancySource {
+ public:
+  explicit CountedOccupancy(const OccupancyMap& occupancy) : occupancy_(occupancy) {}
+
+  double resolution_m() const override { return occupancy_.resolution_m(); }
+  const Eigen::Vector3d& origin_in_source() const override { return occupancy_.origin_in_source(); }
+  const std::string& crs() const override { return occupancy_.crs(); }
+  std::optional<map::SeenThrough> seen_through() const override { return std::nullopt; }
+  std::optional<map::Box3> bounds() const override { return occupancy_.bounds(); }
+  std::vector<map::OccupancyCell> cells() const override { return occupancy_.cells(); }
+  std::vector<map::OccupancyCell> cells_in(const map::Box3& box) const override {
+    ++times_[{box.min_in_source.x(), box.min_in_source.y()}];
+    return occupancy_.cells_in(box);
+  }
+
+  const std::map<std::pair<double, double>, int>& times() const { return times_; }
+
+ private:
+  const OccupancyMap& occupancy_;
+  mutable std::map<std::pair<double, double>, int> times_;
+};
+
+TEST(VehicleAudit, ReadsEachPlaceOfALongDriveTwiceForAllPartsOfOneHeight) {
+  map::PointCloud cloud;
+  for (float x_m = 0.0f; x_m < 1500.0f; x_m += 5.0f) cloud.points.emplace_back(x_m, 4.0f, 1.0f);
+  const OccupancyMap posts = OccupancyMap::build(std::vector{cloud}, {.resolution_m = 0.4});
+  const CountedOccupancy counted(posts);
+  std::vector<BodyPart> parts{geometry::body_of({})};
+  for (int i = 0; i < 4; ++i) parts.push_back({"rail", 0.1 * i, 2.0, -1.0, 1.0, 0.0, 0.3, 1.5});
+  parts.front().from_height_m = 0.3;
+  parts.front().to_height_m = 1.5;
+  std::vector<geometry::TrajectoryPoint> rows;
+  for (int i = 0; i <= 14'000; ++i) rows.push_back({.t_s = 0.01 * i, .x_m = 20.0 + 0.1 * i});
+  const Trajectory drive(rows);
+  const AuditOptions options{};  // unknown space is reported
+  map::FieldRegion region = audited_region(drive, parts, options);
+  region.tile_m = 40.0;
+  region.most_cells = 1'000'000;  // a few tiles
+  const VehicleSurroundings around(counted, {}, parts, region);
+  EXPECT_EQ(audit_vehicle(around, drive, options).whole.conflicts.size(), 0u);
+  std::size_t reads = 0;
+  for (const auto& [place, times] : counted.times()) reads += static_cast<std::size_t>(times);
+  const std::size_t places = counted.times().size();
+  EXPECT_GT(places, 30u);
+  EXPECT_LE(reads, 2 * places + parts.size());  // glances, the audit, and where each part begins
 }
 
 }  // namespace
