@@ -12,6 +12,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/cell_range.h"
 #include "roadbed/map/occupancy/cloud_measurements.h"
+#include "roadbed/map/occupancy/cut_cloud.h"
 
 namespace roadbed::map {
 namespace {
@@ -63,6 +64,18 @@ void for_each_block(const CellBlocks& blocks, const Visit& visit) {
   }
 }
 
+Box3 box_with_sensors(const PointCloud& cloud) {
+  Box3 box = bounds(cloud);
+  const auto add_sensor = [&](const std::optional<Eigen::Vector3d>& sensor) {
+    if (!sensor) return;
+    box.min_in_source = box.min_in_source.cwiseMin(*sensor);
+    box.max_in_source = box.max_in_source.cwiseMax(*sensor);
+  };
+  add_sensor(cloud.sensor_in_source);
+  for (const ScanStart& scan : cloud.scans) add_sensor(scan.sensor_in_source);
+  return box;
+}
+
 }  // namespace
 
 Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m) {
@@ -101,27 +114,38 @@ std::filesystem::path TileBuilder::aside_file(const Place& place) const {
   return plan_.folder / fmt::format("tile_{}_{}.aside", place.second, place.first);
 }
 
-// None where the cloud lies within the range of keys; else a multiple of a quarter of it.
-TileBuilder::Shift TileBuilder::shift_of(const PointCloud& cloud) const {
-  Box3 box = bounds(cloud);
-  const auto add_sensor = [&](const std::optional<Eigen::Vector3d>& sensor) {
-    if (!sensor) return;
-    box.min_in_source = box.min_in_source.cwiseMin(*sensor);
-    box.max_in_source = box.max_in_source.cwiseMax(*sensor);
-  };
-  add_sensor(cloud.sensor_in_source);
-  for (const ScanStart& scan : cloud.scans) add_sensor(scan.sensor_in_source);
+// None where the box lies within the range of keys; else a multiple of a quarter of it.
+TileBuilder::Shift TileBuilder::shift_of(const Box3& box) const {
   Shift shift{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double from =
-        (box.min_in_source[axis] - plan_.origin_in_source[axis]) / plan_.resolution_m;
-    const double to = (box.max_in_source[axis] - plan_.origin_in_source[axis]) / plan_.resolution_m;
+    const auto [from, to] = cells_along(box, axis);
     if (from > -kHalfRange + 1.0 && to < kHalfRange - 1.0) continue;
     constexpr double step = 0.5 * kHalfRange;
     shift[static_cast<std::size_t>(axis)] =
         static_cast<std::int64_t>(step * std::round(0.5 * (from + to) / step));
   }
   return shift;
+}
+
+bool TileBuilder::are_keys_enough(const Box3& box) const {
+  const Shift shift = shift_of(box);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [from, to] = cells_along(box, axis);
+    const auto moved = static_cast<double>(shift[static_cast<std::size_t>(axis)]);
+    if (from - moved < -kHalfRange || to - moved >= kHalfRange) return false;
+  }
+  return true;
+}
+
+std::pair<double, double> TileBuilder::cells_along(const Box3& box, int axis) const {
+  const double origin = plan_.origin_in_source[axis];
+  return {(box.min_in_source[axis] - origin) / plan_.resolution_m,
+          (box.max_in_source[axis] - origin) / plan_.resolution_m};
+}
+
+// Pieces of a cloud with rays would count as several clouds.
+bool TileBuilder::may_be_cut(const PointCloud& cloud) const {
+  return !(keeps_clouds_apart() && cloud.has_sensor());
 }
 
 OccupancyOptions TileBuilder::options() const {
@@ -149,7 +173,19 @@ void TileBuilder::add(const PointCloud& cloud) {
   if (!plan_.sticky_hits && !cloud.scans.empty()) {
     throw std::invalid_argument("TileBuilder: log-odds need one sensor position a cloud");
   }
-  const Shift shift = shift_of(cloud);
+  const Box3 box = box_with_sensors(cloud);
+  if (are_keys_enough(box) || !may_be_cut(cloud)) {
+    add_piece(cloud, box);
+    return;
+  }
+  const double side_m = kHalfRange * plan_.resolution_m;
+  for (const PointCloud& piece : cut_cloud(cloud, plan_.origin_in_source, side_m)) {
+    add_piece(piece, box_with_sensors(piece));
+  }
+}
+
+void TileBuilder::add_piece(const PointCloud& cloud, const Box3& box) {
+  const Shift shift = shift_of(box);
   if (measured_ && shift != shift_) put_aside();
   if (!measured_) start(shift);
   measured_->add(cloud);

@@ -54,6 +54,8 @@ class TileBuilder {
   TileBuilder(const TileBuilder&) = delete;
   TileBuilder& operator=(const TileBuilder&) = delete;
 
+  /// A cloud that is larger than an octree's range is taken in pieces, but for one scan by itself,
+  /// and where clouds are kept apart one with a sensor.
   /// @throws InputError as `OccupancyMap::build` does, or if a file cannot be written.
   /// @throws std::invalid_argument if hits are not sticky and each point has its own sensor
   /// position.
@@ -67,7 +69,11 @@ class TileBuilder {
   using Place = std::pair<std::int64_t, std::int64_t>;  // y and x of a tile
   using Shift = std::array<std::int64_t, 3>;            // of cells, from the origin
 
-  Shift shift_of(const PointCloud& cloud) const;
+  std::pair<double, double> cells_along(const Box3& box, int axis) const;
+  Shift shift_of(const Box3& box) const;
+  bool are_keys_enough(const Box3& box) const;
+  bool may_be_cut(const PointCloud& cloud) const;
+  void add_piece(const PointCloud& cloud, const Box3& box);
   void start(const Shift& shift);
   void put_aside();
   std::filesystem::path aside_file(const Place& place) const;

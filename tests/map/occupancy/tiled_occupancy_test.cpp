@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <random>
+#include <set>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/occupancy/clearance_field.h"
@@ -223,6 +224,51 @@ TEST_F(TiledOccupancyTest, MayBeLargerThanAnOctreesRange) {
                          (cell.centre_in_source - hit).norm() < 0.1;
                 })));
   }
+}
+
+/// Hits along 20 km, and what is around the sensors that come with every few of them.
+PointCloud long_cloud(bool has_sensors) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> aside(-8.0, 8.0), height(0.0, 3.0);
+  PointCloud cloud;
+  cloud.origin_in_source = {1'000.0, -2'000.0, 0.0};
+  for (int i = 0; i < 2000; ++i) {
+    if (has_sensors && i % 5 == 0) {
+      cloud.scans.push_back(
+          {cloud.points.size(), cloud.origin_in_source + Eigen::Vector3d(10.0 * i, -5.0 * i, 1.5)});
+    }
+    cloud.points.emplace_back(static_cast<float>(10.0 * (i - i % 5) + aside(random)),
+                              static_cast<float>(-5.0 * (i - i % 5) + aside(random)),
+                              static_cast<float>(height(random)));
+  }
+  return cloud;
+}
+
+TEST_F(TiledOccupancyTest, TakesOneCloudThatIsLargerThanAnOctreesRange) {
+  for (const bool has_sensors : {false, true}) {
+    const PointCloud cloud = long_cloud(has_sensors);
+    EXPECT_THROW(OccupancyMap::build(std::vector{cloud}, {.resolution_m = kSide_m}), InputError);
+    build({cloud}, 1024, 1'000'000);
+    const TiledOccupancy tiles(folder_);
+    std::set<std::array<std::int64_t, 3>> hit;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      const Eigen::Array3d cells =
+          ((cloud.in_source(i) - tiles.origin_in_source()) / kSide_m).array().floor();
+      hit.insert({static_cast<std::int64_t>(cells.x()), static_cast<std::int64_t>(cells.y()),
+                  static_cast<std::int64_t>(cells.z())});
+    }
+    std::size_t hits = 0, free = 0;
+    for (const auto& [at, state] : finest(tiles)) {
+      (state == CellState::occupied ? hits : free) += 1;
+    }
+    EXPECT_EQ(hits, hit.size());
+    EXPECT_EQ(free > 0, has_sensors);
+  }
+}
+
+TEST_F(TiledOccupancyTest, RefusesALargeCloudWithSensorsWhereCloudsCount) {
+  EXPECT_THROW(build({long_cloud(true)}, 1024, 1'000'000, {.remove_seen_through = 3}), InputError);
+  EXPECT_NO_THROW(build({long_cloud(false)}, 1024, 1'000'000, {.remove_seen_through = 3}));
 }
 
 TEST_F(TiledOccupancyTest, RefusesTilesThatAreNotThoseOfTheIndex) {
