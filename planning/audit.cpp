@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "roadbed/planning/moving_probe.h"
 #include "roadbed/planning/part_audit.h"
 
 namespace roadbed::planning {
@@ -55,8 +56,10 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
 AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                   const geometry::BodyPart& part, const AuditOptions& options,
                   std::span<const MovingObstacle> moving_in_source) {
-  const auto whole =
-      std::make_unique<PartAudit>(field, drive_in_source, part, options, moving_in_source);
+  std::optional<geometry::Trajectory> changed;
+  if (!moving_in_source.empty()) changed = with_rows_at_changes(drive_in_source, moving_in_source);
+  const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
+  const auto whole = std::make_unique<PartAudit>(field, drive, part, options, moving_in_source);
   PartAudit::go_along({&whole, 1});
   return whole->report();
 }

@@ -40,6 +40,7 @@ std::vector<double> ways_m(const geometry::Trajectory& motion, double radius_m) 
 
 geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
                                           std::span<const MovingObstacle> obstacles) {
+  if (drive.empty()) return drive;
   std::vector<geometry::TrajectoryPoint> rows = drive.points();
   for (const MovingObstacle& obstacle : obstacles) {
     for (const double t_s : {obstacle.from_s, obstacle.to_s}) {

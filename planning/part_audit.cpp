@@ -22,6 +22,8 @@ using map::ObstacleKind;
 constexpr std::size_t kMostSegments = 1024;
 constexpr double kStretch_m = 100.0;
 
+std::size_t glances_apart(std::size_t segments) { return 1 + segments / 64; }
+
 // @returns the part, inflated.
 geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Trajectory& drive,
                            const geometry::BodyPart& part, const AuditOptions& options) {
@@ -40,12 +42,6 @@ geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Tra
   if (!(options.clearance_m < 0.5 * seen_m)) refuse("clearance_m", options.clearance_m);
   if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
   return body;
-}
-
-std::optional<geometry::Trajectory> changed(const geometry::Trajectory& drive,
-                                            std::span<const MovingObstacle> moving) {
-  if (moving.empty()) return std::nullopt;
-  return with_rows_at_changes(drive, moving);
 }
 
 std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
@@ -116,8 +112,7 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
       options_(options),
       moving_(moving_in_source),
       body_(checked(field, drive_in_source, part, options)),
-      with_changes_(changed(drive_in_source, moving_in_source)),
-      drive_(with_changes_ ? *with_changes_ : drive_in_source),
+      drive_(drive_in_source),
       probe_(field, drive_, body_, obstacles(options.unknown)),
       least_(probe_, options.tolerance_m) {
   if (options.unknown != UnknownPolicy::report) return;
@@ -127,9 +122,8 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
 
 void PartAudit::go_along(std::span<const std::unique_ptr<PartAudit>> parts) {
   if (parts.empty()) return;
-  constexpr std::size_t glances = 64;
   const std::size_t segments = parts.front()->probe_.segments();
-  for (std::size_t segment = 0; segment < segments; segment += 1 + segments / glances) {
+  for (std::size_t segment = 0; segment < segments; segment += glances_apart(segments)) {
     for (const auto& part : parts) part->least_.glance(segment);
   }
   bool goes_on = true;
@@ -205,6 +199,10 @@ void PartAudit::take_near(const Probe& probe) {
 void PartAudit::ask_about_moving() {
   const MovingProbe probe(drive_, body_, moving_, field_.horizon_m());
   LeastClearanceSearch search(probe, options_.tolerance_m);
+  for (std::size_t segment = 0; segment < probe.segments();
+       segment += glances_apart(probe.segments())) {
+    search.glance(segment);
+  }
   for (std::size_t from = 0; from < probe.segments(); from += kMostSegments) {
     search.search(from, std::min(from + kMostSegments, probe.segments()));
   }
@@ -223,7 +221,7 @@ AuditReport PartAudit::report() {
   take_least(least);
   report_.proven_clearance_m = least.proven_m;
   if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) take_near(probe_);
-  if (with_changes_) ask_about_moving();
+  if (!moving_.empty()) ask_about_moving();
   report_.beyond_horizon = !report_.witness;
   if (report_.witness) {
     report_.part = part_of(drive_.at(report_.least_clearance_at_s), *report_.witness,

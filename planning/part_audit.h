@@ -18,10 +18,11 @@
 namespace roadbed::planning {
 
 /// The audit of one part of a vehicle, stretch by stretch along the drive: all that is asked about
-/// one stretch is asked together, so that a field's tiles are made once, for several parts too.
+/// one stretch is asked together, so that parts of one height share the tiles of their field.
 class PartAudit {
  public:
   /// As `audit`, which see. What is given has to outlive it.
+  /// @param drive_in_source  of `with_rows_at_changes`, where things move.
   PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
             const geometry::BodyPart& part, const AuditOptions& options,
             std::span<const MovingObstacle> moving_in_source);
@@ -47,7 +48,6 @@ class PartAudit {
   const AuditOptions& options_;
   std::span<const MovingObstacle> moving_;
   geometry::BodyPart body_;  // inflated
-  std::optional<geometry::Trajectory> with_changes_;
   const geometry::Trajectory& drive_;
   BodyProbe probe_;
   LeastClearanceSearch least_;

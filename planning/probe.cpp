@@ -29,7 +29,7 @@ double Probe::time_at(std::size_t segment, double share) const {
 
 std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
   ++segment;
-  if (!is_continuous() || !(spare_m >= 0.0)) return segment;
+  if (!is_continuous() || !(spare_m >= 0.0) || !std::isfinite(moved_m_.back())) return segment;
   const double rounding_m = std::numeric_limits<double>::epsilon() *
                             static_cast<double>(segments()) * moved_m_.back();  // of the sums
   const auto after = moved_m_.begin() + static_cast<std::ptrdiff_t>(segment) + 1;

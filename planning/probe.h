@@ -66,7 +66,8 @@ class Probe {
 
   virtual double horizon_m() const = 0;
 
-  /// Whether distances at the end of a segment are those at the start of the next one.
+  /// Whether distances at the end of a segment are those at the start of the next one, and change
+  /// by the body's own motion only.
   virtual bool is_continuous() const = 0;
 
  protected:

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "roadbed/planning/moving_probe.h"
 #include "roadbed/planning/part_audit.h"
 
 namespace roadbed::planning {
@@ -121,10 +123,13 @@ VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
 VehicleAudit audit_vehicle(const VehicleSurroundings& around,
                            const geometry::Trajectory& drive_in_source, const AuditOptions& options,
                            std::span<const MovingObstacle> moving_in_source) {
+  std::optional<geometry::Trajectory> changed;
+  if (!moving_in_source.empty()) changed = with_rows_at_changes(drive_in_source, moving_in_source);
+  const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
   std::vector<std::unique_ptr<PartAudit>> audits;
   for (std::size_t i = 0; i < around.parts().size(); ++i) {
-    audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive_in_source,
-                                                 around.parts()[i], options, moving_in_source));
+    audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive, around.parts()[i],
+                                                 options, moving_in_source));
   }
   PartAudit::go_along(audits);
   VehicleAudit result;

@@ -51,10 +51,6 @@ Box3 box_around(const PointCloud& cloud, const Scan& scan) {
   return box;
 }
 
-Box3 joined(const Box3& a, const Box3& b) {
-  return {a.min_in_source.cwiseMin(b.min_in_source), a.max_in_source.cwiseMax(b.max_in_source)};
-}
-
 class Cutter {
  public:
   Cutter(const PointCloud& cloud, const Eigen::Vector3d& origin_in_source, double side_m)
@@ -63,47 +59,52 @@ class Cutter {
   std::vector<PointCloud> cut() {
     for (const Scan& scan : scans_of(cloud_)) {
       if (scan.first == scan.last) continue;
-      scan.sensor_in_source ? add_to_run(scan) : add_to_cubes(scan);
+      scan.sensor_in_source ? add_scan(scan) : add_points(scan);
     }
-    end_run();
-    for (auto& [place, piece] : cubes_) pieces_.push_back(std::move(piece));
+    for (auto* pieces : {&of_points_, &of_scans_}) {
+      for (auto& [place, piece] : *pieces) pieces_.push_back(std::move(piece));
+    }
     return std::move(pieces_);
   }
 
  private:
-  void add_to_cubes(const Scan& scan) {
+  using Place = std::array<std::int64_t, 3>;
+
+  Place place_of(const Eigen::Vector3d& in_source, double side_m) const {
+    const Eigen::Vector3d cubes = (in_source - origin_in_source_) / side_m;
+    return {whole_below(cubes.x()), whole_below(cubes.y()), whole_below(cubes.z())};
+  }
+
+  void add_points(const Scan& scan) {
     for (std::size_t i = scan.first; i < scan.last; ++i) {
-      const Eigen::Vector3d cubes = (cloud_.in_source(i) - origin_in_source_) / side_m_;
-      const std::array<std::int64_t, 3> place{whole_below(cubes.x()), whole_below(cubes.y()),
-                                              whole_below(cubes.z())};
-      cubes_.try_emplace(place, without_points(cloud_))
+      of_points_.try_emplace(place_of(cloud_.in_source(i), side_m_), without_points(cloud_))
           .first->second.points.push_back(cloud_.points[i]);
     }
   }
 
-  void add_to_run(const Scan& scan) {
-    const Box3 alone = box_around(cloud_, scan);
-    const Box3 with = run_.points.empty() ? alone : joined(run_box_, alone);
-    const bool fits = (with.max_in_source - with.min_in_source).maxCoeff() <= side_m_;
-    if (!fits) end_run();
-    run_box_ = fits ? with : alone;
-    if (run_.points.empty()) run_ = without_points(cloud_);
-    run_.scans.push_back({run_.points.size(), scan.sensor_in_source});
-    run_.points.insert(run_.points.end(),
-                       cloud_.points.begin() + static_cast<std::ptrdiff_t>(scan.first),
-                       cloud_.points.begin() + static_cast<std::ptrdiff_t>(scan.last));
+  // Scans whose middles lie in one cube of half the side, and that reach no farther than it is
+  // long.
+  void add_scan(const Scan& scan) {
+    const Box3 box = box_around(cloud_, scan);
+    if ((box.max_in_source - box.min_in_source).maxCoeff() > 0.5 * side_m_) {
+      append(scan, pieces_.emplace_back(without_points(cloud_)));
+      return;
+    }
+    const Place place = place_of(0.5 * (box.min_in_source + box.max_in_source), 0.5 * side_m_);
+    append(scan, of_scans_.try_emplace(place, without_points(cloud_)).first->second);
   }
 
-  void end_run() {
-    if (!run_.points.empty()) pieces_.push_back(std::exchange(run_, {}));
+  void append(const Scan& scan, PointCloud& piece) const {
+    piece.scans.push_back({piece.points.size(), scan.sensor_in_source});
+    piece.points.insert(piece.points.end(),
+                        cloud_.points.begin() + static_cast<std::ptrdiff_t>(scan.first),
+                        cloud_.points.begin() + static_cast<std::ptrdiff_t>(scan.last));
   }
 
   const PointCloud& cloud_;
   Eigen::Vector3d origin_in_source_;
   double side_m_;
-  std::map<std::array<std::int64_t, 3>, PointCloud> cubes_;
-  PointCloud run_;
-  Box3 run_box_;
+  std::map<Place, PointCloud> of_points_, of_scans_;
   std::vector<PointCloud> pieces_;
 };
 

@@ -10,8 +10,8 @@
 namespace roadbed::map {
 
 /// A cloud in pieces that reach over some `side_m` along each axis at most, sensors included: what
-/// was measured from nowhere in cubes from `origin_in_source` on, the rest in runs of whole scans.
-/// One scan that reaches farther stays whole.
+/// was measured from nowhere in cubes from `origin_in_source` on, whole scans by where their
+/// middles lie. A scan that reaches farther by itself is a piece of its own.
 std::vector<PointCloud> cut_cloud(const PointCloud& cloud, const Eigen::Vector3d& origin_in_source,
                                   double side_m);
 

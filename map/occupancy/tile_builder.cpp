@@ -45,6 +45,15 @@ std::int64_t axis_of(std::uint64_t code, int axis) {
                     .remedy = "check the disk"});
 }
 
+[[noreturn]] void refuse_extent(const std::filesystem::path& folder) {
+  throw InputError({.file = folder.string(),
+                    .place = {},
+                    .element = "extent of all clouds",
+                    .found = "is over 10000000000 cells",
+                    .needed = {},
+                    .remedy = "take a coarser resolution, or cut the clouds"});
+}
+
 [[noreturn]] void refuse_height(const std::filesystem::path& folder) {
   throw InputError({.file = folder.string(),
                     .place = {},
@@ -74,6 +83,24 @@ Box3 box_with_sensors(const PointCloud& cloud) {
   add_sensor(cloud.sensor_in_source);
   for (const ScanStart& scan : cloud.scans) add_sensor(scan.sensor_in_source);
   return box;
+}
+
+// Points are floats: far from the cloud's middle they are apart by more than what their cells say.
+void check_is_fine(const PointCloud& cloud, double resolution_m) {
+  constexpr double most_cells = 0x1p24 / 64.0;  // a 64th of a cell, rounded
+  float farthest_m = 0.0f;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    farthest_m = std::max(farthest_m, point.cwiseAbs().maxCoeff());
+  }
+  if (farthest_m <= most_cells * resolution_m) return;
+  throw InputError(
+      {.file = cloud.name,
+       .place = {},
+       .element = "extent",
+       .found = fmt::format("reaches {} m from its middle", static_cast<double>(farthest_m)),
+       .needed = fmt::format("at most {} m, that points are known to a 64th of a cell",
+                             most_cells * resolution_m),
+       .remedy = "remove points that are far away by mistake, or cut the cloud"});
 }
 
 }  // namespace
@@ -161,6 +188,10 @@ std::optional<SeenThrough> TileBuilder::seen_through(std::size_t removed) const 
 }
 
 void TileBuilder::start(const Shift& shift) {
+  constexpr std::int64_t farthest = 5'000'000'000;  // what blocks put aside have room for
+  if (std::ranges::any_of(shift, [](auto cells) { return std::abs(cells) > farthest; })) {
+    refuse_extent(plan_.folder);
+  }
   shift_ = shift;
   const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
                               static_cast<double>(shift[2]));
@@ -178,6 +209,7 @@ void TileBuilder::add(const PointCloud& cloud) {
     add_piece(cloud, box);
     return;
   }
+  check_is_fine(cloud, plan_.resolution_m);
   const double side_m = kHalfRange * plan_.resolution_m;
   for (const PointCloud& piece : cut_cloud(cloud, plan_.origin_in_source, side_m)) {
     add_piece(piece, box_with_sensors(piece));

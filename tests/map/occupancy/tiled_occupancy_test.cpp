@@ -266,6 +266,14 @@ TEST_F(TiledOccupancyTest, TakesOneCloudThatIsLargerThanAnOctreesRange) {
   }
 }
 
+TEST_F(TiledOccupancyTest, RefusesACloudWhosePointsAreTooFarApartToBeKnown) {
+  PointCloud cloud = long_cloud(false);
+  cloud.points.emplace_back(0.0f, 26'000.0f, 0.0f);  // of 262,144 cells
+  EXPECT_NO_THROW(build({cloud}, 1024, 1'000'000));
+  cloud.points.emplace_back(0.0f, 27'000.0f, 0.0f);
+  EXPECT_THROW(build({cloud}, 1024, 1'000'000), InputError);
+}
+
 TEST_F(TiledOccupancyTest, RefusesALargeCloudWithSensorsWhereCloudsCount) {
   EXPECT_THROW(build({long_cloud(true)}, 1024, 1'000'000, {.remove_seen_through = 3}), InputError);
   EXPECT_NO_THROW(build({long_cloud(false)}, 1024, 1'000'000, {.remove_seen_through = 3}));
