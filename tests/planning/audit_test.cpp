@@ -135,6 +135,49 @@ TEST(Audit, AgreesWithADenseSweepOverThousandsOfRandomObstaclesAndDrives) {
   EXPECT_GT(clear, 150);
 }
 
+/// 300 m past poles, with a row every 0.1 m.
+Trajectory drive_of_many_rows() {
+  std::vector<geometry::TrajectoryPoint> rows;
+  for (int i = 0; i <= 3000; ++i) {
+    const double x_m = 0.1 * i;
+    rows.push_back({.t_s = 0.01 * i,
+                    .x_m = x_m,
+                    .y_m = std::sin(x_m / 20.0),
+                    .heading_rad = std::atan(std::cos(x_m / 20.0) / 20.0)});
+  }
+  return Trajectory(std::move(rows));
+}
+
+TEST(Audit, PassesOverNoRowOfALongDriveThatMatters) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> along(0.0, 300.0), aside(1.3, 7.0);
+  const VehicleShape shape;
+  const Trajectory drive = drive_of_many_rows();
+  for (int round = 0; round < 6; ++round) {
+    std::vector<Eigen::Vector2d> hits;
+    for (int i = 0; i < 12; ++i) {
+      const double x_m = along(random);
+      hits.emplace_back(x_m, std::sin(x_m / 20.0) + (i % 2 == 0 ? 1.0 : -1.0) * aside(random));
+    }
+    const World world = world_of(hits);
+    const ClearanceField field(world.occupancy, kBand);
+    const AuditOptions options{.clearance_m = 1.0, .unknown = UnknownPolicy::free};
+    const AuditReport report = audit(field, drive, shape, options);
+    const DenseSweep dense = sweep(world, drive, shape, 0.05);
+    EXPECT_LE(report.proven_clearance_m, dense.least_m + 1e-6);
+    EXPECT_NEAR(report.least_clearance_m, dense.least_m, 0.025);
+    for (std::size_t k = 0; k < dense.t_s.size(); ++k) {
+      if (dense.distance_m[k] >= options.clearance_m) continue;
+      ASSERT_TRUE(std::ranges::any_of(report.conflicts,
+                                      [&](const Conflict& conflict) {
+                                        return conflict.from_s <= dense.t_s[k] + 1e-12 &&
+                                               dense.t_s[k] <= conflict.to_s + 1e-12;
+                                      }))
+          << "round " << round << ": the conflict at " << dense.t_s[k] << " s is in no stretch";
+    }
+  }
+}
+
 TEST(Audit, EveryConflictIsRealAndItsWitnessStandsWhereItSays) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-7.0, 7.0);
