@@ -8,7 +8,12 @@
 namespace roadbed::map {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kSpread{0, 1, 8, 9, 64, 65, 72, 73};  // spread_bits
+// `spread_bits` of what an axis of a cube may be.
+constexpr std::array<std::uint8_t, 8> kSpread = [] {
+  std::array<std::uint8_t, 8> spread{};
+  for (std::uint32_t i = 0; i < 8; ++i) spread[i] = static_cast<std::uint8_t>(spread_bits(i));
+  return spread;
+}();
 
 std::uint32_t region_code(const CellKey& key) {
   return morton(key[0] >> 6, key[1] >> 6, key[2] >> 6);

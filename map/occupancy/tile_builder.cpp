@@ -45,20 +45,12 @@ std::int64_t axis_of(std::uint64_t code, int axis) {
                     .remedy = "check the disk"});
 }
 
-[[noreturn]] void refuse_extent(const std::filesystem::path& folder) {
+[[noreturn]] void refuse_clouds(const std::filesystem::path& folder, const char* what,
+                                const char* found) {
   throw InputError({.file = folder.string(),
                     .place = {},
-                    .element = "extent of all clouds",
-                    .found = "is over 10000000000 cells",
-                    .needed = {},
-                    .remedy = "take a coarser resolution, or cut the clouds"});
-}
-
-[[noreturn]] void refuse_height(const std::filesystem::path& folder) {
-  throw InputError({.file = folder.string(),
-                    .place = {},
-                    .element = "height of all clouds",
-                    .found = "is over 65536 cells",
+                    .element = fmt::format("{} of all clouds", what),
+                    .found = found,
                     .needed = {},
                     .remedy = "take a coarser resolution, or cut the clouds"});
 }
@@ -190,7 +182,7 @@ std::optional<SeenThrough> TileBuilder::seen_through(std::size_t removed) const 
 void TileBuilder::start(const Shift& shift) {
   constexpr std::int64_t farthest = 5'000'000'000;  // what blocks put aside have room for
   if (std::ranges::any_of(shift, [](auto cells) { return std::abs(cells) > farthest; })) {
-    refuse_extent(plan_.folder);
+    refuse_clouds(plan_.folder, "extent", "is over 10000000000 cells");
   }
   shift_ = shift;
   const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
@@ -271,7 +263,8 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
     const std::array<std::int64_t, 3> key{kBlockSide * aside.at[0] - first_x + middle,
                                           kBlockSide * aside.at[1] - first_y + middle,
                                           kBlockSide * aside.at[2] + middle};
-    if (key[2] < 0 || key[2] >= 2 * middle) refuse_height(plan_.folder);
+    if (key[2] < 0 || key[2] >= 2 * middle)
+      refuse_clouds(plan_.folder, "height", "is over 65536 cells");
     CellBlock& block =
         blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
                       static_cast<std::uint16_t>(key[2])},
