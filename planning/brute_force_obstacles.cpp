@@ -18,7 +18,7 @@ constexpr std::int64_t kTileSide = 64;
 constexpr double kMostColumns = 1e9;
 constexpr double kFarthest_m = 1e9;
 constexpr auto kTooMuch = "the drive's surroundings have too many columns to be checked";
-constexpr std::size_t kMostTiles = 50'000;      // 800 MB of columns
+constexpr std::size_t kMostTiles = 50'000;      // 800 MB of columns, if all are measured
 constexpr std::size_t kMostBoxes = 20'000'000;  // 480 MB; over a ground one for each column
 
 double point_to_edge_m(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
@@ -243,24 +243,22 @@ BruteForceObstacles::Window BruteForceObstacles::window(double x_m, double y_m,
 }
 
 void BruteForceObstacles::mark(double x_m, double y_m, double limit_m) {
-  if (std::max(std::abs(x_m), std::abs(y_m)) > kFarthest_m) throw std::length_error(kTooMuch);
+  const double farthest_m = std::max({std::abs(x_m), std::abs(y_m), limit_m + body_.reach_m()});
+  if (!(farthest_m <= kFarthest_m)) throw std::length_error(kTooMuch);
   const Window marked = window(x_m, y_m, limit_m);
   marked_columns_ += static_cast<double>(marked.to_x - marked.from_x) *
                      static_cast<double>(marked.to_y - marked.from_y);
   if (marked_columns_ > kMostColumns) throw std::length_error(kTooMuch);
   for (Column y = floor_div(marked.from_y, kTileSide); y * kTileSide < marked.to_y; ++y) {
     for (Column x = floor_div(marked.from_x, kTileSide); x * kTileSide < marked.to_x; ++x) {
-      auto& tile = measured_m_[tile_key(x, y)];
-      if (tile.empty()) tile.resize(kTileSide * kTileSide);
-      if (measured_m_.size() > kMostTiles) {
-        throw std::length_error(kTooMuch);
-      }
+      measured_m_[tile_key(x, y)];
+      if (measured_m_.size() > kMostTiles) throw std::length_error(kTooMuch);
     }
   }
 }
 
 void BruteForceObstacles::measure() {
-  for (auto& [key, tile] : measured_m_) std::fill(tile.begin(), tile.end(), 0.0f);
+  for (auto& [key, tile] : measured_m_) tile.clear();
   for (const map::OccupancyCell& cell : cells_) {
     if (cell.state == map::CellState::unknown) continue;
     if (band_.ground || overlap_m(cell, band_, 0.0) > kTouch_m) measure(cell);
@@ -296,10 +294,14 @@ void BruteForceObstacles::measure(const map::OccupancyCell& cell) {
 void BruteForceObstacles::add(std::vector<float>& tile, const std::pair<Column, Column>& at,
                               const Window& columns, const map::OccupancyCell& cell) {
   const Column first_x = at.first * kTileSide, first_y = at.second * kTileSide;
+  const Column from_x = std::max(columns.from_x, first_x),
+               from_y = std::max(columns.from_y, first_y);
   const Column to_x = std::min(columns.to_x, first_x + kTileSide);
   const Column to_y = std::min(columns.to_y, first_y + kTileSide);
-  for (Column y = std::max(columns.from_y, first_y); y < to_y; ++y) {
-    for (Column x = std::max(columns.from_x, first_x); x < to_x; ++x) {
+  if (from_x >= to_x || from_y >= to_y) return;
+  if (tile.empty()) tile.resize(kTileSide * kTileSide);
+  for (Column y = from_y; y < to_y; ++y) {
+    for (Column x = from_x; x < to_x; ++x) {
       tile[place_in_tile(x, y)] += measured_height_m(cell, x, y);
     }
   }
@@ -317,27 +319,36 @@ float BruteForceObstacles::measured_height_m(const map::OccupancyCell& cell, Col
 
 bool BruteForceObstacles::is_unknown_column(Column x, Column y) const {
   const auto tile = measured_m_.find(tile_key(floor_div(x, kTileSide), floor_div(y, kTileSide)));
-  if (tile == measured_m_.end()) return true;
+  if (tile == measured_m_.end() || tile->second.empty()) return true;
   constexpr float rounding_m = 1e-4f;  // of some dozens of heights added up
   const auto whole_m = static_cast<float>(band_.to_m - band_.from_m);
   return tile->second[place_in_tile(x, y)] < whole_m - rounding_m;
 }
 
+BodyOutline::Corners BruteForceObstacles::column_square(Column x, Column y) const {
+  return square(corner_.x() + (static_cast<double>(x) + 0.5) * resolution_m_,
+                corner_.y() + (static_cast<double>(y) + 0.5) * resolution_m_, 0.5 * resolution_m_);
+}
+
+// Rows from the body outwards, as far as a column may still be nearer: of a wide window, most of
+// which was never measured, few are looked at.
 double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad,
                                       double limit_m) const {
   const BodyOutline::Place body = body_.at(x_m, y_m, heading_rad);
-  const Window around = window(x_m, y_m, limit_m);
-  const double half_m = 0.5 * resolution_m_;
+  const Column middle = window(x_m, y_m, -body_.reach_m() - resolution_m_).from_y;
   double least_m = limit_m;
-  for (Column y = around.from_y; y < around.to_y; ++y) {
-    for (Column x = around.from_x; x < around.to_x; ++x) {
-      if (!is_unknown_column(x, y)) continue;
-      const double cx_m = corner_.x() + (static_cast<double>(x) + 0.5) * resolution_m_;
-      const double cy_m = corner_.y() + (static_cast<double>(y) + 0.5) * resolution_m_;
-      least_m = std::min(least_m, body.distance_m(square(cx_m, cy_m, half_m)));
+  for (Column away = 0;; ++away) {
+    const Window near = window(x_m, y_m, least_m);
+    if (middle - away < near.from_y && middle + away >= near.to_y) return least_m;
+    for (const Column y : {middle - away, middle + away}) {
+      if (y < near.from_y || y >= near.to_y) continue;
+      for (Column x = near.from_x; x < near.to_x && least_m > 0.0; ++x) {
+        if (!is_unknown_column(x, y)) continue;
+        least_m = std::min(least_m, body.distance_m(column_square(x, y)));
+      }
     }
+    if (least_m == 0.0) return 0.0;
   }
-  return least_m;
 }
 
 }  // namespace roadbed::planning

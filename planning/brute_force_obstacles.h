@@ -82,6 +82,7 @@ class BruteForceObstacles {
            const map::OccupancyCell& cell);
   float measured_height_m(const map::OccupancyCell& cell, Column x, Column y);
   bool is_unknown_column(Column x, Column y) const;
+  BodyOutline::Corners column_square(Column x, Column y) const;
 
   const std::vector<map::OccupancyCell>& cells_;
   double resolution_m_;
@@ -92,7 +93,8 @@ class BruteForceObstacles {
   /// Of the ground's places: those that may be the nearest of a point in a tile.
   std::unordered_map<std::int64_t, std::vector<std::size_t>> places_near_;
   double marked_columns_ = 0.0;
-  std::unordered_map<std::int64_t, std::vector<float>> measured_m_;  // heights, by tile
+  /// Heights, by marked tile; empty where nothing of it was measured.
+  std::unordered_map<std::int64_t, std::vector<float>> measured_m_;
 };
 
 }  // namespace roadbed::planning
