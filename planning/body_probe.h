@@ -21,11 +21,16 @@ class BodyProbe : public Probe {
   /// By a circle around the part, then by several that cover it. O(1).
   double lower_bound_m(const Span& span, double enough_m) const override;
   std::optional<Near> nearest(const Span& span, double within_m) const override;
+  /// By the rectangle, turned as the body is in the middle, that the body stays in all along. Where
+  /// the body passes by a thing, that is nearly as far away as the body. Of spans that make it
+  /// larger than the field is made for, nothing. O(segments).
+  double swept_bound_m(const Span& span, double within_m) const override;
   double horizon_m() const override { return field_.horizon_m() - part_.radius_m; }
   bool is_continuous() const override { return true; }
 
  private:
   double field_bound_m(const Eigen::Vector2d& point) const;
+  geometry::Rectangle swept_over(const Span& span) const;
 
   const map::ClearanceField& field_;
   geometry::BodyPart part_;

@@ -27,9 +27,10 @@ void LeastClearanceSearch::glance(std::size_t segment) {
 
 void LeastClearanceSearch::search(std::size_t from, std::size_t to) {
   if (first_) look_at(*std::exchange(first_, std::nullopt));
-  for (std::size_t segment = from; segment < to;) {
-    const double lower_m = open({segment, 0.0, 1.0}, 0.0);
-    segment = probe_.next_after(segment, lower_m - best_.found_m);
+  if (probe_.is_continuous()) {
+    open({from, 0.0, 1.0, to - from}, 0.0);
+  } else {
+    for (std::size_t segment = from; segment < to; ++segment) open({segment, 0.0, 1.0}, 0.0);
   }
   while (!queue_.empty() && !is_settled(queue_.top().lower_m)) {
     const Open lowest = queue_.top();
@@ -52,24 +53,26 @@ double LeastClearanceSearch::look_at(const Span& span) {
   return nearest ? nearest->distance_m : best_.found_m;
 }
 
-// Puts a span aside for good, or into the queue; returns its bound.
-double LeastClearanceSearch::open(const Span& span, double known_lower_m) {
+// Puts a span aside for good, or into the queue.
+void LeastClearanceSearch::open(const Span& span, double known_lower_m) {
   const double motion_m = probe_.motion_bound_m(span);
   const double bound_m = probe_.lower_bound_m(span, best_.found_m + motion_m) - motion_m;
   const double lower_m = std::max({0.0, known_lower_m, bound_m});
   if (lower_m < best_.found_m) queue_.push({span, lower_m});
-  return lower_m;
 }
 
 void LeastClearanceSearch::examine(const Open& lowest) {
-  const double distance_m = look_at(lowest.span);
-  const double lower_m = std::max(lowest.lower_m, distance_m - probe_.motion_bound_m(lowest.span));
+  const Span& span = lowest.span;
+  double lower_m = std::max(lowest.lower_m, probe_.swept_bound_m(span, best_.found_m));
+  if (!is_settled(lower_m)) {
+    lower_m = std::max(lower_m, look_at(span) - probe_.motion_bound_m(span));
+  }
   if (is_settled(lower_m)) {
     best_.proven_m = std::min(best_.proven_m, lower_m);
     return;
   }
-  open(lowest.span.first_half(), lower_m);
-  open(lowest.span.second_half(), lower_m);
+  open(span.first_half(), lower_m);
+  open(span.second_half(), lower_m);
 }
 
 }  // namespace roadbed::planning

@@ -22,9 +22,9 @@ struct LeastClearance {
 };
 
 /// Looks for the least distance over the parts of a drive that it is given, best first in each: the
-/// span that may hold the least distance is halved until its motion bound closes the bracket.
-/// Distance as a function of time is Lipschitz with the motion bound
-/// [Piyavskii 1972, doi:10.1016/0041-5553(72)90115-2].
+/// span that may hold the least distance, at first all of a part, is halved until a bound closes
+/// the bracket: distance as a function of time is Lipschitz with the motion bound [Piyavskii 1972,
+/// doi:10.1016/0041-5553(72)90115-2], and no less than from all that the body sweeps over.
 class LeastClearanceSearch {
  public:
   LeastClearanceSearch(const Probe& probe, double tolerance_m);
@@ -52,7 +52,7 @@ class LeastClearanceSearch {
 
   double look_at(const Span& span);
   bool is_settled(double lower_m) const { return lower_m >= best_.found_m - tolerance_m_; }
-  double open(const Span& span, double known_lower_m);
+  void open(const Span& span, double known_lower_m);
   void examine(const Open& lowest);
 
   const Probe& probe_;

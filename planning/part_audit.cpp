@@ -60,6 +60,14 @@ std::size_t rows_apart(const geometry::Trajectory& drive) {
   return 1 + drive.points().size() / most_samples;
 }
 
+std::size_t stretch_end(const std::vector<double>& moved_m, std::size_t from) {
+  const auto first = moved_m.begin() + static_cast<std::ptrdiff_t>(from) + 1;
+  const auto most = moved_m.begin() +
+                    static_cast<std::ptrdiff_t>(std::min(from + kMostSegments, moved_m.size() - 1));
+  const auto end = std::lower_bound(first, most, moved_m[from] + kStretch_m);
+  return static_cast<std::size_t>(end - moved_m.begin());
+}
+
 double clearance_at(const Probe& probe, std::size_t row) {
   constexpr double exact_below_m = 5.0;
   const Span at = at_row(probe, row);
@@ -126,33 +134,19 @@ void PartAudit::go_along(std::span<const std::unique_ptr<PartAudit>> parts) {
   for (std::size_t segment = 0; segment < segments; segment += glances_apart(segments)) {
     for (const auto& part : parts) part->least_.glance(segment);
   }
-  bool goes_on = true;
-  while (goes_on) {
-    for (const auto& part : parts) goes_on = part->advance();
+  const std::vector<double>& moved_m = parts.front()->probe_.moved_m();
+  for (std::size_t from = 0; from < segments;) {
+    const std::size_t to = stretch_end(moved_m, from);
+    for (const auto& part : parts) part->advance(from, to);
+    from = to;
   }
 }
 
-// By a stretch, whose ends are the same for all parts.
-bool PartAudit::advance() {
-  const std::size_t from = done_;
-  if (from == probe_.segments()) return false;
-  done_ = stretch_end();
-  least_.search(from, done_);
-  if (unknown_) unknown_->search(done_);
-  take_samples(done_);
-  take_unknown_shares(done_);
-  return true;
-}
-
-std::size_t PartAudit::stretch_end() const {
-  const auto& rows = drive_.points();
-  const std::size_t most = std::min(done_ + kMostSegments, probe_.segments());
-  std::size_t end = done_ + 1;
-  for (double way_m = 0.0; end < most && way_m < kStretch_m; ++end) {
-    way_m +=
-        std::abs(rows[end].x_m - rows[end - 1].x_m) + std::abs(rows[end].y_m - rows[end - 1].y_m);
-  }
-  return end;
+void PartAudit::advance(std::size_t from, std::size_t to) {
+  least_.search(from, to);
+  if (unknown_) unknown_->search(to);
+  take_samples(to);
+  take_unknown_shares(to);
 }
 
 void PartAudit::take_samples(std::size_t to) {

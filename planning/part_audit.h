@@ -36,8 +36,7 @@ class PartAudit {
   AuditReport report();
 
  private:
-  bool advance();
-  std::size_t stretch_end() const;
+  void advance(std::size_t from, std::size_t to);
   void take_samples(std::size_t to);
   void take_unknown_shares(std::size_t to);
   void take_least(const LeastClearance& least);
@@ -53,7 +52,6 @@ class PartAudit {
   LeastClearanceSearch least_;
   std::optional<BodyProbe> unknown_probe_;  // where unknown space is reported
   std::optional<NearStretchSearch> unknown_;
-  std::size_t done_ = 0;  // segments
   std::size_t poses_ = 0, poses_segment_ = 0;
   double unknown_sum_ = 0.0;  // of the poses' shares
   AuditReport report_;

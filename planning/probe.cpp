@@ -5,13 +5,19 @@
 #include <limits>
 
 namespace roadbed::planning {
+namespace {
+
+constexpr double kRounding_m = 1e-8;  // of coordinates up to 10,000 km
+
+}  // namespace
 
 Probe::Probe(const geometry::Trajectory& drive, double reach_m)
     : drive_(drive), reach_m_(reach_m), moved_m_(segments() + 1) {
   for (std::size_t segment = 0; segment < segments(); ++segment) {
-    const double motion_m = 2.0 * Probe::motion_bound_m({segment, 0.0, 1.0});
-    moved_m_[segment + 1] = moved_m_[segment] + motion_m;
+    moved_m_[segment + 1] = moved_m_[segment] + segment_motion_m(segment) + 2.0 * kRounding_m;
   }
+  sum_rounding_m_ =
+      std::numeric_limits<double>::epsilon() * static_cast<double>(segments()) * moved_m_.back();
 }
 
 std::size_t Probe::segments() const { return std::max<std::size_t>(1, drive_.points().size() - 1); }
@@ -30,32 +36,37 @@ double Probe::time_at(std::size_t segment, double share) const {
 std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
   ++segment;
   if (!is_continuous() || !(spare_m >= 0.0) || !std::isfinite(moved_m_.back())) return segment;
-  const double rounding_m = std::numeric_limits<double>::epsilon() *
-                            static_cast<double>(segments()) * moved_m_.back();  // of the sums
   const auto after = moved_m_.begin() + static_cast<std::ptrdiff_t>(segment) + 1;
   const auto beyond =
-      std::upper_bound(after, moved_m_.end(), moved_m_[segment] + spare_m - rounding_m);
+      std::upper_bound(after, moved_m_.end(), moved_m_[segment] + spare_m - sum_rounding_m_);
   return static_cast<std::size_t>(beyond - moved_m_.begin()) - 1;
 }
 
-geometry::Pose2 Probe::middle_pose_of(const Span& span) const {
+geometry::Pose2 Probe::pose_at(std::size_t segment, double share) const {
   const auto& rows = drive_.points();
-  const geometry::TrajectoryPoint& a = rows[span.segment];
-  const geometry::TrajectoryPoint& b = rows[std::min(span.segment + 1, rows.size() - 1)];
-  const double share = span.middle();
+  const geometry::TrajectoryPoint& a = rows[segment];
+  const geometry::TrajectoryPoint& b = rows[std::min(segment + 1, rows.size() - 1)];
   return {a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
           a.heading_rad + share * (b.heading_rad - a.heading_rad)};
 }
 
-double Probe::motion_bound_m(const Span& span) const {
+double Probe::segment_motion_m(std::size_t segment) const {
   const auto& rows = drive_.points();
-  const geometry::TrajectoryPoint& a = rows[span.segment];
-  const geometry::TrajectoryPoint& b = rows[std::min(span.segment + 1, rows.size() - 1)];
+  const geometry::TrajectoryPoint& a = rows[segment];
+  const geometry::TrajectoryPoint& b = rows[std::min(segment + 1, rows.size() - 1)];
   const double dx_m = b.x_m - a.x_m, dy_m = b.y_m - a.y_m;
   const double way_m = std::sqrt(dx_m * dx_m + dy_m * dy_m);
-  const double turn_rad = std::abs(b.heading_rad - a.heading_rad);
-  constexpr double rounding_m = 1e-8;  // of coordinates up to 10,000 km
-  return 0.5 * (span.to - span.from) * (way_m + reach_m_ * turn_rad) + rounding_m;
+  return way_m + reach_m_ * std::abs(b.heading_rad - a.heading_rad);
+}
+
+double Probe::motion_bound_m(const Span& span) const {
+  if (span.segments == 1) {
+    return 0.5 * (span.to - span.from) * segment_motion_m(span.segment) + kRounding_m;
+  }
+  const double middle_m = moved_m_[span.middle_segment()];
+  return std::max(middle_m - moved_m_[span.segment],
+                  moved_m_[span.segment + span.segments] - middle_m) +
+         sum_rounding_m_;
 }
 
 }  // namespace roadbed::planning

@@ -11,14 +11,23 @@
 
 namespace roadbed::planning {
 
-/// A part of one segment of a drive, between two of its rows: `from`, `to` in 0 … 1.
+/// A part of one segment of a drive, between two of its rows: `from`, `to` in 0 … 1. Or several
+/// whole segments, one after the other, whose middle is a row.
 struct Span {
   std::size_t segment = 0;
   double from = 0.0, to = 1.0;
+  std::size_t segments = 1;
 
-  double middle() const { return 0.5 * (from + to); }
-  Span first_half() const { return {segment, from, middle()}; }
-  Span second_half() const { return {segment, middle(), to}; }
+  std::size_t middle_segment() const { return segment + segments / 2; }
+  double middle() const { return segments == 1 ? 0.5 * (from + to) : 0.0; }  ///< in that segment
+
+  Span first_half() const {
+    return segments == 1 ? Span{segment, from, middle()} : Span{segment, 0.0, 1.0, segments / 2};
+  }
+  Span second_half() const {
+    if (segments == 1) return {segment, middle(), to};
+    return {middle_segment(), 0.0, 1.0, segments - segments / 2};
+  }
 };
 
 /// What the audit asks of the things around a drive: how far the body is from them in the middle of
@@ -34,7 +43,7 @@ class Probe {
   std::size_t segments() const;  ///< at least one: a single row is a segment without motion
   geometry::TrajectoryPoint state_at(std::size_t segment, double share) const;
   geometry::TrajectoryPoint middle_of(const Span& span) const {
-    return state_at(span.segment, span.middle());
+    return state_at(span.middle_segment(), span.middle());
   }
   double time_at(std::size_t segment, double share) const;
 
@@ -50,6 +59,7 @@ class Probe {
   /// The distance changes by no more than this between the span's middle and any other time of it.
   /// Here that of things at rest: half the way of the axle plus half the turn times the body's
   /// reach, and rounding.
+  /// O(1).
   virtual double motion_bound_m(const Span& span) const;
 
   /// Lower bound of the distance in the middle of a span; at most the horizon. A bound of
@@ -64,6 +74,10 @@ class Probe {
   /// Exact distance in the middle of a span; none if it is over `within_m` or the horizon.
   virtual std::optional<Near> nearest(const Span& span, double within_m) const = 0;
 
+  /// Lower bound of the distance at all times of a span, from all that the body sweeps over in it;
+  /// at most `within_m`. 0 where nothing is known of that.
+  virtual double swept_bound_m(const Span& /*span*/, double /*within_m*/) const { return 0.0; }
+
   virtual double horizon_m() const = 0;
 
   /// Whether distances at the end of a segment are those at the start of the next one, and change
@@ -72,12 +86,18 @@ class Probe {
 
  protected:
   const geometry::Trajectory& drive() const { return drive_; }
-  geometry::Pose2 middle_pose_of(const Span& span) const;
+  geometry::Pose2 pose_at(std::size_t segment, double share) const;
+  geometry::Pose2 middle_pose_of(const Span& span) const {
+    return pose_at(span.middle_segment(), span.middle());
+  }
 
  private:
+  double segment_motion_m(std::size_t segment) const;
+
   const geometry::Trajectory& drive_;
   double reach_m_;
   std::vector<double> moved_m_;
+  double sum_rounding_m_;  // of any difference of these sums
 };
 
 }  // namespace roadbed::planning

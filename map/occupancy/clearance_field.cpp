@@ -20,6 +20,7 @@ namespace roadbed::map {
 namespace {
 
 constexpr double kHorizon_m = 1000.0;
+constexpr double kRounding_m = 1e-6;
 constexpr double kTouch_m = 1e-6;  // cells that overlap the band by less only touch it
 
 void check(const HeightBand& band) {
@@ -62,7 +63,7 @@ CellRange range_of(const std::vector<Slab>& slabs) {
 /// One grid where that is small enough, else tiles of it.
 struct ClearanceField::Grid {
   BandSlicer slicer;
-  double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter of a body beside tiles
+  double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter where there is a region
   std::optional<Box2> around = std::nullopt;
   std::shared_ptr<const PlanGrid> whole = nullptr;
   std::unique_ptr<const GridTiles> tiles = nullptr;
@@ -71,6 +72,7 @@ struct ClearanceField::Grid {
   // from points and boxes to the centres of their cells.
   void make(const FieldRegion& region) {
     horizon_m = std::min(region.horizon_m, kHorizon_m);
+    body_radius_m = region.body_radius_m;
     around = region.around;
     const CellRange held = slicer.range(region.around, slicer.cell_m());
     const auto margin = static_cast<std::int64_t>(std::ceil(horizon_m / slicer.cell_m())) + 3;
@@ -98,7 +100,6 @@ struct ClearanceField::Grid {
   // A box within the horizon of a body whose centre lies in a tile has its centre at most horizon,
   // body's radius and half a box's diagonal away from the tile.
   void make_tiles(const FieldRegion& region) {
-    body_radius_m = region.body_radius_m;
     const double cell_m = slicer.cell_m();
     const auto margin =
         static_cast<std::int64_t>(std::ceil((horizon_m + body_radius_m) / cell_m)) + 3;
@@ -153,18 +154,28 @@ struct ClearanceField::Grid {
     return inside == in_source ? 0.0 : (in_source - inside).norm();
   }
 
+  bool is_too_large(const geometry::Rectangle& rectangle) const {
+    return around && rectangle.radius_m() > body_radius_m + kRounding_m;
+  }
+
+  bool is_inside(const geometry::Rectangle& rectangle) const {
+    if (!around) return true;
+    const Eigen::Vector2d half = half_extent_m(rectangle);
+    const Eigen::Vector2d centre = rectangle.centre + slicer.origin_in_source();
+    return beyond_around(centre - half) <= kRounding_m &&
+           beyond_around(centre + half) <= kRounding_m;
+  }
+
   void check_inside(const geometry::Rectangle& rectangle) const {
-    constexpr double rounding_m = 1e-6;
-    if (tiles && rectangle.radius_m() > body_radius_m + rounding_m) {
+    if (tiles && is_too_large(rectangle)) {
       throw std::invalid_argument(fmt::format(
           "ClearanceField: the body's radius is {} m, the field's tiles are made for {} m",
           rectangle.radius_m(), body_radius_m));
     }
-    if (!around) return;
+    if (is_inside(rectangle)) return;
     const Eigen::Vector2d half = half_extent_m(rectangle);
     const Eigen::Vector2d centre = rectangle.centre + slicer.origin_in_source();
     const Eigen::Vector2d least = centre - half, most = centre + half;
-    if (beyond_around(least) <= rounding_m && beyond_around(most) <= rounding_m) return;
     throw std::invalid_argument(fmt::format(
         "ClearanceField: the vehicle (x {} to {}, y {} to {}) leaves the region of the field",
         least.x(), most.x(), least.y(), most.y()));
@@ -212,6 +223,11 @@ double ClearanceField::distance_bound_m(const Eigen::Vector2d& point_in_source,
   return grid_->ask(point, [&](const PlanGrid& grid) {
     return std::min(seen_m, grid.lower_bound_m(point, kind));
   });
+}
+
+bool ClearanceField::is_made_for(const geometry::Rectangle& in_source) const {
+  const geometry::Rectangle rectangle = grid_->in_grid(in_source);
+  return !grid_->is_too_large(rectangle) && grid_->is_inside(rectangle);
 }
 
 std::optional<ClearanceField::Nearest> ClearanceField::nearest(const geometry::Rectangle& in_source,

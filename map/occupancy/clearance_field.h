@@ -84,6 +84,10 @@ class ClearanceField {
   /// Distance beyond which the bound is not told apart.
   double horizon_m() const;
 
+  /// Whether `nearest` may be asked about a rectangle: it keeps within the field's region, and is
+  /// no larger than the bodies that the region names.
+  bool is_made_for(const geometry::Rectangle& in_source) const;
+
   struct Nearest {
     double distance_m;  ///< 0 on overlap or touch
     Box2 witness;       ///< the nearest box, of one cell; of equally near ones always the same
