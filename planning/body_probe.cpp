@@ -69,7 +69,7 @@ std::optional<Probe::Near> BodyProbe::nearest(const Span& span, double within_m)
 }
 
 double BodyProbe::swept_bound_m(const Span& span, double within_m) const {
-  if (motion_bound_m(span) > part_.reach_m()) return 0.0;
+  if (!(motion_bound_m(span) <= part_.reach_m())) return 0.0;
   const geometry::Rectangle core = swept_over(span);
   if (!field_.is_made_for(core)) return 0.0;
   double least_m = within_m;
@@ -106,11 +106,10 @@ geometry::Rectangle BodyProbe::swept_over(const Span& span) const {
   take(pose_at(span.segment, span.from));
   for (std::size_t i = 1; i < span.segments; ++i) take(pose_at(span.segment + i, 0.0));
   take(pose_at(span.segment + span.segments - 1, span.to));
-  constexpr double rounding_m = 1e-8;  // of coordinates up to 10,000 km
-  const double rear_m = part_.rear_m - behind_m - rounding_m,
-               front_m = part_.front_m + ahead_m + rounding_m,
-               right_m = part_.right_m - to_right_m - rounding_m,
-               left_m = part_.left_m + to_left_m + rounding_m;
+  const double rear_m = part_.rear_m - behind_m - kRounding_m,
+               front_m = part_.front_m + ahead_m + kRounding_m,
+               right_m = part_.right_m - to_right_m - kRounding_m,
+               left_m = part_.left_m + to_left_m + kRounding_m;
   return {.centre = middle.position() + 0.5 * (rear_m + front_m) * forward +
                     0.5 * (right_m + left_m) * left,
           .axis = forward,

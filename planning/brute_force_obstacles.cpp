@@ -228,24 +228,36 @@ bool BruteForceObstacles::is_occupied(const map::Box2& box) const {
 
 bool BruteForceObstacles::is_unknown(const map::Box2& box) const {
   const Eigen::Vector2d middle = 0.5 * (box.min_in_source + box.max_in_source);
-  const Window at = window(middle.x(), middle.y(), -body_.reach_m() - resolution_m_);
+  const Window at = window(middle, middle);
   return is_unknown_column(at.from_x, at.from_y);
 }
 
-BruteForceObstacles::Window BruteForceObstacles::window(double x_m, double y_m,
-                                                        double limit_m) const {
-  const double around_m = limit_m + body_.reach_m() + resolution_m_;
+BruteForceObstacles::Window BruteForceObstacles::window(const Eigen::Array2d& least,
+                                                        const Eigen::Array2d& most) const {
   const auto column = [this](double at_m, double corner_m) {
     return static_cast<Column>(std::floor((at_m - corner_m) / resolution_m_));
   };
-  return {column(x_m - around_m, corner_.x()), column(y_m - around_m, corner_.y()),
-          column(x_m + around_m, corner_.x()) + 1, column(y_m + around_m, corner_.y()) + 1};
+  return {column(least.x(), corner_.x()), column(least.y(), corner_.y()),
+          column(most.x(), corner_.x()) + 1, column(most.y(), corner_.y()) + 1};
+}
+
+BruteForceObstacles::Window BruteForceObstacles::window_around(const BodyOutline::Place& body,
+                                                               double limit_m) const {
+  Eigen::Array2d least = body.corners[0], most = body.corners[0];
+  for (const Eigen::Vector2d& corner : body.corners) {
+    least = least.min(corner.array());
+    most = most.max(corner.array());
+  }
+  const double around_m = limit_m + body.radius_m + resolution_m_;
+  return window(least - around_m, most + around_m);
 }
 
 void BruteForceObstacles::mark(double x_m, double y_m, double limit_m) {
   const double farthest_m = std::max({std::abs(x_m), std::abs(y_m), limit_m + body_.reach_m()});
   if (!(farthest_m <= kFarthest_m)) throw std::length_error(kTooMuch);
-  const Window marked = window(x_m, y_m, limit_m);
+  const Eigen::Array2d place(x_m, y_m);
+  const double around_m = limit_m + body_.reach_m() + resolution_m_;  // whatever the heading
+  const Window marked = window(place - around_m, place + around_m);
   marked_columns_ += static_cast<double>(marked.to_x - marked.from_x) *
                      static_cast<double>(marked.to_y - marked.from_y);
   if (marked_columns_ > kMostColumns) throw std::length_error(kTooMuch);
@@ -335,10 +347,11 @@ BodyOutline::Corners BruteForceObstacles::column_square(Column x, Column y) cons
 double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad,
                                       double limit_m) const {
   const BodyOutline::Place body = body_.at(x_m, y_m, heading_rad);
-  const Column middle = window(x_m, y_m, -body_.reach_m() - resolution_m_).from_y;
+  const Window around = window_around(body, limit_m);
+  const Column middle = floor_div(around.from_y + around.to_y, 2);
   double least_m = limit_m;
   for (Column away = 0;; ++away) {
-    const Window near = window(x_m, y_m, least_m);
+    const Window near = window_around(body, least_m);
     if (middle - away < near.from_y && middle + away >= near.to_y) return least_m;
     for (const Column y : {middle - away, middle + away}) {
       if (y < near.from_y || y >= near.to_y) continue;

@@ -61,7 +61,8 @@ class BruteForceObstacles {
 
   /// Columns within `limit_m` of the body at a place will be asked for; `measure` then looks at
   /// them all at once.
-  /// @throws std::length_error if that is too much: over 10⁹ columns in all.
+  /// @throws std::length_error if that is too much: over 10⁹ columns in all, or 2·10⁸ different
+  ///         ones, or one more than 10⁹ m away.
   void mark(double x_m, double y_m, double limit_m);
   void measure();
 
@@ -76,7 +77,8 @@ class BruteForceObstacles {
 
   void add_occupied(const map::OccupancyCell& cell);
   double ground_m(double x_m, double y_m);
-  Window window(double x_m, double y_m, double limit_m) const;
+  Window window(const Eigen::Array2d& least, const Eigen::Array2d& most) const;
+  Window window_around(const BodyOutline::Place& body, double limit_m) const;
   void measure(const map::OccupancyCell& cell);
   void add(std::vector<float>& tile, const std::pair<Column, Column>& at, const Window& columns,
            const map::OccupancyCell& cell);

@@ -6,8 +6,6 @@
 namespace roadbed::planning {
 namespace {
 
-constexpr double kShortest_m = 0.5e-3;  // motion bound of a span of 1 mm
-
 constexpr double kMostSpans = 1e6;  // in a drive that is too near all along
 
 constexpr double kOver_m = 1e-9;  // a bound that is over by this is over, whatever the rounding
@@ -79,7 +77,7 @@ bool NearStretchSearch::settle(const Span& span) {
                            .witness = nearest->witness,
                            .obstacle = nearest->obstacle});
   }
-  return motion_m <= kShortest_m && append(span, Label::undecided);
+  return motion_m <= kLeastTold_m && append(span, Label::undecided);
 }
 
 bool NearStretchSearch::append(const Span& span, Label label,

@@ -11,6 +11,10 @@
 
 namespace roadbed::planning {
 
+/// Where a distance and what is asked for are nearer to each other than this, spans may be
+/// undecided: it is the motion bound of the shortest ones, of 1 mm of motion.
+inline constexpr double kLeastTold_m = 0.5e-3;
+
 /// Where a drive is nearer to something than allowed, and where that cannot be told.
 struct NearStretches {
   std::vector<Conflict> near;

@@ -178,6 +178,11 @@ void PartAudit::take_least(const LeastClearance& least) {
   report_.obstacle = least.obstacle;
 }
 
+// A proof span by span, as a certificate has, does not tell distances nearer to the limit apart.
+bool PartAudit::is_near(const LeastClearance& least) const {
+  return least.proven_m < options_.clearance_m + kLeastTold_m;
+}
+
 void PartAudit::take_near(const Probe& probe) {
   NearStretchSearch search(probe, options_.clearance_m, options_.tolerance_m);
   search.search(probe.segments());
@@ -203,7 +208,7 @@ void PartAudit::ask_about_moving() {
   const LeastClearance least = search.found();
   if (least.found_m < report_.least_clearance_m) take_least(least);
   report_.proven_clearance_m = std::min(report_.proven_clearance_m, least.proven_m);
-  if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) take_near(probe);
+  if (is_near(least)) take_near(probe);
   for (std::size_t i = 0; i < report_.profile.size(); ++i) {
     double& clearance_m = report_.profile[i].clearance_m;
     clearance_m = std::min(clearance_m, clearance_at(probe, i * rows_apart(drive_)));
@@ -214,7 +219,7 @@ AuditReport PartAudit::report() {
   const LeastClearance least = least_.found();
   take_least(least);
   report_.proven_clearance_m = least.proven_m;
-  if (least.proven_m <= 0.0 || least.proven_m < options_.clearance_m) take_near(probe_);
+  if (is_near(least)) take_near(probe_);
   if (!moving_.empty()) ask_about_moving();
   report_.beyond_horizon = !report_.witness;
   if (report_.witness) {

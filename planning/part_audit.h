@@ -40,6 +40,7 @@ class PartAudit {
   void take_samples(std::size_t to);
   void take_unknown_shares(std::size_t to);
   void take_least(const LeastClearance& least);
+  bool is_near(const LeastClearance& least) const;
   void take_near(const Probe& probe);
   void ask_about_moving();
 

@@ -5,12 +5,6 @@
 #include <limits>
 
 namespace roadbed::planning {
-namespace {
-
-constexpr double kRounding_m = 1e-8;  // of coordinates up to 10,000 km
-
-}  // namespace
-
 Probe::Probe(const geometry::Trajectory& drive, double reach_m)
     : drive_(drive), reach_m_(reach_m), moved_m_(segments() + 1) {
   for (std::size_t segment = 0; segment < segments(); ++segment) {

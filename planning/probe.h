@@ -57,9 +57,8 @@ class Probe {
   std::size_t next_after(std::size_t segment, double spare_m) const;
 
   /// The distance changes by no more than this between the span's middle and any other time of it.
-  /// Here that of things at rest: half the way of the axle plus half the turn times the body's
-  /// reach, and rounding.
-  /// O(1).
+  /// Here that of things at rest: the way of the axle plus the turn times the body's reach, to the
+  /// end that is farther from the middle, and rounding. O(1).
   virtual double motion_bound_m(const Span& span) const;
 
   /// Lower bound of the distance in the middle of a span; at most the horizon. A bound of
@@ -81,11 +80,13 @@ class Probe {
   virtual double horizon_m() const = 0;
 
   /// Whether distances at the end of a segment are those at the start of the next one, and change
-  /// by the body's own motion only.
+  /// by the body's own motion only. If not, spans of several segments must not be asked about.
   virtual bool is_continuous() const = 0;
 
  protected:
   const geometry::Trajectory& drive() const { return drive_; }
+  static constexpr double kRounding_m = 1e-8;  // of coordinates up to 10,000 km
+
   geometry::Pose2 pose_at(std::size_t segment, double share) const;
   geometry::Pose2 middle_pose_of(const Span& span) const {
     return pose_at(span.middle_segment(), span.middle());

@@ -20,6 +20,7 @@ namespace roadbed::map {
 namespace {
 
 constexpr double kHorizon_m = 1000.0;
+constexpr double kHorizonInTiles_m = 50.0, kLargestBody_m = 20.0;  // without a region
 constexpr double kRounding_m = 1e-6;
 constexpr double kTouch_m = 1e-6;  // cells that overlap the band by less only touch it
 
@@ -63,7 +64,7 @@ CellRange range_of(const std::vector<Slab>& slabs) {
 /// One grid where that is small enough, else tiles of it.
 struct ClearanceField::Grid {
   BandSlicer slicer;
-  double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter where there is a region
+  double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter of a region, or of tiles
   std::optional<Box2> around = std::nullopt;
   std::shared_ptr<const PlanGrid> whole = nullptr;
   std::unique_ptr<const GridTiles> tiles = nullptr;
@@ -82,13 +83,18 @@ struct ClearanceField::Grid {
         seen.count() <= std::min(most_at_once, region.most_cells)) {
       whole = grid_of({held, seen, false});
     } else {
-      make_tiles(region);
+      make_tiles(region.tile_m, region.most_cells);
     }
   }
 
   void make_whole() {
     const std::vector<Slab> slabs = slicer.slabs();
     const CellRange all = range_of(slabs);
+    if (!is_small(all)) {
+      horizon_m = kHorizonInTiles_m;
+      body_radius_m = kLargestBody_m;
+      return make_tiles(0.0, kMostCells);
+    }
     whole = grid_of({all, all, true}, [&](const CellRange& range) {
       std::vector<Slab> in_range;
       std::ranges::copy_if(slabs, std::back_inserter(in_range),
@@ -99,22 +105,21 @@ struct ClearanceField::Grid {
 
   // A box within the horizon of a body whose centre lies in a tile has its centre at most horizon,
   // body's radius and half a box's diagonal away from the tile.
-  void make_tiles(const FieldRegion& region) {
+  void make_tiles(double tile_m, std::size_t most_cells) {
+    most_cells = std::min(most_cells, kMostCells);
     const double cell_m = slicer.cell_m();
     const auto margin =
         static_cast<std::int64_t>(std::ceil((horizon_m + body_radius_m) / cell_m)) + 3;
     constexpr std::int64_t longest = 10'000;  // of a side with both margins: kMostCells in all
-    const auto of_two = static_cast<std::int64_t>(
-        std::sqrt(static_cast<double>(std::min(region.most_cells, kMostCells)) / 2.0));
+    const auto of_two = static_cast<std::int64_t>(std::sqrt(static_cast<double>(most_cells) / 2.0));
     const std::int64_t least = std::clamp<std::int64_t>(longest - 2 * margin, 1, margin);
     const std::int64_t usual = std::clamp(of_two - 2 * margin, least, std::max(least, 2 * margin));
     const std::int64_t side =
-        region.tile_m > 0.0 ? static_cast<std::int64_t>(std::ceil(region.tile_m / cell_m)) : usual;
+        tile_m > 0.0 ? static_cast<std::int64_t>(std::ceil(tile_m / cell_m)) : usual;
     const CellRange first = CellRange{0, 0, side, side}.grown(margin);
     check_size(first, slicer.layers(), cell_m);
     tiles = std::make_unique<const GridTiles>(
-        side, std::max<std::size_t>(1, std::min(region.most_cells, kMostCells) / first.count()),
-        [this, margin](CellRange tile) {
+        side, std::max<std::size_t>(1, most_cells / first.count()), [this, margin](CellRange tile) {
           return grid_of({tile, tile.grown(margin), false});
         });
   }
@@ -155,7 +160,7 @@ struct ClearanceField::Grid {
   }
 
   bool is_too_large(const geometry::Rectangle& rectangle) const {
-    return around && rectangle.radius_m() > body_radius_m + kRounding_m;
+    return (around || tiles) && rectangle.radius_m() > body_radius_m + kRounding_m;
   }
 
   bool is_inside(const geometry::Rectangle& rectangle) const {

@@ -65,8 +65,12 @@ class ClearanceField {
   /// Cells within a horizon of the region take 2 bytes and a bit of memory, those of the region
   /// itself 4 more, twice that once unknown space is asked for. O(leaves + cells). In tiles no more
   /// than `kMostCells` cells are alive at a time, and the answers are the same, bit for bit.
+  ///
+  /// Without a region questions may be asked anywhere. The horizon is 1 km then; where all that was
+  /// measured has over `kMostCells` cells it is made in tiles, with a horizon of 50 m, for bodies
+  /// within a circle of 20 m.
   /// @param occupancy  kept by reference, as tiles are made later.
-  /// @throws InputError if there is no region and more than `kMostCells` cells, or a tile has them.
+  /// @throws InputError if a tile by itself has over `kMostCells` cells.
   /// @throws std::invalid_argument if the band is empty or not finite.
   ClearanceField(const OccupancySource& occupancy, const HeightBand& band,
                  const std::optional<FieldRegion>& region = std::nullopt);
@@ -84,8 +88,8 @@ class ClearanceField {
   /// Distance beyond which the bound is not told apart.
   double horizon_m() const;
 
-  /// Whether `nearest` may be asked about a rectangle: it keeps within the field's region, and is
-  /// no larger than the bodies that the region names.
+  /// Whether a rectangle keeps within the field's region and is no larger than the bodies that the
+  /// region names: then `nearest` may be asked, and the answer is the same in tiles or without.
   bool is_made_for(const geometry::Rectangle& in_source) const;
 
   struct Nearest {

@@ -98,6 +98,25 @@ TEST(AuditCertificate, HoldsForEveryAuditAndSaysTheSameVerdict) {
   EXPECT_GT(verdicts[2], 5);
 }
 
+// A search that bounds what the body sweeps over could tell; spans by motion would be millions.
+TEST(AuditCertificate, OfAClearanceMetToAHairIsShortAndSaysTheSameVerdict) {
+  map::PointCloud pole;
+  pole.points.emplace_back(20.0f, 2.1f, 0.9f);
+  const OccupancyMap occupancy = OccupancyMap::build(std::vector{pole}, {.resolution_m = kSide_m});
+  const ClearanceField field(occupancy, kLowBand);
+  const Trajectory drive({{.t_s = 0.0}, {.t_s = 1.0, .x_m = 40.0}});
+  const double free_m = 2.0 - 0.5 * VehicleShape{}.width_m;
+  for (const double short_of_m : {1e-7, 1e-6, 1e-5, 4e-4, 1e-3}) {
+    const AuditOptions options{.clearance_m = free_m - short_of_m, .unknown = UnknownPolicy::free};
+    const AuditReport report = audit(field, drive, VehicleShape{}, options);
+    const auto certificate = certify(field, kLowBand, drive, VehicleShape{}, options, report);
+    EXPECT_EQ(report.verdict, short_of_m < 1e-3 ? Verdict::undecided : Verdict::clear);
+    EXPECT_EQ(certificate.verdict, report.verdict) << short_of_m;
+    EXPECT_LT(certificate.from_occupied.size(), 20'000u) << short_of_m;
+    EXPECT_THAT(check_certificate(certificate, occupancy.cells(), kSide_m, drive), IsEmpty());
+  }
+}
+
 TEST(AuditCertificate, IsRefutedIfAnySpanIsMissing) {
   std::mt19937 random(11);
   int refuted = 0;

@@ -251,7 +251,7 @@ TEST(Audit, SaysUndecidedWhereTheClearanceIsMetToAHair) {
   const ClearanceField field(world.occupancy, kBand);
   const double free_m = 2.0 - 0.5 * VehicleShape{}.width_m;
   const AuditReport report = audit(field, straight({0, 0, 0}, {40, 0, 0}), VehicleShape{},
-                                   {.clearance_m = free_m - 1e-9, .unknown = UnknownPolicy::free});
+                                   {.clearance_m = free_m - 1e-7, .unknown = UnknownPolicy::free});
   EXPECT_EQ(report.verdict, Verdict::undecided);
   EXPECT_FALSE(report.undecided.empty());
 }

@@ -199,6 +199,35 @@ TEST(ClearanceField, InTilesOfAnySideSaysWhatTheWholeSaysBitForBit) {
   }
 }
 
+// As a whole it would have 10¹⁰ cells.
+TEST(ClearanceField, OfAnOccupancyTooLargeForOneGridKnowsBothItsEnds) {
+  PointCloud cloud;
+  std::vector<Quad> boxes;
+  for (const double at_m : {0.05, 3000.05, 6000.05}) {
+    cloud.points.emplace_back(static_cast<float>(at_m), static_cast<float>(at_m), 0.75f);
+    boxes.push_back(tests::box_quad(Eigen::Array2d::Constant(at_m - 0.05),
+                                    Eigen::Array2d::Constant(at_m + 0.05)));
+  }
+  const OccupancyMap occupancy = OccupancyMap::build(std::vector{cloud}, {.resolution_m = 0.1});
+  const ClearanceField field(occupancy, kBand);
+  EXPECT_EQ(field.horizon_m(), 50.0);
+  const VehicleShape shape;
+  std::mt19937 random(19);
+  std::uniform_real_distribution<double> place(-30.0, 30.0), turn(-4.0, 4.0);
+  for (const double at_m : {0.0, 3000.0, 6000.0, -20'000.0}) {
+    for (int i = 0; i < 50; ++i) {
+      const Pose2 pose{at_m + place(random), at_m + place(random), turn(random)};
+      const double expected_m = brute_force(boxes, vehicle_quad(pose, shape));
+      const auto found = field.nearest(pose, shape, 60.0);
+      ASSERT_EQ(found.has_value(), expected_m <= 50.0);
+      if (found) {
+        ASSERT_NEAR(found->distance_m, expected_m, 1e-6);
+      }
+      ASSERT_LE(field.distance_bound_m(pose.position()), expected_m + shape.length_m);
+    }
+  }
+}
+
 TEST(ClearanceField, RefusesABodyThatItsTilesAreTooSmallFor) {
   std::mt19937 random(18);
   const OccupancyMap occupancy = random_occupancy(random, 0.1, 5.0);
