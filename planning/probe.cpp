@@ -5,6 +5,7 @@
 #include <limits>
 
 namespace roadbed::planning {
+
 Probe::Probe(const geometry::Trajectory& drive, double reach_m)
     : drive_(drive), reach_m_(reach_m), moved_m_(segments() + 1) {
   for (std::size_t segment = 0; segment < segments(); ++segment) {

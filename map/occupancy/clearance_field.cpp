@@ -20,7 +20,7 @@ namespace roadbed::map {
 namespace {
 
 constexpr double kHorizon_m = 1000.0;
-constexpr double kHorizonInTiles_m = 50.0, kLargestBody_m = 20.0;  // without a region
+constexpr double kHorizonInTiles_m = 50.0, kBodyRadius_m = 20.0;  // without a region
 constexpr double kRounding_m = 1e-6;
 constexpr double kTouch_m = 1e-6;  // cells that overlap the band by less only touch it
 
@@ -92,7 +92,7 @@ struct ClearanceField::Grid {
     const CellRange all = range_of(slabs);
     if (!is_small(all)) {
       horizon_m = kHorizonInTiles_m;
-      body_radius_m = kLargestBody_m;
+      body_radius_m = kBodyRadius_m;
       return make_tiles(0.0, kMostCells);
     }
     whole = grid_of({all, all, true}, [&](const CellRange& range) {
