@@ -11,7 +11,7 @@
 
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit.h"
-#include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
@@ -31,36 +31,16 @@ OccupancyMap posts_at(const std::vector<Eigen::Vector2d>& places) {
   return OccupancyMap::build(std::vector{cloud}, {.resolution_m = 0.1});
 }
 
-std::vector<tests::Quad> boxes_of(const OccupancyMap& posts) {
-  std::vector<tests::Quad> boxes;
-  for (const map::OccupancyCell& cell : posts.cells()) {
-    const Eigen::Array2d middle = cell.centre_in_source.head<2>();
-    boxes.push_back(tests::box_quad(middle - 0.5 * cell.size_m, middle + 0.5 * cell.size_m));
-  }
-  return boxes;
-}
-
-double to_box_m(const Eigen::Vector2d& point, const tests::Quad& box) {
-  const Eigen::Array2d below = box[0] - point, above = point - box[2];
-  return below.max(above).max(0.0).matrix().norm();
-}
-
-double away_m(const std::vector<tests::Quad>& boxes, const BodyPart& part,
-              const geometry::Pose2& pose) {
-  const tests::Quad body{pose * Eigen::Vector2d(part.rear_m, part.right_m),
-                         pose * Eigen::Vector2d(part.front_m, part.right_m),
-                         pose * Eigen::Vector2d(part.front_m, part.left_m),
-                         pose * Eigen::Vector2d(part.rear_m, part.left_m)};
+double away_m(const OccupancyMap& posts, const BodyPart& part, const geometry::Pose2& pose) {
   double least_m = std::numeric_limits<double>::infinity();
-  for (const tests::Quad& box : boxes) {
-    least_m = std::min(least_m, part.is_circle() ? to_box_m(body[0], box) - part.radius_m
-                                                 : tests::quad_distance(box, body));
+  for (const map::OccupancyCell& cell : posts.cells()) {
+    least_m = std::min(least_m, tests::part_to_cell_m(part, 0.0, pose, cell));
   }
-  return std::max(0.0, least_m);
+  return least_m;
 }
 
-double least_within_m(const std::vector<tests::Quad>& boxes, const BodyPart& part,
-                      const Trajectory& drive, const Span& span) {
+double least_within_m(const OccupancyMap& posts, const BodyPart& part, const Trajectory& drive,
+                      const Span& span) {
   const auto& rows = drive.points();
   const double from_s = rows[span.segment].t_s + span.from;  // a second from row to row
   const double to_s = rows[span.segment + span.segments - 1].t_s + span.to;
@@ -68,7 +48,7 @@ double least_within_m(const std::vector<tests::Quad>& boxes, const BodyPart& par
   constexpr int steps = 60;
   for (int i = 0; i <= steps; ++i) {
     const double t_s = from_s + (to_s - from_s) * i / steps;
-    least_m = std::min(least_m, away_m(boxes, part, drive.at(t_s).pose()));
+    least_m = std::min(least_m, away_m(posts, part, drive.at(t_s).pose()));
   }
   return least_m;
 }
@@ -87,7 +67,6 @@ TEST(BodyProbe, SweptBoundIsNeverOverADistanceOnTheWay) {
     std::vector<Eigen::Vector2d> places;
     for (int i = 0; i < 20; ++i) places.emplace_back(place(random), place(random));
     const OccupancyMap posts = posts_at(places);
-    const std::vector<tests::Quad> boxes = boxes_of(posts);
     const ClearanceField field(posts, map::HeightBand{0.2, 1.5});
     const auto first = tests::random_start(random, {0.0, 0.0}, 6.0, 3.6);
     const Trajectory drive = tests::random_drive(
@@ -99,7 +78,7 @@ TEST(BodyProbe, SweptBoundIsNeverOverADistanceOnTheWay) {
       if (segments == 1) span.from = 0.9 * share(random), span.to = span.from + 0.1;
       constexpr double within_m = 4.0;
       const double bound_m = probe.swept_bound_m(span, within_m);
-      const double least_m = least_within_m(boxes, part, drive, span);
+      const double least_m = least_within_m(posts, part, drive, span);
       ASSERT_LE(bound_m, std::min(least_m, within_m) + 1e-9)
           << part.name << ", " << segments << " segments";
       told += bound_m > 0.0;
@@ -121,8 +100,7 @@ TEST(BodyProbe, SweptBoundOfAStraightPassageIsTheDistance) {
   const ClearanceField field(posts, map::HeightBand{0.2, 1.5});
   const BodyProbe probe(field, drive, car, {ObstacleKind::occupied});
   double least_m = std::numeric_limits<double>::infinity();
-  for (const auto& row : rows)
-    least_m = std::min(least_m, away_m(boxes_of(posts), car, row.pose()));
+  for (const auto& row : rows) least_m = std::min(least_m, away_m(posts, car, row.pose()));
   const double bound_m = probe.swept_bound_m({0, 0.0, 1.0, 20}, 5.0);
   EXPECT_LE(bound_m, least_m + 1e-9);
   EXPECT_NEAR(bound_m, least_m, 1e-6);

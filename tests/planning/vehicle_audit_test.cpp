@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "roadbed/planning/audit_certificate_check.h"
-#include "roadbed/tests/support/brute_force_distance.h"
+#include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {
@@ -26,7 +26,6 @@ using map::OccupancyMap;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using tests::Quad;
 
 constexpr double kCellSide_m = 0.1;
 
@@ -55,22 +54,6 @@ Trajectory drive_of_parts(std::mt19937& random) {
                              {.rows = 1 + random() % 2, .way_m = 3.0, .turn_rad = 1.2});
 }
 
-double part_to_box_m(const BodyPart& part, double margin_m, const Pose2& pose,
-                     const map::OccupancyCell& cell) {
-  const Eigen::Vector2d middle = cell.centre_in_source.head<2>();
-  const Eigen::Array2d half = Eigen::Array2d::Constant(0.5 * cell.size_m);
-  if (part.radius_m > 0.0) {
-    const Eigen::Array2d off = (pose * Eigen::Vector2d(part.front_m, part.left_m) - middle).array();
-    const double away_m = (off.abs() - half).max(0.0).matrix().norm();
-    return std::max(0.0, away_m - part.radius_m - margin_m);
-  }
-  const double rear = part.rear_m - margin_m, front = part.front_m + margin_m;
-  const double right = part.right_m - margin_m, left = part.left_m + margin_m;
-  const Quad body{pose * Eigen::Vector2d(rear, right), pose * Eigen::Vector2d(front, right),
-                  pose * Eigen::Vector2d(front, left), pose * Eigen::Vector2d(rear, left)};
-  return tests::quad_distance(tests::box_quad(middle.array() - half, middle.array() + half), body);
-}
-
 /// Least distance of any part from any cell at its heights, and of which part.
 std::pair<double, std::size_t> least_of_parts(const std::vector<BodyPart>& parts, double margin_m,
                                               const std::vector<map::OccupancyCell>& cells,
@@ -81,7 +64,7 @@ std::pair<double, std::size_t> least_of_parts(const std::vector<BodyPart>& parts
       const double low_m = cell.centre_in_source.z() - 0.5 * cell.size_m;
       if (low_m + cell.size_m <= parts[i].from_height_m + 1e-6) continue;
       if (low_m >= parts[i].to_height_m - 1e-6) continue;
-      least = std::min(least, {part_to_box_m(parts[i], margin_m, pose, cell), i});
+      least = std::min(least, {tests::part_to_cell_m(parts[i], margin_m, pose, cell), i});
     }
   }
   return least;
