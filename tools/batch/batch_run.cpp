@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "roadbed/map/input_error.h"
@@ -15,6 +14,7 @@
 #include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/memory_size.h"
 #include "roadbed/tools/batch/stop_signal.h"
+#include "roadbed/tools/support/in_threads.h"
 
 namespace roadbed::tools {
 namespace {
@@ -104,25 +104,23 @@ BatchRun::BatchRun(const BatchOptions& options, ResultStore& store, ProgressBar&
 }
 
 void BatchRun::run() {
-  {
-    std::vector<std::jthread> threads;
-    for (const auto& runner : runners_) threads.emplace_back([&] { work(*runner); });
-  }
-  if (error_) std::rethrow_exception(error_);
+  in_threads(runners_.size(), options_.threads, [&](std::size_t i) { work(*runners_[i]); });
 }
 
 void BatchRun::work(JobRunner& runner) {
   try {
     while (const auto taken = take()) bring(*taken, runner);
   } catch (...) {
-    fail(std::current_exception());
+    stop_others();
+    runner.finish();
+    throw;
   }
   runner.finish();
 }
 
 std::optional<BatchRun::Taken> BatchRun::take() {
   const std::scoped_lock lock(mutex_);
-  if (error_ || StopSignal::is_asked()) return {};
+  if (has_failed_ || StopSignal::is_asked()) return {};
   auto line = lines_.next();
   if (!line) {
     is_complete_ = true;
@@ -210,10 +208,10 @@ std::uint64_t BatchRun::least_resident() const {
   return resident();
 }
 
-void BatchRun::fail(std::exception_ptr error) {
+void BatchRun::stop_others() {
   const std::scoped_lock lock(mutex_);
   is_complete_ = false;
-  if (!error_) error_ = std::move(error);
+  has_failed_ = true;
 }
 
 }  // namespace roadbed::tools

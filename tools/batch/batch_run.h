@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iosfwd>
@@ -81,7 +80,7 @@ class BatchRun {
   void keep_time(const Job& job, const std::string& hash, double wall_s);
   std::uint64_t resident() const;
   std::uint64_t least_resident() const;
-  void fail(std::exception_ptr error);
+  void stop_others();
 
   const BatchOptions& options_;
   ResultStore& store_;
@@ -99,8 +98,7 @@ class BatchRun {
   std::vector<LineResult> order_;
   std::map<JobHash, bool> were_there_by_hash_;  // of all jobs taken
   std::size_t were_there_ = 0, missing_ = 0;
-  bool is_complete_ = false;
-  std::exception_ptr error_;
+  bool is_complete_ = false, has_failed_ = false;
 };
 
 }  // namespace roadbed::tools

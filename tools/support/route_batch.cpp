@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
@@ -12,6 +11,7 @@
 #include "roadbed/planning/route_obstacle.h"
 #include "roadbed/planning/route_solver.h"
 #include "roadbed/tools/support/csv.h"
+#include "roadbed/tools/support/in_threads.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/route_output.h"
@@ -51,19 +51,6 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
-/// Runs work(0) … work(count − 1), each in one of the threads. `make` makes a thread's own tools.
-template <typename Make, typename Work>
-void in_threads(std::size_t count, int threads, const Make& make, const Work& work) {
-  const auto run = [&](std::size_t first) {
-    auto own = make();
-    for (std::size_t i = first; i < count; i += static_cast<std::size_t>(threads)) work(own, i);
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(run, static_cast<std::size_t>(i));
-  run(0);
-  for (std::thread& other : others) other.join();
-}
-
 class Batch {
  public:
   Batch(const map::RoadMap& road_map, const planning::RouteOptions& rules,
@@ -76,13 +63,11 @@ class Batch {
   }
 
   void place(std::vector<Row>& rows) const {
-    in_threads(
-        rows.size(), options_.threads, [] { return 0; },
-        [&](int, std::size_t i) {
-          if (rows[i].fault.empty()) {
-            place_row(road_map_, router_, router_.options().participant, rows[i]);
-          }
-        });
+    in_threads(rows.size(), options_.threads, [&](std::size_t i) {
+      if (rows[i].fault.empty()) {
+        place_row(road_map_, router_, router_.options().participant, rows[i]);
+      }
+    });
   }
 
   std::vector<Cell> answer_rows(const std::vector<Row>& rows) const {
