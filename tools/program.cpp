@@ -17,6 +17,7 @@
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/build_id.h"
 #include "roadbed/tools/support/help_format.h"
+#include "roadbed/tools/support/standard_output.h"
 
 namespace roadbed::tools {
 namespace {
@@ -80,9 +81,7 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
   return Exit::failed;
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv) {
+int run_command_line(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
   app.formatter(make_help_format());
@@ -121,6 +120,17 @@ int run_program(int argc, char** argv) {
     }
   }
   return static_cast<int>(Exit::usage);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  hold_closed_streams();
+  StandardOutput standard_output;
+  const int status = run_command_line(argc, argv);
+  if (standard_output.finish()) return status;
+  fmt::print(stderr, "roadbed: {}\n", standard_output.fault());
+  return status == static_cast<int>(Exit::ok) ? static_cast<int>(Exit::failed) : status;
 }
 
 }  // namespace roadbed::tools

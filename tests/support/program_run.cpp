@@ -13,22 +13,35 @@
 namespace roadbed::tests {
 namespace {
 
-// Standard output and error of a child go to files; standard input is empty.
+// Standard error of a child goes to a file; standard input is empty.
 class Redirections {
  public:
-  Redirections(const std::string& out, const std::string& err) {
-    constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
+  explicit Redirections(const std::string& err) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, out.c_str(), kWrite, 0600);
     posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, err.c_str(), kWrite, 0600);
   }
   ~Redirections() { posix_spawn_file_actions_destroy(&actions_); }
   Redirections(const Redirections&) = delete;
   Redirections& operator=(const Redirections&) = delete;
+
+  void print_to(const std::string& file) {
+    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, file.c_str(), kWrite, 0600);
+  }
+
+  void print_to(int descriptor) {
+    if (descriptor < 0) {
+      posix_spawn_file_actions_addclose(&actions_, STDOUT_FILENO);
+    } else {
+      posix_spawn_file_actions_adddup2(&actions_, descriptor, STDOUT_FILENO);
+    }
+  }
+
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
  private:
+  static constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
+
   posix_spawn_file_actions_t actions_;
 };
 
@@ -36,6 +49,21 @@ int wait_for(pid_t child) {
   int state = 0;
   if (::waitpid(child, &state, 0) != child) throw std::runtime_error("waitpid failed");
   return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+}
+
+int status_of_roadbed(const std::vector<std::string>& arguments, const Redirections& redirections) {
+  std::vector<std::string> words{program_file().string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  std::transform(words.begin(), words.end(), std::back_inserter(argv),
+                 [](std::string& word) { return word.data(); });
+  argv.push_back(nullptr);
+
+  pid_t child = 0;
+  if (::posix_spawn(&child, argv.front(), redirections.get(), nullptr, argv.data(), environ) != 0) {
+    throw std::runtime_error("cannot start " + words.front());
+  }
+  return wait_for(child);
 }
 
 }  // namespace
@@ -62,20 +90,19 @@ std::filesystem::path program_file() { return ROADBED_PROGRAM; }
 ProgramRun run_roadbed(const std::vector<std::string>& arguments) {
   const TemporaryFolder streams;
   const std::string out = streams / "out", err = streams / "err";
-  std::vector<std::string> words{program_file().string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  std::transform(words.begin(), words.end(), std::back_inserter(argv),
-                 [](std::string& word) { return word.data(); });
-  argv.push_back(nullptr);
-
-  pid_t child = 0;
-  const Redirections redirections(out, err);
-  if (::posix_spawn(&child, argv.front(), redirections.get(), nullptr, argv.data(), environ) != 0) {
-    throw std::runtime_error("cannot start " + words.front());
-  }
-  const int status = wait_for(child);
+  Redirections redirections(err);
+  redirections.print_to(out);
+  const int status = status_of_roadbed(arguments, redirections);
   return {.status = status, .out = bytes_of(out), .err = bytes_of(err)};
+}
+
+ProgramRun run_roadbed_into(int descriptor, const std::vector<std::string>& arguments) {
+  const TemporaryFolder streams;
+  const std::string err = streams / "err";
+  Redirections redirections(err);
+  redirections.print_to(descriptor);
+  const int status = status_of_roadbed(arguments, redirections);
+  return {.status = status, .out = {}, .err = bytes_of(err)};
 }
 
 std::string bytes_of(const std::filesystem::path& file) {

@@ -38,6 +38,9 @@ std::filesystem::path program_file();
 /// Runs it.
 ProgramRun run_roadbed(const std::vector<std::string>& arguments);
 
+/// The same with this as standard output, which is closed if negative.
+ProgramRun run_roadbed_into(int descriptor, const std::vector<std::string>& arguments);
+
 /// The bytes of a file, as a test wants them.
 std::string bytes_of(const std::filesystem::path& file);
 

@@ -14,11 +14,10 @@ struct ServeOptions {
 };
 
 /// Runs the jobs of the lines of `in` one after the other, and prints the line of each result at
-/// once, until there is no more line. Files go below `options.folder`.
+/// once, until there is no more line, or `out` takes no more. Files go below `options.folder`.
 ///
 /// Before a job there may stand a hash and a tab: what it is known by to whoever asks. Its files go
 /// by that name, and if its inputs are not those of that hash, they have changed.
-/// @throws OutputError if a result cannot be printed.
 void serve(std::istream& in, std::ostream& out, const ServeOptions& options);
 
 }  // namespace roadbed::tools
