@@ -13,6 +13,7 @@
 #include "roadbed/map/occupancy/cell_range.h"
 #include "roadbed/map/occupancy/cloud_measurements.h"
 #include "roadbed/map/occupancy/cut_cloud.h"
+#include "roadbed/map/sha256.h"
 
 namespace roadbed::map {
 namespace {
@@ -287,7 +288,7 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
                      .y = place.first,
                      .file = tile_file_name(place.second, place.first),
                      .nodes = data.nodes,
-                     .xxhash = hash_of_bytes(bytes),
+                     .sha256 = sha256_of_bytes(bytes),
                      .bounds = {}};
   tile.bounds = *OccupancyMap::parse(bytes, tile.file).bounds();
   write(tile.file, bytes);

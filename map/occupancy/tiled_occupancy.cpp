@@ -5,6 +5,7 @@
 
 #include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
+#include "roadbed/map/sha256.h"
 
 namespace roadbed::map {
 namespace {
@@ -97,12 +98,12 @@ std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& ti
   }
   const std::filesystem::path file = folder_ / tile.file;
   const std::string bytes = read_file(file);
-  if (hash_of_bytes(bytes) != tile.xxhash) {
+  if (const std::string hash = sha256_of_bytes(bytes); hash != tile.sha256) {
     throw InputError({.file = file.string(),
                       .place = {},
                       .element = {},
-                      .found = "has the hash " + hash_of_bytes(bytes),
-                      .needed = tile.xxhash + " as the index says",
+                      .found = "has the SHA-256 " + hash,
+                      .needed = tile.sha256 + " as the index says",
                       .remedy = "build the tiles again"});
   }
   auto map = std::make_shared<const OccupancyMap>(OccupancyMap::parse(bytes, file.string()));

@@ -1,7 +1,6 @@
 #include "roadbed/map/occupancy/tiles_index.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <bit>
 #include <cmath>
@@ -17,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 using Ordered = nlohmann::ordered_json;
 
-constexpr const char* kTilesFormat = "roadbed occupancy tiles 1";
+constexpr const char* kTilesFormat = "roadbed occupancy tiles 2";
 constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
 
 [[noreturn]] void refuse_index(const std::string& name, const std::string& element,
@@ -100,7 +99,7 @@ class IndexReader {
                        .y = whole(json, "y"),
                        .file = text(json, "file"),
                        .nodes = static_cast<std::size_t>(whole(json, "nodes")),
-                       .xxhash = text(json, "xxhash"),
+                       .sha256 = text(json, "sha256"),
                        .bounds = {point(json, "min_m"), point(json, "max_m")}};
     if (tile.file != tile_file_name(tile.x, tile.y)) {
       refuse_index(name_, "file", "\"" + tile.file + "\"", tile_file_name(tile.x, tile.y));
@@ -191,7 +190,7 @@ std::string write_tiles_index(const TilesIndex& index) {
                                     {"x", tile.x},
                                     {"y", tile.y},
                                     {"nodes", tile.nodes},
-                                    {"xxhash", tile.xxhash},
+                                    {"sha256", tile.sha256},
                                     {"min_m", json_of(tile.bounds.min_in_source)},
                                     {"max_m", json_of(tile.bounds.max_in_source)}});
   }
@@ -217,10 +216,6 @@ bool is_tiled_occupancy(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::is_directory(path, error) &&
          std::filesystem::exists(tiles_index_file(path), error);
-}
-
-std::string hash_of_bytes(std::string_view bytes) {
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }
 
 }  // namespace roadbed::map

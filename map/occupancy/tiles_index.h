@@ -18,7 +18,7 @@ struct OccupancyTile {
   std::int64_t x = 0, y = 0;  ///< its place, counted in tiles from the origin
   std::string file;           ///< beside the index
   std::size_t nodes = 0;
-  std::string xxhash;  ///< XXH3 (64 bits) of its bytes, hexadecimal
+  std::string sha256;  ///< of its bytes, hexadecimal
   Box3 bounds;         ///< of its leaves, in source coordinates
 };
 
@@ -48,8 +48,5 @@ std::filesystem::path tiles_index_file(const std::filesystem::path& folder);
 
 /// Whether a path is a folder with an index.
 bool is_tiled_occupancy(const std::filesystem::path& path);
-
-/// XXH3 (64 bits), hexadecimal.
-std::string hash_of_bytes(std::string_view bytes);
 
 }  // namespace roadbed::map

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/sha256sum.h"
 
 namespace roadbed::tests {
 namespace {
@@ -113,6 +115,33 @@ TEST_F(OccupancyTiles, AreReplacedOnlyWithForce) {
   EXPECT_EQ(run_roadbed(again).status, 1);
   again.emplace_back("--force");
   EXPECT_EQ(run_roadbed(again).status, 0);
+}
+
+TEST_F(OccupancyTiles, HaveTheHashesInTheirIndexThatSha256sumMakesOfThem) {
+  build();
+  const Json index = Json::parse(bytes_of(tiles_ + "/index.json"));
+  ASSERT_FALSE(index["tiles"].empty());
+  for (const Json& tile : index["tiles"]) {
+    EXPECT_EQ(tile["sha256"],
+              sha256sum_of(std::filesystem::path(tiles_) / tile["file"].get<std::string>()));
+  }
+}
+
+TEST_F(OccupancyTiles, OfAnIndexWithOlderHashesAreRefusedAndToBeBuiltAgain) {
+  build();
+  Json index = Json::parse(bytes_of(tiles_ + "/index.json"));
+  index["format"] = "roadbed occupancy tiles 1";
+  for (Json& tile : index["tiles"]) {
+    tile.erase("sha256");
+    tile["xxhash"] = "0123456789abcdef";
+  }
+  std::ofstream(tiles_ + "/index.json") << index;
+  const ProgramRun run =
+      run_roadbed({"audit", "--occupancy", tiles_, "--trajectory", drive(), "--json"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("index.json: format: \"roadbed occupancy tiles 1\", needs roadbed "
+                                 "occupancy tiles 2; build the tiles again"));
 }
 
 }  // namespace

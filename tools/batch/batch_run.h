@@ -42,7 +42,7 @@ std::size_t count_jobs(const std::filesystem::path& jobs_file);
 void list_missing(const BatchOptions& options, const ResultStore& store, std::ostream& out);
 
 /// Brings the jobs of a file to their results: those that have none that stands run, in threads.
-/// Memory: about 120 bytes a job beside the store, and the jobs that run.
+/// Memory: about 150 bytes a job beside the store, and the jobs that run.
 class BatchRun {
  public:
   /// @param store, progress  live as long as this.

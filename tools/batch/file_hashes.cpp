@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
-#include <array>
-#include <memory>
+#include <cerrno>
 #include <utility>
 
-#include "roadbed/tools/batch/hash_text.h"
+#include "roadbed/map/sha256.h"
 
 namespace roadbed::tools {
 namespace {
@@ -21,28 +19,22 @@ namespace fs = std::filesystem;
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
-struct FreeState {
-  void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-};
-
 std::int64_t nanoseconds(const timespec& time) {
   return static_cast<std::int64_t>(time.tv_sec) * kNanoseconds + time.tv_nsec;
 }
 
 // Piece by piece: an input may be larger than memory.
 std::string hash_of_bytes(int descriptor) {
-  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
-  XXH3_128bits_reset(state.get());
+  map::Sha256 hash;
   std::vector<char> piece(kPiece);
   for (;;) {
     const ssize_t size = ::read(descriptor, piece.data(), piece.size());
     if (size < 0 && errno == EINTR) continue;
     if (size < 0) return "unreadable";
     if (size == 0) break;
-    XXH3_128bits_update(state.get(), piece.data(), static_cast<std::size_t>(size));
+    hash.add({piece.data(), static_cast<std::size_t>(size)});
   }
-  const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return hash.take_hex();
 }
 
 std::string read_and_hash(const fs::path& file) {
@@ -123,7 +115,7 @@ std::string FileHashes::of_folder(const fs::path& folder, bool with_stamp) {
     names_and_hashes += file.lexically_relative(folder).generic_string() + '\0' +
                         text_of(of_file(file), with_stamp) + '\n';
   }
-  return hash_text(names_and_hashes);
+  return map::sha256_of_bytes(names_and_hashes);
 }
 
 std::vector<fs::path> FileHashes::named_in(const fs::path& path, const FilesNamed& named) {

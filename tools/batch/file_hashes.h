@@ -16,8 +16,9 @@ namespace roadbed::tools {
 /// files that were asked for last. May be asked by several threads.
 class FileHashes {
  public:
-  /// XXH3 (128 bits, hexadecimal) of a file's bytes, or of the names and bytes of all files below a
-  /// folder. Of what is neither, or cannot be read, a word that says so: the job says why.
+  /// SHA-256 (hexadecimal) of a file's bytes, or of names and hashes of all files below a folder:
+  /// for each, in order of names, its path in the folder, a zero byte, its hash, and a line feed.
+  /// Of what is neither, or cannot be read, a word that says so: the job says why.
   std::string of(const std::filesystem::path& path);
 
   /// The same with the times of change: differs, too, from that of a file which has been changed

@@ -1,6 +1,6 @@
 #include "roadbed/tools/batch/job_hash.h"
 
-#include "roadbed/tools/batch/hash_text.h"
+#include "roadbed/map/sha256.h"
 #include "roadbed/tools/support/build_id.h"
 
 namespace roadbed::tools {
@@ -29,11 +29,11 @@ std::string hash_of(const Job& job, FileHashes& files) {
   }
   const json identity = {program(),   job.kind->name, job.inputs,
                          job.options, job.outputs,    std::move(contents)};
-  return hash_text(identity.dump(-1, ' ', false, json::error_handler_t::replace));
+  return map::sha256_of_bytes(identity.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 std::string hash_of_bad_line(std::string_view line) {
-  return hash_text(program() + " bad line " + std::string(line));
+  return map::sha256_of_bytes(program() + " bad line " + std::string(line));
 }
 
 }  // namespace roadbed::tools

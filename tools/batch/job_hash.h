@@ -8,9 +8,9 @@
 
 namespace roadbed::tools {
 
-/// What a job is known by: 32 hexadecimal digits over the program's build (see build_id), the job
-/// as its line says it (the order of options and outputs does not matter), and the contents of
-/// every file that it reads. Two jobs of one hash have one result.
+/// What a job is known by: SHA-256 (64 hexadecimal digits) over the program's build (see build_id),
+/// the job as its line says it (the order of options and outputs does not matter), and the contents
+/// of every file that it reads. Two jobs of one hash have one result.
 std::string hash_of(const Job& job, FileHashes& files);
 
 /// That of a line which is no job.

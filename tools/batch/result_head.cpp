@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kDigits = 16;  // of each half
+constexpr std::size_t kDigits = 16;  // of each part
 
 // The documents of commands are read through, but not kept.
 json parse_without_documents(std::string_view line) {
@@ -55,16 +55,16 @@ bool read_files(const json& head, std::vector<std::string>& files) {
 
 std::optional<JobHash> parse_hash(std::string_view text) {
   const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (text.size() != 2 * kDigits || !std::ranges::all_of(text, is_digit)) return {};
+  if (text.size() != kHashDigits || !std::ranges::all_of(text, is_digit)) return {};
   JobHash hash{};
-  for (std::size_t half = 0; half < hash.size(); ++half) {
-    const char* const from = text.data() + half * kDigits;
-    std::from_chars(from, from + kDigits, hash.at(half), 16);
+  for (std::size_t part = 0; part < hash.size(); ++part) {
+    const char* const from = text.data() + part * kDigits;
+    std::from_chars(from, from + kDigits, hash.at(part), 16);
   }
   return hash;
 }
 
-std::string text_of(const JobHash& hash) { return fmt::format("{:016x}{:016x}", hash[0], hash[1]); }
+std::string text_of(const JobHash& hash) { return fmt::format("{:016x}", fmt::join(hash, "")); }
 
 std::optional<ResultHead> read_head(std::string_view line) {
   const json head = parse_without_documents(line);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,10 +12,13 @@
 
 namespace roadbed::tools {
 
-/// The 128 bits of a job's hash.
-using JobHash = std::array<std::uint64_t, 2>;
+/// The 256 bits of a job's hash.
+using JobHash = std::array<std::uint64_t, 4>;
 
-/// None if the text is not 32 hexadecimal digits in lower case.
+/// Hexadecimal digits of a job's hash as text.
+constexpr std::size_t kHashDigits = 64;
+
+/// None if the text is not so many hexadecimal digits in lower case.
 std::optional<JobHash> parse_hash(std::string_view text);
 
 std::string text_of(const JobHash& hash);

@@ -22,7 +22,7 @@ struct LineResult {
 };
 
 /// The results of a folder, as its journals hold them: `FOLDER/journal/NAME.jsonl`, a line each in
-/// the order in which they came. Memory: about 100 bytes a result. May be used by several threads.
+/// the order in which they came. Memory: about 120 bytes a result. May be used by several threads.
 class ResultStore {
  public:
   /// Reads all journals, and makes nothing; of several results of a job an answer counts before a
@@ -55,7 +55,7 @@ class ResultStore {
     std::uint64_t begin, size;
   };
   struct HashOfHash {
-    std::size_t operator()(const JobHash& hash) const { return hash[1]; }
+    std::size_t operator()(const JobHash& hash) const { return hash[0]; }
   };
 
   void read_journal(std::uint32_t index);

@@ -9,6 +9,7 @@
 #include "roadbed/tools/batch/compact_json.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_verdict.h"
+#include "roadbed/tools/batch/result_head.h"
 #include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
@@ -114,7 +115,7 @@ JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& f
 }  // namespace
 
 std::string fault_of_options(const Job& job) {
-  const std::string any_hash(32, '0');
+  const std::string any_hash(kHashDigits, '0');
   ArgumentSet set;
   std::unique_ptr<Command> command;
   return parse_options(job, outputs_of(job, any_hash, "any"), command, set);

@@ -18,7 +18,7 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr std::size_t kHashAndTab = 33;
+constexpr std::size_t kHashAndTab = kHashDigits + 1;
 
 /// What all jobs of a process share.
 struct Shared {

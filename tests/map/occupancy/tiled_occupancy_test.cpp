@@ -336,7 +336,7 @@ TEST(TilesIndex, IsReadAsItWasWritten) {
                                     .y = 12,
                                     .file = "tile_-3_12.bt",
                                     .nodes = 17,
-                                    .xxhash = "0123456789abcdef",
+                                    .sha256 = "0123456789abcdef",
                                     .bounds = {{-1.0 / 3.0, 0, 0}, {1, 2, 3}}}}};
   const TilesIndex read = parse_tiles_index(write_tiles_index(index), "index.json");
   EXPECT_EQ(read.resolution_m, index.resolution_m);
@@ -346,7 +346,7 @@ TEST(TilesIndex, IsReadAsItWasWritten) {
   ASSERT_EQ(read.tiles.size(), 1u);
   EXPECT_EQ(read.tiles[0].x, -3);
   EXPECT_EQ(read.tiles[0].nodes, 17u);
-  EXPECT_EQ(read.tiles[0].xxhash, index.tiles[0].xxhash);
+  EXPECT_EQ(read.tiles[0].sha256, index.tiles[0].sha256);
   EXPECT_EQ(read.tiles[0].bounds.min_in_source, index.tiles[0].bounds.min_in_source);
 }
 
@@ -359,7 +359,7 @@ TEST(TilesIndex, RefusesWhatIsNone) {
                                                          .y = 0,
                                                          .file = "tile_0_0.bt",
                                                          .nodes = 1,
-                                                         .xxhash = "00",
+                                                         .sha256 = "00",
                                                          .bounds = {{0, 0, 0}, {1, 1, 1}}}}});
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -368,12 +368,13 @@ TEST(TilesIndex, RefusesWhatIsNone) {
   };
   EXPECT_NO_THROW(parse_tiles_index(good, "index.json"));
   for (const std::string& bad :
-       {std::string("{"), std::string("[]"), with("tiles 1", "tiles 9"), with("0.1", "-1.0"),
-        with("256", "100"), with("tile_0_0.bt", "../secret.bt"), with("\"x\": 0", "\"x\": 0.5"),
-        with("\"tiles\": [", "\"tile\": ["), with("\"crs\"", "\"side_cells\": 64, \"crs\""),
+       {std::string("{"), std::string("[]"), with("tiles 2", "tiles 1"), with("tiles 2", "tiles 9"),
+        with("0.1", "-1.0"), with("256", "100"), with("tile_0_0.bt", "../secret.bt"),
+        with("\"x\": 0", "\"x\": 0.5"), with("\"tiles\": [", "\"tile\": ["),
+        with("\"crs\"", "\"side_cells\": 64, \"crs\""),
         with("\"crs\"", "\"seen_through\": {\"clouds\": 0, \"removed_cells\": 1}, \"crs\""),
         with("\"crs\"", "\"seen_through\": 3, \"crs\""),
-        with("\"xxhash\": \"00\"", "\"xxhash\": 0")}) {
+        with("\"sha256\": \"00\"", "\"sha256\": 0"), with("sha256", "xxhash")}) {
     EXPECT_THROW(parse_tiles_index(bad, "index.json"), InputError) << bad;
   }
 }

@@ -14,6 +14,7 @@
 #include "roadbed/map/road_map.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/sha256sum.h"
 
 namespace roadbed::tools {
 namespace {
@@ -151,6 +152,21 @@ TEST(FileHashes, HashOfAFileFollowsItsBytesAndItsStateItsTimeOfChangeToo) {
     EXPECT_EQ(hashes.of(path), hash);
     EXPECT_NE(hashes.state_of(path), state);
   }
+}
+
+TEST(FileHashes, AreWhatSha256sumMakesOfTheBytes) {
+  const tests::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "b");
+  const std::filesystem::path large = folder.write("b/large", std::string(700'001, 'x'));
+  const std::filesystem::path small = folder.write("a", "one");
+  FileHashes hashes;
+  const std::string of_small = tests::sha256sum_of(small), of_large = tests::sha256sum_of(large);
+  EXPECT_EQ(hashes.of(small), of_small);
+  EXPECT_EQ(hashes.of(large), of_large);
+  const std::string zero(1, '\0');
+  EXPECT_EQ(
+      hashes.of(folder.path()),
+      tests::sha256sum_of_bytes("a" + zero + of_small + "\nb/large" + zero + of_large + "\n"));
 }
 
 }  // namespace

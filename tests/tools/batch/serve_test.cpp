@@ -13,6 +13,7 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/sha256sum.h"
 
 namespace roadbed::tests {
 namespace {
@@ -226,7 +227,7 @@ TEST(Serve, TakesTheHashThatWhoeverAsksKnowsAJobBy) {
 TEST(Serve, SaysThatAnInputHasChangedSinceItsHashWasTakenAndLeavesNoFile) {
   const TemporaryFolder folder;
   const std::string line = json{{"job", "import"}, {"inputs", {kTownMap}}}.dump();
-  const std::string other(32, 'a');
+  const std::string other(64, 'a');
   const json result = served(other + "\t" + line, folder.path()).at(0);
   EXPECT_EQ(result["hash"], other);
   EXPECT_EQ(result["status"], "failed");
@@ -247,6 +248,21 @@ TEST(Serve, SaysThatAnInputChangedWhileTheJobRan) {
   EXPECT_TRUE(files_below(inputs / "out").empty());
 }
 
+// The bytes are those that the README of batches says.
+TEST(Batch, KnowsAJobByWhatSha256sumMakesOfProgramJobAndInputs) {
+  const TemporaryFolder folder;
+  const json job = route_job("lane:7/0/1@55");
+  const ProgramRun listed = run_roadbed(
+      {"batch", folder.write("jobs.jsonl", job.dump()), "-o", folder / "out", "--list-missing"});
+  std::string program = run_roadbed({"--version"}).out;  // "roadbed 0.1.0 (build abcd)\n…"
+  program = program.substr(0, program.find(')')).substr(std::string("roadbed ").size());
+  program.replace(program.find("(build "), std::string("(build ").size(), "");
+  const json town = json::array({kTownMap, sha256sum_of(kTownMap)});
+  const json identity = json::array(
+      {program, "route", job["inputs"], job["options"], json::array(), json::array({town})});
+  EXPECT_EQ(listed.out.substr(0, listed.out.find('\t')), sha256sum_of_bytes(identity.dump()));
+}
+
 TEST(Serve, KnowsAJobOfAnotherProgramByAnotherHash) {
   const TemporaryFolder folder, inputs;
   const std::string line = route_job("lane:7/0/1@55").dump();
@@ -255,7 +271,7 @@ TEST(Serve, KnowsAJobOfAnotherProgramByAnotherHash) {
       run_roadbed({"batch", jobs, "-o", folder.path().string(), "--list-missing"});
   const json here = served(line, folder.path()).at(0);  // in the program of the tests
   EXPECT_THAT(listed.out, EndsWith("\t" + line + "\n"));
-  EXPECT_NE(listed.out.substr(0, 32), here["hash"].get<std::string>());
+  EXPECT_NE(listed.out.substr(0, 64), here["hash"].get<std::string>());
 }
 
 TEST(Program, SaysTheBuildThatItsLinkerWroteIntoIt) {

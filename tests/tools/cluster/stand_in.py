@@ -20,7 +20,7 @@ def hash_of(line: str) -> str:
     digest = hashlib.sha256(b"stand-in 1\n" + line.encode())
     for path in json.loads(line).get("inputs", []):
         digest.update(Path(path).read_bytes() if Path(path).is_file() else b"missing")
-    return digest.hexdigest()[:32]
+    return digest.hexdigest()
 
 
 def answer(line: str, output: Path) -> dict[str, object]:

@@ -9,7 +9,7 @@ from roadbed_cluster.job import Job, Result
 
 def jobs_of(kinds: list[str]) -> list[Job]:
     """Return a job of each kind."""
-    return [Job(f"{i:032x}", json.dumps({"job": kind})) for i, kind in enumerate(kinds)]
+    return [Job(f"{i:064x}", json.dumps({"job": kind})) for i, kind in enumerate(kinds)]
 
 
 def take_all(chunks: Chunks, cost_s: dict[str, float], slots: int) -> list[list[Job]]:

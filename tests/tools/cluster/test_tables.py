@@ -21,7 +21,7 @@ CRS = "+proj=tmerc +lat_0=48.5 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m
 def result(kind: str | None, number: int, document: object, **changes: object) -> dict[str, Any]:
     """Return a result as `roadbed batch` writes it."""
     return {
-        "line": number, "hash": f"{number:032x}", "job": kind,
+        "line": number, "hash": f"{number:064x}", "job": kind,
         "status": "done", "exit": 0, "reason": "",
         "cause": None, "inputs": ["a.xodr"], "options": {"inflate": 0.2}, "outputs": [],
         "result": document, "files": [], **changes,

@@ -64,7 +64,7 @@ def test_an_answer_that_is_no_result_is_that_jobs_failed_line(tmp_path: Path) ->
 
 
 def test_a_job_that_changed_meanwhile_has_failed(tmp_path: Path) -> None:
-    (found,) = run_chunk([Job("0" * 32, job(1))], options(tmp_path))
+    (found,) = run_chunk([Job("0" * 64, job(1))], options(tmp_path))
     end_idle_processes()
     assert (found.status, json.loads(found.line)["cause"]) == ("failed", "changed")
 
