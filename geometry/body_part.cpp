@@ -76,6 +76,11 @@ BodyPart body_of(const VehicleShape& shape, double from_height_m) {
           .to_height_m = shape.height_m};
 }
 
+double box_area_m2(const BodyPart& part) {
+  const double around_m = 2.0 * part.radius_m;
+  return (part.length_m() + around_m) * (part.width_m() + around_m);
+}
+
 BodyPart inflated(BodyPart part, double margin_m) {
   if (part.is_circle()) {
     part.radius_m += margin_m;

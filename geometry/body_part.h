@@ -55,6 +55,9 @@ struct BodyPart {
 /// @throws std::invalid_argument as VehicleShape::check.
 BodyPart body_of(const VehicleShape& shape, double from_height_m = 0.2);
 
+/// Area of the rectangle, or of the square around the circle.
+double box_area_m2(const BodyPart& part);
+
 /// The part grown by a margin: a rectangle on every side, a circle all around.
 BodyPart inflated(BodyPart part, double margin_m);
 

@@ -43,11 +43,11 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   std::string piece = read_file_start(file, kPiece);  // refuses what is no file of bytes
   std::ifstream stream(file, std::ios::binary);
   Sha256 hash;
-  do {
+  while (stream) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
-  } while (stream);
-  if (stream.bad()) {
+  }
+  if (!stream.eof()) {
     throw InputError({.file = file.string(),
                       .place = {},
                       .element = {},

@@ -26,6 +26,12 @@ Verdict judge(const AuditReport& report) {
   return report.undecided.empty() ? Verdict::clear : Verdict::undecided;
 }
 
+AuditReport judged(AuditReport report, const geometry::Trajectory& drive) {
+  if (!report.is_measured_enough()) report.unknown = {{drive.start_s(), drive.end_s()}};
+  report.verdict = judge(report);
+  return report;
+}
+
 map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options) {
@@ -61,7 +67,7 @@ AuditReport audit(const map::ClearanceField& field, const geometry::Trajectory& 
   const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
   const auto whole = std::make_unique<PartAudit>(field, drive, part, options, moving_in_source);
   PartAudit::go_along({&whole, 1});
-  return whole->report();
+  return judged(whole->report(), drive_in_source);
 }
 
 }  // namespace roadbed::planning

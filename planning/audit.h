@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "roadbed/geometry/body_part.h"
+#include "roadbed/geometry/convex_overlap.h"
 #include "roadbed/geometry/trajectory.h"
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/moving_obstacle.h"
@@ -26,11 +27,38 @@ struct AuditOptions {
   double inflate_m = 0.0;    ///< localisation margin added around the vehicle
   UnknownPolicy unknown = UnknownPolicy::report;
   double tolerance_m = 0.02;  ///< bound on the error of the least clearance
+  /// Less of the space that the body sweeps over having been measured, 0 … 1, leaves the whole
+  /// drive unknown, whatever unknown space counts as.
+  double least_measured = 0.0;
 };
+
+/// A time at which nothing that was measured lies this near to the body was not looked at: it is
+/// unknown whatever unknown space counts as.
+inline constexpr double kObservedWithin_m = 10.0;
 
 /// A part of the drive by time.
 struct Stretch {
   double from_s = 0.0, to_s = 0.0;
+};
+
+/// A time all through which a measured column of a part's heights lies within `kObservedWithin_m`
+/// of it: its distance then, and all that the part may move until the end, are no more than that.
+struct ObservedTime {
+  double from_s = 0.0, to_s = 0.0;
+  Eigen::Vector2d column_in_source{0, 0};  ///< its middle
+};
+
+/// A time at which there is none.
+struct UnobservedStretch {
+  double from_s = 0.0, to_s = 0.0;
+  std::string part = {};    ///< of the vehicle
+  std::string reason = {};  ///< for users, with what to do
+};
+
+/// The deepest overlap of a conflict: of moments 0.1 m of motion apart, a hundred at most.
+struct DeepestOverlap {
+  geometry::Overlap overlap = {};  ///< the depth with one cell or thing, the area with all; 0: none
+  double at_s = 0.0;
 };
 
 /// A stretch of time in which the vehicle is too near to something.
@@ -43,6 +71,7 @@ struct Conflict {
   /// Of the vehicle that is nearest then: "front left corner", of one with more than its body
   /// "left mirror, front left corner"; a circle's name.
   std::string part = {};
+  DeepestOverlap deepest = {};
 };
 
 struct AuditReport {
@@ -59,20 +88,25 @@ struct AuditReport {
   bool beyond_horizon = false;       ///< nothing within the field's horizon: a lower bound only
 
   double unknown_share = 0.0;       ///< mean over poses half a metre apart
+  double least_measured = 0.0;      ///< as was asked
   std::vector<Conflict> conflicts;  ///< in order of time
-  std::vector<Stretch> unknown;     ///< space within the clearance was not measured
-  std::vector<Stretch> undecided;   ///< nearer to the limit than the proof can tell (1 mm)
+  std::vector<Stretch> unknown;     ///< space within the clearance was not measured, or the like:
+  std::vector<UnobservedStretch> unobserved;  ///< nothing was measured near, so unknown as well
+  std::vector<ObservedTime> observed;         ///< of one part: what says that the rest is not so
+  std::vector<Stretch> undecided;  ///< nearer to the limit than the proof can tell (1 mm)
 
   struct Sample {
     double t_s, clearance_m;
   };
   std::vector<Sample> profile;  ///< clearance at rows; beyond 5 m a lower bound of it
+
+  bool is_measured_enough() const { return 1.0 - unknown_share >= least_measured; }
 };
 
 /// Whether a part of a vehicle keeps clear of occupied space on a drive, at every time between its
 /// rows too: x, y and the unwrapped heading are linear between rows, and a motion bound
 /// (planning/README.md, "Audit") covers every point of the body. A `clear` is a proof; there is no
-/// sampling step.
+/// sampling step. Nor is there one without a measured cell of the part's heights near all along.
 ///
 /// Obstacles that move are linear between their rows as well. They are told from occupied cells in
 /// conflicts, which may overlap in time.
@@ -108,5 +142,8 @@ inline map::FieldRegion audited_region(const geometry::Trajectory& drive_in_sour
 
 /// The verdict that conflicts, unknown and undecided stretches lead to.
 Verdict judge(const AuditReport& report);
+
+/// The report of a drive, judged: all of it is unknown where too little was measured.
+AuditReport judged(AuditReport report, const geometry::Trajectory& drive);
 
 }  // namespace roadbed::planning

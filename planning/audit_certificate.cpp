@@ -167,6 +167,8 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
                                .from_occupied = {},
                                .from_unknown = {},
                                .from_moving = {},
+                               .observed = report.observed,
+                               .measured_share = 1.0 - report.unknown_share,
                                .conflicts = report.conflicts,
                                .unknown = report.unknown,
                                .undecided = report.undecided};
@@ -198,7 +200,8 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
     least_m = std::min(least_m, least_of(certificate.from_moving));
   }
   certificate.verdict = verdict_of(certificate);
-  const bool is_whole = certificate.conflicts.empty() && certificate.undecided.empty();
+  const bool is_whole =
+      certificate.conflicts.empty() && certificate.undecided.empty() && report.unobserved.empty();
   certificate.certified_clearance_m = is_whole ? least_m : 0.0;
   return certificate;
 }

@@ -33,11 +33,15 @@ struct AuditCertificate {
   UnknownPolicy unknown_policy = UnknownPolicy::report;
 
   Verdict verdict = Verdict::undecided;
-  double certified_clearance_m = 0.0;  ///< least of the spans that keep away from obstacles
+  /// Least of the spans that keep away from obstacles; 0 where some of the drive has none, or was
+  /// not looked at.
+  double certified_clearance_m = 0.0;
 
   std::vector<ProvenSpan> from_occupied;     ///< in order of time; over `clearance_m`, and over 0
   std::vector<ProvenSpan> from_unknown;      ///< empty where unknown space counts as free
   std::vector<ProvenTime> from_moving = {};  ///< the same; empty where nothing moves
+  std::vector<ObservedTime> observed = {};   ///< where anything was looked at, in order of time
+  double measured_share = 1.0;  ///< of the space that the part sweeps over: AuditReport
   std::vector<Conflict> conflicts;
   std::vector<Stretch> unknown;
   std::vector<Stretch> undecided;

@@ -18,10 +18,36 @@ namespace {
 
 constexpr double kSlack_m = 1e-6;
 constexpr double kSameTime_s = 1e-9;
+constexpr double kSameShare = 2e-3;  // columns over a ground are measured in thousandths
 constexpr std::size_t kMostFaults = 10;
 
 struct DriveRow {
   double t_s, x_m, y_m, heading_rad;
+};
+
+/// Times that are left out of proofs.
+class Times {
+ public:
+  explicit Times(std::vector<Stretch> stretches) {
+    std::ranges::sort(stretches, {}, &Stretch::from_s);
+    for (const Stretch& next : stretches) {
+      if (next.to_s < next.from_s) continue;
+      if (apart_.empty() || next.from_s > apart_.back().to_s + kSameTime_s) {
+        apart_.push_back(next);
+      } else {
+        apart_.back().to_s = std::max(apart_.back().to_s, next.to_s);
+      }
+    }
+  }
+
+  /// Whether they cover a time without a hole.
+  bool hold(double from_s, double to_s) const {
+    const auto after = std::ranges::upper_bound(apart_, from_s + kSameTime_s, {}, &Stretch::from_s);
+    return after != apart_.begin() && std::prev(after)->to_s >= to_s - kSameTime_s;
+  }
+
+ private:
+  std::vector<Stretch> apart_;
 };
 
 class Check {
@@ -29,7 +55,10 @@ class Check {
   Check(const AuditCertificate& certificate, const std::vector<map::OccupancyCell>& cells,
         double resolution_m, const geometry::Trajectory& drive,
         std::span<const MovingObstacle> moving)
-      : certificate_(certificate), movers_(moving), body_(certificate.part, certificate.inflate_m) {
+      : certificate_(certificate),
+        movers_(moving),
+        body_(certificate.part, certificate.inflate_m),
+        part_(certificate.part, 0.0) {
     for (const auto& point : drive.points()) {
       rows_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
     }
@@ -44,20 +73,22 @@ class Check {
     for (const auto* stretches : {&certificate_.unknown, &certificate_.undecided}) {
       for (const Stretch& stretch : *stretches) check_time(stretch);
     }
-    std::vector<Stretch> unproven = certificate_.undecided;
+    std::vector<Stretch> left_out = certificate_.undecided;
     for (const Conflict& conflict : certificate_.conflicts) {
       check_conflict(conflict);
-      unproven.push_back({conflict.from_s, conflict.to_s});
+      left_out.push_back({conflict.from_s, conflict.to_s});
     }
+    const Times unproven(left_out), unknown(certificate_.unknown);
     check_cover("from_occupied", certificate_.from_occupied, unproven);
     check_distances("from_occupied", certificate_.from_occupied, false);
     if (certificate_.unknown_policy != UnknownPolicy::free) {
       const bool is_obstacle = certificate_.unknown_policy == UnknownPolicy::occupied;
-      check_cover("from_unknown", certificate_.from_unknown,
-                  is_obstacle ? unproven : certificate_.unknown);
+      check_cover("from_unknown", certificate_.from_unknown, is_obstacle ? unproven : unknown);
       check_distances("from_unknown", certificate_.from_unknown, true);
     }
     if (!movers_.empty()) check_moving(unproven);
+    check_observed(unknown);
+    check_measured_share();
     check_certified();
     return std::move(faults_);
   }
@@ -164,7 +195,7 @@ class Check {
     }
   }
 
-  void check_moving(const std::vector<Stretch>& unproven) {
+  void check_moving(const Times& unproven) {
     double reached_s = rows_.front().t_s;
     for (const ProvenTime& span : certificate_.from_moving) {
       if (!is_in_drive(span.from_s) || !is_in_drive(span.to_s) || span.to_s < span.from_s ||
@@ -177,13 +208,13 @@ class Check {
     }
     check_moving_gap(reached_s, rows_.back().t_s, unproven);
     if (certificate_.from_moving.empty() && rows_.front().t_s == rows_.back().t_s &&
-        !is_within(reached_s, reached_s, unproven)) {
+        !unproven.hold(reached_s, reached_s)) {
       fault("from_moving: nothing is said of the drive");
     }
   }
 
-  void check_moving_gap(double from_s, double to_s, const std::vector<Stretch>& unproven) {
-    if (to_s - from_s <= kSameTime_s || is_within(from_s, to_s, unproven)) return;
+  void check_moving_gap(double from_s, double to_s, const Times& unproven) {
+    if (to_s - from_s <= kSameTime_s || unproven.hold(from_s, to_s)) return;
     fault(fmt::format("from_moving: nothing is said of {:.6f} s to {:.6f} s", from_s, to_s));
   }
 
@@ -223,12 +254,12 @@ class Check {
   }
 
   void check_cover(std::string_view list, const std::vector<ProvenSpan>& spans,
-                   const std::vector<Stretch>& unproven) {
+                   const Times& unproven) {
     std::size_t segment = 0;
     double share = 0.0;
     const auto check_gap = [&](std::size_t to_segment, double to_share) {
       const double from_s = at(segment, share).t_s, to_s = at(to_segment, to_share).t_s;
-      if (!is_within(from_s, to_s, unproven)) {
+      if (!unproven.hold(from_s, to_s)) {
         fault(fmt::format("{}: nothing is said of {:.6f} s to {:.6f} s", list, from_s, to_s));
       }
     };
@@ -246,27 +277,90 @@ class Check {
     if (!is_whole) check_gap(rows_.size() - 2, 1.0);
   }
 
-  // Whether stretches cover the time without a hole; their order is free.
-  static bool is_within(double from_s, double to_s, const std::vector<Stretch>& stretches) {
-    double reached_s = from_s;
-    for (bool grows = true; grows;) {
-      grows = false;
-      for (const Stretch& stretch : stretches) {
-        if (stretch.from_s > reached_s + kSameTime_s) continue;
-        if (stretch.to_s >= to_s - kSameTime_s) return true;
-        if (stretch.to_s <= reached_s) continue;
-        reached_s = stretch.to_s;
-        grows = true;
+  // Near a measured column from the start to the end of what is said, one after the other.
+  void check_observed(const Times& unknown) {
+    double reached_s = rows_.front().t_s;
+    for (const ObservedTime& time : certificate_.observed) {
+      if (!is_in_drive(time.from_s) || !is_in_drive(time.to_s) || time.to_s < time.from_s ||
+          time.from_s < reached_s - kSameTime_s) {
+        return fault("observed: the times are out of order, or outside the drive");
       }
+      check_observed_gap(reached_s, time.from_s, unknown);
+      check_column(time);
+      reached_s = time.to_s;
     }
-    return false;
+    check_observed_gap(reached_s, rows_.back().t_s, unknown);
+    if (certificate_.observed.empty() && !unknown.hold(reached_s, reached_s)) {
+      fault("observed: nothing is said of the drive");
+    }
+  }
+
+  void check_observed_gap(double from_s, double to_s, const Times& unknown) {
+    if (to_s - from_s <= kSameTime_s) return;
+    is_all_observed_ = false;
+    if (unknown.hold(from_s, to_s)) return;
+    fault(fmt::format("observed: nothing is said of {:.6f} s to {:.6f} s", from_s, to_s));
+  }
+
+  void check_column(const ObservedTime& time) {
+    const DriveRow row = at_time(time.from_s);
+    const auto column = obstacles_->measured_column(time.column_in_source);
+    const double far_m =
+        column ? part_.at(row.x_m, row.y_m, row.heading_rad)
+                         .distance_m({{column->min_in_source,
+                                       {column->max_in_source.x(), column->min_in_source.y()},
+                                       column->max_in_source,
+                                       {column->min_in_source.x(), column->max_in_source.y()}}}) +
+                     way_m(time.from_s, time.to_s)
+               : std::numeric_limits<double>::infinity();
+    if (far_m <= kObservedWithin_m + kSlack_m) return;
+    fault(fmt::format("observed: from {:.6f} s to {:.6f} s the column at ({:.3f}, {:.3f}) {}",
+                      time.from_s, time.to_s, time.column_in_source.x(), time.column_in_source.y(),
+                      column ? fmt::format("may be {:.6f} m away", far_m) : "was not measured"));
+  }
+
+  // At poses half a metre of motion apart, or the more on a long drive.
+  std::vector<DriveRow> poses_apart() const {
+    constexpr double apart_m = 0.5, most_poses = 20'000.0;
+    std::vector<double> way_until_m{0.0};
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+      way_until_m.push_back(way_until_m.back() + motion_m({i, 0.0, 1.0}) * 2.0);
+    }
+    const double step_m = std::max(apart_m, way_until_m.back() / most_poses);
+    std::vector<DriveRow> poses;
+    std::size_t segment = 0;
+    for (double at_m = 0.0; at_m <= way_until_m.back(); at_m += step_m) {
+      while (segment + 2 < rows_.size() && way_until_m[segment + 1] < at_m) ++segment;
+      const double whole_m = way_until_m[segment + 1] - way_until_m[segment];
+      poses.push_back(at(segment, whole_m > 0.0 ? (at_m - way_until_m[segment]) / whole_m : 0.0));
+    }
+    return poses;
+  }
+
+  void check_measured_share() {
+    double sum = 0.0;
+    const std::vector<DriveRow> poses = poses_apart();
+    for (const DriveRow& pose : poses) {
+      sum += obstacles_->measured_share(pose.x_m, pose.y_m, pose.heading_rad);
+    }
+    const double share = sum / static_cast<double>(poses.size());
+    if (std::abs(share - certificate_.measured_share) <= kSameShare) return;
+    fault(
+        fmt::format("measured_share: {:.4f} of the space that the part takes was measured, not "
+                    "{:.4f}",
+                    share, certificate_.measured_share));
   }
 
   void mark_columns() {
-    if (certificate_.unknown_policy == UnknownPolicy::free) return;
-    for (const Conflict& conflict : certificate_.conflicts) {
-      const DriveRow row = at_time(conflict.at.t_s);
-      obstacles_->mark(row.x_m, row.y_m, limit_of(conflict));
+    for (const DriveRow& pose : poses_apart()) obstacles_->mark(pose.x_m, pose.y_m, 0.0);
+    for (const ObservedTime& time : certificate_.observed) {
+      obstacles_->mark(time.column_in_source.x(), time.column_in_source.y(), -reach_m_);
+    }
+    if (certificate_.unknown_policy == UnknownPolicy::occupied) {
+      for (const Conflict& conflict : certificate_.conflicts) {
+        const DriveRow row = at_time(conflict.at.t_s);
+        obstacles_->mark(row.x_m, row.y_m, limit_of(conflict));
+      }
     }
     for (const ProvenSpan& span : certificate_.from_unknown) {
       if (span.segment + 1 >= rows_.size()) continue;
@@ -295,7 +389,8 @@ class Check {
   }
 
   void check_certified() {
-    const bool is_whole = certificate_.conflicts.empty() && certificate_.undecided.empty();
+    const bool is_whole =
+        certificate_.conflicts.empty() && certificate_.undecided.empty() && is_all_observed_;
     double least_m = is_whole ? std::numeric_limits<double>::infinity() : 0.0;
     for (const ProvenSpan& span : certificate_.from_occupied) {
       least_m = std::min(least_m, span.at_least_m);
@@ -315,9 +410,10 @@ class Check {
 
   const AuditCertificate& certificate_;
   BruteForceMovers movers_;
-  BodyOutline body_;
+  BodyOutline body_, part_;  // with the margin, and without it
   std::vector<DriveRow> rows_;
   double reach_m_ = 0.0;
+  bool is_all_observed_ = true;
   std::optional<BruteForceObstacles> obstacles_;
   std::vector<std::string> faults_;
 };

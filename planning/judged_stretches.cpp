@@ -29,6 +29,19 @@ void append(std::vector<JudgedStretch>& stretches, const JudgedStretch& next) {
 
 }  // namespace
 
+std::vector<Stretch> joined(std::vector<Stretch> stretches) {
+  std::ranges::stable_sort(stretches, {}, &Stretch::from_s);
+  std::vector<Stretch> apart;
+  for (const Stretch& next : stretches) {
+    if (apart.empty() || next.from_s > apart.back().to_s) {
+      apart.push_back(next);
+    } else {
+      apart.back().to_s = std::max(apart.back().to_s, next.to_s);
+    }
+  }
+  return apart;
+}
+
 std::vector<JudgedStretch> judged_stretches(const AuditReport& report, double start_s,
                                             double end_s) {
   if (start_s >= end_s) return {{start_s, end_s, report.verdict}};

@@ -6,6 +6,9 @@
 
 namespace roadbed::planning {
 
+/// Stretches in order of time; those that meet become one.
+std::vector<Stretch> joined(std::vector<Stretch> stretches);
+
 /// A part of a drive with one verdict.
 struct JudgedStretch {
   double from_s = 0.0, to_s = 0.0;

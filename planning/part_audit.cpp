@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "roadbed/planning/body_side.h"
+#include "roadbed/planning/judged_stretches.h"
 #include "roadbed/planning/moving_probe.h"
-#include "roadbed/planning/prediction.h"
+#include "roadbed/planning/static_obstacles.h"
 
 namespace roadbed::planning {
 namespace {
@@ -41,6 +42,10 @@ geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Tra
   if (!(seen_m > 0.0)) refuse("the circle's radius", body.radius_m);
   if (!(options.clearance_m < 0.5 * seen_m)) refuse("clearance_m", options.clearance_m);
   if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
+  if (!(options.least_measured >= 0.0 && options.least_measured <= 1.0)) {
+    throw std::invalid_argument(
+        fmt::format("audit: least_measured is no share, got {}", options.least_measured));
+  }
   return body;
 }
 
@@ -93,11 +98,7 @@ std::vector<Stretch> unknown_times(const NearStretches& found) {
 
 geometry::Rectangle thing_at(double t_s, const map::Box2& witness, const std::string& id,
                              std::span<const MovingObstacle> moving) {
-  for (const MovingObstacle& mover : moving) {
-    if (id.empty() || mover.obstacle.id != id) continue;
-    const geometry::Pose2 centre = mover.obstacle.motion.at(t_s).pose();
-    return body_around(centre, mover.obstacle.length_m, mover.obstacle.width_m);
-  }
+  if (const MovingObstacle* mover = find_mover(moving, id)) return body_of(mover->obstacle, t_s);
   const Eigen::Vector2d half = 0.5 * (witness.max_in_source - witness.min_in_source);
   return {.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
           .half_length_m = half.x(),
@@ -119,10 +120,12 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
     : field_(field),
       options_(options),
       moving_(moving_in_source),
+      part_(part),
       body_(checked(field, drive_in_source, part, options)),
       drive_(drive_in_source),
       probe_(field, drive_, body_, obstacles(options.unknown)),
-      least_(probe_, options.tolerance_m) {
+      least_(probe_, options.tolerance_m),
+      observed_(field, probe_, part_) {
   if (options.unknown != UnknownPolicy::report) return;
   unknown_probe_.emplace(field, drive_, body_, std::vector{ObstacleKind::unknown});
   unknown_.emplace(*unknown_probe_, options.clearance_m, options.tolerance_m);
@@ -145,6 +148,7 @@ void PartAudit::go_along(std::span<const std::unique_ptr<PartAudit>> parts) {
 void PartAudit::advance(std::size_t from, std::size_t to) {
   least_.search(from, to);
   if (unknown_) unknown_->search(to);
+  observed_.search(to);
   take_samples(to);
   take_unknown_shares(to);
 }
@@ -163,11 +167,8 @@ void PartAudit::take_unknown_shares(std::size_t to) {
   for (;; ++poses_) {
     const double at_m = apart_m * static_cast<double>(poses_);
     if (at_m > moved_m[to]) return;
-    while (poses_segment_ + 1 < to && moved_m[poses_segment_ + 1] < at_m) ++poses_segment_;
-    const double from_m = moved_m[poses_segment_], to_m = moved_m[poses_segment_ + 1];
-    const auto state =
-        probe_.state_at(poses_segment_, std::min((at_m - from_m) / (to_m - from_m), 1.0));
-    unknown_sum_ += field_.unknown_share(body_.box_at(state.pose()));
+    const auto [segment, share] = probe_.place_moved(at_m);
+    unknown_sum_ += field_.unknown_share(body_.box_at(probe_.state_at(segment, share).pose()));
   }
 }
 
@@ -215,6 +216,24 @@ void PartAudit::ask_about_moving() {
   }
 }
 
+void PartAudit::take_unobserved() {
+  report_.observed = observed_.take_observed();
+  for (const Stretch& stretch : observed_.unobserved()) {
+    report_.unknown.push_back(stretch);
+    report_.unobserved.push_back({stretch.from_s, stretch.to_s, part_.name});
+  }
+  report_.unknown = joined(std::move(report_.unknown));
+}
+
+void PartAudit::describe_conflicts() {
+  const DeepestOverlapSearch deepest(field_, probe_, body_, obstacles(options_.unknown), moving_,
+                                     report_.conflicts.size());
+  for (Conflict& conflict : report_.conflicts) {
+    conflict.part = part_of(conflict.at, conflict.witness, conflict.obstacle, moving_, body_);
+    if (conflict.least_clearance_m == 0.0) conflict.deepest = deepest.of(conflict);
+  }
+}
+
 AuditReport PartAudit::report() {
   const LeastClearance least = least_.found();
   take_least(least);
@@ -226,11 +245,11 @@ AuditReport PartAudit::report() {
     report_.part = part_of(drive_.at(report_.least_clearance_at_s), *report_.witness,
                            report_.obstacle, moving_, body_);
   }
-  for (Conflict& conflict : report_.conflicts) {
-    conflict.part = part_of(conflict.at, conflict.witness, conflict.obstacle, moving_, body_);
-  }
+  describe_conflicts();
   if (unknown_) report_.unknown = unknown_times(unknown_->found());
+  take_unobserved();
   report_.unknown_share = unknown_sum_ / static_cast<double>(poses_);
+  report_.least_measured = options_.least_measured;
   report_.verdict = judge(report_);
   return std::move(report_);
 }

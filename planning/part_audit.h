@@ -12,8 +12,10 @@
 #include "roadbed/map/occupancy/clearance_field.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/planning/body_probe.h"
+#include "roadbed/planning/deepest_overlap.h"
 #include "roadbed/planning/least_clearance.h"
 #include "roadbed/planning/near_stretches.h"
+#include "roadbed/planning/observed_space.h"
 
 namespace roadbed::planning {
 
@@ -32,6 +34,7 @@ class PartAudit {
   /// Audits all parts of a vehicle, which are on the same drive.
   static void go_along(std::span<const std::unique_ptr<PartAudit>> parts);
 
+  /// Whether enough was measured is not judged yet.
   /// @pre The part has gone along the drive.
   AuditReport report();
 
@@ -43,17 +46,21 @@ class PartAudit {
   bool is_near(const LeastClearance& least) const;
   void take_near(const Probe& probe);
   void ask_about_moving();
+  void take_unobserved();
+  void describe_conflicts();
 
   const map::ClearanceField& field_;
   const AuditOptions& options_;
   std::span<const MovingObstacle> moving_;
+  geometry::BodyPart part_;  // of the vehicle
   geometry::BodyPart body_;  // inflated
   const geometry::Trajectory& drive_;
   BodyProbe probe_;
   LeastClearanceSearch least_;
   std::optional<BodyProbe> unknown_probe_;  // where unknown space is reported
   std::optional<NearStretchSearch> unknown_;
-  std::size_t poses_ = 0, poses_segment_ = 0;
+  ObservedSearch observed_;
+  std::size_t poses_ = 0;
   double unknown_sum_ = 0.0;  // of the poses' shares
   AuditReport report_;
 };

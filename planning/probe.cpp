@@ -37,6 +37,25 @@ std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
   return static_cast<std::size_t>(beyond - moved_m_.begin()) - 1;
 }
 
+Probe::Place Probe::place_moved(double moved_m) const {
+  const auto after = std::upper_bound(moved_m_.begin() + 1, moved_m_.end() - 1, moved_m);
+  const auto segment = static_cast<std::size_t>(after - moved_m_.begin()) - 1;
+  const double share = (moved_m - moved_m_[segment]) / (moved_m_[segment + 1] - moved_m_[segment]);
+  return {segment, std::clamp(share, 0.0, 1.0)};
+}
+
+double Probe::moved_at_m(double t_s) const {
+  const auto& rows = drive_.points();
+  if (rows.size() == 1) return 0.0;
+  const auto after =
+      std::upper_bound(rows.begin() + 1, rows.end() - 1, t_s,
+                       [](double t, const geometry::TrajectoryPoint& row) { return t < row.t_s; });
+  const auto segment = static_cast<std::size_t>(after - rows.begin()) - 1;
+  const double whole_s = rows[segment + 1].t_s - rows[segment].t_s;
+  const double share = std::clamp((t_s - rows[segment].t_s) / whole_s, 0.0, 1.0);
+  return moved_m_[segment] + share * (moved_m_[segment + 1] - moved_m_[segment]);
+}
+
 geometry::Pose2 Probe::pose_at(std::size_t segment, double share) const {
   const auto& rows = drive_.points();
   const geometry::TrajectoryPoint& a = rows[segment];

@@ -46,10 +46,21 @@ class Probe {
     return state_at(span.middle_segment(), span.middle());
   }
   double time_at(std::size_t segment, double share) const;
+  geometry::TrajectoryPoint state_at_time(double t_s) const { return drive_.at(t_s); }
 
   /// Of each row, and its last one once more if that is the only one: no point of the body moves
   /// farther up to there [m], but for rounding.
   const std::vector<double>& moved_m() const { return moved_m_; }
+
+  struct Place {
+    std::size_t segment;
+    double share;
+  };
+  /// Where the body has moved so far, by `moved_m`. O(log rows).
+  Place place_moved(double moved_m) const;
+
+  /// The inverse. O(log rows).
+  double moved_at_m(double t_s) const;
 
   /// The first segment after `segment` that is not settled with it: where the distance is nowhere
   /// in `segment` within `spare_m` of what counts, it needs that much of motion to come there.

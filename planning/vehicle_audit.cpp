@@ -8,7 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "roadbed/planning/judged_stretches.h"
 #include "roadbed/planning/moving_probe.h"
+#include "roadbed/planning/observed_space.h"
 #include "roadbed/planning/part_audit.h"
 
 namespace roadbed::planning {
@@ -21,24 +23,8 @@ std::string named(const BodyPart& part, const std::string& side) {
   return fmt::format("{}, {}", part.name, side);
 }
 
-// Stretches in order of time; those that meet become one.
-std::vector<Stretch> joined(std::vector<Stretch> stretches) {
-  std::ranges::stable_sort(stretches, {}, &Stretch::from_s);
-  std::vector<Stretch> apart;
-  for (const Stretch& next : stretches) {
-    if (apart.empty() || next.from_s > apart.back().to_s) {
-      apart.push_back(next);
-    } else {
-      apart.back().to_s = std::max(apart.back().to_s, next.to_s);
-    }
-  }
-  return apart;
-}
-
 double volume_m3(const BodyPart& part) {
-  const double side_m = 2.0 * part.radius_m;
-  return (part.length_m() + side_m) * (part.width_m() + side_m) *
-         (part.to_height_m - part.from_height_m);
+  return geometry::box_area_m2(part) * (part.to_height_m - part.from_height_m);
 }
 
 void take_least(AuditReport& whole, const AuditReport& part) {
@@ -58,6 +44,7 @@ void add(AuditReport& whole, const AuditReport& part) {
   };
   append(whole.conflicts, part.conflicts);
   append(whole.unknown, part.unknown);
+  append(whole.unobserved, part.unobserved);
   append(whole.undecided, part.undecided);
   for (std::size_t i = 0; i < whole.profile.size(); ++i) {
     whole.profile[i].clearance_m =
@@ -87,7 +74,8 @@ AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditRe
   std::ranges::stable_sort(whole.conflicts, {}, &Conflict::from_s);
   whole.unknown = joined(std::move(whole.unknown));
   whole.undecided = joined(std::move(whole.undecided));
-  whole.verdict = judge(whole);
+  std::ranges::stable_sort(whole.unobserved, {}, &UnobservedStretch::from_s);
+  whole.observed.clear();
   return whole;
 }
 
@@ -104,7 +92,7 @@ std::size_t first_alike(const std::vector<map::HeightBand>& bands, std::size_t i
 VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
                                          const GroundUnder& ground, std::vector<BodyPart> parts,
                                          const map::FieldRegion& region)
-    : surface_(ground.surface), parts_(std::move(parts)) {
+    : occupancy_(occupancy), surface_(ground.surface), parts_(std::move(parts)) {
   for (const BodyPart& part : parts_) {
     bands_.push_back(ground.band(part.from_height_m, part.to_height_m));
   }
@@ -117,6 +105,14 @@ VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
     fields_.push_back(
         alike < i ? fields_[alike]
                   : std::make_shared<const map::ClearanceField>(occupancy, bands_[i], share));
+  }
+}
+
+void VehicleSurroundings::explain(const geometry::Trajectory& drive_in_source, std::size_t part,
+                                  std::vector<UnobservedStretch>& stretches) const {
+  for (UnobservedStretch& stretch : stretches) {
+    stretch.reason = why_unobserved(occupancy_, drive_in_source, {stretch.from_s, stretch.to_s},
+                                    parts_[part], bands_[part]);
   }
 }
 
@@ -133,8 +129,11 @@ VehicleAudit audit_vehicle(const VehicleSurroundings& around,
   }
   PartAudit::go_along(audits);
   VehicleAudit result;
-  for (const auto& audit : audits) result.of_parts.push_back(audit->report());
-  result.whole = merged(around.parts(), result.of_parts);
+  for (std::size_t i = 0; i < audits.size(); ++i) {
+    result.of_parts.push_back(audits[i]->report());
+    around.explain(drive, i, result.of_parts.back().unobserved);
+  }
+  result.whole = judged(merged(around.parts(), result.of_parts), drive);
   return result;
 }
 

@@ -31,7 +31,8 @@ struct GroundUnder {
 class VehicleSurroundings {
  public:
   /// Parts of the same heights share a field, and all fields the region's cells.
-  /// @param ground  what the parts' heights are above.
+  /// @param occupancy  kept by reference.
+  /// @param ground     what the parts' heights are above.
   /// @throws InputError if a field would have too many cells.
   VehicleSurroundings(const map::OccupancySource& occupancy, const GroundUnder& ground,
                       std::vector<geometry::BodyPart> parts, const map::FieldRegion& region);
@@ -40,7 +41,12 @@ class VehicleSurroundings {
   const map::ClearanceField& field_of(std::size_t part) const { return *fields_[part]; }
   const map::HeightBand& band_of(std::size_t part) const { return bands_[part]; }
 
+  /// Says of each stretch of a part why it is unobserved.
+  void explain(const geometry::Trajectory& drive_in_source, std::size_t part,
+               std::vector<UnobservedStretch>& stretches) const;
+
  private:
+  const map::OccupancySource& occupancy_;
   std::shared_ptr<const map::Ground> surface_;  // of the bands
   std::vector<geometry::BodyPart> parts_;
   std::vector<map::HeightBand> bands_;                              // of each part

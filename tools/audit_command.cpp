@@ -31,6 +31,7 @@
 #include "roadbed/tools/support/audited_drive.h"
 #include "roadbed/tools/support/certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/drive_plausibility.h"
 #include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/progress_bar.h"
@@ -52,14 +53,12 @@ class AuditCommand : public Command {
              "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
              "that it meets")
         .reads();
-    std::vector<Argument> not_with_check = subjects_.declare(arguments);
+    const std::vector<Argument> not_with_check = subjects_.declare(arguments);
     arguments.heading("Question");
-    const Argument vehicle =
-        arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
-            .reads();
-    const Argument map =
-        arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
-            .reads();
+    arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
+        .reads();
+    arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
+        .reads();
     arguments
         .add("--obstacles", obstacles_,
              "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
@@ -67,15 +66,13 @@ class AuditCommand : public Command {
              "centre; an id of one row stands for ever, one of several is there from its "
              "first to its last), in the drive's time and coordinates")
         .reads(files_named_by_scenario);
-    const std::vector<Argument> question = declare_question(arguments);
-    not_with_check.insert(not_with_check.end(), question.begin(), question.end());
-    not_with_check.insert(not_with_check.end(), {vehicle, map});
+    declare_question(arguments);
     declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
     arguments.example(
         "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
         "--certificate proof.json\n"
-        "  roadbed audit --check proof.json\n"
+        "  roadbed audit --check proof.json --vehicle car.json --clearance 0.3\n"
         "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
         "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3");
   }
@@ -83,8 +80,7 @@ class AuditCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     inputs_ = common.inputs;
     if (!check_.empty()) {
-      const bool holds = check_certificate_file(check_, occupancy_, subjects_.file(), obstacles_,
-                                                json_, *inputs_, streams.out);
+      const bool holds = check_certificate_file(check_, demands(), json_, *inputs_, streams.out);
       return holds ? Exit::ok : Exit::failed;
     }
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
@@ -105,40 +101,68 @@ class AuditCommand : public Command {
   /// What all drives are audited against.
   struct Scene {
     std::shared_ptr<const map::OccupancySource> occupancy;
-    std::optional<map::Box2> measured;
     const map::RoadMap* road_map;
   };
 
-  // What a certificate says itself, so that it cannot stand beside --check.
-  std::vector<Argument> declare_question(Arguments& arguments) {
-    return {
+  // Beside --check it is what a certificate has to be about.
+  void declare_question(Arguments& arguments) {
+    clearance_argument_ =
         arguments
             .add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
             .within(0.0, 100.0)
-            .with_default(),
+            .with_default();
+    inflate_argument_ =
         arguments.add("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
             .within(0.0, 100.0)
-            .with_default(),
-        arguments.choice("--unknown", options_.unknown,
-                         {{"free", UnknownPolicy::free},
-                          {"occupied", UnknownPolicy::occupied},
-                          {"report", UnknownPolicy::report}},
-                         "What space counts as that was not measured: free, occupied, or report: "
-                         "no obstacle, but a drive over it is not clear"),
+            .with_default();
+    unknown_argument_ = arguments.choice(
+        "--unknown", options_.unknown,
+        {{"free", UnknownPolicy::free},
+         {"occupied", UnknownPolicy::occupied},
+         {"report", UnknownPolicy::report}},
+        "What space counts as that was not measured: free, occupied, or report: no obstacle, but a "
+        "drive over it is not clear. Where nothing was measured within 10 m of the body at its "
+        "heights, a drive is not clear either way");
+    least_measured_argument_ =
         arguments
-            .add("--ground", ground_,
-                 "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
-                 "road's surface of --map, which the band follows; measured: the surface that was "
-                 "measured along the drive, to a cell, with nothing below it, on all sides and "
-                 "without a step, refused elsewhere; heights are widened by a cell. A drive that "
-                 "is all upon an obstacle takes its top for ground. Default: map with --map, else "
-                 "0")
-            .checked(ground_rule_fault),
+            .add("--least-measured", options_.least_measured,
+                 "Share of the space that the vehicle takes that has to be measured, else no drive "
+                 "is clear, whatever --unknown says")
+            .within(0.0, 1.0)
+            .with_default();
+    arguments
+        .add("--ground", ground_,
+             "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
+             "road's surface of --map, which the band follows; measured: the surface that was "
+             "measured along the drive, to a cell, with nothing below it, on all sides and "
+             "without a step, refused elsewhere; heights are widened by a cell. A drive that "
+             "is all upon an obstacle takes its top for ground. Default: map with --map, else "
+             "0")
+        .checked(ground_rule_fault);
+    from_height_argument_ =
         arguments
             .add("--from-height", from_height_m_,
                  "The vehicle's underside above the ground [m]; its top is the vehicle's height")
             .within(-100.0, 100.0)
-            .with_default()};
+            .with_default();
+  }
+
+  // Only what the command line says.
+  CertificateDemands demands() const {
+    const auto if_given = [](const std::optional<Argument>& argument, auto value) {
+      return argument->given() ? std::optional(value) : std::nullopt;
+    };
+    return {.occupancy = occupancy_,
+            .trajectory = subjects_.file(),
+            .vehicle = vehicle_,
+            .map = map_,
+            .obstacles = obstacles_,
+            .ground = ground_,
+            .clearance_m = if_given(clearance_argument_, options_.clearance_m),
+            .inflate_m = if_given(inflate_argument_, options_.inflate_m),
+            .underside_m = if_given(from_height_argument_, from_height_m_),
+            .least_measured = if_given(least_measured_argument_, options_.least_measured),
+            .unknown = if_given(unknown_argument_, options_.unknown)};
   }
 
   void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
@@ -173,8 +197,9 @@ class AuditCommand : public Command {
     Argument check =
         arguments
             .add("--check", check_,
-                 "Verify a certificate by brute force instead; its inputs are the files that it "
-                 "names, or --occupancy, --trajectory and --obstacles")
+                 "Verify a certificate by brute force instead, from the files that it names. The "
+                 "question's options, --occupancy and --trajectory say what it has to be about; "
+                 "files may have moved, if they are the same")
             .reads(files_named_by_certificate);
     for (const Argument& other : {svg, page, certificate, junit, geojson, saved})
       check.excludes(other);
@@ -206,16 +231,15 @@ class AuditCommand : public Command {
 
   Scene make_scene(const map::RoadMap* road_map, const Streams& streams,
                    const CommonOptions& common) const {
-    Scene scene{inputs_->occupancy(occupancy_), {}, road_map};
+    Scene scene{inputs_->occupancy(occupancy_), road_map};
     if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
       fmt::print(streams.err,
                  "note: {} was built with --remove-seen-through {}: {} cells with points count as "
                  "free\n",
                  occupancy_.string(), removed->clouds, removed->cells);
     }
-    scene.measured = measured_bounds(*scene.occupancy);
     if (road_map == nullptr) return scene;
-    check_overlap(road_bounds(*road_map), scene.measured, occupancy_.string());
+    check_overlap(road_bounds(*road_map), measured_bounds(*scene.occupancy), occupancy_.string());
     const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy->crs();
     if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
       fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
@@ -237,6 +261,9 @@ class AuditCommand : public Command {
     ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits = audit_all(
         *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+    for (const AuditedDrive& audited : audits) {
+      if (!common.quiet && audited.fault.empty()) note_curvature(audited, question, streams.err);
+    }
     write_index(audits, question, scene);
     write_files(audits, question, scene);
     if (json_) {
@@ -247,15 +274,17 @@ class AuditCommand : public Command {
     return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::failed;
   }
 
+  // Of what the vehicle could not drive; audited all the same.
+  static void note_curvature(const AuditedDrive& audited, const AuditQuestion& question,
+                             std::ostream& err) {
+    const std::string note = curvature_note(audited.drive, question.shape);
+    if (!note.empty()) fmt::print(err, "note: {}: {}\n", audited.name, note);
+  }
+
   Exit run_one(const AuditSubject& subject, const AuditQuestion& question, const Scene& scene,
                const Streams& streams, const CommonOptions& common) const {
     AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
-    const map::Box2 around =
-        planning::audited_region(audited.drive, question.parts, options_).around;
-    if (!common.quiet && (!scene.measured || !overlap(*scene.measured, around))) {
-      fmt::print(streams.err, "note: the drive ({}) lies outside the measured space ({})\n",
-                 text_of(around), scene.measured ? text_of(*scene.measured) : "none");
-    }
+    if (!common.quiet) note_curvature(audited, question, streams.err);
     audited.ground = ground_under(*scene.occupancy, audited.drive, question.ground);
     const planning::GroundUnder& ground = audited.ground;
     if (!common.quiet) {
@@ -362,7 +391,7 @@ class AuditCommand : public Command {
   }
 
   static ReportSource source(const char* role, const CertifiedFile& file) {
-    return {.role = role, .name = file.name, .xxhash = file.xxhash};
+    return {.role = role, .name = file.name, .sha256 = file.sha256};
   }
 
   // Of what many audits share.
@@ -381,7 +410,9 @@ class AuditCommand : public Command {
     CertificateFile file{.program = "roadbed " ROADBED_VERSION,
                          .occupancy = certified_once(occupancy_),
                          .trajectory = certified_file(drive),
-                         .ground = ground.surface,
+                         .underside_m = from_height_m_,
+                         .ground = {question.ground.kind, ground},
+                         .least_measured = options_.least_measured,
                          .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
                                                             audit, question.moving)};
     if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
@@ -398,6 +429,9 @@ class AuditCommand : public Command {
     }
   }
 
+  // To tell what a certificate has to be about from what is a default.
+  std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
+      least_measured_argument_, from_height_argument_;
   std::shared_ptr<const Inputs> inputs_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_, svg_, report_, certificate_, junit_,
       geojson_, saved_drive_, check_;

@@ -247,6 +247,28 @@ std::optional<ClearanceField::Nearest> ClearanceField::nearest(const geometry::R
   return Nearest{nearest->distance_m, grid_->box_of(*nearest)};
 }
 
+std::optional<ClearanceField::Nearest> ClearanceField::nearest_measured(
+    const geometry::Rectangle& in_source, double within_m) const {
+  const geometry::Rectangle rectangle = grid_->in_grid(in_source);
+  grid_->check_inside(rectangle);
+  const auto nearest = grid_->ask(rectangle.centre, [&](const PlanGrid& grid) {
+    return grid.nearest_measured(rectangle, std::min(within_m, grid_->horizon_m));
+  });
+  if (!nearest) return std::nullopt;
+  return Nearest{nearest->distance_m, grid_->box_of(*nearest)};
+}
+
+std::vector<Box2> ClearanceField::boxes_at(const geometry::Rectangle& in_source,
+                                           ObstacleKind kind) const {
+  const geometry::Rectangle rectangle = grid_->in_grid(in_source);
+  grid_->check_inside(rectangle);
+  const std::vector<NearCell> cells = grid_->ask(
+      rectangle.centre, [&](const PlanGrid& grid) { return grid.cells_at(rectangle, kind); });
+  std::vector<Box2> boxes;
+  for (const NearCell& cell : cells) boxes.push_back(grid_->box_of(cell));
+  return boxes;
+}
+
 double ClearanceField::unknown_share(const geometry::Rectangle& in_source) const {
   const geometry::Rectangle rectangle = grid_->in_grid(in_source);
   grid_->check_inside(rectangle);

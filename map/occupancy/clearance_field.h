@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "roadbed/geometry/pose2.h"
 #include "roadbed/geometry/rectangle.h"
@@ -110,6 +111,15 @@ class ClearanceField {
                                  ObstacleKind kind = ObstacleKind::occupied) const {
     return nearest(geometry::body_at(source_from_vehicle, shape), within_m, kind);
   }
+
+  /// The nearest column of the band of which anything was measured, free or occupied; none where
+  /// none is within `within_m` or the horizon.
+  /// @throws std::invalid_argument as `nearest`.
+  std::optional<Nearest> nearest_measured(const geometry::Rectangle& in_source,
+                                          double within_m) const;
+
+  /// The boxes of all cells of a kind that a rectangle's bounding box may touch. O(cells of it).
+  std::vector<Box2> boxes_at(const geometry::Rectangle& in_source, ObstacleKind kind) const;
 
   /// Share of the space over a rectangle in the band that was never measured, 0 … 1. Exactly 0 only
   /// where nothing of it is unknown.

@@ -223,6 +223,31 @@ const PlanGrid::Measured& PlanGrid::measured() const {
   return measured_;
 }
 
+// A body mostly is over measured space: the search goes farther only where it is not.
+std::optional<NearCell> PlanGrid::nearest_measured(const geometry::Rectangle& rectangle,
+                                                   double within_m) const {
+  if (extent_.seen.empty()) return std::nullopt;
+  const CellBits& cells = measured().in_part;
+  if (auto under = nearest_set_cell(cells, cell_m_, rectangle, 0.0)) return under;
+  return nearest_set_cell(cells, cell_m_, rectangle, within_m);
+}
+
+std::vector<NearCell> PlanGrid::cells_at(const geometry::Rectangle& rectangle,
+                                         ObstacleKind kind) const {
+  const bool is_unknown = kind == ObstacleKind::unknown;
+  std::vector<NearCell> cells;
+  const CellRange touched = RectangleCover::cells_touched(rectangle, cell_m_);
+  for (std::int64_t y = touched.from_y; y < touched.to_y; ++y) {
+    for (std::int64_t x = touched.from_x; x < touched.to_x; ++x) {
+      const bool is_seen = extent_.seen.holds(x, y);
+      const bool holds = is_unknown ? !is_seen || known_layers_[extent_.seen.index(x, y)] < layers_
+                                    : is_seen && occupied_.bits.next_in_row(y, x, x).has_value();
+      if (holds) cells.push_back({0.0, x, y});
+    }
+  }
+  return cells;
+}
+
 bool PlanGrid::is_any_unknown(const CellRange& cells) const {
   const CellRange inside = cells.cut(extent_.seen);
   return inside.count() < cells.count() || any_in(measured().not_in_all, inside);

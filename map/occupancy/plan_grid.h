@@ -56,6 +56,13 @@ class PlanGrid {
   std::optional<NearCell> nearest(const geometry::Rectangle& rectangle, double within_m,
                                   ObstacleKind kind) const;
 
+  /// The cell nearest to a rectangle of which a layer was measured; none if it is over `within_m`.
+  std::optional<NearCell> nearest_measured(const geometry::Rectangle& rectangle,
+                                           double within_m) const;
+
+  /// All cells of the kind among those that a rectangle may touch; their distances are not told.
+  std::vector<NearCell> cells_at(const geometry::Rectangle& rectangle, ObstacleKind kind) const;
+
   /// Share of a rectangle's part of the band that was never measured.
   double unknown_share(const geometry::Rectangle& rectangle) const;
 

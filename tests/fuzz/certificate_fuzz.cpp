@@ -9,6 +9,7 @@
 #include "roadbed/map/input_error.h"
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/certified_question.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed;
@@ -21,6 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& part : file.parts) {
       planning::check_certificate(part, cells, 0.4, drive);
     }
+    tools::part_faults(file, tools::Vehicle{});
+    tools::ground_faults_of(file, drive, nullptr, cells, 0.4);
   } catch (const map::InputError&) {
   } catch (const std::length_error&) {
   }

@@ -24,7 +24,7 @@ TEST(Sha256, AgreesWithTheStandardsExamples) {
 TEST(Sha256, OfAFileIsThatOfItsBytesWhateverItsPieces) {
   const std::string file = testing::TempDir() + "sha256_test.bytes";
   std::string bytes;
-  for (int i = 0; i < 700'000; ++i) bytes.push_back(static_cast<char>(i * 7919 >> 3));
+  for (unsigned i = 0; i < 700'000; ++i) bytes.push_back(static_cast<char>(i * 7919U >> 3));
   std::ofstream(file, std::ios::binary) << bytes;
   EXPECT_EQ(sha256_of_file(file), sha256_of_bytes(bytes));
   Sha256 in_parts;

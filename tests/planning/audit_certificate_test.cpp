@@ -104,7 +104,7 @@ TEST(AuditCertificate, OfAClearanceMetToAHairIsShortAndSaysTheSameVerdict) {
   pole.points.emplace_back(20.0f, 2.1f, 0.9f);
   const OccupancyMap occupancy = OccupancyMap::build(std::vector{pole}, {.resolution_m = kSide_m});
   const ClearanceField field(occupancy, kLowBand);
-  const Trajectory drive({{.t_s = 0.0}, {.t_s = 1.0, .x_m = 40.0}});
+  const Trajectory drive({{.t_s = 0.0, .x_m = 12.0}, {.t_s = 1.0, .x_m = 28.0}});
   const double free_m = 2.0 - 0.5 * VehicleShape{}.width_m;
   for (const double short_of_m : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
     const AuditOptions options{.clearance_m = free_m - short_of_m, .unknown = UnknownPolicy::free};
@@ -233,6 +233,9 @@ TEST(AuditCertificate, HoldsInLargeFreeSpaceToo) {
                                .conflicts = {},
                                .unknown = {},
                                .undecided = {}};
+  for (double t_s = 0.0; t_s < 9.0; t_s += 1.0) {
+    certificate.observed.push_back({t_s, t_s + 1.0, drive.at(t_s).pose().position()});
+  }
   EXPECT_THAT(check_certificate(certificate, cells, kSide_m, drive), IsEmpty());
   cells.pop_back();
   EXPECT_THAT(check_certificate(certificate, cells, kSide_m, drive),

@@ -87,6 +87,8 @@ OccupancyMap hilly_cloud(std::optional<Eigen::Vector2d> box_at) {
       add(x, y, hill_m(x) + 0.03 * y + up);
     }
   }
+  // Posts beside the road: what lies above it was looked at.
+  for (double x = 100.0; x < 300.0; x += 5.0) add(x, 4.5, hill_m(x) + 0.03 * 4.5 + 0.8);
   return OccupancyMap::build(std::vector{cloud}, {.resolution_m = 0.1});
 }
 

@@ -33,7 +33,8 @@ struct Road {
   double at(double x) const { return level_m + slope * x; }
 };
 
-/// What a scanner above would see of 34 m of road, 8 m wide: no ground under the slab.
+/// What a scanner above would see of 34 m of road, 8 m wide: no ground under the slab. Posts stand
+/// beside it, so that what lies above the road was looked at.
 OccupancyMap road_with(const Road& road, const std::optional<Slab>& slab) {
   map::PointCloud cloud;
   const auto add = [&](double x, double y, double z) {
@@ -51,6 +52,7 @@ OccupancyMap road_with(const Road& road, const std::optional<Slab>& slab) {
       for (double z = road.at(x); z < top_m; z += step_m) add(x, y, z);
     }
   }
+  for (double x = -6.0; x < 28.0; x += 4.0) add(x, 6.0, road.at(x) + 0.9);
   return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kCell_m});
 }
 

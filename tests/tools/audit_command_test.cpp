@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,6 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
@@ -16,12 +19,16 @@ using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::json;
 
-/// A post at (10.05, 1.05), one cell of 0.1 m wide, from the ground to 2 m.
+/// A post at (10.05, 1.05), one cell of 0.1 m wide, from the ground to 2 m; farther off two from
+/// there to 2.5 m, so that those heights were looked at.
 std::string post_pcd() {
   std::string points;
   int count = 0;
   for (double z = 0.05; z < 2.0; z += 0.05, ++count) {
     points += "10.05 1.05 " + std::to_string(z) + "\n";
+  }
+  for (double z = 2.05; z < 2.5; z += 0.05, count += 2) {
+    points += "8.05 4.05 " + std::to_string(z) + "\n16.05 4.05 " + std::to_string(z) + "\n";
   }
   const std::string number = std::to_string(count);
   return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + number +
@@ -41,7 +48,7 @@ class AuditCommand : public testing::Test {
     std::filesystem::create_directories(folder_ / "drives/far/deeper");
     folder_.write("drives/hit.csv", along_x_csv(1.0));
     folder_.write("drives/near.csv", along_x_csv(0.0));
-    folder_.write("drives/far/deeper/trajectory.csv", along_x_csv(-5.0));
+    folder_.write("drives/far/deeper/trajectory.csv", along_x_csv(-3.0));
     folder_.write("drives/far/deeper/other.csv", "not a drive");
     folder_.write("drives/broken.csv", "t_s,x_m\n0,1\n");
   }
@@ -68,7 +75,7 @@ TEST_F(AuditCommand, OfAFolderListsEveryDriveAndOneBrokenFileDoesNotStopTheRest)
   };
   EXPECT_THAT(audit_of(0, "broken.csv").at("fault").get<std::string>(), HasSubstr("y_m"));
   EXPECT_NEAR(audit_of(1, "far/deeper/trajectory.csv").at("least_clearance_m").get<double>(),
-              6.0 - 0.805, 0.02);
+              4.0 - 0.805, 0.02);
   EXPECT_EQ(audit_of(2, "hit.csv").at("verdict"), "conflict");
   EXPECT_NEAR(audit_of(3, "near.csv").at("least_clearance_m").get<double>(), 1.0 - 0.805, 0.02);
   const ProgramRun table = audit({"--trajectory", drives_});
@@ -195,11 +202,11 @@ TEST_F(AuditCommand, SweepsARoute) {
 }
 
 TEST_F(AuditCommand, SeesWhatMovesBesideTheOccupancyAndProvesIt) {
-  // At 2 m/s along y = -5; a box comes the other way and passes 0.195 m beside, at second 5.
+  // At 2 m/s along y = -3; a box comes the other way and passes 0.195 m beside, at second 5.
   const std::string drive = folder_ / "drives/far/deeper/trajectory.csv";
   const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
   const std::string beside =
-      folder_.write("beside.csv", header + "0,van,20,-3,3.14159,4,2\n10,van,0,-3,3.14159,4,2\n");
+      folder_.write("beside.csv", header + "0,van,20,-5,3.14159,4,2\n10,van,0,-5,3.14159,4,2\n");
   const std::string proof = folder_ / "proof.json";
   const ProgramRun clear =
       audit({"--trajectory", drive, "--obstacles", beside, "--certificate", proof, "--json"});
@@ -210,7 +217,7 @@ TEST_F(AuditCommand, SeesWhatMovesBesideTheOccupancyAndProvesIt) {
   EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
 
   const std::string against =
-      folder_.write("against.csv", header + "0,van,20,-5,3.14159,4,2\n10,van,0,-5,3.14159,4,2\n");
+      folder_.write("against.csv", header + "0,van,20,-3,3.14159,4,2\n10,van,0,-3,3.14159,4,2\n");
   const ProgramRun hit = audit({"--trajectory", drive, "--obstacles", against, "--json"});
   EXPECT_EQ(hit.status, 1);
   const Json conflict = Json::parse(hit.out).at("conflicts").at(0);
@@ -231,11 +238,11 @@ TEST_F(AuditCommand, ChecksNoProofAgainstObstaclesThatItIsNotAbout) {
   EXPECT_EQ(alone.status, 0);
   EXPECT_THAT(alone.out, HasSubstr("; nothing moves\n"));
   const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
-  const std::string against = folder_.write("against.csv", header + "0,van,10,-5,0,4,2\n");
+  const std::string against = folder_.write("against.csv", header + "0,van,10,-3,0,4,2\n");
   for (const std::string& obstacles : {against, std::string(folder_ / "not_there.csv")}) {
     const ProgramRun run = run_roadbed({"audit", "--check", proof, "--obstacles", obstacles});
     EXPECT_EQ(run.status, 1);
-    EXPECT_THAT(run.out, HasSubstr("the certificate is not about what moves in " + obstacles));
+    EXPECT_THAT(run.out, HasSubstr("it is about no obstacles, and " + obstacles));
   }
 
   const std::string beside = folder_.write("beside.csv", header + "0,van,10,-9,0,4,2\n");
@@ -253,7 +260,7 @@ TEST_F(AuditCommand, SeesEveryOccupancyOfAnObstacleAllThroughItsTime) {
   const auto shape = [](const std::string& x) {
     return "<shape><rectangle><length>4</length><width>2</width><orientation>0</orientation>"
            "<center><x>" +
-           x + "</x><y>-5</y></center></rectangle></shape>";
+           x + "</x><y>-3</y></center></rectangle></shape>";
   };
   const auto file = [&](const std::string& obstacles) {
     return folder_.write(
@@ -363,27 +370,55 @@ TEST_F(AuditCommand, FollowsTheGroundOfAMapOrOfTheMeasuredRoad) {
     const ProgramRun holds = run_roadbed({"audit", "--check", proof});
     EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
     EXPECT_THAT(holds.out, testing::ContainsRegex("above ground at z (1.9|2.0)[0-9] m to [0-9.]+ "
-                                                  "m at the drive's rows, as the certificate"));
+                                                  "m at the drive's rows"));
     EXPECT_EQ(audit_on("hit.csv", ground).status, 1);
   }
-  // A certificate whose ground is not under the drive, or is no ground.
-  const Json claimed = Json::parse(bytes_of(proof));
-  const auto forged = [&](const std::vector<double>& place) {
-    Json forgery = claimed;
-    forgery["ground"] = Json::array({place});
-    const std::string file = folder_.write("forged.json", forgery.dump());
-    const ProgramRun run = run_roadbed({"audit", "--check", file});
+  // Certificates whose ground is not under the drive, is no ground, or is not what their files say.
+  const auto of_forged = [&](const Json& forgery) {
+    const ProgramRun run =
+        run_roadbed({"audit", "--check", folder_.write("forged.json", forgery.dump())});
     EXPECT_EQ(run.status, 1);
     return run.out + run.err;
   };
-  EXPECT_THAT(forged({-90, 0, 100, 0, 0}), HasSubstr("nothing is said within 2 m"));
-  EXPECT_THAT(forged({-90, 0, 100, 1, 0}), HasSubstr("-0.5 to 0.5"));
-  Json stepped = claimed;
-  stepped["ground"].push_back(stepped["ground"][4]);
-  stepped["ground"].back()[0] = stepped["ground"].back()[0].get<double>() + 0.3;
-  stepped["ground"].back()[2] = stepped["ground"].back()[2].get<double>() + 5.0;
-  const std::string step = folder_.write("stepped.json", stepped.dump());
-  EXPECT_THAT(run_roadbed({"audit", "--check", step}).out, HasSubstr("it steps by"));
+  ASSERT_EQ(audit_on("near.csv", {"--map", map, "--certificate", proof}).status, 0);
+  const Json of_map = Json::parse(bytes_of(proof));
+  ASSERT_EQ(audit_on("near.csv", {"--ground", "measured", "--certificate", proof}).status, 0);
+  const Json of_cells = Json::parse(bytes_of(proof));
+  for (const Json& honest : {of_map, of_cells}) {
+    const auto forged = [&](const auto& forge) {
+      Json forgery = honest;
+      forge(forgery.at("heights_above").at("places"));
+      return of_forged(forgery);
+    };
+    EXPECT_THAT(forged([](Json& places) {
+                  places = Json::array({{-90, 0, 100, 0, 0}});
+                }),
+                HasSubstr("nothing is said within 2 m"));
+    EXPECT_THAT(forged([](Json& places) {
+                  places = Json::array({{-90, 0, 100, 1, 0}});
+                }),
+                HasSubstr("-0.5 to 0.5"));
+    EXPECT_THAT(forged([](Json& places) {
+                  Json place = places.at(4);
+                  place.at(0) = place.at(0).get<double>() + 0.3;
+                  place.at(2) = place.at(2).get<double>() + 5.0;
+                  places.push_back(place);
+                }),
+                HasSubstr("it steps by"));
+    for (const double raised_m : {0.03, 3.6, 30.0}) {
+      EXPECT_THAT(forged([&](Json& places) {
+                    for (Json& place : places) place.at(2) = place.at(2).get<double>() + raised_m;
+                  }),
+                  HasSubstr("fault            ground: at"))
+          << raised_m;
+    }
+    Json level = honest;
+    level.at("heights_above") = {{"ground", "level"}, {"margin_m", 0}, {"level_m", 30.0}};
+    EXPECT_THAT(of_forged(level), HasSubstr("above the ground"));
+  }
+  Json without_map = of_map;
+  without_map.erase("map");
+  EXPECT_THAT(of_forged(without_map), HasSubstr("that of a map, and none is named"));
   // On the level of its start the road itself is in the way, further up.
   const ProgramRun level = audit_on("near.csv", {"--ground", "2"});
   EXPECT_EQ(level.status, 1);
@@ -394,23 +429,143 @@ TEST_F(AuditCommand, ACertificateAnswersItsOwnQuestionAndNamesWhereThatIsFrom) {
   const std::string proof = folder_ / "asked.json", drive = folder_ / "drives/near.csv";
   const std::string car = folder_.write("car.json", "{\"height_m\": 1.4}");
   ASSERT_EQ(audit({"--trajectory", drive, "--vehicle", car, "--certificate", proof}).status, 0);
-  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
-  for (const std::vector<std::string>& question :
-       std::vector<std::vector<std::string>>{{"--ground", "0"},
-                                             {"--inflate", "0"},
-                                             {"--clearance", "1"},
-                                             {"--unknown", "report"},
-                                             {"--from-height", "0.2"}}) {
-    const ProgramRun run = run_roadbed({"audit", "--check", proof, question[0], question[1]});
-    EXPECT_EQ(run.status, 2) << question[0];
-    EXPECT_THAT(run.err, HasSubstr(question[0]));
+  const auto check = [&](std::vector<std::string> demands) {
+    demands.insert(demands.begin(), {"audit", "--check", proof});
+    return run_roadbed(demands);
+  };
+  EXPECT_EQ(check({}).status, 0);
+  const ProgramRun right =
+      check({"--vehicle", car, "--occupancy", octree_, "--trajectory", drive, "--ground", "0",
+             "--inflate", "0", "--clearance", "0", "--unknown", "free", "--from-height", "0.2",
+             "--least-measured", "0"});
+  EXPECT_EQ(right.status, 0) << right.out << right.err;
+  const std::string other = folder_.write("other.json", "{\"height_m\": 1.5}");
+  const std::string boxes = folder_.write("boxes.csv",
+                                          "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n"
+                                          "0,a,100,100,0,1,1\n");
+  for (const auto& [demand, fault] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--ground", "1"}, "heights are above 0, not 1"},
+           {{"--ground", "measured"}, "heights are above 0, not measured"},
+           {{"--inflate", "0.1"}, "margin around the vehicle of 0 m, not 0.1 m"},
+           {{"--clearance", "1"}, "clearance of 0 m, not 1 m"},
+           {{"--unknown", "report"}, "unknown space counts as free, not report"},
+           {{"--from-height", "0.3"}, "underside at 0.2 m, not 0.3 m"},
+           {{"--least-measured", "0.5"}, "measured share of at least 0, not 0.5"},
+           {{"--vehicle", other}, "has the hash"},
+           {{"--trajectory", folder_ / "drives/hit.csv"}, "has the hash"},
+           {{"--occupancy", drive}, "has the hash"},
+           {{"--map", drive}, "it is about no map"},
+           {{"--obstacles", boxes}, "it is about no obstacles"}}) {
+    const ProgramRun run = check(demand);
+    EXPECT_EQ(run.status, 1) << demand[0];
+    EXPECT_THAT(run.out, HasSubstr(fault)) << demand[0];
   }
+  const Json json = Json::parse(check({"--json"}).out);
+  ASSERT_EQ(json.at("files").size(), 3u);
+  EXPECT_EQ(json.at("files").at(1).at("role"), "trajectory");
+  EXPECT_EQ(json.at("files").at(1).at("sha256").get<std::string>().size(), 64u);
+
   folder_.write("car.json", "{\"height_m\": 1.3}");
-  const ProgramRun changed = run_roadbed({"audit", "--check", proof});
+  const ProgramRun changed = check({});
   EXPECT_EQ(changed.status, 1);
   EXPECT_THAT(changed.out, HasSubstr("car.json has the hash"));
   std::filesystem::remove(car);
-  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+  const ProgramRun missing = check({});
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(missing.out, HasSubstr("car.json: no such file"));
+}
+
+TEST_F(AuditCommand, ChecksNoProofAgainstAVehicleThatItIsNotAbout) {
+  const std::string proof = folder_ / "mirrors.json", drive = folder_ / "drives/near.csv";
+  const std::string car =
+      folder_.write("car.json", R"({"mirrors":{"beyond_m":0.25,"rear_m":1.7,"front_m":1.9,)"
+                                R"("from_height_m":0.9,"to_height_m":1.2}})");
+  ASSERT_EQ(audit({"--trajectory", drive, "--vehicle", car, "--certificate", proof}).status, 1);
+  const Json honest = Json::parse(bytes_of(proof));
+  const auto faults_if = [&](const auto& forge) {
+    Json forged = honest;
+    forge(forged);
+    const ProgramRun run =
+        run_roadbed({"audit", "--check", folder_.write("forged.json", forged.dump())});
+    EXPECT_EQ(run.status, 1);
+    return run.out + run.err;
+  };
+  // The part that has the conflict, and with it the conflict.
+  EXPECT_THAT(faults_if([](Json& claims) { claims.erase("parts"); }),
+              HasSubstr("it is about 1 parts, and the vehicle has 3"));
+  EXPECT_THAT(faults_if([](Json& claims) { claims.at("parts").erase(0); }),
+              HasSubstr("it is about 2 parts, and the vehicle has 3"));
+  EXPECT_THAT(faults_if([](Json& claims) { claims.at("vehicle").at("width_m") = 1.2; }),
+              HasSubstr("body: it is not as long, wide or placed"));
+  EXPECT_THAT(faults_if([](Json& claims) { claims.at("heights_m").at(0) = 1.4; }),
+              HasSubstr("body: heights 1.4 m to 1.5 m are not those of the vehicle"));
+  EXPECT_THAT(faults_if([](Json& claims) {
+                claims.at("underside_m") = 1.2;
+                claims.at("heights_m").at(0) = 1.2;
+                claims.at("parts").at(0).at("heights_m") = {2.9, 3.2};
+              }),
+              HasSubstr("left mirror: heights 2.9 m to 3.2 m are not those of the vehicle"));
+  EXPECT_THAT(faults_if([](Json& claims) { claims.erase("vehicle_file"); }),
+              HasSubstr("it is about 3 parts, and the vehicle has 1"));
+}
+
+TEST_F(AuditCommand, IsNotClearWithoutHavingLooked) {
+  const std::string high = folder_.write("high.xyz", "10 1 412.5\n11 1 412.9\n");
+  const std::string octree = folder_ / "high.bt", proof = folder_ / "high.json";
+  ASSERT_EQ(run_roadbed({"occupancy", "build", high, "-o", octree, "--quiet"}).status, 0);
+  for (const char* policy : {"free", "report", "occupied"}) {
+    const ProgramRun run = run_roadbed(
+        {"audit", "--occupancy", octree, "--trajectory", folder_ / "drives/near.csv", "--unknown",
+         policy, "--certificate", proof, "--junit", folder_ / "high.xml", "--json", "--force"});
+    EXPECT_EQ(run.status, 1);
+    const Json json = Json::parse(run.out);
+    EXPECT_NE(json.at("verdict"), "clear");
+    EXPECT_EQ(json.at("unobserved").at(0).at("from_s"), 0.0);
+    EXPECT_EQ(json.at("unobserved").at(0).at("to_s"), 10.0);
+    EXPECT_THAT(json.at("unobserved").at(0).at("reason").get<std::string>(),
+                HasSubstr("the body takes z 0.20 m to 1.50 m"));
+    EXPECT_THAT(bytes_of(folder_ / "high.xml"), HasSubstr("failures=\"1\""));
+    const ProgramRun check = run_roadbed({"audit", "--check", proof});
+    EXPECT_EQ(check.status, 0) << check.out;
+    EXPECT_THAT(check.out, Not(HasSubstr("certified")));
+  }
+}
+
+TEST_F(AuditCommand, AsksForAMeasuredShareAndPrintsIt) {
+  const std::string drive = folder_ / "drives/near.csv", proof = folder_ / "share.json";
+  const ProgramRun none =
+      audit({"--trajectory", drive, "--least-measured", "0.25", "--certificate", proof});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_THAT(none.out, HasSubstr("verdict          unknown"));
+  EXPECT_THAT(none.out,
+              HasSubstr("100.0 % of the space that the vehicle takes, but at least 25 %"));
+  const ProgramRun check = run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(check.status, 0) << check.out;
+  EXPECT_THAT(check.out, HasSubstr("0.0 % of the space that the vehicle takes, 25 % asked for"));
+  Json forged = Json::parse(bytes_of(proof));
+  forged.at("measured_share") = 0.3;
+  const ProgramRun refuted =
+      run_roadbed({"audit", "--check", folder_.write("forged.json", forged.dump())});
+  EXPECT_EQ(refuted.status, 1);
+  EXPECT_THAT(refuted.out, HasSubstr("measured_share: 0.0000"));
+}
+
+TEST_F(AuditCommand, SaysHowDeepAConflictIs) {
+  const ProgramRun run = audit({"--trajectory", folder_ / "drives/hit.csv"});
+  EXPECT_THAT(run.out, HasSubstr("front overlaps the cell at (10.05, 1.05)"));
+  // The drive at y 1 passes over all of a cell from y 1.0 to 1.1: out by its left side it is
+  // nearer.
+  EXPECT_THAT(run.out, HasSubstr("0.805 m deep, 0.010 m²"));
+}
+
+TEST_F(AuditCommand, NotesBendsThatTheVehicleCannotDrive) {
+  std::string drive = "t_s,x_m,y_m,heading_rad\n";
+  for (int i = 0; i <= 40; ++i) {
+    drive += fmt::format("{},{},{},{}\n", 0.1 * i, 8.0 + std::sin(0.1 * i),
+                         -1.0 - std::cos(0.1 * i), 0.1 * i);
+  }
+  const ProgramRun run = audit({"--trajectory", folder_.write("bend.csv", drive)});
+  EXPECT_THAT(run.err, HasSubstr("the drive bends by 1 1/m, and the vehicle by 0.702 1/m at most"));
 }
 
 TEST_F(AuditCommand, RefusesHeightsThatAreNone) {

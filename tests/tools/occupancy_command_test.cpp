@@ -91,7 +91,7 @@ TEST_F(OccupancyCommands, AuditNamesUnknownSpaceAndADriveOutsideIt) {
   EXPECT_EQ(unknown.status, 1);
   EXPECT_THAT(unknown.out, HasSubstr("verdict          unknown"));
   EXPECT_THAT(unknown.out, HasSubstr("not measured     100.0 %"));
-  EXPECT_THAT(unknown.err, HasSubstr("outside the measured space"));
+  EXPECT_THAT(unknown.out, HasSubstr("bring drive and occupancy into one frame"));
 }
 
 TEST_F(OccupancyCommands, CheckVerifiesACertificateAndRefutesAChangedOne) {

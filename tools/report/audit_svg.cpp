@@ -150,14 +150,20 @@ std::string drive_svg(const AuditPicture& picture, const View& view) {
          svg_path("axle", svg_line(view.frame, axle));
 }
 
+std::string label_of(const planning::Conflict& conflict) {
+  const double depth_m = conflict.deepest.overlap.depth_m;
+  return depth_m > 0.0
+             ? fmt::format("{:.2f} m deep at {:.2f} s", depth_m, conflict.deepest.at_s)
+             : fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s);
+}
+
 std::string conflicts_svg(const AuditPicture& picture, const View& view) {
   std::string worst, witness, labels;
   for (const planning::Conflict& conflict : picture.report.conflicts) {
     worst += body_svg(picture, view.frame, conflict.at.t_s);
     witness += svg_ring(view.frame, box_ring(conflict.witness));
-    labels +=
-        svg_text("over", view.frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
-                 fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s));
+    labels += svg_text("over", view.frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
+                       label_of(conflict));
   }
   if (picture.report.conflicts.empty() && picture.report.witness) {
     worst += body_svg(picture, view.frame, picture.report.least_clearance_at_s);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 ReportSource source(const std::string& role, const fs::path& file) {
-  return {.role = role, .name = file.filename().string(), .xxhash = certified_file(file).xxhash};
+  return {.role = role, .name = file.filename().string(), .sha256 = certified_file(file).sha256};
 }
 
 std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {

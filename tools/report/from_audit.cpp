@@ -66,13 +66,24 @@ ReportPlot speed_by_row(const geometry::Trajectory& drive) {
   return plot;
 }
 
+std::string nearness_text(const planning::Conflict& conflict) {
+  const double depth_m = conflict.deepest.overlap.depth_m;
+  return depth_m > 0.0 ? fmt::format("{:.2f} m deep in", depth_m)
+                       : fmt::format("{:.2f} m from", conflict.least_clearance_m);
+}
+
 std::vector<ReportEvent> events_of_audit(const AuditReport& report) {
   std::vector<ReportEvent> events;
   for (const planning::Conflict& conflict : report.conflicts) {
     const std::string with = fmt::format("{}, {}", thing_of(conflict.obstacle), conflict.part);
     events.push_back({conflict.from_s, Severity::fault, "conflict begins: " + with});
-    events.push_back({conflict.at.t_s, Severity::fault,
-                      fmt::format("{:.2f} m from {}", conflict.least_clearance_m, with)});
+    events.push_back(
+        {conflict.at.t_s, Severity::fault, fmt::format("{} {}", nearness_text(conflict), with)});
+  }
+  for (const planning::UnobservedStretch& stretch : report.unobserved) {
+    events.push_back(
+        {stretch.from_s, Severity::fault,
+         fmt::format("nothing was measured near the {}: {}", stretch.part, stretch.reason)});
   }
   for (const planning::Stretch& stretch : report.unknown) {
     events.push_back({stretch.from_s, Severity::warning, "near space that was not measured"});
@@ -121,9 +132,16 @@ std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m
           {.name = "swept area never measured",
            .value = 100.0 * report.unknown_share,
            .unit = "%",
-           .bound = {},
-           .passed = true,
-           .at_s = {}}};
+           .bound = fmt::format("≤ {:g}", 100.0 * (1.0 - report.least_measured)),
+           .passed = report.is_measured_enough(),
+           .at_s = {}},
+          {.name = "stretches without anything measured near",
+           .value = static_cast<double>(report.unobserved.size()),
+           .unit = "",
+           .bound = "≤ 0",
+           .passed = report.unobserved.empty(),
+           .at_s = report.unobserved.empty() ? std::nullopt
+                                             : std::optional(report.unobserved.front().from_s)}};
 }
 
 }  // namespace

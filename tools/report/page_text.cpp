@@ -141,7 +141,7 @@ std::string sources_html(const std::vector<ReportSource>& sources) {
   for (const ReportSource& source : sources) {
     auto role = std::ranges::find(roles, source.role, [](const auto& one) { return one.first; });
     if (role == roles.end()) role = roles.insert(role, {source.role, {}});
-    role->second.push_back(code(source.name) + " xxhash " + code(source.xxhash));
+    role->second.push_back(code(source.name) + " SHA-256 " + code(source.sha256));
   }
   std::string html;
   for (const auto& [role, files] : roles) {

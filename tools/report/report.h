@@ -100,7 +100,7 @@ struct ReportCheck {
 struct ReportSource {
   std::string role;    ///< "map"
   std::string name;    ///< as the user named it
-  std::string xxhash;  ///< XXH3 of its bytes, hexadecimal
+  std::string sha256;  ///< of its bytes, hexadecimal
 };
 
 /// A drawing of a moment.

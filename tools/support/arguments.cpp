@@ -75,6 +75,8 @@ Argument& Argument::checked(std::function<std::string(const std::string&)> fault
   return *this;
 }
 
+bool Argument::given() const { return option_->count() > 0; }
+
 Argument& Argument::excludes(const Argument& other) {
   option_->excludes(other.option_);
   return *this;

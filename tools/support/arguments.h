@@ -57,6 +57,8 @@ class Argument {
   Argument& checked(std::function<std::string(const std::string& text)> fault);
   /// May not stand beside another.
   Argument& excludes(const Argument& other);
+  /// Whether the command line has it.
+  bool given() const;
   /// Names a file or folder that the command reads, with those that `named` finds in it.
   Argument& reads(FilesNamed named = {});
   /// Names a file or folder that the command writes.

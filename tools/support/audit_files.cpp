@@ -88,6 +88,8 @@ void add_conflict(Json& features, const AuditedDrive& audited, const planning::C
                       {"to_s", conflict.to_s},
                       {"at_s", conflict.at.t_s},
                       {"clearance_m", conflict.least_clearance_m},
+                      {"overlap_depth_m", conflict.deepest.overlap.depth_m},
+                      {"overlap_area_m2", conflict.deepest.overlap.area_m2},
                       {"part", conflict.part},
                       {"obstacle", conflict.obstacle.empty() ? Json() : Json(conflict.obstacle)}};
   features.push_back(feature(outlines(parts, conflict.at.pose()), about));

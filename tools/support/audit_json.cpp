@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "roadbed/planning/judged_stretches.h"
@@ -29,11 +30,30 @@ Json state_json(const geometry::TrajectoryPoint& state) {
 
 Json id_json(const std::string& obstacle) { return obstacle.empty() ? Json() : Json(obstacle); }
 
+Json overlap_json(const planning::DeepestOverlap& deepest) {
+  if (deepest.overlap.depth_m == 0.0) return nullptr;
+  return {{"depth_m", deepest.overlap.depth_m},
+          {"area_m2", deepest.overlap.area_m2},
+          {"at_s", deepest.at_s}};
+}
+
+Json unobserved_json(const std::vector<planning::UnobservedStretch>& stretches) {
+  Json json = Json::array();
+  for (const planning::UnobservedStretch& stretch : stretches) {
+    json.push_back({{"from_s", stretch.from_s},
+                    {"to_s", stretch.to_s},
+                    {"part", stretch.part},
+                    {"reason", stretch.reason}});
+  }
+  return json;
+}
+
 Json conflict_json(const planning::Conflict& conflict, const geometry::Trajectory& drive) {
   return {{"from_s", conflict.from_s},
           {"to_s", conflict.to_s},
           {"from", state_json(drive.at(conflict.from_s))},
           {"least_clearance_m", conflict.least_clearance_m},
+          {"overlap", overlap_json(conflict.deepest)},
           {"at", state_json(conflict.at)},
           {"part", conflict.part},
           {"obstacle", id_json(conflict.obstacle)},
@@ -75,6 +95,48 @@ std::string least_text(const planning::AuditReport& report) {
   return fmt::format("{:.3f} m at {:.3f} s, {}, from {}; nowhere under {:.3f} m\n",
                      report.least_clearance_m, report.least_clearance_at_s, report.part,
                      thing_text(*report.witness, report.obstacle), report.proven_clearance_m);
+}
+
+std::string demand_text(const planning::AuditReport& report) {
+  if (report.least_measured == 0.0) return {};
+  return fmt::format(", {} {:g} % was to be measured{}",
+                     report.is_measured_enough() ? "and at least" : "but at least",
+                     100.0 * report.least_measured,
+                     report.is_measured_enough() ? "" : ": all of the drive is unknown");
+}
+
+// "front, 0.120 m from the cell at (1.00, 2.00) at 1.250 s, at (0.10, 2.00)", or how deep it is.
+std::string conflict_text(const planning::Conflict& conflict) {
+  const std::string thing = thing_text(conflict.witness, conflict.obstacle);
+  const std::string place = fmt::format("at {:.3f} s, at ({:.2f}, {:.2f})", conflict.at.t_s,
+                                        conflict.at.x_m, conflict.at.y_m);
+  const planning::DeepestOverlap& deepest = conflict.deepest;
+  if (conflict.least_clearance_m > 0.0) {
+    return fmt::format("{}, {:.3f} m from {} {}", conflict.part, conflict.least_clearance_m, thing,
+                       place);
+  }
+  if (deepest.overlap.depth_m == 0.0) {
+    return fmt::format("{} touches {} {}", conflict.part, thing, place);
+  }
+  return fmt::format("{} overlaps {} {}; {:.3f} m deep, {:.3f} m² at {:.3f} s", conflict.part,
+                     thing, place, deepest.overlap.depth_m, deepest.overlap.area_m2, deepest.at_s);
+}
+
+// Those of which not all is said by a reason.
+std::vector<planning::Stretch> unknown_besides(const planning::AuditReport& report) {
+  if (!report.is_measured_enough()) return {};
+  std::vector<planning::Stretch> reasoned;
+  for (const planning::UnobservedStretch& stretch : report.unobserved) {
+    reasoned.push_back({stretch.from_s, stretch.to_s});
+  }
+  reasoned = planning::joined(std::move(reasoned));
+  std::vector<planning::Stretch> besides = report.unknown;
+  std::erase_if(besides, [&](const planning::Stretch& stretch) {
+    return std::ranges::any_of(reasoned, [&](const planning::Stretch& with_reason) {
+      return with_reason.from_s <= stretch.from_s && stretch.to_s <= with_reason.to_s;
+    });
+  });
+  return besides;
 }
 
 constexpr std::array<std::string_view, 5> kOutcomes{"clear", "conflict", "unknown", "undecided",
@@ -123,11 +185,13 @@ Json audit_json(const AuditedDrive& audited) {
   json["obstacle"] = id_json(report.obstacle);
   json["part"] = report.witness ? Json(report.part) : Json();
   json["unknown_share"] = report.unknown_share;
+  json["least_measured"] = report.least_measured;
   json["conflicts"] = Json::array();
   for (const auto& conflict : report.conflicts) {
     json["conflicts"].push_back(conflict_json(conflict, audited.drive));
   }
   json["unknown"] = stretches_json(report.unknown);
+  json["unobserved"] = unobserved_json(report.unobserved);
   json["undecided"] = stretches_json(report.undecided);
   json["stretches"] = judged_json(audited);
   return json;
@@ -136,17 +200,18 @@ Json audit_json(const AuditedDrive& audited) {
 std::string audit_text(const planning::AuditReport& report) {
   std::string text = fmt::format("{:<17}{}\n", "verdict", name(report.verdict));
   text += fmt::format("{:<17}", "least clearance") + least_text(report);
-  text += fmt::format("{:<17}{:.1f} % of the space that the vehicle takes\n", "not measured",
-                      100.0 * report.unknown_share);
+  text += fmt::format("{:<17}{:.1f} % of the space that the vehicle takes{}\n", "not measured",
+                      100.0 * report.unknown_share, demand_text(report));
   for (const planning::Conflict& conflict : report.conflicts) {
-    text += fmt::format(
-        "{:<17}{:.3f} s to {:.3f} s: {}, {:.3f} m from {} at {:.3f} s, at ({:.2f}, "
-        "{:.2f})\n",
-        "conflict", conflict.from_s, conflict.to_s, conflict.part, conflict.least_clearance_m,
-        thing_text(conflict.witness, conflict.obstacle), conflict.at.t_s, conflict.at.x_m,
-        conflict.at.y_m);
+    text += fmt::format("{:<17}{:.3f} s to {:.3f} s: {}\n", "conflict", conflict.from_s,
+                        conflict.to_s, conflict_text(conflict));
   }
-  for (const planning::Stretch& stretch : report.unknown) {
+  for (const planning::UnobservedStretch& stretch : report.unobserved) {
+    text += fmt::format(
+        "{:<17}{:.3f} s to {:.3f} s: nothing was measured within {} m of the {}: {}\n", "unknown",
+        stretch.from_s, stretch.to_s, planning::kObservedWithin_m, stretch.part, stretch.reason);
+  }
+  for (const planning::Stretch& stretch : unknown_besides(report)) {
     text += fmt::format(
         "{:<17}{:.3f} s to {:.3f} s: near space that was not measured; measure it, "
         "or give --unknown\n",

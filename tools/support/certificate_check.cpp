@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/input_error.h"
@@ -18,6 +18,7 @@
 #include "roadbed/planning/audit_certificate_check.h"
 #include "roadbed/planning/ground_claims.h"
 #include "roadbed/tools/support/certificate_json.h"
+#include "roadbed/tools/support/certified_question.h"
 #include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 
@@ -25,95 +26,175 @@ namespace roadbed::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using Ordered = nlohmann::ordered_json;
 
-// A file that is not the one of the certificate proves nothing of it.
-void compare(const CertifiedFile& claimed, const CertifiedFile& found,
-             std::vector<std::string>& faults) {
-  if (found.xxhash == claimed.xxhash) return;
-  faults.push_back(fmt::format("{} has the hash {}, the certificate is about one with {}",
-                               found.name, found.xxhash, claimed.xxhash));
-}
+/// A file that a certificate is about, as it was found.
+struct CheckedFile {
+  std::string role;
+  CertifiedFile file;
+};
 
-// Of a tiled occupancy only the tiles within reach of the claims.
-std::vector<map::OccupancyCell> cells_for(const map::OccupancySource& occupancy,
-                                          const CertificateFile& file,
-                                          const geometry::Trajectory& drive) {
-  const auto* tiles = dynamic_cast<const map::TiledOccupancy*>(&occupancy);
-  if (tiles == nullptr) return occupancy.cells();
-  double far_m = 0.0;
-  for (const planning::AuditCertificate& part : file.parts) {
-    far_m = std::max(far_m, planning::checked_distance_m(part, drive));
+/// Looks at one certificate.
+class CertificateCheck {
+ public:
+  CertificateCheck(const fs::path& name, const CertificateDemands& demands, const Inputs& inputs)
+      : name_(name), demands_(demands), inputs_(inputs), file_(read_certificate_json(name)) {}
+
+  bool run() {
+    compare_files();
+    compare_demands();
+    if (!faults_.empty()) return false;
+    drive_ = read_trajectory_csv(path_of(file_.trajectory, demands_.trajectory));
+    check_claims();
+    return faults_.empty();
   }
-  constexpr double any_height_m = 1e6;
-  const Eigen::Vector3d margin(far_m, far_m, any_height_m);
-  std::vector<map::Box3> boxes;
-  for (const geometry::TrajectoryPoint& row : drive.points()) {
-    const Eigen::Vector3d at(row.x_m, row.y_m, 0.0);
-    boxes.push_back({at - margin, at + margin});
-  }
-  return tiles->cells_of_tiles(boxes);
-}
 
-// A vehicle or map that is still there must be the one that was taken.
-void compare_if_there(const std::optional<CertifiedFile>& claimed,
-                      std::vector<std::string>& faults) {
-  std::error_code unreadable;
-  if (!claimed || !fs::exists(claimed->name, unreadable)) return;
-  compare(*claimed, certified_file(claimed->name), faults);
-}
+  void print(std::ostream& out) const;
+  Ordered json() const;
 
-std::vector<std::string> faults_of_ground(const CertificateFile& file,
-                                          const geometry::Trajectory& drive) {
-  if (!file.ground) return {};
-  double reach_m = 0.0;
-  for (const planning::AuditCertificate& part : file.parts) {
-    reach_m = std::max(reach_m, part.part.reach_m() + std::sqrt(2.0) * part.inflate_m);
+ private:
+  static fs::path path_of(const CertifiedFile& named, const fs::path& demanded) {
+    return demanded.empty() ? fs::path(named.name) : demanded;
   }
-  return planning::ground_faults(*file.ground, drive, reach_m);
-}
 
-std::vector<std::string> faults_of(const CertificateFile& file, const fs::path& occupancy_file,
-                                   const fs::path& trajectory_file, const fs::path& obstacles_file,
-                                   const fs::path& name, const Inputs& inputs) {
-  std::vector<std::string> faults;
-  compare(file.occupancy, certified_file(occupancy_file), faults);
-  compare(file.trajectory, certified_file(trajectory_file), faults);
-  std::vector<planning::MovingObstacle> moving;
-  if (file.obstacles) {
-    const fs::path from = obstacles_file.empty() ? fs::path(file.obstacles->name) : obstacles_file;
-    moving = read_moving_obstacles(from, inputs);
-    compare(*file.obstacles, certified_obstacles(from, moving), faults);
-  } else if (!obstacles_file.empty()) {
-    faults.push_back(fmt::format("the certificate is not about what moves in {}, nor anywhere else",
-                                 obstacles_file.string()));
-  }
-  compare_if_there(file.vehicle, faults);
-  compare_if_there(file.roads, faults);
-  if (!faults.empty()) return faults;
-  const geometry::Trajectory drive = read_trajectory_csv(trajectory_file);
-  faults = faults_of_ground(file, drive);
-  const auto occupancy = inputs.occupancy(occupancy_file);
-  try {
-    const std::vector<map::OccupancyCell> cells = cells_for(*occupancy, file, drive);
-    for (const planning::AuditCertificate& part : file.parts) {
-      for (const std::string& fault :
-           planning::check_certificate(part, cells, occupancy->resolution_m(), drive, moving)) {
-        faults.push_back(file.parts.size() == 1 ? fault : part.part.name + ": " + fault);
+  // What cannot be read proves nothing: no claim may rest on it.
+  void compare(const std::string& role, const std::optional<CertifiedFile>& named,
+               const fs::path& demanded) {
+    if (!named) {
+      if (!demanded.empty()) {
+        faults_.push_back(
+            fmt::format("it is about no {}, and {} is asked for", role, demanded.string()));
       }
+      return;
     }
-    return faults;
-  } catch (const std::length_error& too_long) {
-    throw map::InputError({.file = name.string(),
-                           .place = {},
-                           .element = {},
-                           .found = too_long.what(),
-                           .needed = {},
-                           .remedy = "audit the drive in parts"});
+    try {
+      const CertifiedFile found = certified(role, path_of(*named, demanded));
+      files_.push_back({role, found});
+      if (found.sha256 == named->sha256) return;
+      faults_.push_back(fmt::format("{} {} has the hash {}, the certificate is about one with {}",
+                                    role, found.name, found.sha256, named->sha256));
+    } catch (const map::InputError& error) {
+      faults_.push_back(fmt::format("{} cannot be looked at: {}", role, error.what()));
+    }
   }
-}
 
-// What the verdict is about: a certificate of another question proves nothing of one's own.
-std::string text_of(const planning::AuditCertificate& audit) {
+  CertifiedFile certified(const std::string& role, const fs::path& path) {
+    if (role != "obstacles") return certified_file(path);
+    moving_ = read_moving_obstacles(path, inputs_);
+    return certified_obstacles(path, moving_);
+  }
+
+  void compare_files() {
+    compare("occupancy", file_.occupancy, demands_.occupancy);
+    compare("trajectory", file_.trajectory, demands_.trajectory);
+    compare("vehicle", file_.vehicle, demands_.vehicle);
+    compare("map", file_.roads, demands_.map);
+    compare("obstacles", file_.obstacles, demands_.obstacles);
+  }
+
+  void demand(const std::string& what, std::optional<double> demanded, double proven,
+              const std::string& unit = " m") {
+    constexpr double rounding = 1e-12;
+    if (!demanded || std::abs(*demanded - proven) <= rounding) return;
+    faults_.push_back(
+        fmt::format("it is about {} {:.9g}{}, not {:.9g}{}", what, proven, unit, *demanded, unit));
+  }
+
+  void compare_demands() {
+    const planning::AuditCertificate& question = file_.parts.front();
+    demand("a clearance of", demands_.clearance_m, question.clearance_m);
+    demand("a margin around the vehicle of", demands_.inflate_m, question.inflate_m);
+    demand("an underside at", demands_.underside_m, file_.underside_m);
+    demand("a measured share of at least", demands_.least_measured, file_.least_measured, "");
+    if (demands_.unknown && *demands_.unknown != question.unknown_policy) {
+      faults_.push_back(fmt::format("unknown space counts as {}, not {}",
+                                    planning::name(question.unknown_policy),
+                                    planning::name(*demands_.unknown)));
+    }
+    if (!demands_.ground.empty() && ground_text() != demands_.ground) compare_ground();
+  }
+
+  void compare_ground() {
+    const GroundRule asked = ground_rule(demands_.ground, nullptr);
+    const bool is_map = demands_.ground == "map";
+    const GroundRule::Kind kind = is_map ? GroundRule::Kind::map : asked.kind;
+    const bool is_same = kind == file_.ground.kind && (kind != GroundRule::Kind::level ||
+                                                       asked.level_m == file_.ground.under.level_m);
+    if (is_same) return;
+    faults_.push_back(fmt::format("heights are above {}, not {}", ground_text(), demands_.ground));
+  }
+
+  std::string ground_text() const {
+    if (file_.ground.kind == GroundRule::Kind::map) return "map";
+    if (file_.ground.kind == GroundRule::Kind::measured) return "measured";
+    return fmt::format("{:.9g}", file_.ground.under.level_m);
+  }
+
+  // Of a tiled occupancy only the tiles within reach of the claims.
+  std::vector<map::OccupancyCell> cells_of(const map::OccupancySource& occupancy) const {
+    const auto* tiles = dynamic_cast<const map::TiledOccupancy*>(&occupancy);
+    if (tiles == nullptr) return occupancy.cells();
+    double far_m = 0.0;
+    for (const planning::AuditCertificate& part : file_.parts) {
+      far_m = std::max(far_m, planning::checked_distance_m(part, drive_));
+    }
+    constexpr double any_height_m = 1e6;
+    const Eigen::Vector3d margin(far_m, far_m, any_height_m);
+    std::vector<map::Box3> boxes;
+    for (const geometry::TrajectoryPoint& row : drive_.points()) {
+      const Eigen::Vector3d at(row.x_m, row.y_m, 0.0);
+      boxes.push_back({at - margin, at + margin});
+    }
+    return tiles->cells_of_tiles(boxes);
+  }
+
+  void check_claims() {
+    const auto occupancy = inputs_.occupancy(path_of(file_.occupancy, demands_.occupancy));
+    std::shared_ptr<const map::RoadMap> road_map;
+    if (file_.ground.kind == GroundRule::Kind::map && file_.roads) {
+      road_map = inputs_.road_map(path_of(*file_.roads, demands_.map));
+    }
+    const Vehicle vehicle =
+        file_.vehicle ? read_vehicle_json(path_of(*file_.vehicle, demands_.vehicle)) : Vehicle{};
+    faults_ = part_faults(file_, vehicle);
+    if (!faults_.empty()) return;
+    try {
+      const std::vector<map::OccupancyCell> cells = cells_of(*occupancy);
+      faults_ = ground_faults_of(file_, drive_, road_map.get(), cells, occupancy->resolution_m());
+      for (const planning::AuditCertificate& part : file_.parts) {
+        for (const std::string& fault :
+             planning::check_certificate(part, cells, occupancy->resolution_m(), drive_, moving_)) {
+          faults_.push_back(file_.parts.size() == 1 ? fault : part.part.name + ": " + fault);
+        }
+      }
+    } catch (const std::length_error& too_long) {
+      throw map::InputError({.file = name_.string(),
+                             .place = {},
+                             .element = {},
+                             .found = too_long.what(),
+                             .needed = {},
+                             .remedy = "audit the drive in parts"});
+    }
+  }
+
+  std::string question() const;
+  bool is_whole() const {
+    return std::ranges::all_of(file_.parts, [](const planning::AuditCertificate& part) {
+      return part.certified_clearance_m > 0.0;
+    });
+  }
+
+  fs::path name_;
+  const CertificateDemands& demands_;
+  const Inputs& inputs_;
+  CertificateFile file_;
+  geometry::Trajectory drive_;
+  std::vector<planning::MovingObstacle> moving_;
+  std::vector<CheckedFile> files_;
+  std::vector<std::string> faults_;
+};
+
+std::string part_text(const planning::AuditCertificate& audit) {
   const geometry::BodyPart& part = audit.part;
   const std::string heights =
       fmt::format("heights {:.9g} m to {:.9g} m", audit.band.from_m, audit.band.to_m);
@@ -129,68 +210,77 @@ std::string text_of(const planning::AuditCertificate& audit) {
                      part.name, part.length_m(), part.width_m(), -part.rear_m, aside, heights);
 }
 
-std::string question_of(const CertificateFile& file, const fs::path& trajectory_file) {
-  const planning::AuditCertificate& audit = file.parts.front();
+// What the verdict is about: a certificate of another question proves nothing of one's own.
+std::string CertificateCheck::question() const {
+  const planning::AuditCertificate& audit = file_.parts.front();
   std::string text;
-  for (const planning::AuditCertificate& part : file.parts) text += text_of(part) + "; ";
-  if (const map::Ground* ground = audit.band.ground) {
-    const auto [low_m, high_m] =
-        planning::heights_at_rows_m(*ground, read_trajectory_csv(trajectory_file));
-    text += fmt::format(
-        "above ground at z {:.2f} m to {:.2f} m at the drive's rows, as the certificate has it; ",
-        low_m, high_m);
+  for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
+  if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
+    const auto [low_m, high_m] = planning::heights_at_rows_m(*ground, drive_);
+    text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's rows ({}); ", low_m,
+                        high_m, ground_text());
   }
   return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
                             audit.inflate_m, audit.clearance_m,
                             planning::name(audit.unknown_policy),
-                            file.obstacles ? "what moves is that of " + file.obstacles->name
-                                           : "nothing moves");
+                            file_.obstacles ? "what moves is that of " + file_.obstacles->name
+                                            : "nothing moves");
 }
 
-void print(std::ostream& out, const CertificateFile& file, const std::string& question,
-           const std::vector<std::string>& faults) {
-  out << fmt::format("{:<17}{}\n", "certificate", faults.empty() ? "holds" : "does not hold");
-  out << fmt::format("{:<17}{}, as written by {}\n", "verdict", name(file.verdict()), file.program);
-  out << fmt::format("{:<17}{}\n", "question", question);
+void CertificateCheck::print(std::ostream& out) const {
+  const auto line = [&](const std::string& head, const std::string& text) {
+    out << fmt::format("{:<17}{}\n", head, text);
+  };
+  line("certificate", faults_.empty() ? "holds" : "does not hold");
+  line("verdict", fmt::format("{}, as written by {}", name(file_.verdict()), file_.program));
+  line("question", question());
+  for (const CheckedFile& checked : files_) {
+    line(checked.role, fmt::format("{}, SHA-256 {}", checked.file.name, checked.file.sha256));
+  }
+  if (!file_.vehicle) line("vehicle", "none named: CommonRoad's vehicle 2");
+  line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % asked for",
+                               100.0 * file_.measured_share(), 100.0 * file_.least_measured));
   std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
-  bool is_whole = true;
-  for (const planning::AuditCertificate& part : file.parts) {
+  for (const planning::AuditCertificate& part : file_.parts) {
     from_occupied += part.from_occupied.size();
     from_unknown += part.from_unknown.size();
     from_moving += part.from_moving.size();
-    is_whole = is_whole && part.conflicts.empty() && part.undecided.empty();
   }
-  out << fmt::format("{:<17}{} from occupied space, {} from unknown space, {} from what moves\n",
-                     "proven spans", from_occupied, from_unknown, from_moving);
-  if (is_whole) {
-    out << fmt::format("{:<17}{:.3f} m\n", "certified", file.certified_clearance_m());
+  line("proven spans",
+       fmt::format("{} from occupied space, {} from unknown space, {} from what moves",
+                   from_occupied, from_unknown, from_moving));
+  if (is_whole()) line("certified", fmt::format("{:.3f} m", file_.certified_clearance_m()));
+  for (const std::string& fault : faults_) line("fault", fault);
+}
+
+Ordered CertificateCheck::json() const {
+  Ordered files = Ordered::array();
+  for (const CheckedFile& checked : files_) {
+    files.push_back(
+        {{"role", checked.role}, {"file", checked.file.name}, {"sha256", checked.file.sha256}});
   }
-  for (const std::string& fault : faults) out << fmt::format("{:<17}{}\n", "fault", fault);
+  return {{"holds", faults_.empty()},
+          {"question", question()},
+          {"verdict", name(file_.verdict())},
+          {"certified_clearance_m", file_.certified_clearance_m()},
+          {"measured_share", file_.measured_share()},
+          {"least_measured", file_.least_measured},
+          {"files", std::move(files)},
+          {"faults", faults_}};
 }
 
 }  // namespace
 
-bool check_certificate_file(const fs::path& certificate, const fs::path& occupancy,
-                            const fs::path& trajectory, const fs::path& obstacles, bool json,
-                            const Inputs& inputs, std::ostream& out) {
-  const CertificateFile file = read_certificate_json(certificate);
-  const fs::path drive = trajectory.empty() ? fs::path(file.trajectory.name) : trajectory;
-  const std::vector<std::string> faults =
-      faults_of(file, occupancy.empty() ? fs::path(file.occupancy.name) : occupancy, drive,
-                obstacles, certificate, inputs);
-  const std::string question = question_of(file, drive);
+bool check_certificate_file(const fs::path& certificate, const CertificateDemands& demands,
+                            bool json, const Inputs& inputs, std::ostream& out) {
+  CertificateCheck check(certificate, demands, inputs);
+  const bool holds = check.run();
   if (json) {
-    out << nlohmann::ordered_json{{"holds", faults.empty()},
-                                  {"question", question},
-                                  {"verdict", name(file.verdict())},
-                                  {"certified_clearance_m", file.certified_clearance_m()},
-                                  {"faults", faults}}
-               .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-        << '\n';
+    out << check.json().dump(2, ' ', false, Ordered::error_handler_t::replace) << '\n';
   } else {
-    print(out, file, question, faults);
+    check.print(out);
   }
-  return faults.empty();
+  return holds;
 }
 
 }  // namespace roadbed::tools

@@ -1,7 +1,6 @@
 #include "roadbed/tools/support/certificate_json.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "roadbed/map/occupancy/ground.h"
 #include "roadbed/map/occupancy/tiles_index.h"
 #include "roadbed/map/read_file.h"
+#include "roadbed/map/sha256.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/obstacles_csv.h"
@@ -26,6 +26,7 @@ namespace {
 
 using planning::AuditCertificate;
 using planning::Conflict;
+using planning::ObservedTime;
 using planning::ProvenSpan;
 using planning::ProvenTime;
 using planning::Stretch;
@@ -33,8 +34,9 @@ using planning::UnknownPolicy;
 using planning::Verdict;
 using Ordered = nlohmann::ordered_json;
 
-constexpr std::string_view kFormat = "roadbed audit certificate 1", kBody = "body";
-constexpr Range kAny{-1e12, 1e12}, kShare{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9};
+constexpr std::string_view kFormat = "roadbed audit certificate 2", kBody = "body";
+constexpr Range kAny{-1e12, 1e12}, kShare{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9},
+    kUnderside_m{-100.0, 100.0};
 
 constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPolicy::occupied,
                                                  UnknownPolicy::report};
@@ -42,7 +44,7 @@ constexpr std::array<Verdict, 4> kVerdicts{Verdict::clear, Verdict::conflict, Ve
                                            Verdict::undecided};
 
 Ordered file_json(const CertifiedFile& file) {
-  return {{"file", file.name}, {"xxhash", file.xxhash}};
+  return {{"file", file.name}, {"sha256", file.sha256}};
 }
 
 // A rectangle in the middle is told as a vehicle is; what differs from that is told besides.
@@ -56,11 +58,36 @@ Ordered part_json(const geometry::BodyPart& part) {
   return json;
 }
 
-Ordered ground_json(const map::Ground& ground) {
+constexpr std::array<std::pair<GroundRule::Kind, std::string_view>, 3> kGrounds{
+    {{GroundRule::Kind::level, "level"},
+     {GroundRule::Kind::map, "map"},
+     {GroundRule::Kind::measured, "measured"}}};
+
+Ordered places_json(const map::Ground& ground) {
   Ordered json = Ordered::array();
   for (const map::GroundPlace& place : ground.places()) {
     json.push_back(
         {place.in_source.x(), place.in_source.y(), place.z_m, place.slope.x(), place.slope.y()});
+  }
+  return json;
+}
+
+void add_ground(Ordered& json, const CertifiedGround& ground) {
+  const auto* named =
+      std::ranges::find(kGrounds, ground.kind, [](const auto& known) { return known.first; });
+  Ordered above{{"ground", named->second}, {"margin_m", ground.under.margin_m}};
+  if (ground.under.surface) {
+    above["places"] = places_json(*ground.under.surface);
+  } else {
+    above["level_m"] = ground.under.level_m;
+  }
+  json["heights_above"] = std::move(above);
+}
+
+Ordered observed_json(const std::vector<ObservedTime>& times) {
+  Ordered json = Ordered::array();
+  for (const ObservedTime& time : times) {
+    json.push_back({time.from_s, time.to_s, time.column_in_source.x(), time.column_in_source.y()});
   }
   return json;
 }
@@ -135,8 +162,8 @@ Value one_of(const JsonNode& node, const std::array<Value, N>& values) {
 }
 
 CertifiedFile read_file_entry(const JsonNode& node) {
-  node.require_object({"file", "xxhash"});
-  return {.name = node.at("file").one_line(), .xxhash = node.at("xxhash").one_line()};
+  node.require_object({"file", "sha256"});
+  return {.name = node.at("file").one_line(), .sha256 = node.at("sha256").one_line()};
 }
 
 geometry::BodyPart read_part(const JsonNode& node) {
@@ -172,21 +199,47 @@ map::HeightBand read_band(const JsonNode& node) {
   return band;
 }
 
-std::shared_ptr<const map::Ground> read_ground(const JsonNode& node) {
-  const auto ground = node.find("ground");
-  if (!ground) return nullptr;
+std::shared_ptr<const map::Ground> read_places(const JsonNode& node) {
   constexpr Range slope{-0.5, 0.5}, height{-1e6, 1e6}, place{-1e9, 1e9};
   std::vector<map::GroundPlace> places;
-  for (const JsonNode& element : ground->elements()) {
+  for (const JsonNode& element : node.elements()) {
     const std::vector<JsonNode> values = numbers(element, 5);
     places.push_back({{values[0].number(place), values[1].number(place)},
                       values[2].number(height),
                       {values[3].number(slope), values[4].number(slope)}});
   }
-  if (places.empty()) {
-    ground->refuse("is empty", "a place at least", "write the certificate anew");
-  }
+  if (places.empty()) node.refuse("is empty", "a place at least", "write the certificate anew");
   return std::make_shared<const map::Ground>(std::move(places));
+}
+
+CertifiedGround read_ground(const JsonNode& node) {
+  node.require_object({"ground", "margin_m", "level_m", "places"});
+  const JsonNode word = node.at("ground");
+  const auto* named =
+      std::ranges::find(kGrounds, word.text(), [](const auto& known) { return known.second; });
+  if (named == kGrounds.end()) {
+    word.refuse(fmt::format("is \"{}\"", word.text()), "level, map or measured",
+                "write the certificate anew");
+  }
+  CertifiedGround ground{.kind = named->first, .under = {}};
+  ground.under.margin_m = node.at("margin_m").number({0.0, 100.0});
+  if (const auto places = node.find("places")) {
+    ground.under.surface = read_places(*places);
+  } else {
+    ground.under.level_m = node.at("level_m").number({-1e6, 1e6});
+  }
+  return ground;
+}
+
+std::vector<ObservedTime> read_observed(const JsonNode& node) {
+  std::vector<ObservedTime> times;
+  for (const JsonNode& element : node.elements()) {
+    const std::vector<JsonNode> values = numbers(element, 4);
+    times.push_back({values[0].number(kAny),
+                     values[1].number(kAny),
+                     {values[2].number(kAny), values[3].number(kAny)}});
+  }
+  return times;
 }
 
 std::vector<ProvenSpan> read_spans(const JsonNode& node) {
@@ -246,6 +299,8 @@ void add_claims(Ordered& json, const AuditCertificate& audit, bool has_moving) {
   json["undecided"] = stretches_json(audit.undecided);
   json["from_occupied"] = spans_json(audit.from_occupied);
   json["from_unknown"] = spans_json(audit.from_unknown);
+  json["observed"] = observed_json(audit.observed);
+  json["measured_share"] = audit.measured_share;
   if (has_moving) json["from_moving"] = times_json(audit.from_moving);
 }
 
@@ -259,53 +314,29 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
   audit.undecided = read_stretches(node.at("undecided"));
   audit.from_occupied = read_spans(node.at("from_occupied"));
   audit.from_unknown = read_spans(node.at("from_unknown"));
+  audit.observed = read_observed(node.at("observed"));
+  audit.measured_share = node.at("measured_share").number(kShare);
   if (has_moving) audit.from_moving = read_times(node.at("from_moving"));
-}
-
-// Piece by piece: a map may be larger than memory.
-std::string hash_of_file(const std::filesystem::path& file) {
-  struct Free {
-    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-  };
-  constexpr std::size_t kPiece = std::size_t{1} << 18;
-  const std::unique_ptr<XXH3_state_t, Free> state(XXH3_createState());
-  XXH3_64bits_reset(state.get());
-  std::string piece = map::read_file_start(file, kPiece);  // refuses what is no file of bytes
-  std::ifstream stream(file, std::ios::binary);
-  do {
-    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(stream.gcount()));
-  } while (stream);
-  if (stream.bad()) {
-    throw map::InputError({.file = file.string(),
-                           .place = {},
-                           .element = {},
-                           .found = "cannot be read to its end",
-                           .needed = {},
-                           .remedy = "check the disk, or copy the file to another one"});
-  }
-  return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
 }  // namespace
 
 CertifiedFile certified_file(const std::filesystem::path& file) {
-  // The index of a tiled occupancy holds the hashes of its tiles.
-  return {
-      .name = file.string(),
-      .xxhash = hash_of_file(map::is_tiled_occupancy(file) ? map::tiles_index_file(file) : file)};
+  const bool is_tiled = map::is_tiled_occupancy(file);
+  return {.name = file.string(),
+          .sha256 = map::sha256_of_file(is_tiled ? map::tiles_index_file(file) : file)};
 }
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
                                   const std::vector<planning::MovingObstacle>& obstacles) {
-  const std::string text = obstacles_text(obstacles);
-  return {.name = file.string(),
-          .xxhash = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()))};
+  return {.name = file.string(), .sha256 = map::sha256_of_bytes(obstacles_text(obstacles))};
 }
 
 Verdict CertificateFile::verdict() const {
+  const bool is_measured = measured_share() >= least_measured;
   for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
     if (std::ranges::count(parts, grave, &AuditCertificate::verdict) > 0) return grave;
+    if (grave == Verdict::unknown && !is_measured) return grave;
   }
   return Verdict::clear;
 }
@@ -313,6 +344,17 @@ Verdict CertificateFile::verdict() const {
 double CertificateFile::certified_clearance_m() const {
   return std::ranges::min(parts, {}, &AuditCertificate::certified_clearance_m)
       .certified_clearance_m;
+}
+
+double CertificateFile::measured_share() const {
+  double measured_m3 = 0.0, all_m3 = 0.0;
+  for (const AuditCertificate& part : parts) {
+    const double height_m = part.band.to_m - part.band.from_m - 2.0 * ground.under.margin_m;
+    const double part_m3 = geometry::box_area_m2(part.part) * height_m;
+    measured_m3 += part.measured_share * part_m3;
+    all_m3 += part_m3;
+  }
+  return measured_m3 / all_m3;
 }
 
 std::string write_certificate_json(const CertificateFile& file) {
@@ -328,10 +370,12 @@ std::string write_certificate_json(const CertificateFile& file) {
   if (file.roads) json["map"] = file_json(*file.roads);
   json["vehicle"] = part_json(body.part);
   json["heights_m"] = {body.band.from_m, body.band.to_m};
-  if (file.ground) json["ground"] = ground_json(*file.ground);
+  json["underside_m"] = file.underside_m;
+  add_ground(json, file.ground);
   json["clearance_m"] = body.clearance_m;
   json["inflate_m"] = body.inflate_m;
   json["unknown_counts_as"] = planning::name(body.unknown_policy);
+  json["least_measured"] = file.least_measured;
   add_claims(json, body, has_moving);
   for (std::size_t i = 1; i < file.parts.size(); ++i) {
     const AuditCertificate& audit = file.parts[i];
@@ -365,7 +409,11 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
                        "obstacles",
                        "from_moving",
                        "parts",
-                       "ground",
+                       "underside_m",
+                       "heights_above",
+                       "least_measured",
+                       "observed",
+                       "measured_share",
                        "vehicle_file",
                        "map"});
   if (const JsonNode format = node.at("format"); format.text() != kFormat) {
@@ -384,16 +432,19 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   audit.clearance_m = node.at("clearance_m").number(kLength_m);
   audit.inflate_m = node.at("inflate_m").number(kLength_m);
   audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
-  file.ground = read_ground(node);
+  file.least_measured = node.at("least_measured").number(kShare);
+  file.underside_m = node.at("underside_m").number(kUnderside_m);
+  file.ground = read_ground(node.at("heights_above"));
   read_claims(node, has_moving, audit);
-  audit.band.ground = file.ground.get();
+  audit.band.ground = file.ground.under.surface.get();
   file.parts.push_back(audit);
   if (const auto parts = node.find("parts")) {
     for (const JsonNode& part : parts->elements()) {
       part.require_object({"vehicle", "heights_m", "verdict", "certified_clearance_m", "conflicts",
-                           "unknown", "undecided", "from_occupied", "from_unknown", "from_moving"});
+                           "unknown", "undecided", "from_occupied", "from_unknown", "from_moving",
+                           "observed", "measured_share"});
       read_claims(part, has_moving, audit);
-      audit.band.ground = file.ground.get();
+      audit.band.ground = file.ground.under.surface.get();
       file.parts.push_back(audit);
     }
   }

@@ -7,8 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "roadbed/map/input_error.h"
 #include "roadbed/map/read_file.h"
 #include "roadbed/tools/support/csv.h"
+#include "roadbed/tools/support/drive_plausibility.h"
 
 namespace roadbed::tools {
 namespace {
@@ -57,14 +59,28 @@ TrajectoryPoint read_row(const CsvReader& row, const FieldOfColumn& fields) {
   return point;
 }
 
+void check_plausible(const std::vector<TrajectoryPoint>& points,
+                     const std::vector<std::size_t>& lines, const std::string& name) {
+  const auto fault = implausible_row(points);
+  if (!fault) return;
+  throw map::InputError({.file = name,
+                         .place = std::to_string(lines[fault->row]),
+                         .element = fault->column,
+                         .found = fault->found,
+                         .needed = fault->needed,
+                         .remedy = fault->remedy});
+}
+
 }  // namespace
 
 geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::string& name) {
   CsvReader table(bytes, name);
   const FieldOfColumn fields = field_of_columns(table);
   std::vector<TrajectoryPoint> points;
+  std::vector<std::size_t> lines;
   while (table.next_row()) {
     points.push_back(read_row(table, fields));
+    lines.push_back(table.line());
     if (points.size() > 1 && !(points.back().t_s > points[points.size() - 2].t_s)) {
       table.refuse("column t_s",
                    fmt::format("{} s does not come after {} s of the row before", points.back().t_s,
@@ -75,6 +91,7 @@ geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::str
   if (points.empty()) {
     table.refuse("row", "there is none", "at least one below the header", "add it");
   }
+  check_plausible(points, lines, name);
   return geometry::Trajectory(std::move(points));
 }
 

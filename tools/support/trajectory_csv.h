@@ -13,7 +13,8 @@ namespace roadbed::tools {
 /// `t_s,x_m,y_m,heading_rad` must be there; `speed_mps,acceleration_mps2,steering_rad,
 /// curvature_per_m` are 0 where the column is missing. Order is free; other columns are ignored.
 /// Poses are those of the rear axle's centre in source coordinates.
-/// @throws InputError naming line and column.
+/// @throws InputError naming line and column; also where rows cannot be a drive, see
+///         `implausible_row`.
 geometry::Trajectory read_trajectory_csv(const std::filesystem::path& file);
 
 /// The same from bytes; `name` stands for the file in messages.

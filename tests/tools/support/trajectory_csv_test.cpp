@@ -1,9 +1,12 @@
 #include "roadbed/tools/support/trajectory_csv.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <string>
 
 #include "roadbed/map/input_error.h"
 
@@ -28,7 +31,7 @@ TEST(TrajectoryCsv, ReadsBackEveryNumberThatItWroteBitForBit) {
   std::uniform_real_distribution<double> any(-1e6, 1e6), turn(-3.0, 3.0);
   std::vector<TrajectoryPoint> points;
   for (int i = 0; i < 200; ++i) {
-    points.push_back({0.1 * i, any(random), any(random), turn(random), any(random), any(random),
+    points.push_back({1e5 * i, any(random), any(random), turn(random), any(random), any(random),
                       any(random), any(random)});
   }
   const Trajectory drive(points);
@@ -78,6 +81,42 @@ TEST(TrajectoryCsv, SaysWhereTimeDoesNotIncrease) {
   EXPECT_THAT(refusal(header + "0,0,0,0\n1,0,0,0\n1,0,0,0\n"), HasSubstr("drive.csv:4"));
   EXPECT_THAT(refusal(header + "0,0,0,0\n-1,0,0,0\n"),
               HasSubstr("-1 s does not come after 0 s of the row before"));
+}
+
+TEST(TrajectoryCsv, RefusesStepsThatNoVehicleMakes) {
+  const std::string header = "t_s,x_m,y_m,heading_rad\n";
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,51,0,0\n"),
+              HasSubstr("drive.csv:4: columns x_m, y_m: 50 m in 0.1 s"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,20001,0,0\n0.3,3,0,0\n"),
+              HasSubstr("drive.csv:4"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,0.5,0,3.1\n"),
+              HasSubstr("drive.csv:3: column heading_rad: turns by 3.1 rad in 0.1 s"));
+  // Sparse rows, noise between dense ones, and headings that pass by ±π are a drive.
+  EXPECT_EQ(refusal(header + "0,0,0,0\n10,400,0,0\n"), "accepted");
+  EXPECT_EQ(refusal(header + "0,0,0,0\n0.001,0.4,0.3,0.1\n0.002,0,0,0\n"), "accepted");
+  EXPECT_EQ(refusal(header + "0,0,0,3.1\n0.1,-1,0,-3.1\n0.2,-2,0,3.1\n"), "accepted");
+}
+
+// A drive along a bend, with headings as they are and in degrees.
+TEST(TrajectoryCsv, RefusesHeadingsThatAreDegrees) {
+  for (const double start_rad : {-3.0, -1.5, -0.4, 0.3, 0.8, 1.7, 2.9}) {
+    for (const double per_m : {0.0, 0.02, -0.05}) {
+      std::string radians = "t_s,x_m,y_m,heading_rad\n", degrees = radians, backwards = radians;
+      double x_m = 100.0, y_m = 50.0, heading_rad = start_rad;
+      for (int i = 0; i < 100; ++i) {
+        radians += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad);
+        degrees += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad * 180.0 / M_PI);
+        backwards += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad + M_PI);
+        x_m += 0.5 * std::cos(heading_rad + 0.25 * per_m);
+        y_m += 0.5 * std::sin(heading_rad + 0.25 * per_m);
+        heading_rad += 0.5 * per_m;
+      }
+      EXPECT_EQ(refusal(radians), "accepted") << start_rad << " " << per_m;
+      EXPECT_EQ(refusal(backwards), "accepted") << start_rad << " " << per_m;
+      EXPECT_THAT(refusal(degrees), HasSubstr("looks like degrees")) << start_rad << " " << per_m;
+      EXPECT_THAT(refusal(degrees), HasSubstr("divide the headings by 57.29577951308232"));
+    }
+  }
 }
 
 }  // namespace
