@@ -14,15 +14,22 @@ using geometry::TrajectoryPoint;
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 double step_m(const TrajectoryPoint& from, const TrajectoryPoint& to) {
-  return std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+  const double dx_m = to.x_m - from.x_m, dy_m = to.y_m - from.y_m;
+  return std::sqrt(dx_m * dx_m + dy_m * dy_m);
+}
+
+// The shorter way round.
+double turn_rad(const TrajectoryPoint& from, const TrajectoryPoint& to) {
+  const double turned_rad = std::abs(to.heading_rad - from.heading_rad);
+  if (turned_rad <= std::numbers::pi) return turned_rad;
+  return std::abs(std::remainder(turned_rad, 2.0 * std::numbers::pi));
 }
 
 std::optional<ImplausibleRow> impossible_step(const std::vector<TrajectoryPoint>& rows) {
   constexpr double fastest_mps = 150.0, noise_m = 1.0, fastest_radps = 5.0, noise_rad = 0.5;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double took_s = rows[i].t_s - rows[i - 1].t_s, way_m = step_m(rows[i - 1], rows[i]);
-    const double turned_rad = std::abs(
-        std::remainder(rows[i].heading_rad - rows[i - 1].heading_rad, 2.0 * std::numbers::pi));
+    const double turned_rad = turn_rad(rows[i - 1], rows[i]);
     if (way_m > fastest_mps * took_s + noise_m) {
       return ImplausibleRow{i, "columns x_m, y_m",
                             fmt::format("{:.6g} m in {:.3g} s from the row before", way_m, took_s),
