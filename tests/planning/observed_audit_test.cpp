@@ -182,6 +182,12 @@ TEST(ObservedAudit, ACertificateIsRefutedIfItLookedAtLessThanItSays) {
                 }),
                 testing::Not(IsEmpty()));
   }
+  // Each is said for as long as it holds: 20 cm of motion more are too much.
+  EXPECT_THAT(faults_if([](AuditCertificate& claims) {
+                claims.observed[0].to_s += 0.05;
+                claims.observed[1].from_s += 0.05;
+              }),
+              Contains(HasSubstr("may be 10.2")));
   EXPECT_THAT(faults_if([](AuditCertificate& claims) {
                 claims.observed = {{0.0, 10.0, claims.observed.front().column_in_source}};
               }),
