@@ -313,20 +313,30 @@ std::optional<map::Box2> BruteForceObstacles::measured_column(const Eigen::Vecto
   return columns_box({at.from_x, at.from_y, at.from_x + 1, at.from_y + 1});
 }
 
+// Most columns lie wholly in the rectangle or beside it.
 double BruteForceObstacles::measured_share(double x_m, double y_m, double heading_rad) const {
   const BodyOutline::Corners body = body_.box_at(x_m, y_m, heading_rad);
   const map::Box2 around = BodyOutline::Place{body, 0.0}.around();
   const Window columns = window(around.min_in_source, around.max_in_source);
+  const Eigen::Vector2d length = body[1] - body[0], width = body[2] - body[1];
+  const Eigen::Vector2d ahead = length.normalized(), middle = 0.5 * (body[0] + body[2]);
+  const double half_m = 0.5 * resolution_m_ * (std::abs(ahead.x()) + std::abs(ahead.y()));
   double measured_m2 = 0.0;
   for (Column y = columns.from_y; y < columns.to_y; ++y) {
     for (Column x = columns.from_x; x < columns.to_x; ++x) {
+      const map::Box2 column = columns_box({x, y, x + 1, y + 1});
+      const Eigen::Vector2d off = 0.5 * (column.min_in_source + column.max_in_source) - middle;
+      const double over_m =
+          std::max(std::abs(off.dot(ahead)) - 0.5 * length.norm(),
+                   std::abs(ahead.x() * off.y() - ahead.y() * off.x()) - 0.5 * width.norm());
+      if (over_m >= half_m) continue;
       const double share = measured_share(x, y);
       if (share == 0.0) continue;
-      measured_m2 += share * common_area_m2(body, columns_box({x, y, x + 1, y + 1}));
+      measured_m2 += share * (over_m <= -half_m ? resolution_m_ * resolution_m_
+                                                : common_area_m2(body, column));
     }
   }
-  const double whole_m2 = (body[1] - body[0]).norm() * (body[2] - body[1]).norm();
-  return std::min(1.0, measured_m2 / whole_m2);
+  return std::min(1.0, measured_m2 / (length.norm() * width.norm()));
 }
 
 }  // namespace roadbed::planning

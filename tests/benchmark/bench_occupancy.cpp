@@ -24,6 +24,7 @@
 #include "roadbed/map/occupancy/occupancy_map.h"
 #include "roadbed/planning/audit.h"
 #include "roadbed/planning/audit_certificate.h"
+#include "roadbed/planning/audit_certificate_check.h"
 #include "street_scene.h"
 
 namespace roadbed {
@@ -278,6 +279,14 @@ void bench_audit(const std::vector<map::PointCloud>& scans, int reps,
   row("and its proof", poses,
       median_s(reps, [&] { planning::certify(field, band, drive, car, options, report); }),
       "M rows/s");
+  const auto proof = planning::certify(field, band, drive, car, options, report);
+  const std::vector<map::OccupancyCell> cells = street.cells();
+  std::size_t faults = 0;
+  row("and the check of that", poses,
+      median_s(reps,
+               [&] { faults += planning::check_certificate(proof, cells, 0.1, drive).size(); }),
+      "M rows/s");
+  if (faults > 0) fmt::print("| the proof does not hold | | |\n");
   bench_open_road(true, reps);
   bench_open_road(false, reps);
   const PeerScene scene{boxes_of(street, band, 0.1), band.to_m - band.from_m, beside_cars, car};
