@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::control {
 

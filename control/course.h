@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
+#include "roadbed/geometry/primitives/pose2.h"
 
 namespace roadbed::control {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "roadbed/geometry/quintic_bezier.h"
+#include "roadbed/geometry/curves/quintic_bezier.h"
 
 namespace roadbed::control {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::control {
 

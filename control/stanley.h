@@ -1,7 +1,7 @@
 #pragma once
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/geometry/primitives/pose2.h"
 
 namespace roadbed::control {
 

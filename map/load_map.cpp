@@ -5,25 +5,20 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/map/compiled_map.h"
-#include "roadbed/map/formats/common_road.h"
-#include "roadbed/map/formats/geojson_surface.h"
-#include "roadbed/map/formats/lanelet2.h"
-#include "roadbed/map/formats/open_drive.h"
-#include "roadbed/map/formats/open_drive_document.h"
-#include "roadbed/map/formats/xml.h"
-#include "roadbed/map/formats/xml_characters.h"
-#include "roadbed/map/formats/xml_scanner.h"
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/commonroad/read.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/xml.h"
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/files/xml_scanner.h"
+#include "roadbed/map/geojson/read.h"
+#include "roadbed/map/lanelet2/read.h"
+#include "roadbed/map/opendrive/document.h"
+#include "roadbed/map/opendrive/read.h"
 
 namespace roadbed::map {
 namespace {
-
-bool looks_like_xml(const std::string& bytes) {
-  const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return first != std::string::npos && bytes[first] == '<';
-}
 
 // A Lanelet2 map, read without a tree of its elements; none if the text is of another kind.
 std::optional<RoadMapParts> read_lanelet2(const std::string& bytes, const std::string& name) {
@@ -55,8 +50,8 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
     return RoadMap(*std::move(parts));
   }
   XmlDocument xml(std::move(bytes), name);
-  if (common_road::is_common_road(xml.root().name())) return RoadMap(common_road::read(xml));
-  if (!open_drive::is_open_drive(xml.root().name())) {
+  if (commonroad::is_common_road(xml.root().name())) return RoadMap(commonroad::read(xml));
+  if (!opendrive::is_open_drive(xml.root().name())) {
     throw InputError(
         {.file = name,
          .place = std::to_string(xml.line_of(xml.root())),
@@ -65,7 +60,7 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
          .needed = "<OpenDRIVE>, <osm> or <commonRoad>",
          .remedy = "give an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map"});
   }
-  return RoadMap(open_drive::read(std::move(xml), options));
+  return RoadMap(opendrive::read(std::move(xml), options));
 }
 
 RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) {

@@ -3,13 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "roadbed/map/road_map.h"
+#include "roadbed/map/model/load_options.h"
+#include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map {
-
-struct LoadOptions {
-  double max_error_m = 1e-3;  ///< chord error of sampled borders and centrelines
-};
 
 /// Reads any readable map, a compiled one too; the format is told by content.
 /// @throws InputError if the file is missing, unreadable, of no known format or unusable.

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_source.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/audit.h"
-#include "roadbed/planning/vehicle_audit.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/audit_index.h"
 #include "roadbed/tools/report/audit_svg.h"

@@ -8,7 +8,7 @@
 
 #include "roadbed/control/cruise_design.h"
 #include "roadbed/control/string_gain.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/command.h"
 
 namespace roadbed::tools {
@@ -39,7 +39,7 @@ struct StringGains {
   double delay_s;
 };
 
-ordered_json to_json(const control::CruiseDesign& design, const StringGains& string) {
+ordered_json design_json(const control::CruiseDesign& design, const StringGains& string) {
   return {{"A", rows(design.model.A)},
           {"B", rows(design.model.B)},
           {"G", rows(design.model.G)},
@@ -71,7 +71,8 @@ void print_gain(std::ostream& out, std::string_view of, const control::StringGai
              string.gain, string.at_radps, string.gain > 1.0 + 1e-6 ? " (string unstable)" : "");
 }
 
-void print_text(std::ostream& out, const control::CruiseDesign& design, const StringGains& string) {
+void print_design(std::ostream& out, const control::CruiseDesign& design,
+                  const StringGains& string) {
   fmt::print(out, "gain K on [d_desire − d, v_p − v_f, a_f]\n  {:.10f} {:.10f} {:.10f}\n",
              design.K[0], design.K[1], design.K[2]);
   fmt::print(out, "gain of the set speed on [v_set − v, a_f]\n  {:.10f} {:.10f}\n",
@@ -118,9 +119,9 @@ class ControlCommand : public Command {
         .whole = control::loop_string_gain(design, options_.step_s, delay_steps_),
         .delay_s = options_.step_s * delay_steps_};
     if (json_) {
-      streams.out << to_json(design, string).dump(2) << '\n';
+      streams.out << design_json(design, string).dump(2) << '\n';
     } else {
-      print_text(streams.out, design, string);
+      print_design(streams.out, design, string);
     }
     return Exit::ok;
   }

@@ -11,18 +11,18 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/formats/layer_frame.h"
-#include "roadbed/map/formats/layers.h"
-#include "roadbed/map/formats/write_common_road.h"
-#include "roadbed/map/formats/write_csv.h"
-#include "roadbed/map/formats/write_flatgeobuf.h"
-#include "roadbed/map/formats/write_geojson.h"
-#include "roadbed/map/formats/write_geopackage.h"
-#include "roadbed/map/formats/write_lanelet2.h"
-#include "roadbed/map/formats/write_svg.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/commonroad/write.h"
+#include "roadbed/map/drawing/write_svg.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/projection.h"
+#include "roadbed/map/gis/layer_frame.h"
+#include "roadbed/map/gis/layers.h"
+#include "roadbed/map/gis/write_csv.h"
+#include "roadbed/map/gis/write_flatgeobuf.h"
+#include "roadbed/map/gis/write_geojson.h"
+#include "roadbed/map/gis/write_geopackage.h"
+#include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/projection.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/output_file.h"
 
@@ -64,7 +64,7 @@ std::string flatgeobuf(const map::RoadMap& road_map, const ExportOptions& option
 
 std::string lanelet2(const map::RoadMap& road_map, const ExportOptions& options) {
   const auto offset = options.is_own_crs ? road_map.offset_in_crs() : map::CrsOffset{};
-  map::Lanelet2File file = map::write_lanelet2(road_map, {options.crs, offset});
+  map::lanelet2::Lanelet2File file = map::lanelet2::write_lanelet2(road_map, {options.crs, offset});
   if (options.notes != nullptr) *options.notes = std::move(file.notes);
   return std::move(file.bytes);
 }
@@ -89,13 +89,13 @@ constexpr std::array<Format, 7> kFormats = {{
     {".osm", lanelet2, 0, "lanelets that other programs route on (Lanelet2)"},
     {".xml",
      [](const map::RoadMap& road_map, const ExportOptions&) {
-       return map::write_common_road(road_map);
+       return map::commonroad::write_common_road(road_map);
      },
      0, "lanes, links and rules (CommonRoad 2020a)"},
 }};
 
 template <typename Items, typename Text>
-std::string listed(const Items& items, std::string_view between, const Text& text) {
+std::string suffixes_listed(const Items& items, std::string_view between, const Text& text) {
   std::string list;
   for (const auto& item : items) {
     if (!list.empty()) list += between;
@@ -121,7 +121,8 @@ const Format& format_for(const std::filesystem::path& output) {
     if (format.suffix == suffix) return format;
   }
   refuse(output.string(), fmt::format("the suffix \"{}\" names no format", suffix),
-         listed(kFormats, ", ", [](const Format& format) { return std::string(format.suffix); }),
+         suffixes_listed(kFormats, ", ",
+                         [](const Format& format) { return std::string(format.suffix); }),
          "rename the output");
 }
 
@@ -139,10 +140,10 @@ class ExportCommand : public Command {
     arguments.add("MAP", input_, "Any readable map").required();
     arguments
         .add("-o,--output", output_,
-             listed(kFormats, "; ",
-                    [](const Format& format) {
-                      return fmt::format("{}: {}", format.suffix, format.what);
-                    }))
+             suffixes_listed(kFormats, "; ",
+                             [](const Format& format) {
+                               return fmt::format("{}: {}", format.suffix, format.what);
+                             }))
         .required();
     const std::vector<std::string> names = map::layer_names();
     arguments.add("--layer", layers_, "Only these layers; .fgb holds one, lanes if none is named")

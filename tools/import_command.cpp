@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
-#include "roadbed/map/compiled_map.h"
+#include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/stored_network.h"
+#include "roadbed/planning/route/stored_network.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/heap.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
@@ -66,7 +66,6 @@ class ImportCommand : public Command {
   }
 
   static void print_json(std::ostream& out, const map::RoadMap& road_map) {
-    using Json = nlohmann::ordered_json;
     const Json json{{"format", road_map.format()},
                     {"crs", road_map.crs().empty() ? Json() : Json(road_map.crs())},
                     {"roads", road_map.roads().size()},

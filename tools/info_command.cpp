@@ -4,22 +4,20 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/area_centreline.h"
-#include "roadbed/map/compiled_map.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/derived/area_centreline.h"
+#include "roadbed/map/derived/map_totals.h"
+#include "roadbed/map/derived/surface.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/map_totals.h"
-#include "roadbed/map/read_file.h"
-#include "roadbed/map/surface.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/scenario_counts.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double area_m2(const std::vector<geometry::Polygon>& polygons) {
   double sum_m2 = 0.0;
@@ -68,7 +66,7 @@ Json road_areas_json(const map::RoadMap& road_map) {
           {"mean_width_m", length_m > 0.0 ? Json(width_m2 / length_m) : Json()}};
 }
 
-Json bounds_json(const map::RoadMap& road_map, const map::MapTotals& totals) {
+Json map_bounds_json(const map::RoadMap& road_map, const map::MapTotals& totals) {
   if (!totals.bounds) return nullptr;
   const Eigen::Vector2d low = road_map.to_source(totals.bounds->low_in_map);
   const Eigen::Vector2d high = road_map.to_source(totals.bounds->high_in_map);
@@ -99,7 +97,7 @@ Json info_json(const map::RoadMap& road_map) {
   info["lanes_by_type"] = lane_counts(totals);
   info["lengths"] = {{"roads_m", totals.roads_m}, {"drivable_lanes_m", totals.drivable_lanes_m}};
   info["areas"] = {{"drivable_m2", areas.drivable_m2}, {"junctions_m2", areas.junctions_m2}};
-  info["bounds"] = bounds_json(road_map, totals);
+  info["bounds"] = map_bounds_json(road_map, totals);
   if (totals.has_road_areas) info["road_areas"] = road_areas_json(road_map);
   info["drivable_component_lanes"] = totals.component_lanes;
   info["remarks"] = remark_counts(totals);
@@ -112,7 +110,7 @@ Json verified_json(const map::VerifiedMap& verified) {
 }
 
 /// "12 driving, 3 sidewalk"
-std::string listed(const Json& counts) {
+std::string names_listed(const Json& counts) {
   std::string text;
   for (const auto& [key, count] : counts.items()) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), key);
@@ -120,7 +118,7 @@ std::string listed(const Json& counts) {
   return text.empty() ? "none" : text;
 }
 
-std::string bounds_text(const Json& bounds) {
+std::string map_bounds_text(const Json& bounds) {
   if (bounds.is_null()) return "none";
   const auto at = [&](const char* key) { return bounds.at(key).get<double>(); };
   return fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", at("min_x_m"), at("max_x_m"),
@@ -148,7 +146,7 @@ void print_info(std::ostream& out, const Json& info) {
   const auto number = [](const Json& json) { return json.get<double>(); };
   line("format", info.at("format").get<std::string>());
   line("crs", info.at("crs").is_null() ? "unknown" : info.at("crs").get<std::string>());
-  line("bounds", bounds_text(info.at("bounds")));
+  line("bounds", map_bounds_text(info.at("bounds")));
   line("roads", fmt::format("{}, {:.1f} m", info.at("roads").get<int>(),
                             number(info.at("lengths").at("roads_m"))));
   line("junctions", fmt::format("{}, {:.1f} m²", info.at("junctions").get<int>(),
@@ -159,7 +157,7 @@ void print_info(std::ostream& out, const Json& info) {
   line("objects",
        fmt::format("{}, {} areas without lanes", count("objects"), count("areas_without_lanes")));
   line("lanes",
-       fmt::format("{}: {}", info.at("lanes").get<int>(), listed(info.at("lanes_by_type"))));
+       fmt::format("{}: {}", info.at("lanes").get<int>(), names_listed(info.at("lanes_by_type"))));
   line("drivable lanes",
        fmt::format("{:.1f} m, {:.1f} m²", number(info.at("lengths").at("drivable_lanes_m")),
                    number(info.at("areas").at("drivable_m2"))));
@@ -170,12 +168,12 @@ void print_info(std::ostream& out, const Json& info) {
                      number(areas.at("area_m2")), number(areas.at("centrelines_m"))));
   }
   line("connected components", components_text(info.at("drivable_component_lanes")));
-  line("remarks", listed(info.at("remarks")));
+  line("remarks", names_listed(info.at("remarks")));
   if (info.contains("verified")) {
     line("verified", fmt::format("{} chunks, {} records", info["verified"]["chunks"].get<int>(),
                                  info["verified"]["records"].get<int>()));
   }
-  line("not used", listed(info.at("unused")));
+  line("not used", names_listed(info.at("unused")));
   if (info.contains("scenario") && info.at("scenario").is_object()) {
     line("scenario", scenario_text(info.at("scenario")));
   }

@@ -8,27 +8,25 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/batch/buffered_output.h"
 #include "roadbed/tools/batch/counted.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/run_job.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/output_file.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 [[noreturn]] void refuse_jobs(const std::string& file, const std::string& found,
                               const std::string& remedy) {

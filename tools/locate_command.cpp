@@ -3,22 +3,20 @@
 
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/derived/road_place.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/road_place.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/points_csv.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kSearch_m[] = {5.0, 50.0, 500.0, 5e3, 5e4};
 
@@ -73,7 +71,7 @@ Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source,
   return {{"x_m", in_source.x()}, {"y_m", in_source.y()}, {"lanes", std::move(lanes)}};
 }
 
-void print(std::ostream& out, const Json& point) {
+void print_places(std::ostream& out, const Json& point) {
   fmt::print(out, "{:.3f},{:.3f}\n", point["x_m"].get<double>(), point["y_m"].get<double>());
   const auto shown = [](const Json& value) {
     return value.is_null() ? std::string("-") : fmt::format("{:.3f}", value.get<double>());
@@ -126,7 +124,7 @@ class LocateCommand : public Command {
       fmt::print(streams.out, "{}\n",
                  Json{{"points", answers}}.dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
-      for (const Json& answer : answers) print(streams.out, answer);
+      for (const Json& answer : answers) print_places(streams.out, answer);
     }
     if (!all_found) fmt::print(streams.err, "roadbed: a point has no lane within 50 km\n");
     return all_found ? Exit::ok : Exit::failed;

@@ -3,18 +3,16 @@
 
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "roadbed/map/derived/map_diff.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/map_diff.h"
 #include "roadbed/tools/map_parts.h"
+#include "roadbed/tools/support/json.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json change_json(const map::MapChange& change) {
   Json json = {{"theme", change.theme},
@@ -34,7 +32,7 @@ std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-void print(std::ostream& out, const map::MapChange& change) {
+void print_differences(std::ostream& out, const map::MapChange& change) {
   fmt::print(out, "{:<12}{}: {}", change.theme, change.element, name(change.kind));
   if (!change.facets.empty()) fmt::print(out, " ({})", joined(change.facets));
   if (change.in_source) {
@@ -67,7 +65,7 @@ class MapDiffCommand : public Command {
       const Json document = {{"equal", changes.empty()}, {"changes", std::move(list)}};
       fmt::print(streams.out, "{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
-      for (const auto& change : changes) print(streams.out, change);
+      for (const auto& change : changes) print_differences(streams.out, change);
       fmt::print(streams.out, "{} change{}\n", changes.size(), changes.size() == 1 ? "" : "s");
     }
     return changes.empty() ? Exit::ok : Exit::failed;

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/cloud_filter.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/map/occupancy/sensor_poses.h"
-#include "roadbed/map/occupancy/tile_builder.h"
-#include "roadbed/map/occupancy/tiles_index.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
+#include "roadbed/map/occupancy/clouds/sensor_poses.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/tile_builder.h"
+#include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/tools/occupancy_parts.h"
 #include "roadbed/tools/support/output_file.h"
 

@@ -3,18 +3,16 @@
 
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/map/occupancy/tiled_occupancy.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/tools/occupancy_parts.h"
+#include "roadbed/tools/support/json.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json bounds_json(const map::Box3& box) {
   return {{"min_x_m", box.min_in_source.x()}, {"min_y_m", box.min_in_source.y()},
@@ -126,7 +124,7 @@ std::string bounds_text(const Json& bounds) {
   return text;
 }
 
-std::string text_of(const std::string& key, const Json& value) {
+std::string report_text(const std::string& key, const Json& value) {
   if (value.is_null()) return key == "seen_through" ? "every hit was kept" : "unknown";
   if (value.is_string()) return value.get<std::string>();
   if (value.contains("min_x_m")) return bounds_text(value);
@@ -163,7 +161,7 @@ class OccupancyInfoCommand : public Command {
       streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
       for (const auto& [key, value] : info.items()) {
-        fmt::print(streams.out, "{:<14}{}\n", key, text_of(key, value));
+        fmt::print(streams.out, "{:<14}{}\n", key, report_text(key, value));
       }
     }
     return Exit::ok;

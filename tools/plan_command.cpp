@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "roadbed/planning/plan.h"
+#include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/from_occupancy.h"
 #include "roadbed/tools/report/plan_svg.h"
@@ -99,7 +99,7 @@ std::array<std::size_t, planning::kRejections> verdicts(const Plan& plan) {
   return counts;
 }
 
-ordered_json to_json(const Candidate& candidate) {
+ordered_json plan_json(const Candidate& candidate) {
   ordered_json terms;
   for (int i = 0; i < planning::kCostTerms; ++i) {
     const auto term = static_cast<CostTerm>(i);
@@ -111,7 +111,7 @@ ordered_json to_json(const Candidate& candidate) {
           {"terms", terms}};
 }
 
-ordered_json to_json(const Plan& plan) {
+ordered_json plan_json(const Plan& plan) {
   const auto counts = verdicts(plan);
   ordered_json rejected;
   for (int i = 1; i < planning::kRejections; ++i) {
@@ -124,8 +124,8 @@ ordered_json to_json(const Plan& plan) {
           {"candidates", plan.candidates.size()},
           {"feasible", counts[0]},
           {"rejected", rejected},
-          {"chosen", plan.chosen ? to_json(*plan.chosen) : ordered_json()},
-          {"runner_up", second ? to_json(*second) : ordered_json()}};
+          {"chosen", plan.chosen ? plan_json(*plan.chosen) : ordered_json()},
+          {"runner_up", second ? plan_json(*second) : ordered_json()}};
 }
 
 // The weighted terms of a candidate, and with --explain the share of its cost that each one has.
@@ -152,7 +152,7 @@ void print_terms(std::ostream& out, const Plan& plan, const CostTerms& weights, 
              with_share ? "         " : "", second ? fmt::format("{:.6f}", second->cost) : "");
 }
 
-void print_text(std::ostream& out, const Plan& plan, const CostTerms& weights, bool explain) {
+void print_plan(std::ostream& out, const Plan& plan, const CostTerms& weights, bool explain) {
   const auto counts = verdicts(plan);
   fmt::print(out,
              "{} candidates: {} feasible, {} leave the road, {} beyond curvature, {} beyond "
@@ -208,9 +208,9 @@ class PlanCommand : public Command {
     const Plan plan = planning::plan_path(input, scenario.vehicle, options);
     write(scenario, world, input, plan);
     if (json_) {
-      fmt::print(streams.out, "{}\n", to_json(plan).dump(2));
+      fmt::print(streams.out, "{}\n", plan_json(plan).dump(2));
     } else {
-      print_text(streams.out, plan, options.weights, explain_);
+      print_plan(streams.out, plan, options.weights, explain_);
       if (explain_) print_circles(streams.out, scenario.vehicle, circles_);
     }
     return plan.chosen ? Exit::ok : Exit::failed;

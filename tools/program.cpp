@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/build_id.h"
 #include "roadbed/tools/support/help_format.h"

@@ -5,21 +5,19 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/reach.h"
+#include "roadbed/planning/route/reach.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/route_output.h"
 #include "roadbed/tools/support/route_question.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Limit {
   double value = 0.0;
@@ -37,8 +35,8 @@ std::optional<Limit> limit_of(const std::string& text) {
   return limit;
 }
 
-std::string csv(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
-                const char* unit) {
+std::string reached_csv(const map::RoadMap& road_map,
+                        const std::vector<planning::ReachedLane>& reached, const char* unit) {
   std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed\n", unit);
   for (const planning::ReachedLane& lane : reached) {
     text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n", road_map.lane(lane.part.lane).name,
@@ -92,7 +90,8 @@ class ReachCommand : public Command {
  private:
   void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
              const char* unit) const {
-    if (output_.extension() == ".csv") return write_output(output_, csv(road_map, reached, unit));
+    if (output_.extension() == ".csv")
+      return write_output(output_, reached_csv(road_map, reached, unit));
     std::vector<planning::LanePart> parts;
     for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
     const auto area = planning::area_of(road_map, parts);

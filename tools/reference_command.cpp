@@ -9,9 +9,9 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/line_driving.h"
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/planning/reference/line_driving.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/route_question.h"
@@ -31,7 +31,8 @@ void append_row(fmt::memory_buffer& text, const map::RoadMap& road_map,
 }
 
 /// Rows from the start to the goal, the last step shortened.
-std::string csv(const map::RoadMap& road_map, const planning::ReferenceLine& line, double step_m) {
+std::string line_csv(const map::RoadMap& road_map, const planning::ReferenceLine& line,
+                     double step_m) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text),
                  "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
@@ -104,7 +105,7 @@ class ReferenceCommand : public Command {
     planning::ReferenceLineOptions options = options_;
     options.corner_vehicle = way_points_.vehicle();
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
-    write_output(output_, csv(road_map, line, step_m_));
+    write_output(output_, line_csv(road_map, line, step_m_));
     if (!common.quiet) {
       for (const std::string& note : line.notes()) fmt::print(streams.err, "note: {}\n", note);
       const planning::LineDriving driving = planning::driving_along(

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/json_node.h"
 
@@ -21,14 +21,13 @@ namespace roadbed::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 /// Numbers of a metrics.json by name, "comfort.largest_jerk_mps3"; true and false are 1 and 0, what
 /// is null has no value. Lists and texts are no metrics.
 using Metrics = std::map<std::string, std::optional<double>>;
 
-void collect(const json& value, const std::string& name, Metrics& metrics) {
+void collect(const nlohmann::json& value, const std::string& name, Metrics& metrics) {
   if (value.is_object()) {
     for (const auto& [key, part] : value.items()) {
       collect(part, name.empty() ? key : name + "." + key, metrics);
@@ -53,7 +52,7 @@ void collect(const json& value, const std::string& name, Metrics& metrics) {
 
 Metrics read_metrics(const fs::path& run) {
   const fs::path file = fs::is_directory(run) ? run / "metrics.json" : run;
-  const json document = parse_json_strictly(map::read_file(file), file.string());
+  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
   Metrics metrics;
   if (document.is_object()) collect(document, "", metrics);
   if (metrics.empty()) refuse_run(file, "no metric");
@@ -76,7 +75,7 @@ std::optional<Bound> bound_of(const std::string& text) {
   return bound;
 }
 
-std::string text_of(const std::optional<double>& value) {
+std::string value_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "-";
 }
 
@@ -140,8 +139,8 @@ class ReportCommand : public Command {
     fmt::print(out, "{:42} {:>14} {:>14} {:>14}\n", "metric", "A", "B", "B - A");
     for_each_metric(a, b, [&](const auto& name, const auto& in_a, const auto& in_b) {
       const auto change = in_a && in_b ? std::optional(*in_b - *in_a) : std::nullopt;
-      fmt::print(out, "{:42} {:>14} {:>14} {:>14}\n", name, text_of(in_a), text_of(in_b),
-                 text_of(change));
+      fmt::print(out, "{:42} {:>14} {:>14} {:>14}\n", name, value_text(in_a), value_text(in_b),
+                 value_text(change));
     });
     for (const Bound& bound : exceeded) {
       fmt::print(out, "B does not keep {} at {:g} or less\n", bound.metric, bound.most);

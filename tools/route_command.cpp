@@ -3,14 +3,14 @@
 
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/alternatives.h"
-#include "roadbed/planning/route.h"
-#include "roadbed/planning/route_area.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/route/alternatives.h"
+#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/route_area.h"
 #include "roadbed/tools/command.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/route_batch.h"
 #include "roadbed/tools/support/route_output.h"
@@ -19,7 +19,6 @@
 namespace roadbed::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Routes = std::vector<planning::Route>;
 
 std::string file_text(const std::filesystem::path& file, const map::RoadMap& road_map,

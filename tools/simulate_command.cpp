@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/audit.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/report/drive_files.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/support/in_threads.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/output_file.h"
 #include "roadbed/tools/support/progress_bar.h"
 #include "roadbed/tools/support/vehicle_json.h"
@@ -247,7 +247,6 @@ class SimulateCommand : public Command {
   }
 
   static void print_json(std::ostream& out, const std::vector<Row>& rows) {
-    using Json = nlohmann::ordered_json;
     Json drives = Json::array();
     for (const Row& row : rows) {
       drives.push_back({{"scenario", row.file.stem().string()},

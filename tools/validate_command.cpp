@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/validation/validate.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/validate_file.h"
 #include "roadbed/tools/command.h"
 #include "roadbed/tools/support/finding_reports.h"
 #include "roadbed/tools/support/output_file.h"
@@ -17,7 +17,6 @@
 namespace roadbed::tools {
 namespace {
 
-using map::Severity;
 using map::Validation;
 
 class ValidateCommand : public Command {
@@ -107,15 +106,17 @@ class ValidateCommand : public Command {
   }
 
   bool fails(const Validation& validation) const {
-    const Severity least = fail_on_ == "error"     ? Severity::error
-                           : fail_on_ == "warning" ? Severity::warning
-                                                   : Severity::info;
-    return std::any_of(validation.findings.begin(), validation.findings.end(),
-                       [&](const map::Finding& finding) { return finding.severity >= least; });
+    const map::validation::Severity least = fail_on_ == "error" ? map::validation::Severity::error
+                                            : fail_on_ == "warning"
+                                                ? map::validation::Severity::warning
+                                                : map::validation::Severity::info;
+    return std::any_of(
+        validation.findings.begin(), validation.findings.end(),
+        [&](const map::validation::Finding& finding) { return finding.severity >= least; });
   }
 
   std::filesystem::path input_, junit_, sarif_, geojson_, svg_;
-  map::ValidateOptions options_;
+  map::validation::ValidateOptions options_;
   std::string fail_on_ = "error";
   bool json_ = false, list_rules_ = false, force_ = false;
 };

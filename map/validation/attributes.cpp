@@ -5,7 +5,7 @@
 
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 bool lacks_speed(const Lane& lane) {
@@ -114,4 +114,4 @@ constexpr std::array<MapRule, 5> kAttributeRules = {{
 
 std::span<const MapRule> attribute_rules() { return kAttributeRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/geometry/ring_crossings.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/geometry/polygons/ring_crossings.h"
 #include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 using Eigen::Vector2d;
@@ -217,4 +217,4 @@ constexpr std::array<MapRule, 9> kBorderRules = {{
 
 std::span<const MapRule> border_rules() { return kBorderRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

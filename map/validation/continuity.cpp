@@ -6,11 +6,11 @@
 #include <numbers>
 #include <optional>
 
-#include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 using Eigen::Vector2d;
@@ -255,4 +255,4 @@ constexpr std::array<MapRule, 6> kContinuityRules = {{
 
 std::span<const MapRule> continuity_rules() { return kContinuityRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

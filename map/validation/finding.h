@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::map {
+namespace roadbed::map::validation {
 
 enum class Severity { info, warning, error };
 std::string_view name(Severity severity);
@@ -21,4 +21,4 @@ struct Finding {
   std::string message;  ///< with what to do
 };
 
-}  // namespace roadbed::map
+}  // namespace roadbed::map::validation

@@ -6,7 +6,7 @@
 
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 /// Whether a lane is within a distance; near ones are looked for first, as most things have one.
@@ -116,4 +116,4 @@ constexpr std::array<MapRule, 6> kFurnitureRules = {{
 
 std::span<const MapRule> furniture_rules() { return kFurnitureRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

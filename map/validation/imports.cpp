@@ -2,7 +2,7 @@
 
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 constexpr std::array<RuleInfo, 2> kImportRules = {{
@@ -32,4 +32,4 @@ std::vector<Finding> import_remarks(const RoadMap& road_map) {
 
 std::span<const RuleInfo> import_rules() { return kImportRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

@@ -1,6 +1,6 @@
 #include "roadbed/map/validation/lane_folds.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 using Eigen::Vector2d;
@@ -56,4 +56,4 @@ bool is_folded(const Lane& lane) {
   return longer_fold(lane).length_m > kFold || most_swapped(lane).has_value();
 }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

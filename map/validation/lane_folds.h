@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/map/lane.h"
+#include "roadbed/map/elements/lane.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 
 /// Borders are sampled to within 1 mm each [m].
 constexpr double kWidthTolerance = 2e-3;
@@ -42,4 +42,4 @@ std::optional<Swap> most_swapped(const Lane& lane);
 /// lies within the lane or before it: what follows from its direction then says nothing of links.
 bool is_folded(const Lane& lane);
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

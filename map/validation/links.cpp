@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "roadbed/map/components.h"
+#include "roadbed/map/derived/components.h"
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 bool holds(const std::vector<LaneId>& lanes, LaneId lane) {
@@ -171,4 +171,4 @@ std::vector<MapRule> map_rules() {
   return all;
 }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

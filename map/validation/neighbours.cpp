@@ -7,7 +7,7 @@
 #include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 /// Calls `check(lane, other, neighbour, on_left)` for every neighbour of every lane.
@@ -114,4 +114,4 @@ constexpr std::array<MapRule, 3> kNeighbourRules = {{
 
 std::span<const MapRule> neighbour_rules() { return kNeighbourRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

@@ -2,23 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <utility>
 
-#include "roadbed/map/validation/rules.h"
-#include "roadbed/map/validation/source.h"
+namespace roadbed::map::validation {
 
-namespace roadbed::map {
-
-std::vector<RuleInfo> rule_catalogue() {
-  std::vector<RuleInfo> catalogue = rules::source_rule_infos();
-  for (const rules::MapRule& rule : rules::map_rules()) catalogue.push_back(rule.info);
-  for (const RuleInfo& rule : rules::import_rules()) catalogue.push_back(rule);
-  std::sort(catalogue.begin(), catalogue.end(),
-            [](const RuleInfo& a, const RuleInfo& b) { return a.id < b.id; });
-  return catalogue;
+std::string_view name(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "info";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "error";
 }
-
-namespace rules {
 
 Finding& Report::add(std::string element, std::optional<Eigen::Vector2d> in_map,
                      std::string message) {
@@ -42,5 +40,4 @@ void Report::finish() {
   findings_->push_back(std::move(uncounted_));
 }
 
-}  // namespace rules
-}  // namespace roadbed::map
+}  // namespace roadbed::map::validation

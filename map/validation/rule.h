@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,7 +11,23 @@
 
 #include "roadbed/map/validation/finding.h"
 
-namespace roadbed::map {
+namespace roadbed::map::validation {
+
+/// Above these a rule speaks up.
+struct ValidateOptions {
+  double max_gap_m = 0.01;                     ///< between the ends of linked lanes
+  double max_kink_rad = 0.05;                  ///< between the headings of linked centrelines
+  double max_step_m = 0.02;                    ///< of elevation, width or lane offset
+  double max_slope_jump = 0.05;                ///< between the slopes of two elevation records
+  double max_slope = 0.3;                      ///< of the road's elevation
+  double max_curvature_per_m = 0.4;            ///< of a drivable lane's centreline
+  double max_curvature_jump_per_m = 0.25;      ///< between two curves of a reference line
+  double max_speed_mps = 70.0;                 ///< of a speed limit
+  double max_lateral_acceleration_mps2 = 8.0;  ///< at the speed limit in a bend
+  double max_signal_distance_m = 50.0;         ///< from the nearest lane
+  double max_object_distance_m = 100.0;        ///< from the nearest lane
+  double min_overlap_m = 5.0;                  ///< along lanes that should not overlap
+};
 
 /// What a rule is for. Ids are stable: they are what users filter by.
 struct RuleInfo {
@@ -19,10 +37,8 @@ struct RuleInfo {
   std::string_view meaning;    ///< what is wrong where the rule finds something, in one line
 };
 
-/// Every rule, those of the sources and of the readers too, in order of id.
-std::vector<RuleInfo> rule_catalogue();
-
-namespace rules {
+/// Line of each element that findings name: "road 12", "lane 12/0/-1", "lanelet 4".
+using ElementLines = std::map<std::string, long, std::less<>>;
 
 /// Takes the findings of one rule; a file can be made to have more than memory holds, so those
 /// past the first thousand are only counted, which a last finding says.
@@ -47,5 +63,4 @@ class Report {
   Finding uncounted_;  ///< stands for those past the most
 };
 
-}  // namespace rules
-}  // namespace roadbed::map
+}  // namespace roadbed::map::validation

@@ -3,13 +3,13 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/map/model/road_map.h"
 #include "roadbed/map/validation/rule.h"
-#include "roadbed/map/validation/validate.h"
 
 // Rules about a map, whatever its format: one function each, one source file per theme. Each adds
 // its findings in order of lanes.
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 
 struct MapRule {
   RuleInfo info;
@@ -32,4 +32,4 @@ std::vector<Finding> import_remarks(const RoadMap& road_map);
 /// What readers remark.
 std::span<const RuleInfo> import_rules();
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

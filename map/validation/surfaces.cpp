@@ -7,7 +7,7 @@
 
 #include "roadbed/map/validation/rules.h"
 
-namespace roadbed::map::rules {
+namespace roadbed::map::validation {
 namespace {
 
 constexpr double kStep = 4.0;  // [m] between places along a centreline that are looked at
@@ -110,4 +110,4 @@ constexpr std::array<MapRule, 2> kSurfaceRules = {{
 
 std::span<const MapRule> surface_rules() { return kSurfaceRules; }
 
-}  // namespace roadbed::map::rules
+}  // namespace roadbed::map::validation

@@ -18,13 +18,13 @@
 #include <vector>
 
 #include "occupancy_peers.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/cloud_measurements.h"
-#include "roadbed/map/occupancy/distance_transform.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/planning/audit.h"
-#include "roadbed/planning/audit_certificate.h"
-#include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/clearance/distance_transform.h"
+#include "roadbed/map/occupancy/octree/cloud_measurements.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/certificate.h"
+#include "roadbed/planning/audit/certificate_check.h"
 #include "street_scene.h"
 
 namespace roadbed {
@@ -187,7 +187,8 @@ void bench_open_road(bool has_near_pole, int reps) {
   }
   row(has_near_pole ? "audit of an open road, rows of the drive"
                     : "audit of a bend between poles in a row, rows of the drive",
-      poses, median_s(reps, [&] { planning::audit(field, drive, car, options); }), "M rows/s");
+      poses, median_s(reps, [&] { planning::audit_clearance(field, drive, car, options); }),
+      "M rows/s");
 }
 
 void bench_transform(int reps) {
@@ -275,7 +276,8 @@ void bench_audit(const std::vector<map::PointCloud>& scans, int reps,
       median_s(reps, [&] { exact_tests(field, drive, car, 50.0); }), "M poses/s");
   planning::AuditReport report;
   row("audit of 10 km, a row every 0.1 m", poses,
-      median_s(reps, [&] { report = planning::audit(field, drive, car, options); }), "M rows/s");
+      median_s(reps, [&] { report = planning::audit_clearance(field, drive, car, options); }),
+      "M rows/s");
   row("and its proof", poses,
       median_s(reps, [&] { planning::certify(field, band, drive, car, options, report); }),
       "M rows/s");

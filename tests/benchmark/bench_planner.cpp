@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/row_kernel.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/lateral/row_kernel.h"
 #include "roadbed/tests/benchmark/peak_flops.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
 #include "roadbed/tools/support/output_file.h"
@@ -38,7 +38,7 @@ struct Timing {
 
 constexpr double kCandidates = 5396.0;
 // Of the kernel per candidate and point: 101 additions, multiplications, divisions and roots, and 3
-// maxima (planning/row_kernel.cpp).
+// maxima (planning/lateral/row_kernel.cpp).
 constexpr double kFlopsPerPoint = 104.0;
 
 planning::PlanOptions plan_options_of(const Options& options) {

@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/dissection.h"
-#include "roadbed/planning/hierarchy_search.h"
-#include "roadbed/planning/route.h"
-#include "roadbed/planning/route_solver.h"
+#include "roadbed/planning/route/dissection.h"
+#include "roadbed/planning/route/hierarchy_search.h"
+#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/route_solver.h"
 #include "roadbed/tests/support/boost_routes.h"
 #include "roadbed/tests/support/lane_grid.h"
 

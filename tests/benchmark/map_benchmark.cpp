@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "roadbed/map/compiled_map.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/read_file.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/planning/audit.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed {
@@ -62,7 +62,7 @@ void audit_main_street(benchmark::State& state) {
   }
   const geometry::Trajectory drive(rows);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(planning::audit(field, drive, geometry::VehicleShape{}));
+    benchmark::DoNotOptimize(planning::audit_clearance(field, drive, geometry::VehicleShape{}));
   }
   state.SetItemsProcessed(state.iterations() * 90);
 }

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/occupancy/clearance_field.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
 
 namespace roadbed {
 

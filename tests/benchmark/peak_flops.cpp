@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "roadbed/planning/instruction_sets.h"
+#include "roadbed/geometry/primitives/instruction_sets.h"
 
 namespace roadbed::benchmark_scene {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "roadbed/planning/row.h"
+#include "roadbed/planning/lateral/row.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 
 namespace roadbed::benchmark_scene {
 namespace {

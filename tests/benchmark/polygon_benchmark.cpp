@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "roadbed/geometry/polygon.h"
+#include "roadbed/geometry/polygons/polygon.h"
 
 namespace roadbed::geometry {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "roadbed/geometry/spline_curve.h"
+#include "roadbed/geometry/curves/spline_curve.h"
 
 namespace {
 

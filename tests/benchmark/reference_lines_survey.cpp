@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <random>
 
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/line_driving.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/planning/reference/line_driving.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::tests {
 namespace {

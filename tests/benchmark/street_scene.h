@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "roadbed/map/occupancy/point_cloud.h"
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
 
 namespace roadbed {
 

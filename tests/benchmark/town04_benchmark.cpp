@@ -10,12 +10,12 @@
 #include <random>
 #include <vector>
 
-#include "roadbed/map/compiled_map.h"
-#include "roadbed/map/conflicts.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/derived/conflicts.h"
+#include "roadbed/map/derived/surface.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/index/road_map_index.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/read_file.h"
-#include "roadbed/map/road_map_index.h"
-#include "roadbed/map/surface.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 

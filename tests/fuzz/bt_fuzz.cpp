@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/audit_certificate_check.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/certified_question.h"
 

@@ -3,20 +3,20 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/formats/common_road_scenario_reader.h"
-#include "roadbed/map/formats/write_common_road.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/write.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  if (!roadbed::map::common_road::holds_scenario(bytes)) return -1;  // not worth keeping
+  if (!roadbed::map::commonroad::holds_scenario(bytes)) return -1;  // not worth keeping
   try {
-    roadbed::map::common_road::parse_scenario(bytes, "fuzz.xml");
+    roadbed::map::commonroad::parse_scenario(bytes, "fuzz.xml");
   } catch (const roadbed::map::InputError&) {
   }
   try {
-    roadbed::map::write_common_road(roadbed::map::parse_map(bytes, "fuzz.xml"));
+    roadbed::map::commonroad::write_common_road(roadbed::map::parse_map(bytes, "fuzz.xml"));
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/compiled_map.h"
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/map_totals.h"
-#include "roadbed/map/road_map_index.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/derived/map_totals.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/index/road_map_index.h"
 #include "roadbed/tests/support/reseal.h"
 
 namespace {

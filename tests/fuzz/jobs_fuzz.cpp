@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/result_head.h"

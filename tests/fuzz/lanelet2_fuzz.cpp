@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/formats/write_lanelet2.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/load_map.h"
 
 // What can be read can be written, too, and read again.
@@ -13,8 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RoadMap road_map =
         parse_map(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
     if (road_map.format() == "Lanelet2") {
-      parse_map(write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
-                "written");
+      parse_map(
+          lanelet2::write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
+          "written");
     }
   } catch (const InputError&) {
     return 0;  // refused, as it should be

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/support/obstacles_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/place.h"
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/tiles_index.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/octree/tiles_index.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

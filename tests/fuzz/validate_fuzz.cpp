@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/validation/validate.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/validate_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "roadbed/map/formats/xml_scanner.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/xml_scanner.h"
 
 // Every start has its end, and names lie in the text.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

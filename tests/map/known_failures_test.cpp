@@ -7,11 +7,11 @@
 
 #include <numbers>
 
-#include "roadbed/geometry/transverse_mercator.h"
-#include "roadbed/map/formats/write_common_road.h"
-#include "roadbed/map/formats/write_lanelet2.h"
+#include "roadbed/geometry/curves/transverse_mercator.h"
+#include "roadbed/map/commonroad/write.h"
+#include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/made_road.h"
 
@@ -53,7 +53,7 @@ TEST(KnownFailures, WidthsComeBackFromLatitudeAndLongitude) {
   const RoadMap road_map = tests::made_map(
       tests::made_road(road_from_m(20'000.0)),
       with_reference("+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"));
-  std::string written = write_lanelet2(road_map).bytes;
+  std::string written = lanelet2::write_lanelet2(road_map).bytes;
   expect_wide_m(parse_map(written, "written.osm"), 3.5, 1e-4);
   // The same by latitude and longitude alone, in UTM, which is shorter by up to 0.04 %.
   for (std::size_t at; (at = written.find("local_")) != std::string::npos;) {
@@ -71,7 +71,8 @@ TEST(KnownFailures, ElevationComesThroughEveryFormatWithLanes) {
   const RoadMap road_map = tests::made_map(
       tests::made_road(road),
       with_reference("+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"));
-  for (const std::string& written : {write_lanelet2(road_map).bytes, write_common_road(road_map)}) {
+  for (const std::string& written :
+       {lanelet2::write_lanelet2(road_map).bytes, commonroad::write_common_road(road_map)}) {
     const RoadMap back = parse_map(written, "written");
     ASSERT_EQ(back.lanes().size(), road_map.lanes().size());
     for (const Lane& lane : back.lanes()) {

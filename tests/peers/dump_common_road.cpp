@@ -2,15 +2,15 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "roadbed/map/formats/common_road_scenario_reader.h"
+#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/read_file.h"
 
 namespace {
 
 using Json = nlohmann::json;
 using namespace roadbed;
-namespace cr = map::common_road;
+namespace cr = map::commonroad;
 
 Json points(const map::RoadMap& road_map, const map::LaneLine& line) {
   Json json = Json::array();

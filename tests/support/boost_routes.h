@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "roadbed/planning/graph_search.h"
+#include "roadbed/planning/route/graph_search.h"
 
 namespace roadbed::tests {
 

@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/validation/validate.h"
+#include "roadbed/map/validate_file.h"
 
 namespace roadbed::tests {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "roadbed/planning/route_network.h"
+#include "roadbed/planning/route/route_network.h"
 
 namespace roadbed::tests {
 

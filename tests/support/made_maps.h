@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/model/road_map.h"
 
 namespace roadbed::tests {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "roadbed/map/road_map.h"
+#include "roadbed/map/model/road_map.h"
 
 namespace roadbed::tests {
 

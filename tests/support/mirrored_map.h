@@ -1,6 +1,6 @@
 #pragma once
 
-#include "roadbed/map/road_map.h"
+#include "roadbed/map/model/road_map.h"
 
 namespace roadbed::tests {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "roadbed/geometry/body_part.h"
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/geometry/motion/body_part.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 
 namespace roadbed::tests {
 

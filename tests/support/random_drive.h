@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <random>
 
-#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/motion/trajectory.h"
 
 namespace roadbed::tests {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "roadbed/map/chunked_file.h"
+#include "roadbed/map/storage/chunked_file.h"
 
 namespace roadbed::tests {
 

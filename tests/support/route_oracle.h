@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/route_options.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/route/route_options.h"
 
 namespace roadbed::tests {
 

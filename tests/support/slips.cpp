@@ -1,7 +1,7 @@
 #include "roadbed/tests/support/slips.h"
 
-#include "roadbed/map/formats/xml.h"
-#include "roadbed/map/validation/source.h"
+#include "roadbed/map/files/xml.h"
+#include "roadbed/map/source_rules.h"
 
 namespace roadbed::tests {
 
@@ -11,10 +11,12 @@ std::string with_slip(std::string text, const Slip& slip) {
   return at == std::string::npos ? text : text.replace(at, slip.from.size(), slip.to);
 }
 
-std::vector<map::Finding> source_findings(const std::string& text, const std::string& file,
-                                          const std::string& rule) {
-  auto findings = map::rules::check_source(map::XmlDocument(text, file), {});
-  std::erase_if(findings, [&](const map::Finding& finding) { return finding.rule != rule; });
+std::vector<map::validation::Finding> source_findings(const std::string& text,
+                                                      const std::string& file,
+                                                      const std::string& rule) {
+  auto findings = map::check_source(map::XmlDocument(text, file), {});
+  std::erase_if(findings,
+                [&](const map::validation::Finding& finding) { return finding.rule != rule; });
   return findings;
 }
 
@@ -25,7 +27,7 @@ void expect_each_is_found(const std::vector<Slip>& slips, const std::string& fau
     EXPECT_TRUE(source_findings(faultless, file, slip.rule).empty());
     const auto findings = source_findings(with_slip(faultless, slip), file, slip.rule);
     EXPECT_FALSE(findings.empty());
-    for (const map::Finding& finding : findings) {
+    for (const map::validation::Finding& finding : findings) {
       EXPECT_FALSE(finding.element.empty());
       EXPECT_GT(finding.line, 0);
       EXPECT_GT(finding.message.size(), 20u);

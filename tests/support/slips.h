@@ -19,8 +19,9 @@ struct Slip {
 std::string with_slip(std::string text, const Slip& slip);
 
 /// What a rule about the text of a file of that name finds there.
-std::vector<map::Finding> source_findings(const std::string& text, const std::string& file,
-                                          const std::string& rule);
+std::vector<map::validation::Finding> source_findings(const std::string& text,
+                                                      const std::string& file,
+                                                      const std::string& rule);
 
 /// Fails for every slip whose rule speaks up without it, stays silent at it, or does not say which
 /// element, on which line and what.

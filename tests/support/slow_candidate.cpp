@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/planning/planned_speed.h"
+#include "roadbed/planning/lateral/planned_speed.h"
 #include "roadbed/tests/support/power_series.h"
 
 namespace roadbed::tests {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/planning/plan.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/planning/lateral/plan.h"
 
 namespace roadbed::tests {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::tests {

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/sha256.h"
-#include "roadbed/planning/vehicle_audit.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/sha256.h"
+#include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"

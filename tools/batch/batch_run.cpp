@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/memory_size.h"

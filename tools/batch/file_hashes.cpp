@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "roadbed/map/sha256.h"
+#include "roadbed/map/files/sha256.h"
 
 namespace roadbed::tools {
 namespace {

@@ -1,6 +1,6 @@
 #include "roadbed/tools/batch/job_hash.h"
 
-#include "roadbed/map/sha256.h"
+#include "roadbed/map/files/sha256.h"
 #include "roadbed/tools/support/build_id.h"
 
 namespace roadbed::tools {

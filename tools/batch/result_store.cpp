@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/support/output_file.h"
 

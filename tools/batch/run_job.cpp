@@ -5,7 +5,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/compact_json.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_verdict.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFailed = static_cast<int>(Exit::failed), kUsage = static_cast<int>(Exit::usage);
+constexpr int kFailed = static_cast<int>(Exit::failed), kWrongUsage = static_cast<int>(Exit::usage);
 
 std::vector<std::string> words_of(const Job& job, const std::vector<JobOutput>& outputs) {
   std::vector<std::string> words = words_of_options(job);
@@ -73,7 +73,7 @@ JobResult run_command(const Job& job, const std::string& hash, const fs::path& f
   ArgumentSet set;
   std::unique_ptr<Command> command;
   if (const std::string fault = parse_options(job, outputs, command, set); !fault.empty()) {
-    return failure(hash, Cause::line, kUsage, fault);
+    return failure(hash, Cause::line, kWrongUsage, fault);
   }
   if (!outputs.empty()) make_folder(folder_of_files(hash, folder));
   remove_old(outputs);

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <memory>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_hash.h"

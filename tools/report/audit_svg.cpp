@@ -18,14 +18,15 @@ namespace {
 
 using Eigen::Vector2d;
 using geometry::Ring;
-using Box = Eigen::AlignedBox2d;
+using PictureBox = Eigen::AlignedBox2d;
 
-constexpr double kWidth_px = 900.0, kHeader_px = 34.0, kMargin_px = 20.0;
+constexpr double kAuditWidth_px = 900.0, kHeader_px = 34.0, kMargin_px = 20.0;
 constexpr double kPanelHeight_px = 200.0, kPlotWidth_px = 560.0;
-constexpr double kLeastHeight_px = 110.0, kMostHeight_px = 900.0, kMostScale_px_per_m = 60.0;
+constexpr double kLeastAuditHeight_px = 110.0, kMostAuditHeight_px = 900.0,
+                 kMostScale_px_per_m = 60.0;
 constexpr std::size_t kMostFootprints = 400;
 
-constexpr std::string_view kStyle = R"(<style>
+constexpr std::string_view kAuditStyle = R"(<style>
 .ground{fill:#f4f4f1}.lane{fill:#dcdfe3;stroke:#c6cad0;stroke-width:.5}
 .occupied{fill:#4b3f33}.body{fill:#2f9be0;fill-opacity:.16;stroke:#2f7fb8;stroke-width:.7;stroke-opacity:.8}
 .unknown{fill:#9467bd;fill-opacity:.25;stroke:#7b4fa6;stroke-width:.7}
@@ -41,13 +42,13 @@ constexpr std::string_view kStyle = R"(<style>
 )";
 
 /// The part of the plane that is shown.
-struct View {
+struct AuditView {
   PictureFrame frame;
   double height_px;
 
   bool shows(const map::Box2& box) const {
     const Vector2d a = frame.to_px(box.min_in_source), b = frame.to_px(box.max_in_source);
-    return b.x() >= 0.0 && a.x() <= kWidth_px && a.y() >= 0.0 && b.y() <= height_px;
+    return b.x() >= 0.0 && a.x() <= kAuditWidth_px && a.y() >= 0.0 && b.y() <= height_px;
   }
 };
 
@@ -64,25 +65,25 @@ Ring box_ring(const map::Box2& box) {
   return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
 }
 
-View look_at(const AuditPicture& picture) {
-  Box box;
+AuditView look_at(const AuditPicture& picture) {
+  PictureBox box;
   for (const auto& point : picture.drive.points()) {
     for (const geometry::BodyPart& part : picture.parts) {
       for (const Vector2d& corner : part.outline_at(point.pose())) box.extend(corner);
     }
   }
   const Vector2d around = Vector2d::Constant(std::max(3.0, 0.04 * box.sizes().maxCoeff()));
-  box = Box(box.min() - around, box.max() + around);
+  box = PictureBox(box.min() - around, box.max() + around);
   const Vector2d size = box.sizes();
-  double scale = std::min((kWidth_px - 2.0 * kMargin_px) / size.x(), kMostScale_px_per_m);
-  const double inner_px = std::clamp(scale * size.y(), kLeastHeight_px, kMostHeight_px);
+  double scale = std::min((kAuditWidth_px - 2.0 * kMargin_px) / size.x(), kMostScale_px_per_m);
+  const double inner_px = std::clamp(scale * size.y(), kLeastAuditHeight_px, kMostAuditHeight_px);
   scale = std::min(scale, inner_px / size.y());
-  const Vector2d middle_px(0.5 * kWidth_px, kHeader_px + 0.5 * inner_px);
+  const Vector2d middle_px(0.5 * kAuditWidth_px, kHeader_px + 0.5 * inner_px);
   return {{box.center(), middle_px, scale}, kHeader_px + inner_px};
 }
 
 // Cells above one another, or in the same pixel, are drawn once.
-std::string occupied_svg(const AuditPicture& picture, const View& view) {
+std::string occupied_around_audit_svg(const AuditPicture& picture, const AuditView& view) {
   const double step_m = 0.5 / view.frame.px_per_m;
   std::set<std::tuple<std::int64_t, std::int64_t, std::int64_t>> drawn;
   std::string data;
@@ -99,10 +100,10 @@ std::string occupied_svg(const AuditPicture& picture, const View& view) {
   return svg_path("occupied", data);
 }
 
-std::string lanes_svg(const AuditPicture& picture, const View& view) {
+std::string audited_lanes_svg(const AuditPicture& picture, const AuditView& view) {
   std::string data;
   for (const Ring& lane : picture.lanes) {
-    Box box;
+    PictureBox box;
     for (const Vector2d& point : lane) box.extend(point);
     if (!lane.empty() && view.shows({box.min(), box.max()})) data += svg_ring(view.frame, lane);
   }
@@ -119,7 +120,7 @@ std::string_view look_at_time(const planning::AuditReport& report, double t_s) {
 }
 
 // Footprints about as far apart as a quarter of the body.
-std::vector<double> footprint_times(const AuditPicture& picture) {
+std::vector<double> audited_footprint_times(const AuditPicture& picture) {
   const auto& rows = picture.drive.points();
   double way_m = 0.0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -137,9 +138,9 @@ std::vector<double> footprint_times(const AuditPicture& picture) {
   return times;
 }
 
-std::string drive_svg(const AuditPicture& picture, const View& view) {
+std::string drive_svg(const AuditPicture& picture, const AuditView& view) {
   std::string body, unknown, conflict;
-  for (const double t_s : footprint_times(picture)) {
+  for (const double t_s : audited_footprint_times(picture)) {
     const std::string_view look = look_at_time(picture.report, t_s);
     std::string& data = look == "conflict" ? conflict : look == "unknown" ? unknown : body;
     data += body_svg(picture, view.frame, t_s);
@@ -157,7 +158,7 @@ std::string label_of(const planning::Conflict& conflict) {
              : fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s);
 }
 
-std::string conflicts_svg(const AuditPicture& picture, const View& view) {
+std::string conflicts_svg(const AuditPicture& picture, const AuditView& view) {
   std::string worst, witness, labels;
   for (const planning::Conflict& conflict : picture.report.conflicts) {
     worst += body_svg(picture, view.frame, conflict.at.t_s);
@@ -173,7 +174,7 @@ std::string conflicts_svg(const AuditPicture& picture, const View& view) {
 }
 
 // The longest of 1, 2, 5 × 10ⁿ metres that takes at most 160 pixels.
-double scale_bar_m(double px_per_m) {
+double audit_scale_bar_m(double px_per_m) {
   double best_m = 0.01;
   for (double power_m = 0.01; power_m < 1e6; power_m *= 10.0) {
     for (const double length_m : {power_m, 2.0 * power_m, 5.0 * power_m}) {
@@ -183,15 +184,17 @@ double scale_bar_m(double px_per_m) {
   return best_m;
 }
 
-std::string header_svg(const AuditPicture& picture, const View& view) {
+std::string header_svg(const AuditPicture& picture, const AuditView& view) {
   const planning::AuditReport& report = picture.report;
   const std::string text = fmt::format(
       "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", name(report.verdict),
       report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
       100.0 * report.unknown_share);
-  const double bar_m = scale_bar_m(view.frame.px_per_m);
-  const double end_px = kWidth_px - kMargin_px, start_px = end_px - bar_m * view.frame.px_per_m;
-  return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kWidth_px, kHeader_px) +
+  const double bar_m = audit_scale_bar_m(view.frame.px_per_m);
+  const double end_px = kAuditWidth_px - kMargin_px,
+               start_px = end_px - bar_m * view.frame.px_per_m;
+  return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kAuditWidth_px,
+                     kHeader_px) +
          svg_text("", {kMargin_px, 22.0}, text) +
          svg_text("mid", {0.5 * (start_px + end_px), 17.0}, fmt::format("{:g} m", bar_m)) +
          svg_path("rule", fmt::format("M{} 20v5H{}v-5", svg_number(start_px), svg_number(end_px)));
@@ -244,22 +247,22 @@ std::string close_up_of(const AuditPicture& picture, double top_px) {
 
 std::string panel_svg(const AuditPicture& picture, double top_px) {
   return fmt::format("<rect class=\"head\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     svg_number(top_px), kWidth_px, kPanelHeight_px) +
+                     svg_number(top_px), kAuditWidth_px, kPanelHeight_px) +
          clearance_svg(picture, top_px) + close_up_of(picture, top_px);
 }
 
 }  // namespace
 
 std::string audit_svg(const AuditPicture& picture) {
-  const View view = look_at(picture);
+  const AuditView view = look_at(picture);
   const std::string height = svg_number(view.height_px + kPanelHeight_px);
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
              "viewBox=\"0 0 {0} {1}\" role=\"img\">\n<title>Audit of a drive</title>\n{2}"
              "<rect class=\"ground\" width=\"{0}\" height=\"{1}\"/>\n",
-             kWidth_px, height, kStyle) +
-         lanes_svg(picture, view) + occupied_svg(picture, view) + drive_svg(picture, view) +
-         conflicts_svg(picture, view) + header_svg(picture, view) +
+             kAuditWidth_px, height, kAuditStyle) +
+         audited_lanes_svg(picture, view) + occupied_around_audit_svg(picture, view) +
+         drive_svg(picture, view) + conflicts_svg(picture, view) + header_svg(picture, view) +
          panel_svg(picture, view.height_px) + "</svg>\n";
 }
 

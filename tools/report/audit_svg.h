@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/body_part.h"
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/planning/audit.h"
-#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/geometry/motion/body_part.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/obstacles/moving_obstacle.h"
 
 namespace roadbed::tools {
 

@@ -17,13 +17,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidth_px = 760.0, kLeft_px = 76.0, kRight_px = 20.0;
+constexpr double kChartWidth_px = 760.0, kLeft_px = 76.0, kRight_px = 20.0;
 constexpr double kTop_px = 40.0, kBottom_px = 56.0, kLegendRow_px = 20.0;
 constexpr double kChartHeight_px = 340.0;
 constexpr double kLeastPlanHeight_px = 120.0, kMostPlanHeight_px = 560.0;
 constexpr double kTickDistance_px = 85.0;
 
-constexpr std::string_view kStyle = R"(<style>
+constexpr std::string_view kChartStyle = R"(<style>
 text{font:13px Helvetica,Arial,sans-serif;fill:#10141a}
 .title{font-size:15px;font-weight:600}.mid{text-anchor:middle}.end{text-anchor:end}
 .grid{stroke:#d9dde3;stroke-width:1;fill:none}.frame{stroke:#10141a;stroke-width:1;fill:none}
@@ -31,9 +31,9 @@ text{font:13px Helvetica,Arial,sans-serif;fill:#10141a}
 )";
 
 // Where a point of the chart is in the picture.
-struct View {
+struct ChartView {
   Eigen::AlignedBox2d box;
-  double width_px = kWidth_px - kLeft_px - kRight_px;
+  double width_px = kChartWidth_px - kLeft_px - kRight_px;
   double height_px = kChartHeight_px;
   double top_px = kTop_px;
 
@@ -58,8 +58,8 @@ double legend_px(const Chart& chart) {
   return kLegendRow_px * static_cast<double>((legend_entries(chart).size() + 1) / 2);
 }
 
-View view_of(const Chart& chart) {
-  View view;
+ChartView view_of(const Chart& chart) {
+  ChartView view;
   for (const Series& series : chart.series) {
     for (const Vector2d& point : series.points) view.box.extend(point);
   }
@@ -92,7 +92,7 @@ double tick_step(double size, double ticks) {
   return 10.0 * power;
 }
 
-std::string ticks_svg(const View& view, Eigen::Index axis) {
+std::string ticks_svg(const ChartView& view, Eigen::Index axis) {
   const double size_px = axis == 0 ? view.width_px : view.height_px;
   const double step = tick_step(view.box.sizes()[axis], size_px / kTickDistance_px);
   std::string grid, labels;
@@ -145,7 +145,7 @@ bool is_line(const Series& series) {
   return series.mark == Mark::line || series.mark == Mark::dashed || series.mark == Mark::thin;
 }
 
-std::string series_svg(const View& view, const Series& series) {
+std::string series_svg(const ChartView& view, const Series& series) {
   std::string svg;
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const Vector2d px = view.to_px(series.points[i]);
@@ -155,11 +155,11 @@ std::string series_svg(const View& view, const Series& series) {
   return is_line(series) ? fmt::format("<path {} d=\"{}\"/>\n", stroke(series), svg) : svg + "\n";
 }
 
-std::string legend_svg(const Chart& chart) {
+std::string chart_legend_svg(const Chart& chart) {
   std::string svg;
   const std::vector<Series> entries = legend_entries(chart);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const double x_px = kLeft_px + (i % 2 == 0 ? 0.0 : 0.5 * (kWidth_px - kLeft_px));
+    const double x_px = kLeft_px + (i % 2 == 0 ? 0.0 : 0.5 * (kChartWidth_px - kLeft_px));
     const double y_px = kTop_px + kLegendRow_px * static_cast<double>(i / 2);
     const Vector2d from(x_px, y_px - 4.0);
     svg += is_line(entries[i]) ? fmt::format("<path {} d=\"M{} {}h26\"/>", stroke(entries[i]),
@@ -170,7 +170,7 @@ std::string legend_svg(const Chart& chart) {
   return svg;
 }
 
-std::string labels_svg(const Chart& chart, const View& view) {
+std::string labels_svg(const Chart& chart, const ChartView& view) {
   const double low_px = view.top_px + view.height_px + 42.0;
   const double middle_px = view.top_px + 0.5 * view.height_px;
   return svg_text("title", {kLeft_px, 20.0}, chart.title) +
@@ -182,18 +182,18 @@ std::string labels_svg(const Chart& chart, const View& view) {
 }  // namespace
 
 std::string chart_svg(const Chart& chart) {
-  const View view = view_of(chart);
+  const ChartView view = view_of(chart);
   const double height_px = view.top_px + view.height_px + kBottom_px;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\">\n{2}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      svg_number(kWidth_px), svg_number(height_px), kStyle);
+      svg_number(kChartWidth_px), svg_number(height_px), kChartStyle);
   svg += ticks_svg(view, 0) + ticks_svg(view, 1);
   svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
                      svg_number(kLeft_px), svg_number(view.top_px), svg_number(view.width_px),
                      svg_number(view.height_px));
   for (const Series& series : chart.series) svg += series_svg(view, series);
-  return svg + legend_svg(chart) + labels_svg(chart, view) + "</svg>\n";
+  return svg + chart_legend_svg(chart) + labels_svg(chart, view) + "</svg>\n";
 }
 
 std::string chart_csv(const Chart& chart) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/planning/prediction.h"
+#include "roadbed/planning/obstacles/prediction.h"
 #include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools {
@@ -45,25 +45,25 @@ std::vector<Meeting> meetings(const planning::AuditReport& report,
   return all;
 }
 
-Ring outline_of(const map::Box2& box) {
+Ring body_outline(const map::Box2& box) {
   const Vector2d &a = box.min_in_source, &b = box.max_in_source;
   return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
 }
 
-Ring outline_of(const planning::MovingObstacle& moving, double t_s) {
+Ring body_outline(const planning::MovingObstacle& moving, double t_s) {
   const auto corners = planning::body_around(moving.obstacle.motion.at(t_s).pose(),
                                              moving.obstacle.length_m, moving.obstacle.width_m)
                            .corners();
   return {corners.begin(), corners.end()};
 }
 
-Ring thing_of(const Meeting& meeting, const CloseUpScene& scene) {
+Ring thing_touched(const Meeting& meeting, const CloseUpScene& scene) {
   for (const planning::MovingObstacle& moving : scene.moving) {
     if (!meeting.obstacle.empty() && moving.obstacle.id == meeting.obstacle) {
-      return outline_of(moving, meeting.at.t_s);
+      return body_outline(moving, meeting.at.t_s);
     }
   }
-  return outline_of(meeting.witness);
+  return body_outline(meeting.witness);
 }
 
 // A part's name comes first where there are several.
@@ -117,10 +117,10 @@ std::string rings_svg(std::string_view look, const PictureFrame& frame,
   return svg_path(look, data);
 }
 
-std::string occupied_svg(const PictureFrame& frame, const std::vector<map::Box2>& boxes) {
+std::string occupied_close_up_svg(const PictureFrame& frame, const std::vector<map::Box2>& boxes) {
   std::vector<Ring> rings;
   for (const map::Box2& box : boxes) {
-    Ring ring = outline_of(box);
+    Ring ring = body_outline(box);
     if (is_seen(frame, ring)) rings.push_back(std::move(ring));
   }
   return rings_svg("up-occupied", frame, rings);
@@ -157,7 +157,7 @@ std::string scale_svg() {
 std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
   const geometry::Pose2 pose = meeting.at.pose();
   const BodyPart& part = part_of(meeting, scene);
-  const Ring near_part = part.outline_at(pose), thing = thing_of(meeting, scene);
+  const Ring near_part = part.outline_at(pose), thing = thing_touched(meeting, scene);
   const auto [on_part, on_thing] = nearest_points(near_part, thing);
   const PictureFrame frame{.centre_in_source = 0.5 * (on_part + on_thing),
                            .centre_px = {0.5 * kPictureWidth_px, 0.5 * kPictureHeight_px},
@@ -171,7 +171,7 @@ std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
       "height=\"{1}\" role=\"img\"><title>{2:.2f} s: {3:.3f} m</title>\n"
       "<rect class=\"up-ground\" width=\"{0}\" height=\"{1}\"/>\n",
       kPictureWidth_px, kPictureHeight_px, meeting.at.t_s, meeting.clearance_m);
-  svg += rings_svg("up-lane", frame, scene.lanes) + occupied_svg(frame, scene.occupied);
+  svg += rings_svg("up-lane", frame, scene.lanes) + occupied_close_up_svg(frame, scene.occupied);
   svg += rings_svg("up-other", frame, others) + rings_svg("up-part", frame, {near_part});
   svg += rings_svg("up-witness", frame, {thing});
   if (meeting.clearance_m > 0.0) svg += arrow_svg(frame, on_part, on_thing);

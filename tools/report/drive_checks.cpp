@@ -12,7 +12,7 @@
 namespace roadbed::tools {
 namespace {
 
-using Point = geometry::TrajectoryPoint;
+using Row = geometry::TrajectoryPoint;
 
 constexpr double kOverLimitTolerance_mps = 0.5;  // a controller overshoots a little
 
@@ -66,7 +66,7 @@ ReportCheck outcome_check(const Drive& drive) {
 
 ReportCheck clearance_check(const Drive& drive) {
   const Worst nearest =
-      largest(drive, [](const Point&, const DriveSample& s) { return -s.clearance_m; });
+      largest(drive, [](const Row&, const DriveSample& s) { return -s.clearance_m; });
   ReportCheck check{.name = "least clearance to obstacles",
                     .value = {},
                     .unit = "m",
@@ -92,20 +92,20 @@ ReportCheck audit_check(const planning::AuditReport& audit) {
 
 ReportCheck braking_check(const Drive& drive) {
   const Worst braking =
-      largest(drive, [](const Point& p, const DriveSample&) { return -p.acceleration_mps2; });
+      largest(drive, [](const Row& p, const DriveSample&) { return -p.acceleration_mps2; });
   return at_most("strongest braking", braking, -kLeastAcceleration_mps2, "m/s²");
 }
 
 void append_motion_checks(const Drive& drive, std::vector<ReportCheck>& checks) {
-  const auto off_road = [](const Point&, const DriveSample& s) { return s.off_road_m; };
-  const auto over_limit = [](const Point& p, const DriveSample& s) {
+  const auto off_road = [](const Row&, const DriveSample& s) { return s.off_road_m; };
+  const auto over_limit = [](const Row& p, const DriveSample& s) {
     return p.speed_mps - s.speed_limit_mps;
   };
-  const auto speeding_up = [](const Point& p, const DriveSample&) { return p.acceleration_mps2; };
-  const auto across = [](const Point& p, const DriveSample&) {
+  const auto speeding_up = [](const Row& p, const DriveSample&) { return p.acceleration_mps2; };
+  const auto across = [](const Row& p, const DriveSample&) {
     return std::abs(p.speed_mps * p.speed_mps * p.curvature_per_m);
   };
-  const auto yaw_rate = [](const Point& p, const DriveSample&) {
+  const auto yaw_rate = [](const Row& p, const DriveSample&) {
     return std::abs(p.speed_mps * p.curvature_per_m);
   };
   checks.push_back(at_most("farthest off the road", largest(drive, off_road), 0.0, "m"));
@@ -122,9 +122,9 @@ void append_motion_checks(const Drive& drive, std::vector<ReportCheck>& checks) 
 
 void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {
   const Worst cross_track =
-      largest(drive, [](const Point&, const DriveSample& s) { return std::abs(s.cross_track_m); });
+      largest(drive, [](const Row&, const DriveSample& s) { return std::abs(s.cross_track_m); });
   const Worst heading = largest(
-      drive, [](const Point&, const DriveSample& s) { return std::abs(s.heading_error_rad); });
+      drive, [](const Row&, const DriveSample& s) { return std::abs(s.heading_error_rad); });
   const auto blind = std::ranges::count_if(
       drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen.has_value(); });
   checks.push_back(noted("largest cross-track error", cross_track.value, "m", cross_track.at_s));

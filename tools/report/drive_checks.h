@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/audit.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/drive.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/report/scene_svg.h"
@@ -34,7 +34,7 @@ std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice
 std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const World& world,
                                               const Drive& drive) {
   if (!world.field) return std::nullopt;
-  return planning::audit(*world.field, drive.trajectory, scenario.vehicle);
+  return planning::audit_clearance(*world.field, drive.trajectory, scenario.vehicle);
 }
 
 // As one would type it beside the inputs.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/audit.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario_changes.h"
 #include "roadbed/tools/support/inputs.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "roadbed/planning/judged_stretches.h"
+#include "roadbed/planning/audit/judged_stretches.h"
 #include "roadbed/tools/report/close_up.h"
 
 namespace roadbed::tools {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/planning/audit.h"
-#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/obstacles/moving_obstacle.h"
 #include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/map/road_map_index.h"
+#include "roadbed/map/index/road_map_index.h"
 
 namespace roadbed::tools {
 namespace {

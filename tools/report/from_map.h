@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/obstacle.h"
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools {

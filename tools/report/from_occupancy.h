@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 
 namespace roadbed::tools {
 

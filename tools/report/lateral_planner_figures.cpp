@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/planning/plan.h"
+#include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools {
@@ -13,11 +13,11 @@ namespace {
 using Eigen::Vector2d;
 using planning::LateralState;
 using planning::PlanInput;
-using Points = std::vector<Vector2d>;
+using FigurePoints = std::vector<Vector2d>;
 
 // A gentle bend, one lane to the right of the line's middle and one to the left.
 planning::ReferenceLine bend() {
-  Points points;
+  FigurePoints points;
   for (int i = 0; i <= 24; ++i) {
     points.push_back({10.0 * i, 6.0 * std::sin(10.0 * i / 60.0)});
   }
@@ -30,7 +30,7 @@ Vector2d beside(const planning::ReferenceLine& line, double s_m, double d_m) {
 }
 
 struct Overtaking {
-  Points driven, other;  // every 0.5 s
+  FigurePoints driven, other;  // every 0.5 s
 };
 
 // Plans ten times a second, each time on from the last plan; the vehicle follows it exactly.
@@ -73,7 +73,7 @@ Overtaking overtake(const planning::ReferenceLine& line, double speed_mps, doubl
 Figure overtaking() {
   const planning::ReferenceLine line = bend();
   const Overtaking drive = overtake(line, 12.0, 4.0, 12.0);
-  Points reference;
+  FigurePoints reference;
   for (double s_m = 0.0; s_m <= 190.0; s_m += 1.0) reference.push_back(line.at(s_m).in_map);
   return {"figure_8_overtaking",
           {.title = "Fig. 8: avoiding a moving obstacle, positions every 0.5 s",

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -13,11 +12,10 @@
 
 #include "roadbed/tools/report/lane_look.h"
 #include "roadbed/tools/report/thin_line.h"
+#include "roadbed/tools/support/json.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kLaneTolerance_m = 0.01;  // less than a pixel at the nearest zoom that is of use
 constexpr double kPathTolerance_m = 0.002;

@@ -24,11 +24,11 @@ std::string short_number(double value, int decimals) {
   return text == "-0" ? "0" : text;
 }
 
-struct Look {
+struct WordLook {
   std::string_view css_class, sign;
 };
 
-Look look_of(Tone tone) {
+WordLook look_of(Tone tone) {
   switch (tone) {
     case Tone::good:
       return {"good", "✔"};
@@ -41,7 +41,7 @@ Look look_of(Tone tone) {
 }
 
 std::string verdict_html(const ReportVerdict& verdict, std::string_view label) {
-  const Look look = look_of(verdict.tone);
+  const WordLook look = look_of(verdict.tone);
   return fmt::format("<p class=\"verdict {}\"><span class=\"sign\">{}</span><span>{}{}</span></p>",
                      look.css_class, look.sign, label, escape_markup(verdict.text));
 }

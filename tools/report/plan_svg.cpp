@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/planning/static_obstacles.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/planning/obstacles/static_obstacles.h"
 #include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools {
@@ -17,18 +17,18 @@ using Eigen::Vector2d;
 using planning::Candidate;
 using planning::Rejection;
 
-constexpr double kWidth_px = 1100.0, kLegend_px = 58.0, kTitle_px = 34.0, kSide_px = 46.0;
+constexpr double kPlanWidth_px = 1100.0, kLegend_px = 58.0, kTitle_px = 34.0, kSide_px = 46.0;
 constexpr double kBehind_m = 4.0, kBeyond_m = 6.0;
-constexpr double kLeastHeight_px = 220.0, kMostHeight_px = 900.0;
+constexpr double kLeastPlanHeight_px = 220.0, kMostHeight_px = 900.0;
 
-struct Look {
+struct CandidateLook {
   Rejection rejection;
   const char* css_class;
   const char* words;
 };
 
 // In the order of drawing, the least interesting below.
-constexpr std::array<Look, planning::kRejections> kLooks{{
+constexpr std::array<CandidateLook, planning::kRejections> kCandidateLooks{{
     {Rejection::off_road, "off", "leaves the road"},
     {Rejection::beyond_curvature, "bent", "beyond curvature"},
     {Rejection::lateral_acceleration, "fast", "beyond lateral acceleration"},
@@ -37,7 +37,7 @@ constexpr std::array<Look, planning::kRejections> kLooks{{
     {Rejection::none, "free", "free, but dearer"},
 }};
 
-constexpr std::string_view kStyle = R"(<style>
+constexpr std::string_view kPlanStyle = R"(<style>
 .ground{fill:#eef0ea}.road{fill:#d3d7dd}.edge{fill:none;stroke:#fff;stroke-width:2}
 .line{fill:none;stroke:#0072b2;stroke-width:1.4;stroke-dasharray:8 4}
 .off{fill:none;stroke:#8a8f98;stroke-width:.4;stroke-opacity:.22}
@@ -59,7 +59,7 @@ text{font:12px system-ui,-apple-system,"Segoe UI","DejaVu Sans",sans-serif;fill:
 )";
 
 // The picture's plane: x ahead of the vehicle, y to its left, in metres from its rear axle.
-struct View {
+struct PlanView {
   geometry::Pose2 start_from_map;
   PictureFrame frame;
   Eigen::AlignedBox2d box;
@@ -68,7 +68,7 @@ struct View {
   Vector2d to_start(const Vector2d& in_map) const { return start_from_map * in_map; }
 };
 
-Vector2d beside(const planning::LineView& line, double s_m, double d_m) {
+Vector2d beside_line(const planning::LineView& line, double s_m, double d_m) {
   const planning::ReferencePoint at = line.at(s_m);
   return at.in_map + d_m * Vector2d(-std::sin(at.heading_rad), std::cos(at.heading_rad));
 }
@@ -82,7 +82,7 @@ double reach_m(const PlanPicture& picture) {
 }
 
 // Lines along the road: the edges, or the line itself.
-std::vector<Vector2d> along(const PlanPicture& picture, const View& view, int side) {
+std::vector<Vector2d> along(const PlanPicture& picture, const PlanView& view, int side) {
   const planning::LineView& line = picture.input.line;
   const double from_s_m = picture.input.start.s_m - kBehind_m;
   const double to_s_m = picture.input.start.s_m + reach_m(picture) + kBeyond_m;
@@ -91,33 +91,33 @@ std::vector<Vector2d> along(const PlanPicture& picture, const View& view, int si
     const double s_m = from_s_m + 0.5 * i;
     const planning::Corridor corridor = line.corridor_at(s_m);
     const double d_m = side == 0 ? 0.0 : side > 0 ? corridor.left_m : -corridor.right_m;
-    points.push_back(view.to_start(beside(line, s_m, d_m)));
+    points.push_back(view.to_start(beside_line(line, s_m, d_m)));
   }
   return points;
 }
 
-View look_from_start(const PlanPicture& picture) {
-  View view;
+PlanView look_from_start(const PlanPicture& picture) {
+  PlanView view;
   const planning::ReferencePoint at = picture.input.line.at(picture.input.start.s_m);
   const Vector2d start =
-      beside(picture.input.line, picture.input.start.s_m, picture.input.start.d_m);
+      beside_line(picture.input.line, picture.input.start.s_m, picture.input.start.d_m);
   view.start_from_map = geometry::Pose2{start.x(), start.y(), at.heading_rad}.inverse();
   for (const int side : {-1, 1}) {
     for (const Vector2d& point : along(picture, view, side)) view.box.extend(point);
   }
   for (const Candidate& candidate : picture.plan.candidates) {
     const double s_m = picture.input.start.s_m + candidate.end_l_m;
-    view.box.extend(view.to_start(beside(picture.input.line, s_m, candidate.end_d_m)));
+    view.box.extend(view.to_start(beside_line(picture.input.line, s_m, candidate.end_d_m)));
   }
   const Vector2d size = view.box.sizes();
-  double scale = (kWidth_px - 2.0 * kSide_px) / size.x();
+  double scale = (kPlanWidth_px - 2.0 * kSide_px) / size.x();
   scale = std::min(scale, (kMostHeight_px - 2.0 * kSide_px) / size.y());
-  view.height_px = std::max(kLeastHeight_px, scale * size.y() + 2.0 * kSide_px);
-  view.frame = {view.box.center(), {0.5 * kWidth_px, kTitle_px + 0.5 * view.height_px}, scale};
+  view.height_px = std::max(kLeastPlanHeight_px, scale * size.y() + 2.0 * kSide_px);
+  view.frame = {view.box.center(), {0.5 * kPlanWidth_px, kTitle_px + 0.5 * view.height_px}, scale};
   return view;
 }
 
-std::string road_svg(const PlanPicture& picture, const View& view) {
+std::string road_svg(const PlanPicture& picture, const PlanView& view) {
   const std::vector<Vector2d> right = along(picture, view, -1), left = along(picture, view, 1);
   std::vector<Vector2d> ring = right;
   ring.insert(ring.end(), left.rbegin(), left.rend());
@@ -125,7 +125,7 @@ std::string road_svg(const PlanPicture& picture, const View& view) {
          svg_path("edge", svg_line(view.frame, left) + svg_line(view.frame, right));
 }
 
-std::string occupied_svg(const PlanPicture& picture, const View& view) {
+std::string occupied_beside_plan_svg(const PlanPicture& picture, const PlanView& view) {
   const Eigen::AlignedBox2d shown(view.box.min() - Vector2d(2, 2), view.box.max() + Vector2d(2, 2));
   std::string data;
   for (const map::Box2& box : picture.occupied) {
@@ -139,7 +139,7 @@ std::string occupied_svg(const PlanPicture& picture, const View& view) {
   return svg_path("occupied", data);
 }
 
-std::vector<Vector2d> candidate_line(const PlanPicture& picture, const View& view,
+std::vector<Vector2d> candidate_line(const PlanPicture& picture, const PlanView& view,
                                      const Candidate& candidate) {
   constexpr int kSections = 15;
   const geometry::Quintic quintic =
@@ -148,31 +148,31 @@ std::vector<Vector2d> candidate_line(const PlanPicture& picture, const View& vie
   for (int i = 0; i <= kSections; ++i) {
     const double l_m = candidate.end_l_m * i / kSections;
     points.push_back(view.to_start(
-        beside(picture.input.line, picture.input.start.s_m + l_m, quintic.at(l_m)[0])));
+        beside_line(picture.input.line, picture.input.start.s_m + l_m, quintic.at(l_m)[0])));
   }
   return points;
 }
 
-std::string candidates_svg(const PlanPicture& picture, const View& view) {
+std::string candidates_svg(const PlanPicture& picture, const PlanView& view) {
   std::array<std::string, planning::kRejections> data;
   for (const Candidate& candidate : picture.plan.candidates) {
     data[static_cast<std::size_t>(candidate.rejection)] +=
         svg_line(view.frame, candidate_line(picture, view, candidate));
   }
   std::string svg;
-  for (const Look& look : kLooks) {
+  for (const CandidateLook& look : kCandidateLooks) {
     svg += svg_path(look.css_class, data[static_cast<std::size_t>(look.rejection)]);
   }
   return svg;
 }
 
-std::string body_data(const View& view, const geometry::Rectangle& body) {
+std::string body_data(const PlanView& view, const geometry::Rectangle& body) {
   std::vector<Vector2d> ring;
   for (const Vector2d& corner : body.corners()) ring.push_back(view.to_start(corner));
   return svg_ring(view.frame, ring);
 }
 
-bool is_shown(const View& view, const geometry::Rectangle& body) {
+bool is_shown(const PlanView& view, const geometry::Rectangle& body) {
   return view.box.squaredExteriorDistance(view.to_start(body.centre)) < 9.0;
 }
 
@@ -186,7 +186,7 @@ std::vector<double> shown_times(const PlanPicture& picture) {
   return times;
 }
 
-std::string obstacles_svg(const PlanPicture& picture, const View& view) {
+std::string planned_obstacles_svg(const PlanPicture& picture, const PlanView& view) {
   std::string standing, moving, now;
   for (const planning::Obstacle& obstacle : picture.input.obstacles) {
     for (const double t_s : shown_times(picture)) {
@@ -200,7 +200,7 @@ std::string obstacles_svg(const PlanPicture& picture, const View& view) {
   return svg_path("moving", moving) + svg_path("now", now) + svg_path("standing", standing);
 }
 
-std::string chosen_svg(const PlanPicture& picture, const View& view) {
+std::string chosen_svg(const PlanPicture& picture, const PlanView& view) {
   if (!picture.plan.chosen) return {};
   const Candidate& chosen = *picture.plan.chosen;
   std::string bodies, times;
@@ -216,7 +216,7 @@ std::string chosen_svg(const PlanPicture& picture, const View& view) {
 }
 
 // Metres ahead along the lower side, metres to the left along the left side.
-std::string axes_svg(const View& view) {
+std::string axes_svg(const PlanView& view) {
   const double left_px = kSide_px - 8.0, low_px = kTitle_px + view.height_px - kSide_px + 10.0;
   std::string ticks, labels;
   const auto first = [](double least, double step) {
@@ -233,12 +233,12 @@ std::string axes_svg(const View& view) {
     ticks += fmt::format("M{} {}h-6", svg_number(left_px), svg_number(at_px));
     labels += svg_text("end", {left_px - 9.0, at_px + 4.0}, fmt::format("{}", step_m * i));
   }
-  labels += svg_text("end", {kWidth_px - 8.0, low_px + 19.0}, "m ahead");
+  labels += svg_text("end", {kPlanWidth_px - 8.0, low_px + 19.0}, "m ahead");
   labels += svg_text("", {6.0, kTitle_px + 10.0}, "m left");
   return svg_path("axis", ticks) + labels;
 }
 
-std::string legend_svg(const PlanPicture& picture, const View& view) {
+std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& view) {
   std::array<std::size_t, planning::kRejections> counts{};
   for (const Candidate& candidate : picture.plan.candidates) {
     ++counts[static_cast<std::size_t>(candidate.rejection)];
@@ -246,7 +246,7 @@ std::string legend_svg(const PlanPicture& picture, const View& view) {
   const double top_px = kTitle_px + view.height_px + 16.0;
   std::string svg;
   double x_px = kSide_px;
-  for (const Look& look : kLooks) {
+  for (const CandidateLook& look : kCandidateLooks) {
     const std::string words =
         fmt::format("{} ({})", look.words, counts[static_cast<std::size_t>(look.rejection)]);
     svg += svg_path(fmt::format("{} key", look.css_class),
@@ -269,20 +269,21 @@ std::string legend_svg(const PlanPicture& picture, const View& view) {
 }  // namespace
 
 std::string plan_svg(const PlanPicture& picture) {
-  const View view = look_from_start(picture);
+  const PlanView view = look_from_start(picture);
   const double height_px = kTitle_px + view.height_px + kLegend_px;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\">\n",
-      kWidth_px, svg_number(height_px));
-  svg += kStyle;
+      kPlanWidth_px, svg_number(height_px));
+  svg += kPlanStyle;
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   svg += fmt::format("<rect class=\"ground\" y=\"{}\" width=\"100%\" height=\"{}\"/>\n", kTitle_px,
                      svg_number(view.height_px));
-  svg += road_svg(picture, view) + occupied_svg(picture, view) + candidates_svg(picture, view);
+  svg += road_svg(picture, view) + occupied_beside_plan_svg(picture, view) +
+         candidates_svg(picture, view);
   svg += svg_path("line", svg_line(view.frame, along(picture, view, 0)));
-  svg += obstacles_svg(picture, view) + chosen_svg(picture, view) + axes_svg(view);
-  svg += svg_text("title", {kSide_px, 22.0}, picture.title) + legend_svg(picture, view);
+  svg += planned_obstacles_svg(picture, view) + chosen_svg(picture, view) + axes_svg(view);
+  svg += svg_text("title", {kSide_px, 22.0}, picture.title) + candidates_legend_svg(picture, view);
   return svg + "</svg>\n";
 }
 

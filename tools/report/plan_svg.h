@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/planning/plan.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/lateral/plan.h"
 
 namespace roadbed::tools {
 

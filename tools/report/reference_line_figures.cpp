@@ -7,9 +7,9 @@
 #include <random>
 #include <utility>
 
-#include "roadbed/geometry/quintic_bezier.h"
-#include "roadbed/geometry/spline_curve.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/geometry/curves/quintic_bezier.h"
+#include "roadbed/geometry/curves/spline_curve.h"
+#include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/lane.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/planning/obstacle.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/elements/lane.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::tools {
 

@@ -24,8 +24,8 @@ namespace {
 using Eigen::Vector2d;
 using Box = Eigen::AlignedBox2d;
 
-constexpr double kWidth_px = 900.0, kLegend_px = 46.0, kMargin_px = 56.0;
-constexpr double kLeastHeight_px = 300.0, kMostHeight_px = 620.0;
+constexpr double kWidth_px = 900.0, kSceneLegend_px = 46.0, kMargin_px = 56.0;
+constexpr double kLeastHeight_px = 300.0, kMostSceneHeight_px = 620.0;
 constexpr double kMostScale_px_per_m = 14.0;
 
 constexpr std::string_view kStyle = R"(<style>
@@ -72,7 +72,7 @@ Layout lay_out(const Box& box) {
   const double wide_px = kWidth_px - 2.0 * kMargin_px;
   double scale = std::min(wide_px / size.x(), kMostScale_px_per_m);
   const double height_px =
-      std::clamp(scale * size.y() + 2.0 * kMargin_px, kLeastHeight_px, kMostHeight_px);
+      std::clamp(scale * size.y() + 2.0 * kMargin_px, kLeastHeight_px, kMostSceneHeight_px);
   scale = std::min(scale, (height_px - 2.0 * kMargin_px) / size.y());
   return {{box.center(), {0.5 * kWidth_px, 0.5 * height_px}, scale}, height_px};
 }
@@ -100,7 +100,7 @@ LineInSource outline_of(const ReportLane& lane) {
 
 std::string lanes_svg(const ReportInput& input, const Layout& layout) {
   // Drawn in this order, so that junctions lie on top of what they join.
-  constexpr std::array<std::string_view, 6> kLooks = {"other",    "walk",  "bike",
+  constexpr std::array<std::string_view, 6> kKinds = {"other",    "walk",  "bike",
                                                       "shoulder", "drive", "junction"};
   std::map<std::string_view, std::string> areas;
   std::string borders;
@@ -112,7 +112,7 @@ std::string lanes_svg(const ReportInput& input, const Layout& layout) {
     borders += svg_line(layout.frame, lane.left) + svg_line(layout.frame, lane.right);
   }
   std::string svg;
-  for (const std::string_view look : kLooks) svg += svg_path(look, areas[look]);
+  for (const std::string_view look : kKinds) svg += svg_path(look, areas[look]);
   if (borders.empty()) return svg;
   // Far away, borders are thinner than a pixel, or they would hide their lanes.
   return svg + fmt::format("<path class=\"border\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
@@ -292,7 +292,7 @@ std::string scale_bar_svg(const Layout& layout) {
 }
 
 std::string legend_svg(const ReportInput& input, const Layout& layout) {
-  SvgLegend legend(layout.height_px + 0.5 * kLegend_px + 4.0);
+  SvgLegend legend(layout.height_px + 0.5 * kSceneLegend_px + 4.0);
   if (!input.drive.empty()) {
     legend.add_speeds(top_speed_mps(input.drive));
     legend.add("class=\"ego\"", "vehicle");
@@ -304,7 +304,8 @@ std::string legend_svg(const ReportInput& input, const Layout& layout) {
   if (moving < std::ssize(input.obstacles)) legend.add("class=\"standing\"", "standing");
   if (!input.occupied.empty()) legend.add("class=\"occupied\"", "occupied");
   return fmt::format("<rect class=\"strip\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     svg_number(layout.height_px), svg_number(kWidth_px), svg_number(kLegend_px)) +
+                     svg_number(layout.height_px), svg_number(kWidth_px),
+                     svg_number(kSceneLegend_px)) +
          legend.svg();
 }
 
@@ -313,14 +314,14 @@ std::string legend_svg(const ReportInput& input, const Layout& layout) {
 std::string drive_scene_svg(const ReportInput& input) {
   const Layout layout = lay_out(shown_box(input));
   const std::string size = fmt::format("width=\"{}\" height=\"{}\"", svg_number(kWidth_px),
-                                       svg_number(layout.height_px + kLegend_px));
+                                       svg_number(layout.height_px + kSceneLegend_px));
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" {0} viewBox=\"0 0 {1} {2}\" role=\"img\">\n"
       "<title>{3}</title>\n{4}"
       "<clipPath id=\"card\"><rect {0} rx=\"10\"/></clipPath><g clip-path=\"url(#card)\">\n"
       "<clipPath id=\"map\"><rect width=\"{1}\" height=\"{5}\"/></clipPath>"
       "<g clip-path=\"url(#map)\"><rect class=\"ground\" width=\"{1}\" height=\"{5}\"/>\n",
-      size, svg_number(kWidth_px), svg_number(layout.height_px + kLegend_px),
+      size, svg_number(kWidth_px), svg_number(layout.height_px + kSceneLegend_px),
       escape_markup(input.title), kStyle, svg_number(layout.height_px));
   svg += lanes_svg(input, layout) + route_svg(input, layout) + occupied_svg(input, layout);
   svg += motions_svg(input, layout) + driven_svg(input, layout);

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/driven_way.h"
 #include "roadbed/tools/simulation/path_keeper.h"

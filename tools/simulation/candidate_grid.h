@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/plan.h"
+#include "roadbed/planning/lateral/plan.h"
 
 namespace roadbed::tools {
 

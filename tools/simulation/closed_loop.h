@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"

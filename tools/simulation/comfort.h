@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/motion/trajectory.h"
 
 namespace roadbed::tools {
 

@@ -9,12 +9,12 @@
 #include <numbers>
 #include <utility>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/map/formats/common_road_scenario_reader.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/read_file.h"
-#include "roadbed/planning/match_place.h"
+#include "roadbed/planning/route/match_place.h"
 #include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/recorded_obstacle.h"
@@ -24,9 +24,9 @@ namespace {
 
 using geometry::Pose2;
 using map::LanePlace;
-using map::common_road::ObstacleRole;
-using map::common_road::PlanningProblem;
-using map::common_road::State;
+using map::commonroad::ObstacleRole;
+using map::commonroad::PlanningProblem;
+using map::commonroad::State;
 using planning::Route;
 using planning::Sense;
 
@@ -55,7 +55,7 @@ struct Source {
   }
 };
 
-double exact(const Source& source, const std::optional<map::common_road::Range<double>>& range,
+double exact(const Source& source, const std::optional<map::commonroad::Range<double>>& range,
              const char* what) {
   if (!range) {
     source.refuse(fmt::format("an initial state without {}", what), "one number", "add it");
@@ -74,12 +74,12 @@ Pose2 rear_axle(const Source& source, const geometry::VehicleShape& vehicle) {
   return centre * Pose2{vehicle.rear_overhang_m - 0.5 * vehicle.length_m, 0.0, 0.0};
 }
 
-Window seconds(const map::common_road::Range<long>& steps, long start_step, double step_s) {
+Window seconds(const map::commonroad::Range<long>& steps, long start_step, double step_s) {
   return {step_s * static_cast<double>(steps.least - start_step),
           step_s * static_cast<double>(steps.most - start_step)};
 }
 
-Window window(const map::common_road::Range<double>& range) { return {range.least, range.most}; }
+Window window(const map::commonroad::Range<double>& range) { return {range.least, range.most}; }
 
 GoalState goal_state(const Source& source, const State& from) {
   GoalState state{.time_s = seconds(from.time_step, source.problem.initial_state.time_step.least,
@@ -276,7 +276,7 @@ double usual_speed_mps(double start_mps, const TimedGoal& goal) {
 }
 
 /// A recording is one state for each time step: where one is missing nobody knows where it was.
-void refuse_gaps(const std::string& file, const map::common_road::Obstacle& obstacle) {
+void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obstacle) {
   long last = obstacle.initial_state->time_step.least;
   for (const State& state : obstacle.trajectory) {
     const long step = state.time_step.least;
@@ -319,9 +319,9 @@ std::vector<ScenarioLight> lights_of(const map::RoadMap& road_map, long start_st
   return lights;
 }
 
-void add_obstacles(const map::common_road::Scenario& from, const Source& source, World& world) {
+void add_obstacles(const map::commonroad::Scenario& from, const Source& source, World& world) {
   const long start_step = source.problem.initial_state.time_step.least;
-  for (const map::common_road::Obstacle& obstacle : from.obstacles) {
+  for (const map::commonroad::Obstacle& obstacle : from.obstacles) {
     const bool can_be_hit =
         obstacle.role == ObstacleRole::fixed || obstacle.role == ObstacleRole::dynamic;
     if (!can_be_hit) continue;
@@ -362,13 +362,13 @@ bool is_common_road(const std::filesystem::path& file) {
   std::string head(4096, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
-  return map::common_road::holds_scenario(head);
+  return map::commonroad::holds_scenario(head);
 }
 
 CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                                        const ScenarioChanges& changes, const Inputs& inputs) {
   const std::string bytes = map::read_file(file);
-  const map::common_road::Scenario from = map::common_road::parse_scenario(bytes, file.string());
+  const map::commonroad::Scenario from = map::commonroad::parse_scenario(bytes, file.string());
   if (from.planning_problems.empty()) {
     throw map::InputError({.file = file.string(),
                            .place = {},

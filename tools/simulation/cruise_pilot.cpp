@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/decision.h"
 #include "roadbed/tools/simulation/follower.h"

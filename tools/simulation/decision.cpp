@@ -11,7 +11,7 @@ namespace {
 
 using planning::SpeedTarget;
 
-constexpr double kAtRest_mps = 0.3;
+constexpr double kStands_mps = 0.3;
 constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
 constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
 constexpr double kFollowSlack_mps = 2.0;
@@ -99,12 +99,12 @@ const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*w
 }
 
 bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
-  if (q.speed_mps > kAtRest_mps) return false;
+  if (q.speed_mps > kStands_mps) return false;
   if (q.goal_s_m - q.s_m < kStopping_m) return true;
   if (q.halt && q.halt->s_m - q.s_m < kStopping_m) return true;
   if (q.path_left_m && *q.path_left_m < kStopping_m) return true;
   return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
-         q.lead->speed_mps < kAtRest_mps;
+         q.lead->speed_mps < kStands_mps;
 }
 
 }  // namespace

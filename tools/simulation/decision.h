@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "roadbed/control/cruise_control.h"
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/right_of_way.h"

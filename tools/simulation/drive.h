@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/planning/plan.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/simulation/candidate_grid.h"
 
 namespace roadbed::tools {

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/planned_path.h"
 
 namespace roadbed::tools {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/tools/simulation/lead.h"
 
 namespace roadbed::tools {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/world.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "roadbed/planning/obstacle.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::tools {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/planning/obstacle.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/planned_path.h"
 
 namespace roadbed::tools {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/motion/rectangle.h"
 
 namespace roadbed::tools {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/geometry/polyline.h"
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/model/road_map.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools {

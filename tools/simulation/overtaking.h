@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/oncoming_stretches.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/traffic.h"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "roadbed/geometry/angle.h"
-#include "roadbed/planning/plan_cycle.h"
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/planning/lateral/plan_cycle.h"
 
 namespace roadbed::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "roadbed/planning/plan.h"
+#include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/simulation/planned_path.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/sensors.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::tools {
 namespace {

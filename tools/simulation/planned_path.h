@@ -2,9 +2,9 @@
 
 #include <functional>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/planning/plan.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::tools {
 

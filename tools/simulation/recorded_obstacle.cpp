@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "roadbed/geometry/pose2.h"
+#include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/tools/simulation/shape_bounds.h"
 #include "roadbed/tools/simulation/timed_goal.h"
 
@@ -15,12 +15,12 @@ namespace {
 
 using geometry::Pose2;
 using geometry::TrajectoryPoint;
-using map::common_road::Occupancy;
-using map::common_road::State;
+using map::commonroad::Occupancy;
+using map::commonroad::State;
 
 constexpr double kAlways_s = std::numeric_limits<double>::infinity();
 
-double middle(const std::optional<map::common_road::Range<double>>& range) {
+double middle(const std::optional<map::commonroad::Range<double>>& range) {
   return range ? 0.5 * (range->least + range->most) : 0.0;
 }
 
@@ -60,7 +60,7 @@ class Recording {
 
 }  // namespace
 
-RecordedObstacle recorded_obstacle(const map::common_road::Obstacle& from,
+RecordedObstacle recorded_obstacle(const map::commonroad::Obstacle& from,
                                    const map::RoadMap& road_map, long start_step, double step_s) {
   Eigen::AlignedBox2d box = bounds_of(from.shape);
   Recording recording(road_map, start_step, step_s);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "roadbed/map/formats/common_road_scenario.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/obstacle.h"
+#include "roadbed/map/commonroad/scenario.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools {
@@ -17,7 +17,7 @@ struct RecordedObstacle {
 /// shape. What moves is there from its first to its last recorded time step; what does not, always.
 /// @param start_step  the time step that is second 0.
 /// @pre it has an initial state and a shape.
-RecordedObstacle recorded_obstacle(const map::common_road::Obstacle& from,
+RecordedObstacle recorded_obstacle(const map::commonroad::Obstacle& from,
                                    const map::RoadMap& road_map, long start_step, double step_s);
 
 }  // namespace roadbed::tools

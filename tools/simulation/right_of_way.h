@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "roadbed/planning/speed_ceiling.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/tools/simulation/planned_path.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/traffic.h"

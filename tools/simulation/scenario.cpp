@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/vehicle_json.h"
 

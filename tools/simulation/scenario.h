@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/tools/simulation/light.h"
 
 namespace roadbed::tools {

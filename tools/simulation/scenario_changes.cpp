@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {

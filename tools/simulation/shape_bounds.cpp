@@ -6,9 +6,9 @@
 namespace roadbed::tools {
 namespace {
 
-using map::common_road::CircleShape;
-using map::common_road::PolygonShape;
-using map::common_road::RectangleShape;
+using map::commonroad::CircleShape;
+using map::commonroad::PolygonShape;
+using map::commonroad::RectangleShape;
 
 void extend(Eigen::AlignedBox2d& box, const RectangleShape& shape) {
   for (const Eigen::Vector2d& corner : rectangle_of(shape).corners()) box.extend(corner);
@@ -33,7 +33,7 @@ geometry::Rectangle rectangle_of(const RectangleShape& shape) {
           .half_width_m = 0.5 * shape.width_m};
 }
 
-Eigen::AlignedBox2d bounds_of(const map::common_road::Shape& shape) {
+Eigen::AlignedBox2d bounds_of(const map::commonroad::Shape& shape) {
   Eigen::AlignedBox2d box;
   for (const auto& part : shape) std::visit([&](const auto& form) { extend(box, form); }, part);
   return box;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "roadbed/map/formats/svg_canvas.h"
+#include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::tools {
 namespace {

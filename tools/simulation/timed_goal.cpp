@@ -5,18 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "roadbed/geometry/angle.h"
-#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/tools/simulation/shape_bounds.h"
 
 namespace roadbed::tools {
 namespace {
 
 using geometry::Pose2;
-using map::common_road::CircleShape;
-using map::common_road::PolygonShape;
-using map::common_road::RectangleShape;
-using map::common_road::Shape;
+using map::commonroad::CircleShape;
+using map::commonroad::PolygonShape;
+using map::commonroad::RectangleShape;
+using map::commonroad::Shape;
 
 constexpr double kStationStep_m = 0.1;
 constexpr double kOffsetStep_m = 0.25;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/geometry/vehicle_shape.h"
-#include "roadbed/map/formats/common_road_scenario.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/commonroad/scenario.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::tools {
 
@@ -23,8 +23,8 @@ struct Window {
 /// One way to reach a goal: all of it at the same time step.
 struct GoalState {
   Window time_s, speed_mps;
-  std::optional<Window> heading_rad;         ///< any turn by 2π fits too
-  map::common_road::Shape region_in_source;  ///< empty with no lanes: anywhere
+  std::optional<Window> heading_rad;        ///< any turn by 2π fits too
+  map::commonroad::Shape region_in_source;  ///< empty with no lanes: anywhere
   std::vector<map::LaneId> lanes;
   bool is_anywhere() const { return region_in_source.empty() && lanes.empty(); }
 };
@@ -56,9 +56,9 @@ std::vector<GoalStretch> goal_stretches(const TimedGoal& goal, const map::RoadMa
                                         const geometry::VehicleShape& vehicle);
 
 /// Whether a point lies in one of the shapes.
-bool contains(const map::common_road::Shape& shape, const Eigen::Vector2d& point);
+bool contains(const map::commonroad::Shape& shape, const Eigen::Vector2d& point);
 
 /// Middle of the box around a shape. @pre not empty
-Eigen::Vector2d middle_of(const map::common_road::Shape& shape);
+Eigen::Vector2d middle_of(const map::commonroad::Shape& shape);
 
 }  // namespace roadbed::tools

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "roadbed/geometry/angle.h"
+#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::tools {
 namespace {
 
-constexpr double kSeenFor_s = 0.3;
+constexpr double kSeenPast_s = 0.3;
 constexpr double kForeseen_s = 12.0, kForeseenStep_s = 0.2;
 constexpr int kSubsteps = 4;
 constexpr double kTurnsFor_s = 2.0;  // nobody turns for ever
@@ -40,8 +40,8 @@ double mean_speed_mps(const geometry::TrajectoryPoint& before,
 Seen seen_at(const geometry::Trajectory& motion, double from_s, double now_s) {
   const geometry::TrajectoryPoint now = motion.at(now_s);
   Seen seen{.t_s = now_s, .pose = now.pose()};
-  const double before_s = std::max(from_s, now_s - kSeenFor_s);
-  if (now_s - before_s < 0.5 * kSeenFor_s) {  // just appeared: what it is said to do
+  const double before_s = std::max(from_s, now_s - kSeenPast_s);
+  if (now_s - before_s < 0.5 * kSeenPast_s) {  // just appeared: what it is said to do
     seen.speed_mps = now.speed_mps;
     return seen;
   }
@@ -53,11 +53,11 @@ Seen seen_at(const geometry::Trajectory& motion, double from_s, double now_s) {
   if (seen.speed_mps == 0.0) return seen;
   seen.curvature_per_m = geometry::wrap_angle(now.heading_rad - before.heading_rad) /
                          (seen.speed_mps * (now_s - before_s));
-  if (before_s - kSeenFor_s < from_s - 1e-9) return seen;
-  geometry::TrajectoryPoint earlier = motion.at(before_s - kSeenFor_s);
-  earlier.t_s = before_s - kSeenFor_s;
+  if (before_s - kSeenPast_s < from_s - 1e-9) return seen;
+  geometry::TrajectoryPoint earlier = motion.at(before_s - kSeenPast_s);
+  earlier.t_s = before_s - kSeenPast_s;
   const double change = seen.speed_mps - mean_speed_mps(earlier, before);
-  seen.acceleration_mps2 = std::clamp(change / kSeenFor_s, -kMostBraking_mps2, kMostSpeedUp_mps2);
+  seen.acceleration_mps2 = std::clamp(change / kSeenPast_s, -kMostBraking_mps2, kMostSpeedUp_mps2);
   seen.speed_mps = std::max(0.0, seen.speed_mps + 0.5 * change);  // the mean is that of before
   return seen;
 }

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/polyline.h"
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/planning/obstacle.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/scenario.h"
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/geometry/angle.h"
-#include "roadbed/map/conflicts.h"
-#include "roadbed/map/rule_index.h"
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/derived/conflicts.h"
+#include "roadbed/map/derived/rule_index.h"
 
 namespace roadbed::tools {
 namespace {

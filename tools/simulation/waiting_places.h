@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/simulation/light.h"
 
 namespace roadbed::tools {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/support/place.h"

@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/obstacle.h"
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/timed_goal.h"
 #include "roadbed/tools/simulation/traffic_flow.h"

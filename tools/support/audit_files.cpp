@@ -3,18 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/map/formats/svg_canvas.h"
-#include "roadbed/planning/judged_stretches.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/planning/audit/judged_stretches.h"
 #include "roadbed/tools/support/audit_json.h"
+#include "roadbed/tools/support/json.h"
 
 namespace roadbed::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Eigen::Vector2d;
 
 std::string audit_case(const AuditedDrive& audited, const std::string& occupancy) {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/road_map_index.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/index/road_map_index.h"
 
 namespace roadbed::tools {
 

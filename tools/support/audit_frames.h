@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 
 namespace roadbed::tools {
 

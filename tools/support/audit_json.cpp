@@ -1,4 +1,5 @@
 #include "roadbed/tools/support/audit_json.h"
+#include "roadbed/tools/support/json.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/judged_stretches.h"
+#include "roadbed/planning/audit/judged_stretches.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json box_json(const map::Box2& box) {
   return {{"min_x_m", box.min_in_source.x()},
@@ -72,7 +71,7 @@ Json judged_json(const AuditedDrive& audited) {
   return json;
 }
 
-Json stretches_json(const std::vector<planning::Stretch>& stretches) {
+Json times_json(const std::vector<planning::Stretch>& stretches) {
   Json json = Json::array();
   for (const planning::Stretch& stretch : stretches) {
     json.push_back({{"from_s", stretch.from_s}, {"to_s", stretch.to_s}});
@@ -142,13 +141,13 @@ std::vector<planning::Stretch> unknown_besides(const planning::AuditReport& repo
 constexpr std::array<std::string_view, 5> kOutcomes{"clear", "conflict", "unknown", "undecided",
                                                     "unusable"};
 
-std::ptrdiff_t count(const std::vector<AuditedDrive>& audits, std::string_view outcome) {
+std::ptrdiff_t parts_counted(const std::vector<AuditedDrive>& audits, std::string_view outcome) {
   return std::ranges::count(audits, outcome, &AuditedDrive::outcome);
 }
 
 std::string_view gravest(const std::vector<AuditedDrive>& audits) {
   for (const std::string_view outcome : {"unusable", "conflict", "unknown", "undecided"}) {
-    if (count(audits, outcome) > 0) return outcome;
+    if (parts_counted(audits, outcome) > 0) return outcome;
   }
   return "clear";
 }
@@ -190,9 +189,9 @@ Json audit_json(const AuditedDrive& audited) {
   for (const auto& conflict : report.conflicts) {
     json["conflicts"].push_back(conflict_json(conflict, audited.drive));
   }
-  json["unknown"] = stretches_json(report.unknown);
+  json["unknown"] = times_json(report.unknown);
   json["unobserved"] = unobserved_json(report.unobserved);
-  json["undecided"] = stretches_json(report.undecided);
+  json["undecided"] = times_json(report.undecided);
   json["stretches"] = judged_json(audited);
   return json;
 }
@@ -229,7 +228,7 @@ Json audits_json(const std::vector<AuditedDrive>& audits) {
   json["verdict"] = gravest(audits);
   json["counts"] = Json::object();
   for (const std::string_view outcome : kOutcomes) {
-    json["counts"][std::string(outcome)] = count(audits, outcome);
+    json["counts"][std::string(outcome)] = parts_counted(audits, outcome);
   }
   json["audits"] = Json::array();
   for (const AuditedDrive& audited : audits) {
@@ -268,8 +267,8 @@ std::string audits_table(const std::vector<AuditedDrive>& audits) {
   for (const AuditedDrive& audited : audits) text += table_row(audited, width);
   text += fmt::format("{} drives:", audits.size());
   for (const std::string_view outcome : kOutcomes) {
-    text += fmt::format("{} {} {}", outcome == kOutcomes.front() ? "" : ",", count(audits, outcome),
-                        outcome);
+    text += fmt::format("{} {} {}", outcome == kOutcomes.front() ? "" : ",",
+                        parts_counted(audits, outcome), outcome);
   }
   return text + "\n";
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/audit.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/report/audit_index.h"
 #include "roadbed/tools/support/audited_drive.h"
 

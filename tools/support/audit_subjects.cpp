@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/reference_line.h"
-#include "roadbed/planning/route.h"
-#include "roadbed/planning/swept_drive.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/swept_drive.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/map/model/road_map.h"
 #include "roadbed/tools/support/arguments.h"
 #include "roadbed/tools/support/route_question.h"
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/drive_ground.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/tools/support/in_threads.h"
 
 namespace roadbed::tools {
@@ -80,11 +80,11 @@ planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
   if (rule.kind == GroundRule::Kind::level) return {.level_m = rule.level_m};
   const bool is_map = rule.kind == GroundRule::Kind::map;
   auto ground = std::make_shared<const map::Ground>(
-      is_map ? planning::road_under(*rule.road_map, drive)
-             : planning::measured_under(occupancy, drive, rule.body));
+      is_map ? map::road_under(*rule.road_map, drive)
+             : map::measured_under(occupancy, drive, rule.body));
   if (is_map) check_heights(occupancy, *ground);
   planning::GroundUnder under{.level_m = ground->lowest_m()};
-  if (!is_map) under.margin_m = planning::measured_ground_margin_m(occupancy.resolution_m());
+  if (!is_map) under.margin_m = map::measured_ground_margin_m(occupancy.resolution_m());
   if (!ground->is_level()) under.surface = std::move(ground);
   return under;
 }
@@ -110,8 +110,8 @@ std::string ground_note(const planning::GroundUnder& ground, const AuditQuestion
                     cell_m, underside_m);
 }
 
-planning::BodyReach reach_of(const AuditQuestion& question) {
-  planning::BodyReach reach;
+map::BodyReach reach_of(const AuditQuestion& question) {
+  map::BodyReach reach;
   for (const geometry::BodyPart& part : question.parts) {
     const double grown_m = part.radius_m + question.options.inflate_m;
     reach.rear_m = std::min(reach.rear_m, part.rear_m - grown_m);

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/body_part.h"
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/map/occupancy/occupancy_map.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/measured_ground.h"
-#include "roadbed/planning/vehicle_audit.h"
+#include "roadbed/geometry/motion/body_part.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/ground/measured_ground.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/tools/support/audit_subjects.h"
 
 namespace roadbed::tools {
@@ -20,7 +20,7 @@ struct GroundRule {
   Kind kind = Kind::level;
   double level_m = 0.0;
   const map::RoadMap* road_map = nullptr;  ///< of Kind::map
-  planning::BodyReach body = {};           ///< of Kind::measured: what needs ground under it
+  map::BodyReach body = {};                ///< of Kind::measured: what needs ground under it
 };
 
 /// What is wrong with the words of a rule: a height in metres, "map" or "measured"; nothing: all is
@@ -45,7 +45,7 @@ struct AuditQuestion {
 };
 
 /// How far the vehicle reaches, with the margin.
-planning::BodyReach reach_of(const AuditQuestion& question);
+map::BodyReach reach_of(const AuditQuestion& question);
 
 /// What the vehicle of a question meets on a drive.
 planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,

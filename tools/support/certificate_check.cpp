@@ -5,20 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/ground.h"
-#include "roadbed/map/occupancy/tiled_occupancy.h"
-#include "roadbed/planning/audit_certificate_check.h"
-#include "roadbed/planning/ground_claims.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/ground/ground.h"
+#include "roadbed/map/occupancy/ground/ground_claims.h"
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
+#include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/certified_question.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/moving_obstacles.h"
 #include "roadbed/tools/support/trajectory_csv.h"
 
@@ -26,8 +26,6 @@ namespace roadbed::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Ordered = nlohmann::ordered_json;
-
 /// A file that a certificate is about, as it was found.
 struct CheckedFile {
   std::string role;
@@ -50,7 +48,7 @@ class CertificateCheck {
   }
 
   void print(std::ostream& out) const;
-  Ordered json() const;
+  Json json() const;
 
  private:
   static fs::path path_of(const CertifiedFile& named, const fs::path& demanded) {
@@ -216,7 +214,7 @@ std::string CertificateCheck::question() const {
   std::string text;
   for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
   if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
-    const auto [low_m, high_m] = planning::heights_at_rows_m(*ground, drive_);
+    const auto [low_m, high_m] = map::heights_at_rows_m(*ground, drive_);
     text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's rows ({}); ", low_m,
                         high_m, ground_text());
   }
@@ -253,8 +251,8 @@ void CertificateCheck::print(std::ostream& out) const {
   for (const std::string& fault : faults_) line("fault", fault);
 }
 
-Ordered CertificateCheck::json() const {
-  Ordered files = Ordered::array();
+Json CertificateCheck::json() const {
+  Json files = Json::array();
   for (const CheckedFile& checked : files_) {
     files.push_back(
         {{"role", checked.role}, {"file", checked.file.name}, {"sha256", checked.file.sha256}});
@@ -276,7 +274,7 @@ bool check_certificate_file(const fs::path& certificate, const CertificateDemand
   CertificateCheck check(certificate, demands, inputs);
   const bool holds = check.run();
   if (json) {
-    out << check.json().dump(2, ' ', false, Ordered::error_handler_t::replace) << '\n';
+    out << check.json().dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     check.print(out);
   }

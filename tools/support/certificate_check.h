@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "roadbed/planning/audit.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {

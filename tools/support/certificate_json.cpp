@@ -6,17 +6,17 @@
 #include <array>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/occupancy/ground.h"
-#include "roadbed/map/occupancy/tiles_index.h"
-#include "roadbed/map/read_file.h"
-#include "roadbed/map/sha256.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/sha256.h"
+#include "roadbed/map/occupancy/ground/ground.h"
+#include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/json_node.h"
 #include "roadbed/tools/support/obstacles_csv.h"
 #include "roadbed/tools/support/vehicle_json.h"
@@ -32,8 +32,6 @@ using planning::ProvenTime;
 using planning::Stretch;
 using planning::UnknownPolicy;
 using planning::Verdict;
-using Ordered = nlohmann::ordered_json;
-
 constexpr std::string_view kFormat = "roadbed audit certificate 2", kBody = "body";
 constexpr Range kAny{-1e12, 1e12}, kShare{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9},
     kUnderside_m{-100.0, 100.0};
@@ -43,15 +41,13 @@ constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPol
 constexpr std::array<Verdict, 4> kVerdicts{Verdict::clear, Verdict::conflict, Verdict::unknown,
                                            Verdict::undecided};
 
-Ordered file_json(const CertifiedFile& file) {
-  return {{"file", file.name}, {"sha256", file.sha256}};
-}
+Json file_json(const CertifiedFile& file) { return {{"file", file.name}, {"sha256", file.sha256}}; }
 
 // A rectangle in the middle is told as a vehicle is; what differs from that is told besides.
-Ordered part_json(const geometry::BodyPart& part) {
-  Ordered json{{"length_m", part.length_m()},
-               {"width_m", part.width_m()},
-               {"rear_overhang_m", -part.rear_m}};
+Json part_json(const geometry::BodyPart& part) {
+  Json json{{"length_m", part.length_m()},
+            {"width_m", part.width_m()},
+            {"rear_overhang_m", -part.rear_m}};
   if (part.right_m + part.left_m != 0.0) json["middle_m"] = part.middle_in_vehicle().y();
   if (part.is_circle()) json["radius_m"] = part.radius_m;
   if (part.name != kBody) json["name"] = part.name;
@@ -63,8 +59,8 @@ constexpr std::array<std::pair<GroundRule::Kind, std::string_view>, 3> kGrounds{
      {GroundRule::Kind::map, "map"},
      {GroundRule::Kind::measured, "measured"}}};
 
-Ordered places_json(const map::Ground& ground) {
-  Ordered json = Ordered::array();
+Json places_json(const map::Ground& ground) {
+  Json json = Json::array();
   for (const map::GroundPlace& place : ground.places()) {
     json.push_back(
         {place.in_source.x(), place.in_source.y(), place.z_m, place.slope.x(), place.slope.y()});
@@ -72,10 +68,10 @@ Ordered places_json(const map::Ground& ground) {
   return json;
 }
 
-void add_ground(Ordered& json, const CertifiedGround& ground) {
+void add_ground(Json& json, const CertifiedGround& ground) {
   const auto* named =
       std::ranges::find(kGrounds, ground.kind, [](const auto& known) { return known.first; });
-  Ordered above{{"ground", named->second}, {"margin_m", ground.under.margin_m}};
+  Json above{{"ground", named->second}, {"margin_m", ground.under.margin_m}};
   if (ground.under.surface) {
     above["places"] = places_json(*ground.under.surface);
   } else {
@@ -84,36 +80,36 @@ void add_ground(Ordered& json, const CertifiedGround& ground) {
   json["heights_above"] = std::move(above);
 }
 
-Ordered observed_json(const std::vector<ObservedTime>& times) {
-  Ordered json = Ordered::array();
+Json observed_json(const std::vector<ObservedTime>& times) {
+  Json json = Json::array();
   for (const ObservedTime& time : times) {
     json.push_back({time.from_s, time.to_s, time.column_in_source.x(), time.column_in_source.y()});
   }
   return json;
 }
 
-Ordered spans_json(const std::vector<ProvenSpan>& spans) {
-  Ordered json = Ordered::array();
+Json spans_json(const std::vector<ProvenSpan>& spans) {
+  Json json = Json::array();
   for (const ProvenSpan& span : spans) {
     json.push_back({span.segment, span.from, span.to, span.at_least_m});
   }
   return json;
 }
 
-Ordered times_json(const std::vector<ProvenTime>& spans) {
-  Ordered json = Ordered::array();
+Json times_json(const std::vector<ProvenTime>& spans) {
+  Json json = Json::array();
   for (const ProvenTime& span : spans) json.push_back({span.from_s, span.to_s, span.at_least_m});
   return json;
 }
 
-Ordered stretches_json(const std::vector<Stretch>& stretches) {
-  Ordered json = Ordered::array();
+Json stretches_json(const std::vector<Stretch>& stretches) {
+  Json json = Json::array();
   for (const Stretch& stretch : stretches) json.push_back({stretch.from_s, stretch.to_s});
   return json;
 }
 
-Ordered conflicts_json(const std::vector<Conflict>& conflicts) {
-  Ordered json = Ordered::array();
+Json conflicts_json(const std::vector<Conflict>& conflicts) {
+  Json json = Json::array();
   for (const Conflict& conflict : conflicts) {
     const Eigen::Vector2d &least = conflict.witness.min_in_source,
                           &most = conflict.witness.max_in_source;
@@ -128,12 +124,12 @@ Ordered conflicts_json(const std::vector<Conflict>& conflicts) {
 }
 
 // File names may hold bytes that are no UTF-8.
-std::string dumped(const Ordered& value) {
-  return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
+std::string dumped(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 // One value per line of the long lists would make files of a hundred thousand lines.
-std::string text_of(const Ordered& document) {
+std::string text_of(const Json& document) {
   std::string text = "{\n";
   for (auto member = document.begin(); member != document.end(); ++member) {
     text += fmt::format("{}{}: {}", member == document.begin() ? "" : ",\n", dumped(member.key()),
@@ -291,7 +287,7 @@ std::vector<Conflict> read_conflicts(const JsonNode& node) {
   return conflicts;
 }
 
-void add_claims(Ordered& json, const AuditCertificate& audit, bool has_moving) {
+void add_claims(Json& json, const AuditCertificate& audit, bool has_moving) {
   json["verdict"] = planning::name(audit.verdict);
   json["certified_clearance_m"] = audit.certified_clearance_m;
   json["conflicts"] = conflicts_json(audit.conflicts);
@@ -360,7 +356,7 @@ double CertificateFile::measured_share() const {
 std::string write_certificate_json(const CertificateFile& file) {
   const AuditCertificate& body = file.parts.front();
   const bool has_moving = file.obstacles.has_value();
-  Ordered json;
+  Json json;
   json["format"] = kFormat;
   json["program"] = file.program;
   json["occupancy"] = file_json(file.occupancy);
@@ -379,8 +375,8 @@ std::string write_certificate_json(const CertificateFile& file) {
   add_claims(json, body, has_moving);
   for (std::size_t i = 1; i < file.parts.size(); ++i) {
     const AuditCertificate& audit = file.parts[i];
-    Ordered part{{"vehicle", part_json(audit.part)},
-                 {"heights_m", {audit.band.from_m, audit.band.to_m}}};
+    Json part{{"vehicle", part_json(audit.part)},
+              {"heights_m", {audit.band.from_m, audit.band.to_m}}};
     add_claims(part, audit, has_moving);
     json["parts"].push_back(std::move(part));
   }

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/map/occupancy/ground.h"
-#include "roadbed/planning/audit_certificate.h"
+#include "roadbed/map/occupancy/ground/ground.h"
+#include "roadbed/planning/audit/certificate.h"
 #include "roadbed/tools/support/audited_drive.h"
 
 namespace roadbed::tools {

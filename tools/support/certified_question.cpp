@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/planning/ground_claims.h"
-#include "roadbed/planning/map_ground_claims.h"
-#include "roadbed/planning/measured_ground_claims.h"
+#include "roadbed/map/occupancy/ground/ground_claims.h"
+#include "roadbed/planning/audit/map_ground_claims.h"
+#include "roadbed/planning/audit/measured_ground_claims.h"
 
 namespace roadbed::tools {
 namespace {
@@ -44,8 +44,8 @@ std::string part_fault(const CertificateFile& file, const AuditCertificate& clai
   return {};
 }
 
-planning::BodyReach reach_of(const CertificateFile& file) {
-  planning::BodyReach reach;
+map::BodyReach reach_of(const CertificateFile& file) {
+  map::BodyReach reach;
   for (const AuditCertificate& part : file.parts) {
     const double grown_m = part.part.radius_m + part.inflate_m;
     reach.rear_m = std::min(reach.rear_m, part.part.rear_m - grown_m);
@@ -56,7 +56,7 @@ planning::BodyReach reach_of(const CertificateFile& file) {
 
 // A level stands for planes a metre apart, from the drive's start to its end.
 std::vector<GroundPlace> level_places(const geometry::Trajectory& drive, double level_m,
-                                      const planning::BodyReach& body, bool is_below_body) {
+                                      const map::BodyReach& body, bool is_below_body) {
   constexpr double apart_m = 1.0;
   std::vector<GroundPlace> places;
   const auto& rows = drive.points();
@@ -109,7 +109,7 @@ std::vector<std::string> ground_faults_of(const CertificateFile& file,
                                           double cell_m) {
   const planning::GroundUnder& under = file.ground.under;
   const bool is_measured = file.ground.kind == GroundRule::Kind::measured;
-  const double margin_m = is_measured ? planning::measured_ground_margin_m(cell_m) : 0.0;
+  const double margin_m = is_measured ? map::measured_ground_margin_m(cell_m) : 0.0;
   if (!is_same(under.margin_m, margin_m)) {
     return {fmt::format("the ground's margin is {:.9g} m, not {:.9g} m", margin_m, under.margin_m)};
   }
@@ -117,13 +117,13 @@ std::vector<std::string> ground_faults_of(const CertificateFile& file,
     if (!under.surface) return {};
     return {"the ground is said to be level, and has places"};
   }
-  const planning::BodyReach body = reach_of(file);
+  const map::BodyReach body = reach_of(file);
   if (under.surface) {
     double reach_m = 0.0;
     for (const AuditCertificate& part : file.parts) {
       reach_m = std::max(reach_m, part.part.reach_m() + std::sqrt(2.0) * part.inflate_m);
     }
-    std::vector<std::string> faults = planning::ground_faults(*under.surface, drive, reach_m);
+    std::vector<std::string> faults = map::ground_faults(*under.surface, drive, reach_m);
     if (!faults.empty()) return faults;
   }
   const std::vector<GroundPlace> places =

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/map/occupancy/occupancy_source.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/tools/support/certificate_json.h"
 #include "roadbed/tools/support/vehicle_json.h"
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {

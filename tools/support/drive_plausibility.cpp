@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "roadbed/geometry/primitives/angle.h"
+
 namespace roadbed::tools {
 namespace {
 
 using Eigen::Vector2d;
 using geometry::TrajectoryPoint;
-
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 double step_m(const TrajectoryPoint& from, const TrajectoryPoint& to) {
   const double dx_m = to.x_m - from.x_m, dy_m = to.y_m - from.y_m;
@@ -84,7 +84,7 @@ std::optional<std::size_t> metre_after(const std::vector<TrajectoryPoint>& rows,
 std::optional<ImplausibleRow> headings_in_degrees(const std::vector<TrajectoryPoint>& rows) {
   // Headings of over a turn are seldom radians: less of an error speaks against them.
   constexpr double fits_rad = 0.1, off_rad = 0.12, off_beyond_a_turn_rad = 0.04, times_worse = 3.0;
-  HeadingError as_radians(1.0), as_degrees(kRadPerDegree);
+  HeadingError as_radians(1.0), as_degrees(geometry::kRadiansPerDegree);
   std::size_t largest = 0, from = 0;
   for (auto to = metre_after(rows, from); to; to = metre_after(rows, from)) {
     as_radians.add(rows[from], rows[*to]);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/trajectory.h"
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
 
 namespace roadbed::tools {
 

@@ -1,25 +1,23 @@
 #include "roadbed/tools/support/finding_reports.h"
+#include "roadbed/tools/support/json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "roadbed/map/formats/svg_canvas.h"
-#include "roadbed/map/formats/write_svg.h"
+#include "roadbed/map/drawing/write_svg.h"
+#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/validation/rule.h"
 
 namespace roadbed::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using map::Finding;
-using map::Severity;
 using map::Validation;
+using map::validation::Finding;
 
-std::string text_of(const Json& json) {
+std::string document_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -46,7 +44,7 @@ std::string place_text(const Validation& validation, const Finding& finding) {
   return text;
 }
 
-long count(const Validation& validation, Severity severity) {
+long findings_counted(const Validation& validation, map::validation::Severity severity) {
   return std::count_if(validation.findings.begin(), validation.findings.end(),
                        [&](const Finding& finding) { return finding.severity == severity; });
 }
@@ -59,12 +57,14 @@ std::string line_of(const Validation& validation, const Finding& finding) {
 /// Findings by rule, in order of rule.
 std::map<std::string, std::vector<const Finding*>> by_rule(const Validation& validation) {
   std::map<std::string, std::vector<const Finding*>> groups;
-  for (const map::RuleInfo& rule : map::rule_catalogue()) groups[std::string(rule.id)];
+  for (const map::validation::RuleInfo& rule : map::rule_catalogue()) groups[std::string(rule.id)];
   for (const Finding& finding : validation.findings) groups[finding.rule].push_back(&finding);
   return groups;
 }
 
-bool is_fault(const Finding* finding) { return finding->severity != Severity::info; }
+bool is_fault(const Finding* finding) {
+  return finding->severity != map::validation::Severity::info;
+}
 
 std::string test_case(const Validation& validation, const std::string& file,
                       const std::string& rule, const std::vector<const Finding*>& findings) {
@@ -87,19 +87,19 @@ std::string test_case(const Validation& validation, const std::string& file,
   return text + "    </testcase>\n";
 }
 
-const char* sarif_level(Severity severity) {
+const char* sarif_level(map::validation::Severity severity) {
   switch (severity) {
-    case Severity::info:
+    case map::validation::Severity::info:
       return "note";
-    case Severity::warning:
+    case map::validation::Severity::warning:
       return "warning";
-    case Severity::error:
+    case map::validation::Severity::error:
       return "error";
   }
   return "error";
 }
 
-Json sarif_rule(const map::RuleInfo& rule) {
+Json sarif_rule(const map::validation::RuleInfo& rule) {
   Json json = {{"id", rule.id},
                {"shortDescription", {{"text", rule.meaning}}},
                {"defaultConfiguration", {{"level", sarif_level(rule.severity)}}}};
@@ -141,13 +141,13 @@ Json sarif_result(const Validation& validation, const Finding& finding, const st
   return result;
 }
 
-const char* colour(Severity severity) {
+const char* colour(map::validation::Severity severity) {
   switch (severity) {
-    case Severity::info:
+    case map::validation::Severity::info:
       return "#2f6fb3";
-    case Severity::warning:
+    case map::validation::Severity::warning:
       return "#d98a00";
-    case Severity::error:
+    case map::validation::Severity::error:
       return "#c8102e";
   }
   return "#c8102e";
@@ -161,9 +161,10 @@ std::string findings_text(const Validation& validation, const std::string& file)
     text += fmt::format("{}{}: {}: {}: {} [{}]\n", file, place_text(validation, finding),
                         name(finding.severity), finding.element, finding.message, finding.rule);
   }
-  return text +
-         fmt::format("{} errors, {} warnings, {} notes\n", count(validation, Severity::error),
-                     count(validation, Severity::warning), count(validation, Severity::info));
+  return text + fmt::format("{} errors, {} warnings, {} notes\n",
+                            findings_counted(validation, map::validation::Severity::error),
+                            findings_counted(validation, map::validation::Severity::warning),
+                            findings_counted(validation, map::validation::Severity::info));
 }
 
 std::string findings_json(const Validation& validation) {
@@ -171,7 +172,7 @@ std::string findings_json(const Validation& validation) {
   for (const Finding& finding : validation.findings) {
     list.push_back(finding_json(validation, finding));
   }
-  return text_of(Json{{"findings", std::move(list)}});
+  return document_text(Json{{"findings", std::move(list)}});
 }
 
 std::string findings_junit(const Validation& validation, const std::string& file) {
@@ -190,7 +191,7 @@ std::string findings_junit(const Validation& validation, const std::string& file
 std::string findings_sarif(const Validation& validation, const std::string& file) {
   Json rules = Json::array();
   std::map<std::string, std::size_t> index;
-  for (const map::RuleInfo& rule : map::rule_catalogue()) {
+  for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
     index.emplace(rule.id, rules.size());
     rules.push_back(sarif_rule(rule));
   }
@@ -201,9 +202,9 @@ std::string findings_sarif(const Validation& validation, const std::string& file
   Json run = {{"tool", {{"driver", {{"name", "roadbed"}, {"rules", std::move(rules)}}}}},
               {"columnKind", "utf16CodeUnits"},
               {"results", std::move(results)}};
-  return text_of({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
-                  {"version", "2.1.0"},
-                  {"runs", Json::array({std::move(run)})}});
+  return document_text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+                        {"version", "2.1.0"},
+                        {"runs", Json::array({std::move(run)})}});
 }
 
 std::string findings_geojson(const Validation& validation) {
@@ -222,7 +223,7 @@ std::string findings_geojson(const Validation& validation) {
     json["crs"] = {{"type", "name"}, {"properties", {{"name", validation.road_map->crs()}}}};
   }
   json["features"] = std::move(features);
-  return text_of(json);
+  return document_text(json);
 }
 
 std::string findings_svg(const Validation& validation) {
@@ -239,7 +240,7 @@ std::string findings_svg(const Validation& validation) {
 
 std::string rules_table() {
   std::string table = "| rule | severity | ASAM rule | finds |\n|---|---|---|---|\n";
-  for (const map::RuleInfo& rule : map::rule_catalogue()) {
+  for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
     const std::string asam =
         rule.asam_rule.empty() ? "" : fmt::format("`{}`", rule.asam_rule.substr(14));
     table +=

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "roadbed/map/validation/validate.h"
+#include "roadbed/map/validate_file.h"
 
 // The findings of `validate` in the forms that others read. Places are the source's coordinates.
 

@@ -13,18 +13,18 @@
 namespace roadbed::tools {
 namespace {
 
-constexpr std::size_t kColumns = 100, kExplanationAt = 30;
+constexpr std::size_t kWidth_columns = 100, kExplanationAt = 30;
 /// An option that excludes more than this says so itself.
 constexpr std::size_t kFew = 3;
 
-/// Words in lines of at most kColumns; all but the first are indented.
+/// Words in lines of at most kWidth_columns; all but the first are indented.
 std::string wrapped(std::string_view text, std::size_t column, std::size_t indent) {
   std::string lines;
   bool is_first = true;
   while (!text.empty()) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (!is_first && column + 1 + word.size() > kColumns) {
+    if (!is_first && column + 1 + word.size() > kWidth_columns) {
       lines += '\n' + std::string(indent, ' ');
       column = indent;
     } else if (!is_first) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/occupancy/clearance_field.h"
-#include "roadbed/map/occupancy/load_occupancy.h"
-#include "roadbed/map/occupancy/tiled_occupancy.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/load_occupancy.h"
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 
 namespace roadbed::tools {
 namespace {

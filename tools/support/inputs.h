@@ -7,12 +7,18 @@
 #include <utility>
 #include <vector>
 
-namespace roadbed::map {
+namespace roadbed::map::inline occupancy::inline clearance {
 class ClearanceField;
+}
+
+namespace roadbed::map::inline occupancy::inline octree {
 class OccupancyMap;
 class OccupancySource;
+}  // namespace roadbed::map::occupancy::octree
+
+namespace roadbed::map::inline model {
 class RoadMap;
-}  // namespace roadbed::map
+}
 
 namespace roadbed::tools {
 

@@ -7,12 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {
-
-using nlohmann::json;
 
 std::string escaped(std::string_view key) {
   std::string token;
@@ -42,10 +40,10 @@ class DuplicateKeys {
  public:
   explicit DuplicateKeys(const std::string& file) : file_(file) {}
 
-  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) open_.emplace_back();
-    if (event == json::parse_event_t::object_end) open_.pop_back();
-    if (event == json::parse_event_t::key &&
+  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    if (event == nlohmann::json::parse_event_t::object_start) open_.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) open_.pop_back();
+    if (event == nlohmann::json::parse_event_t::key &&
         !open_.back().insert(parsed.get_ref<const std::string&>()).second) {
       throw map::InputError({.file = file_,
                              .place = {},
@@ -64,7 +62,7 @@ class DuplicateKeys {
 
 }  // namespace
 
-JsonNode::JsonNode(const json& value, std::string file, std::string pointer)
+JsonNode::JsonNode(const nlohmann::json& value, std::string file, std::string pointer)
     : value_(&value), file_(std::move(file)), pointer_(std::move(pointer)) {}
 
 void JsonNode::require_object(std::initializer_list<std::string_view> known_keys) const {
@@ -161,12 +159,12 @@ void JsonNode::refuse(const std::string& found, const std::string& needed,
                          .remedy = remedy});
 }
 
-json parse_json_strictly(std::string_view bytes, const std::string& file) {
+nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& file) {
   try {
-    return json::parse(bytes, DuplicateKeys(file));
-  } catch (const json::parse_error& error) {
+    return nlohmann::json::parse(bytes, DuplicateKeys(file));
+  } catch (const nlohmann::json::parse_error& error) {
     refuse_text(file, error.byte, "is not JSON here");
-  } catch (const json::out_of_range&) {
+  } catch (const nlohmann::json::out_of_range&) {
     throw map::InputError({.file = file,
                            .place = {},
                            .element = {},

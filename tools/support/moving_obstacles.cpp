@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "roadbed/map/formats/common_road_scenario_reader.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/report/from_map.h"
 #include "roadbed/tools/simulation/common_road_world.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -32,7 +32,7 @@ std::vector<MovingObstacle> read_moving_obstacles(const std::filesystem::path& f
                                                   const Inputs& inputs) {
   if (is_common_road(file)) {
     const std::string name = file.string();
-    return recorded_boxes(map::common_road::parse_scenario(map::read_file(file), name), name);
+    return recorded_boxes(map::commonroad::parse_scenario(map::read_file(file), name), name);
   }
   if (file.extension() == ".json") return of_scenario(file, inputs);
   return parse_obstacles_csv(map::read_file(file), file.string());

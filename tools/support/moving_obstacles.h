@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/planning/obstacles/moving_obstacle.h"
 #include "roadbed/tools/support/inputs.h"
 
 namespace roadbed::tools {

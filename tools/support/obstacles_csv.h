@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/planning/obstacles/moving_obstacle.h"
 
 namespace roadbed::tools {
 

@@ -13,8 +13,8 @@
 namespace roadbed::tools {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found,
-                         const std::string& remedy) {
+[[noreturn]] void refuse_output(const std::filesystem::path& file, const std::string& found,
+                                const std::string& remedy) {
   throw OutputError({.file = file.string(),
                      .place = {},
                      .element = {},
@@ -24,8 +24,8 @@ namespace {
 }
 
 [[noreturn]] void refuse_write(const std::filesystem::path& file) {
-  refuse(file, std::string("cannot be written: ") + std::strerror(errno),
-         "free some space or choose another folder");
+  refuse_output(file, std::string("cannot be written: ") + std::strerror(errno),
+                "free some space or choose another folder");
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -44,15 +44,17 @@ std::filesystem::path behind_links(const std::filesystem::path& file) {
 void refuse_other_than_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (std::filesystem::is_directory(status)) refuse(file, "is a folder", "name a file in it");
+  if (std::filesystem::is_directory(status))
+    refuse_output(file, "is a folder", "name a file in it");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    refuse(file, "is a device or a pipe, which a file would replace", "name a file");
+    refuse_output(file, "is a device or a pipe, which a file would replace", "name a file");
   }
 }
 
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // the file itself is synced; some systems refuse to open folders
+  if (descriptor < 0)
+    return;  // the file itself is synced; some systems refuse_output to open folders
   ::fsync(descriptor);
   ::close(descriptor);
 }
@@ -63,33 +65,34 @@ void check_writable(const std::filesystem::path& file, bool force) {
   const auto folder = folder_of(behind_links(file));
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) {
-    refuse(file, "cannot be written: its folder does not exist", "make the folder first");
+    refuse_output(file, "cannot be written: its folder does not exist", "make the folder first");
   }
   refuse_other_than_file(file);
   if (std::filesystem::exists(file, error) && !force) {
-    refuse(file, "exists already", "give --force to replace it");
+    refuse_output(file, "exists already", "give --force to replace it");
   }
   if (::access(folder.c_str(), W_OK) != 0) {
-    refuse(file, std::string("cannot be written: ") + std::strerror(errno),
-           "choose a folder that you may write to");
+    refuse_output(file, std::string("cannot be written: ") + std::strerror(errno),
+                  "choose a folder that you may write to");
   }
 }
 
 void make_output_folder(const std::filesystem::path& folder, bool force) {
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error)) {
-    refuse(folder, "exists and is not a folder", "choose another place");
+    refuse_output(folder, "exists and is not a folder", "choose another place");
   }
   if (std::filesystem::is_directory(folder, error)) {
     if (!std::filesystem::is_empty(folder, error) && !force) {
-      refuse(folder, "holds files already", "give --force to replace them");
+      refuse_output(folder, "holds files already", "give --force to replace them");
     }
   } else if (!std::filesystem::create_directories(folder, error)) {
-    refuse(folder, "cannot be made: " + error.message(), "choose a folder that you may write to");
+    refuse_output(folder, "cannot be made: " + error.message(),
+                  "choose a folder that you may write to");
   }
   if (::access(folder.c_str(), W_OK) != 0) {
-    refuse(folder, std::string("cannot be written: ") + std::strerror(errno),
-           "choose a folder that you may write to");
+    refuse_output(folder, std::string("cannot be written: ") + std::strerror(errno),
+                  "choose a folder that you may write to");
   }
 }
 
@@ -105,8 +108,8 @@ OutputFile::OutputFile(const std::filesystem::path& file) : file_(behind_links(f
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) {
     temporary_.clear();
-    refuse(file_, std::string("cannot be written: ") + std::strerror(errno),
-           "choose a folder that you may write to");
+    refuse_output(file_, std::string("cannot be written: ") + std::strerror(errno),
+                  "choose a folder that you may write to");
   }
 }
 

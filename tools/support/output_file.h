@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "roadbed/map/chunked_file.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/chunked_file.h"
 
 namespace roadbed::tools {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/route_options.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/route/route_options.h"
 
 namespace roadbed::tools {
 namespace {
@@ -55,8 +55,8 @@ LaneText lane_text(std::string_view text) {
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
-[[noreturn]] void refuse(const std::string& text, const std::string& found,
-                         const std::string& needed, const std::string& remedy) {
+[[noreturn]] void refuse_place(const std::string& text, const std::string& found,
+                               const std::string& needed, const std::string& remedy) {
   throw map::InputError({.file = "place \"" + text + "\"",
                          .place = {},
                          .element = {},
@@ -69,14 +69,14 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
   const LaneText parts = lane_text(text);
   const auto id = road_map.find_lane(parts.name);
   if (!id) {
-    refuse(text, fmt::format("the map has no lane {}", parts.name), "",
-           "see the names with: roadbed locate MAP --at X,Y");
+    refuse_place(text, fmt::format("the map has no lane {}", parts.name), "",
+                 "see the names with: roadbed locate MAP --at X,Y");
   }
   const map::Lane& lane = road_map.lane(*id);
   const double s_m = parts.station.empty() ? 0.0 : number(parts.station).value();
   if (s_m < 0.0 || s_m > lane.length_m()) {
-    refuse(text, fmt::format("station {} m", s_m),
-           fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
+    refuse_place(text, fmt::format("station {} m", s_m),
+                 fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
   }
   return {{*id, s_m, 0.0}, lane.pose_at(s_m), false, planning::Sense::either, {}};
 }
@@ -102,7 +102,7 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
                   : fmt::format("; next {}, {:.2f} m", lane.name, candidate.distance_m);
   }
   if (remedy.empty()) remedy = "no drivable lane is within 100 km: mind the coordinates";
-  refuse(text, found, "", remedy);
+  refuse_place(text, found, "", remedy);
 }
 
 Place at_point(const map::RoadMap& road_map, const std::string& text,
@@ -155,7 +155,7 @@ std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
 Place find_place(const map::RoadMap& road_map, const std::string& text,
                  map::Participant participant) {
   const std::string fault = place_syntax_fault(text);
-  if (!fault.empty()) refuse(text, fault, "", "");
+  if (!fault.empty()) refuse_place(text, fault, "", "");
   return text.starts_with(kLanePrefix) ? at_lane(road_map, text)
                                        : at_point(road_map, text, participant);
 }

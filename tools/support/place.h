@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/map/road_map.h"
-#include "roadbed/planning/match_place.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/route/match_place.h"
 
 namespace roadbed::tools {
 

@@ -1,6 +1,6 @@
 #include "roadbed/tools/support/points_csv.h"
 
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/csv.h"
 
 namespace roadbed::tools {

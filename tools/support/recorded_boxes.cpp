@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "roadbed/geometry/pose2.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/simulation/shape_bounds.h"
 
 namespace roadbed::tools {
@@ -18,12 +18,12 @@ namespace {
 
 using geometry::Pose2;
 using geometry::TrajectoryPoint;
-using map::common_road::Obstacle;
-using map::common_road::ObstacleRole;
-using map::common_road::PolygonShape;
-using map::common_road::RectangleShape;
-using map::common_road::Shape;
-using map::common_road::State;
+using map::commonroad::Obstacle;
+using map::commonroad::ObstacleRole;
+using map::commonroad::PolygonShape;
+using map::commonroad::RectangleShape;
+using map::commonroad::Shape;
+using map::commonroad::State;
 using planning::MovingObstacle;
 
 constexpr double kForEver_s = std::numeric_limits<double>::infinity();
@@ -78,7 +78,7 @@ StandingBox box_of(const Shape::value_type& part) {
 /// Of one obstacle.
 class RecordedBoxes {
  public:
-  RecordedBoxes(const map::common_road::Scenario& scenario, const std::string& file,
+  RecordedBoxes(const map::commonroad::Scenario& scenario, const std::string& file,
                 const Obstacle& from)
       : file_(file), from_(from), step_s_(scenario.time_step_s) {
     if (!scenario.planning_problems.empty()) {
@@ -210,7 +210,7 @@ class RecordedBoxes {
 
 }  // namespace
 
-std::vector<MovingObstacle> recorded_boxes(const map::common_road::Scenario& scenario,
+std::vector<MovingObstacle> recorded_boxes(const map::commonroad::Scenario& scenario,
                                            const std::string& name) {
   std::vector<MovingObstacle> boxes;
   for (const Obstacle& obstacle : scenario.obstacles) {

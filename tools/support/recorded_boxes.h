@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/formats/common_road_scenario.h"
-#include "roadbed/planning/moving_obstacle.h"
+#include "roadbed/map/commonroad/scenario.h"
+#include "roadbed/planning/obstacles/moving_obstacle.h"
 
 namespace roadbed::tools {
 
@@ -20,7 +20,7 @@ namespace roadbed::tools {
 /// @param name  stands for the file in messages.
 /// @throws InputError if an obstacle cannot be held so: a state that gives regions or intervals,
 ///         states that do not follow each other, nothing that says where it is.
-std::vector<planning::MovingObstacle> recorded_boxes(const map::common_road::Scenario& scenario,
+std::vector<planning::MovingObstacle> recorded_boxes(const map::commonroad::Scenario& scenario,
                                                      const std::string& name);
 
 }  // namespace roadbed::tools

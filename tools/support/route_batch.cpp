@@ -3,23 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
-#include "roadbed/planning/hierarchy_search.h"
-#include "roadbed/planning/route_obstacle.h"
-#include "roadbed/planning/route_solver.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/planning/route/hierarchy_search.h"
+#include "roadbed/planning/route/route_obstacle.h"
+#include "roadbed/planning/route/route_solver.h"
 #include "roadbed/tools/support/csv.h"
 #include "roadbed/tools/support/in_threads.h"
+#include "roadbed/tools/support/json.h"
 #include "roadbed/tools/support/od_csv.h"
 #include "roadbed/tools/support/place.h"
 #include "roadbed/tools/support/route_output.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Row : OdRow {
   std::optional<planning::RoutePlace> from_place, to_place;

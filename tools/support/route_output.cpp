@@ -1,21 +1,19 @@
 #include "roadbed/tools/support/route_output.h"
+#include "roadbed/tools/support/json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "roadbed/map/formats/svg_canvas.h"
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/road_map_index.h"
-#include "roadbed/planning/guidance.h"
-#include "roadbed/planning/route_area.h"
-#include "roadbed/planning/route_path.h"
+#include "roadbed/map/drawing/svg_canvas.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/index/road_map_index.h"
+#include "roadbed/planning/route/guidance.h"
+#include "roadbed/planning/route/route_area.h"
+#include "roadbed/planning/route/route_path.h"
 
 namespace roadbed::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const char* word(planning::LegExit exit) {
   switch (exit) {

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "roadbed/geometry/polygon.h"
-#include "roadbed/planning/route.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/support/place.h"
 
 namespace roadbed::tools {

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <string_view>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/planning/closures.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/route/closures.h"
 
 namespace roadbed::tools {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/route.h"
+#include "roadbed/planning/route/route.h"
 #include "roadbed/tools/support/arguments.h"
 #include "roadbed/tools/support/place.h"
 

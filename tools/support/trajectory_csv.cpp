@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/csv.h"
 #include "roadbed/tools/support/drive_plausibility.h"
 
@@ -26,7 +26,7 @@ struct Column {
 
 constexpr double kEarth_m = 1e9;
 constexpr double kAnything = 1e12;
-constexpr std::array<Column, 8> kColumns{{
+constexpr std::array<Column, 8> kTrajectoryColumns{{
     {"t_s", &TrajectoryPoint::t_s, true, kAnything},
     {"x_m", &TrajectoryPoint::x_m, true, kEarth_m},
     {"y_m", &TrajectoryPoint::y_m, true, kEarth_m},
@@ -38,13 +38,14 @@ constexpr std::array<Column, 8> kColumns{{
 }};
 
 /// Which field of a row holds which column.
-using FieldOfColumn = std::array<std::optional<std::size_t>, kColumns.size()>;
+using FieldOfColumn = std::array<std::optional<std::size_t>, kTrajectoryColumns.size()>;
 
 FieldOfColumn field_of_columns(const CsvReader& table) {
   FieldOfColumn fields;
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    fields[c] = kColumns[c].required ? table.column(kColumns[c].name, "t_s,x_m,y_m,heading_rad")
-                                     : table.find_column(kColumns[c].name);
+  for (std::size_t c = 0; c < kTrajectoryColumns.size(); ++c) {
+    fields[c] = kTrajectoryColumns[c].required
+                    ? table.column(kTrajectoryColumns[c].name, "t_s,x_m,y_m,heading_rad")
+                    : table.find_column(kTrajectoryColumns[c].name);
   }
   return fields;
 }
@@ -52,9 +53,9 @@ FieldOfColumn field_of_columns(const CsvReader& table) {
 TrajectoryPoint read_row(const CsvReader& row, const FieldOfColumn& fields) {
   row.check_width();
   TrajectoryPoint point;
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    const double largest = kColumns[c].largest;
-    if (fields[c]) point.*kColumns[c].value = row.number(*fields[c], -largest, largest);
+  for (std::size_t c = 0; c < kTrajectoryColumns.size(); ++c) {
+    const double largest = kTrajectoryColumns[c].largest;
+    if (fields[c]) point.*kTrajectoryColumns[c].value = row.number(*fields[c], -largest, largest);
   }
   return point;
 }
@@ -102,13 +103,13 @@ geometry::Trajectory read_trajectory_csv(const std::filesystem::path& file) {
 std::string write_trajectory_csv(const geometry::Trajectory& drive) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    fmt::format_to(out, "{}{}", c == 0 ? "" : ",", kColumns[c].name);
+  for (std::size_t c = 0; c < kTrajectoryColumns.size(); ++c) {
+    fmt::format_to(out, "{}{}", c == 0 ? "" : ",", kTrajectoryColumns[c].name);
   }
   for (const TrajectoryPoint& point : drive.points()) {
     fmt::format_to(out, "\n");
-    for (std::size_t c = 0; c < kColumns.size(); ++c) {
-      fmt::format_to(out, "{}{}", c == 0 ? "" : ",", point.*kColumns[c].value);
+    for (std::size_t c = 0; c < kTrajectoryColumns.size(); ++c) {
+      fmt::format_to(out, "{}{}", c == 0 ? "" : ",", point.*kTrajectoryColumns[c].value);
     }
   }
   fmt::format_to(out, "\n");

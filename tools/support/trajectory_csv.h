@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "roadbed/geometry/trajectory.h"
+#include "roadbed/geometry/motion/trajectory.h"
 
 namespace roadbed::tools {
 

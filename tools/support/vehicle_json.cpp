@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "roadbed/geometry/rectangle.h"
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/read_file.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/body_part.h"
-#include "roadbed/geometry/vehicle_shape.h"
+#include "roadbed/geometry/motion/body_part.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {

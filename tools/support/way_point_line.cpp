@@ -8,8 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "roadbed/geometry/angle.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/support/points_csv.h"
 #include "roadbed/tools/support/vehicle_json.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/spline_curve.h"
-#include "roadbed/planning/reference_line.h"
+#include "roadbed/geometry/curves/spline_curve.h"
+#include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/tools/support/arguments.h"
 
 namespace roadbed::tools {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "roadbed/planning/cost.h"
+#include "roadbed/planning/lateral/cost.h"
 
 namespace roadbed::tools {
 

@@ -12,7 +12,7 @@
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/slips.h"
 
-namespace roadbed::map {
+namespace roadbed::map::validation {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -219,7 +219,7 @@ TEST(MapRules, FindEverySlip) {
   }
 }
 
-TEST(MapRules, AreAllTried) { tests::expect_all_are_tried(slips(), rules::map_rules()); }
+TEST(MapRules, AreAllTried) { tests::expect_all_are_tried(slips(), map_rules()); }
 
 TEST(MapRules, CheckLinksOfLanesThatNoCarDrivesOnToo) {
   MadeMap made = faultless();
@@ -267,4 +267,4 @@ TEST(MapRules, TakeNoBridgeForAnOverlap) {
 }
 
 }  // namespace
-}  // namespace roadbed::map
+}  // namespace roadbed::map::validation

@@ -1,4 +1,5 @@
 #include "roadbed/map/validation/validate.h"
+#include "roadbed/map/validate_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
 
-namespace roadbed::map {
+namespace roadbed::map::validation {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -252,4 +253,4 @@ TEST(Validate, TellsAsamsGapsFromItsSmoothFiles) {
 }
 
 }  // namespace
-}  // namespace roadbed::map
+}  // namespace roadbed::map::validation

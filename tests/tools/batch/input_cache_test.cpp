@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "roadbed/map/input_error.h"
-#include "roadbed/map/road_map.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/model/road_map.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sha256sum.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "roadbed/map/read_file.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/browser.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "roadbed/geometry/polyline.h"
+#include "roadbed/geometry/primitives/polyline.h"
 
 namespace roadbed::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/simulation/closed_loop.h"

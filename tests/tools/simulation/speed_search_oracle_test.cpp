@@ -6,7 +6,7 @@
 #include <random>
 #include <tuple>
 
-#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/speed_search.h"

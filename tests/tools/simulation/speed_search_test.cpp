@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "roadbed/control/lower_controller.h"
-#include "roadbed/geometry/rectangle.h"
+#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 

@@ -9,10 +9,10 @@
 namespace roadbed::tools {
 namespace {
 
-using map::common_road::CircleShape;
-using map::common_road::PolygonShape;
-using map::common_road::RectangleShape;
-using map::common_road::Shape;
+using map::commonroad::CircleShape;
+using map::commonroad::PolygonShape;
+using map::commonroad::RectangleShape;
+using map::commonroad::Shape;
 
 map::RoadMap straight_road() {
   tests::MadeMap made;

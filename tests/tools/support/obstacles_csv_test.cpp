@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::tools {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/formats/common_road_scenario_reader.h"
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {
@@ -18,7 +18,7 @@ using planning::MovingObstacle;
 using testing::HasSubstr;
 
 std::vector<MovingObstacle> boxes_of(const std::string& elements) {
-  return recorded_boxes(map::common_road::parse_scenario(
+  return recorded_boxes(map::commonroad::parse_scenario(
                             "<commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\">" +
                                 elements + "</commonRoad>",
                             "made.xml"),

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "roadbed/map/input_error.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/support/json_node.h"
 
 namespace roadbed::tools {

@@ -1,0 +1,215 @@
+#include "roadbed/map/commonroad/lanes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/map/commonroad/elements.h"
+#include "roadbed/map/commonroad/values.h"
+#include "roadbed/map/elements/lane_ring.h"
+
+namespace roadbed::map::commonroad {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Per point how far along the line it is, from 0 to 1.
+std::vector<double> shares(const Points& line) {
+  std::vector<double> along{0.0};
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    along.push_back(along.back() + (line[i] - line[i - 1]).head<2>().norm());
+  }
+  if (along.back() > 0.0) {
+    for (double& share : along) share /= along.back();
+  }
+  along.back() = 1.0;
+  return along;
+}
+
+/// The line with a point at each of `wanted`, which holds all of its own shares.
+Points with_points_at(const Points& line, const std::vector<double>& own,
+                      const std::vector<double>& wanted) {
+  Points result;
+  std::size_t i = 0;
+  for (const double share : wanted) {
+    while (i + 2 < line.size() && own[i + 1] <= share) ++i;
+    const double step = own[i + 1] - own[i];
+    const double part = step > 0.0 ? std::clamp((share - own[i]) / step, 0.0, 1.0) : 1.0;
+    result.push_back(line[i] + part * (line[i + 1] - line[i]));
+  }
+  return result;
+}
+
+/// Gives two borders of different numbers of points the same number: each gets a point where the
+/// other has one, by the share of its length.
+void pair_points(Points& left, Points& right) {
+  const std::vector<double> left_shares = shares(left), right_shares = shares(right);
+  std::vector<double> all;
+  std::merge(left_shares.begin(), left_shares.end(), right_shares.begin(), right_shares.end(),
+             std::back_inserter(all));
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  left = with_points_at(left, left_shares, all);
+  right = with_points_at(right, right_shares, all);
+}
+
+LaneLine lane_line(const Points& points, const std::vector<double>& station_m) {
+  std::vector<Eigen::Vector2d> in_map;
+  std::vector<double> z_m;
+  in_map.reserve(points.size());
+  z_m.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    in_map.emplace_back(point.head<2>());
+    z_m.push_back(point.z());
+  }
+  return {geometry::Polyline(std::move(in_map)), std::move(z_m), station_m};
+}
+
+/// Borders of equally many points become the lane's lines; the centreline is halfway.
+void set_lines(const Points& left, const Points& right, Lane& lane) {
+  Points centre;
+  centre.reserve(left.size());
+  for (std::size_t i = 0; i < left.size(); ++i) centre.push_back(0.5 * (left[i] + right[i]));
+  lane.centre = lane_line(centre, {});
+  lane.centre.station_m = lane.centre.in_map.stations_m();
+  lane.left = lane_line(left, lane.centre.station_m);
+  lane.right = lane_line(right, lane.centre.station_m);
+  lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
+}
+
+/// Users that the children of that name name; unknown words name nobody.
+Participants named_users(pugi::xml_node lanelet, const char* child) {
+  Participants named;
+  for (const std::string& word : texts(lanelet, child)) {
+    named = Participants::from_bits(static_cast<std::uint16_t>(named.bits() | users(word).bits()));
+  }
+  return named;
+}
+
+Attributes kept_words(pugi::xml_node lanelet) {
+  Attributes kept;
+  for (const char* child : {"laneletType", "userOneWay", "userBidirectional"}) {
+    for (std::string& word : texts(lanelet, child)) kept.emplace_back(child, std::move(word));
+  }
+  return kept;
+}
+
+void set_use(const XmlDocument& xml, pugi::xml_node lanelet, Lane& lane) {
+  const Participants both_ways = named_users(lanelet, "userBidirectional");
+  const Participants one_way = named_users(lanelet, "userOneWay");
+  const auto named =
+      Participants::from_bits(static_cast<std::uint16_t>(one_way.bits() | both_ways.bits()));
+  lane.type = lane_type(texts(lanelet, "laneletType"), named);
+  lane.participants = named.empty() ? default_users(lane.type) : named;
+  lane.one_way = !both_ways.has(Participant::car);
+  lane.attributes = kept_words(lanelet);
+  if (lanelet.child("speedLimit")) {
+    lane.speed_limits = {{0.0, xml.text_number(lanelet, "speedLimit")}};
+  }
+  if (const auto mark = read_marking(lanelet.child("leftBound"))) lane.left_marks = {*mark};
+  if (const auto mark = read_marking(lanelet.child("rightBound"))) lane.right_marks = {*mark};
+}
+
+class LaneBuilder {
+ public:
+  LaneBuilder(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
+              std::vector<ImportRemark>& remarks)
+      : xml_(xml), origin_in_source_(origin_in_source), remarks_(remarks) {}
+
+  void add(pugi::xml_node lanelet) {
+    const std::string id = lanelet.attribute("id").value();
+    if (id.empty() || built_.ids.contains(id)) {
+      fault("import.lanelet-id", lanelet,
+            id.empty() ? "it has no id and is left out" : "another one has its id; it is left out");
+      return;
+    }
+    Points left = read_points(xml_, lanelet.child("leftBound"), origin_in_source_);
+    Points right = read_points(xml_, lanelet.child("rightBound"), origin_in_source_);
+    if (left.size() < 2 || right.size() < 2) {
+      fault("import.short-border", lanelet,
+            fmt::format("its borders have {} and {} points, each needs 2; it is left out",
+                        left.size(), right.size()));
+      return;
+    }
+    if (left.size() != right.size()) {
+      fault("import.border-points", lanelet,
+            fmt::format("its borders have {} and {} points, which should be equal; points are "
+                        "added in between",
+                        left.size(), right.size()));
+      pair_points(left, right);
+    }
+    add_lane(id, lanelet, left, right);
+  }
+
+  BuiltLanes take() {
+    if (faults_ > kMostFaults) {
+      remarks_.back().element = "file";
+      remarks_.back().line = 0;
+      remarks_.back().message = fmt::format("and {} more faulty lanelets", faults_ - kMostFaults);
+    }
+    return std::move(built_);
+  }
+
+ private:
+  static constexpr std::size_t kMostFaults = 10'000;  // that are told one by one
+
+  void fault(const char* rule, pugi::xml_node lanelet, const std::string& message) {
+    if (++faults_ > kMostFaults + 1) return;
+    remarks_.push_back({rule, true, fmt::format("lanelet {}", lanelet.attribute("id").value()),
+                        xml_.line_of(lanelet), message});
+  }
+
+  void add_lane(const std::string& id, pugi::xml_node lanelet, const Points& left,
+                const Points& right) {
+    Lane lane;
+    lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
+    lane.origin.source_id = id;
+    lane.name = id;
+    set_lines(left, right, lane);
+    if (!(lane.length_m() > 0.0)) {
+      fault("import.empty-lanelet", lanelet, "it has no length and is left out");
+      return;
+    }
+    set_use(xml_, lanelet, lane);
+    check_sides(lanelet, lane);
+    built_.ids.emplace(id, lane.id);
+    built_.elements.push_back(lanelet);
+    built_.lanes.push_back(std::move(lane));
+  }
+
+  void check_sides(pugi::xml_node lanelet, const Lane& lane) {
+    const auto& left = lane.left.in_map.points();
+    geometry::Ring ring = lane.right.in_map.points();
+    ring.insert(ring.end(), left.rbegin(), left.rend());
+    if (geometry::signed_area_m2(ring) >= 0.0) return;
+    fault("import.swapped-borders", lanelet,
+          "its left border lies to the right of its right one; swap them or turn both round");
+  }
+
+  const XmlDocument& xml_;
+  Eigen::Vector2d origin_in_source_;
+  std::vector<ImportRemark>& remarks_;
+  std::size_t faults_ = 0;
+  BuiltLanes built_;
+};
+
+}  // namespace
+
+std::optional<LaneId> BuiltLanes::find(std::string_view source_id) const {
+  const auto found = ids.find(source_id);
+  if (found == ids.end()) return {};
+  return found->second;
+}
+
+std::optional<BorderMark> read_marking(pugi::xml_node bound) {
+  return border_mark(text_of(bound.child("lineMarking")));
+}
+
+BuiltLanes build_lanes(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
+                       std::vector<ImportRemark>& remarks) {
+  LaneBuilder builder(xml, origin_in_source, remarks);
+  for (const pugi::xml_node lanelet : xml.root().children("lanelet")) builder.add(lanelet);
+  return builder.take();
+}
+
+}  // namespace roadbed::map::commonroad

@@ -1,0 +1,233 @@
+#include "roadbed/map/commonroad/links.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "roadbed/map/commonroad/elements.h"
+
+namespace roadbed::map::commonroad {
+namespace {
+
+using Line = std::vector<Eigen::Vector2d>;
+
+constexpr double kJoinedM = 1.0;  ///< lane ends or borders further apart are not joined
+
+enum class Side { left, right };
+
+Side opposite(Side side) { return side == Side::left ? Side::right : Side::left; }
+
+const LaneLine& border(const Lane& lane, Side side) {
+  return side == Side::left ? lane.left : lane.right;
+}
+
+const std::vector<BorderMark>& marks(const Lane& lane, Side side) {
+  return side == Side::left ? lane.left_marks : lane.right_marks;
+}
+
+std::optional<Neighbour>& neighbour(LaneLinks& links, Side side) {
+  return side == Side::left ? links.left : links.right;
+}
+
+double end_gap_m(const Lane& from, const Lane& to) {
+  const auto gap = [](const LaneLine& a, const LaneLine& b) {
+    return (a.in_map.points().back() - b.in_map.points().front()).norm();
+  };
+  return std::max(gap(from.left, to.left), gap(from.right, to.right));
+}
+
+double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
+                           const Eigen::Vector2d& b) {
+  const double squared = (b - a).squaredNorm();
+  const double share = squared > 0.0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
+  return (point - a - share * (b - a)).norm();
+}
+
+/// Distance of each point of a line to another line that runs beside it in the same direction; the
+/// nearest place moves only forward, so that it costs O(points of both).
+std::vector<double> distances_m(const Line& line, const Line& other) {
+  std::vector<double> found;
+  std::size_t at = 0;
+  for (const Eigen::Vector2d& point : line) {
+    double least = distance_to_segment(point, other[at], other[at + 1]);
+    while (at + 2 < other.size()) {
+      const double next = distance_to_segment(point, other[at + 1], other[at + 2]);
+      if (next > least) break;
+      least = next;
+      ++at;
+    }
+    found.push_back(least);
+  }
+  return found;
+}
+
+/// Stretches of the lane where its border runs along the neighbour's facing one.
+std::vector<StationRange> joined_ranges(const Lane& lane, Side side, const Lane& other,
+                                        bool same_direction) {
+  const LaneLine& mine = border(lane, side);
+  Line facing = border(other, same_direction ? opposite(side) : side).in_map.points();
+  if (!same_direction) std::reverse(facing.begin(), facing.end());
+  const std::vector<double> distance_m = distances_m(mine.in_map.points(), facing);
+  std::vector<StationRange> ranges;
+  for (std::size_t i = 0; i + 1 < distance_m.size(); ++i) {
+    if (std::max(distance_m[i], distance_m[i + 1]) > kJoinedM) continue;
+    const double from_s_m = mine.station_m[i], to_s_m = mine.station_m[i + 1];
+    if (!ranges.empty() && ranges.back().to_s_m == from_s_m) {
+      ranges.back().to_s_m = to_s_m;
+    } else if (to_s_m > from_s_m) {
+      ranges.push_back({from_s_m, to_s_m});
+    }
+  }
+  return ranges;
+}
+
+/// Whether a driver may cross the marking; of a double line the one nearer to him counts.
+bool may_cross(MarkType type, bool from_right) {
+  switch (type) {
+    case MarkType::none:
+    case MarkType::broken:
+    case MarkType::broken_broken:
+    case MarkType::botts_dots:
+      return true;
+    case MarkType::solid_broken:
+      return from_right;
+    case MarkType::broken_solid:
+      return !from_right;
+    default:
+      return false;
+  }
+}
+
+class Linker {
+ public:
+  Linker(const XmlDocument& xml, const BuiltLanes& built, std::vector<ImportRemark>& remarks)
+      : xml_(xml), built_(built), remarks_(remarks), links_(built.lanes.size()) {}
+
+  std::vector<LaneLinks> link() {
+    for (const Lane& lane : built_.lanes) {
+      for (const LaneId to : targets(lane, "successor")) join(lane, built_.lanes[to.index], lane);
+      for (const LaneId from : targets(lane, "predecessor")) {
+        join(built_.lanes[from.index], lane, lane);
+      }
+      put_beside(lane, Side::left, "adjacentLeft");
+      put_beside(lane, Side::right, "adjacentRight");
+    }
+    for (LaneLinks& links : links_) {
+      tidy(links.successors);
+      tidy(links.predecessors);
+    }
+    for (const Lane& lane : built_.lanes) check_both_say(lane);
+    return std::move(links_);
+  }
+
+ private:
+  pugi::xml_node element(const Lane& lane) const { return built_.elements[lane.id.index]; }
+
+  void fault(const char* rule, const Lane& lane, const std::string& message) {
+    remarks_.push_back({rule, true, "lanelet " + lane.name, xml_.line_of(element(lane)), message});
+  }
+
+  static void tidy(std::vector<LaneId>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+
+  std::optional<LaneId> target(const Lane& lane, const char* child, const std::string& id) {
+    const std::optional<LaneId> found = built_.find(id);
+    if (!found) {
+      fault("import.link", lane,
+            fmt::format("its {} {} is not there; the link is left out", child, id));
+    }
+    return found;
+  }
+
+  std::vector<LaneId> targets(const Lane& lane, const char* child) {
+    std::vector<LaneId> found;
+    for (const std::string& id : references(element(lane), child)) {
+      if (const auto other = target(lane, child, id)) found.push_back(*other);
+    }
+    return found;
+  }
+
+  void join(const Lane& from, const Lane& to, const Lane& speaker) {
+    const double gap_m = end_gap_m(from, to);
+    if (gap_m > kJoinedM) {
+      fault("import.link-geometry", speaker,
+            fmt::format("lanelet {} is said to lead to {}, but their ends are {:.2f} m apart; the "
+                        "link is left out",
+                        from.name, to.name, gap_m));
+      return;
+    }
+    links_[from.id.index].successors.push_back(to.id);
+    links_[to.id.index].predecessors.push_back(from.id);
+  }
+
+  void check_both_say(const Lane& lane) {
+    check_back(lane, links_[lane.id.index].successors, "successor", "predecessor");
+    check_back(lane, links_[lane.id.index].predecessors, "predecessor", "successor");
+  }
+
+  // Links of the graph hold for both ends; here each end is asked whether it names the other.
+  void check_back(const Lane& lane, const std::vector<LaneId>& others, const char* child,
+                  const char* back) {
+    std::vector<std::string> named = references(element(lane), child);
+    std::sort(named.begin(), named.end());
+    for (const LaneId other : others) {
+      const std::string& id = built_.lanes[other.index].name;
+      if (std::binary_search(named.begin(), named.end(), id)) continue;
+      fault("import.one-sided-link", lane,
+            fmt::format("is the {} of lanelet {} but does not name it as its {}; name each other "
+                        "in both",
+                        back, id, child));
+    }
+  }
+
+  void put_beside(const Lane& lane, Side side, const char* child) {
+    const pugi::xml_node adjacent = element(lane).child(child);
+    if (!adjacent) return;
+    const auto found = target(lane, child, adjacent.attribute("ref").value());
+    if (!found || *found == lane.id) return;
+    const Lane& other = built_.lanes[found->index];
+    const bool same = std::string_view(adjacent.attribute("drivingDir").value()) == "same";
+    std::vector<StationRange> joined = joined_ranges(lane, side, other, same);
+    if (joined.empty()) {
+      fault("import.link-geometry", lane,
+            fmt::format("its {} {} runs nowhere along that border in the {} direction; lanes "
+                        "cannot be changed there",
+                        child, other.name, same ? "same" : "opposite"));
+    }
+    if (!may_change(lane, side, other, same)) joined.clear();
+    neighbour(links_[lane.id.index], side) = Neighbour{other.id, same, std::move(joined)};
+  }
+
+  // The lane's own marking counts, else the neighbour's; without any, lanes of one direction may
+  // be changed.
+  static bool may_change(const Lane& lane, Side side, const Lane& other, bool same_direction) {
+    const bool from_right = side == Side::left;
+    if (const auto& own = marks(lane, side); !own.empty()) {
+      return may_cross(own.front().type, from_right);
+    }
+    const auto& theirs = marks(other, same_direction ? opposite(side) : side);
+    // Seen by an oncoming neighbour, the two lines of a double one are the other way round.
+    if (!theirs.empty()) {
+      return may_cross(theirs.front().type, same_direction ? from_right : !from_right);
+    }
+    return same_direction;
+  }
+
+  const XmlDocument& xml_;
+  const BuiltLanes& built_;
+  std::vector<ImportRemark>& remarks_;
+  std::vector<LaneLinks> links_;
+};
+
+}  // namespace
+
+std::vector<LaneLinks> link_lanes(const XmlDocument& xml, const BuiltLanes& built,
+                                  std::vector<ImportRemark>& remarks) {
+  return Linker(xml, built, remarks).link();
+}
+
+}  // namespace roadbed::map::commonroad

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/map/model/road_map.h"
+
+namespace roadbed::map::inline derived {
+
+/// How two lanes that overlap came to do so.
+enum class ConflictKind {
+  crossing,   ///< they share neither end
+  merging,    ///< they share a successor
+  diverging,  ///< they share a predecessor
+};
+
+/// Two lanes that overlap though neither follows the other and they are not beside each other:
+/// who is on one of them may be hit from the other.
+///
+///             other
+///               ║ ║
+///        ═══════╬═╬═══════ one         on_one: the stations between which any part of `one`
+///        ═══════╬═╬═══════             is also in `other`; on_other likewise
+///               ║ ║
+struct Conflict {
+  LaneId one, other;  ///< one < other
+  ConflictKind kind = ConflictKind::crossing;
+  StationRange on_one, on_other;
+  double area_m2 = 0.0;  ///< of the overlap
+};
+
+struct ConflictOptions {
+  /// Overlaps of a lesser mean width (area by the diagonal of their box) are lanes that touch, as
+  /// sampled borders and roads that do not meet exactly make them do.
+  double least_width_m = 0.05;
+  double headroom_m = 2.5;  ///< lanes further apart in height pass over each other
+};
+
+/// Every conflict between drivable lanes, by lane `one`, then `other`, then place. Lanes that meet
+/// twice, as at the ends of a loop, are in conflict twice. A lane is taken as the strip that its
+/// cross-sections sweep, from border to border at equal stations; the overlap of two strips is
+/// clipped piece by piece, so its stations are exact up to rounding.
+/// O((N + K) log N) for N vertices and K pairs of pieces that meet.
+std::vector<Conflict> find_conflicts(const RoadMap& road_map, const ConflictOptions& options = {});
+
+/// Those of one lane, on either side: looks at the lanes near it only. Areas may differ from those
+/// above in their last digits. Lanes without a polygon have none.
+std::vector<Conflict> find_conflicts_of(const RoadMap& road_map, LaneId lane,
+                                        const ConflictOptions& options = {});
+
+}  // namespace roadbed::map::derived

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/derived/surface.h"
+
+namespace roadbed::map::inline derived {
+
+/// Answers whether points are on the drivable surface, and how far its edge is.
+class DrivableArea {
+ public:
+  /// Takes the union of all drivable lanes, see surface.h for its cost.
+  explicit DrivableArea(const RoadMap& road_map, const SurfaceOptions& options = {});
+
+  /// @param polygons  with disjoint insides, as `unite` makes them.
+  explicit DrivableArea(std::vector<geometry::Polygon> polygons);
+
+  /// Whether the point is on the surface or its edge. O(log N) on average, exact.
+  bool contains(const Eigen::Vector2d& point_in_map) const;
+
+  /// Distance to the nearest edge of the surface [m], negative off the surface; minus infinity
+  /// where there is no surface at all. O(log N) on average.
+  double signed_distance_m(const Eigen::Vector2d& point_in_map) const;
+
+  const std::vector<geometry::Polygon>& polygons() const { return polygons_; }
+
+ private:
+  struct Edge {
+    Eigen::Vector2d from, to;
+  };
+  void add_edges(const geometry::Ring& ring);
+
+  std::vector<geometry::Polygon> polygons_;
+  std::vector<Edge> edges_;
+  geometry::BoxTree tree_;
+  geometry::Box extent_;
+};
+
+}  // namespace roadbed::map::derived

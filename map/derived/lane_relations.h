@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "roadbed/map/model/road_map.h"
+
+namespace roadbed::map::inline derived {
+
+/// The nearest lane beside this one that runs against it, across any lanes of its own direction
+/// that lie between; none on a one-way road. O(lanes of the section).
+std::optional<LaneId> opposite_lane(const LaneGraph& graph, LaneId lane);
+
+/// Lanes that lead into one lane.
+struct Merge {
+  LaneId into;
+  std::vector<LaneId> from;  ///< two or more, in order of id
+};
+
+/// Every place where several lanes share a successor, by that successor. O(lanes + links).
+std::vector<Merge> merges(const LaneGraph& graph);
+
+/// Other lanes that lead into a successor of this one: those to give way to, or to zip with.
+/// In order of id.
+std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane);
+
+}  // namespace roadbed::map::derived

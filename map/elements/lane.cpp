@@ -1,0 +1,86 @@
+#include "roadbed/map/elements/lane.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace roadbed::map::inline elements {
+
+std::string_view name(LaneType type) {
+  static constexpr std::array<std::string_view, 23> names = {
+      "none",    "driving",        "bidirectional", "entry",  "exit",       "onRamp",
+      "offRamp", "connectingRamp", "shoulder",      "stop",   "parking",    "border",
+      "biking",  "sidewalk",       "curb",          "median", "restricted", "roadWorks",
+      "tram",    "rail",           "bus",           "taxi",   "other"};
+  return names.at(static_cast<std::size_t>(type));
+}
+
+bool is_drivable(LaneType type) {
+  switch (type) {
+    case LaneType::driving:
+    case LaneType::bidirectional:
+    case LaneType::entry:
+    case LaneType::exit:
+    case LaneType::on_ramp:
+    case LaneType::off_ramp:
+    case LaneType::connecting_ramp:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_surface(LaneType type) {
+  switch (type) {
+    case LaneType::shoulder:
+    case LaneType::stop:
+    case LaneType::parking:
+    case LaneType::bus:
+    case LaneType::taxi:
+      return true;
+    default:
+      return is_drivable(type);
+  }
+}
+
+std::optional<double> Lane::speed_limit_at_mps(double s_m) const {
+  std::optional<double> limit_mps;
+  for (const SpeedLimit& limit : speed_limits) {
+    if (limit.from_s_m <= s_m) limit_mps = limit.limit_mps;
+  }
+  return limit_mps;
+}
+
+std::optional<double> Lane::least_speed_limit_mps() const {
+  std::optional<double> least_mps;
+  for (const SpeedLimit& limit : speed_limits) {
+    if (limit.limit_mps)
+      least_mps = std::min(*limit.limit_mps, least_mps.value_or(*limit.limit_mps));
+  }
+  return least_mps;
+}
+
+Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
+  const auto& stations = line.station_m;
+  const auto& points = line.in_map.points();
+  const auto after = std::upper_bound(stations.begin(), stations.end(), station_m);
+  if (after == stations.begin()) return points.front();
+  if (after == stations.end()) return points.back();
+  const auto i = static_cast<std::size_t>(after - stations.begin());
+  const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return points[i - 1] + share * (points[i] - points[i - 1]);
+}
+
+geometry::Pose2 Lane::pose_at(double s_m) const {
+  constexpr double reach_m = 0.05;
+  const double s = std::clamp(s_m, 0.0, length_m());
+  const Eigen::Vector2d point = centre.in_map.at(s);
+  const Eigen::Vector2d along = centre.in_map.at(s + reach_m) - centre.in_map.at(s - reach_m);
+  return {point.x(), point.y(), std::atan2(along.y(), along.x())};
+}
+
+double Lane::width_m(double s_m) const {
+  return (point_at(left, s_m) - point_at(right, s_m)).norm();
+}
+
+}  // namespace roadbed::map::elements

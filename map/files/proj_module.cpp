@@ -1,0 +1,88 @@
+#include "roadbed/map/files/proj_module.h"
+
+#include <proj.h>
+#include <proj_experimental.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+
+namespace {
+
+struct Destroy {
+  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
+  void operator()(PJ* object) const { proj_destroy(object); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
+using Object = std::unique_ptr<PJ, Destroy>;
+
+int say(const std::string& text, char* message, std::size_t size) {
+  if (size == 0) return 1;
+  const std::size_t length = std::min(size - 1, text.size());
+  std::memcpy(message, text.data(), length);
+  message[length] = '\0';
+  return 1;
+}
+
+int say_fault(const Context& context, char* message, std::size_t size) {
+  return say(proj_context_errno_string(context.get(), proj_context_errno(context.get())), message,
+             size);
+}
+
+Context quiet_context() {
+  Context context(proj_context_create());
+  proj_log_level(context.get(), PJ_LOG_NONE);
+  return context;
+}
+
+/// Heights are another matter: of a compound system the horizontal part.
+Object horizontal(const Context& context, const char* crs) {
+  std::string text = crs;
+  if (text.find("+proj=") != std::string::npos && text.find("+type=crs") == std::string::npos) {
+    text += " +type=crs";
+  }
+  Object object(proj_create(context.get(), text.c_str()));
+  if (object && proj_get_type(object.get()) == PJ_TYPE_COMPOUND_CRS) {
+    object.reset(proj_crs_get_sub_crs(context.get(), object.get(), 0));
+  }
+  if (!object || proj_is_crs(object.get()) == 0) return nullptr;
+  return Object(proj_crs_demote_to_2D(context.get(), nullptr, object.get()));
+}
+
+}  // namespace
+
+int roadbed_proj_to_lon_lat(const char* crs, double* xy, std::size_t count, char* message,
+                            std::size_t message_size) {
+  const Context context = quiet_context();
+  const Object from = horizontal(context, crs);
+  if (!from) return say_fault(context, message, message_size);
+  const Object to(proj_create(context.get(), "OGC:CRS84"));
+  const Object path(
+      proj_create_crs_to_crs_from_pj(context.get(), from.get(), to.get(), nullptr, nullptr));
+  if (!path) return say_fault(context, message, message_size);
+  const Object forward(proj_normalize_for_visualization(context.get(), path.get()));
+  if (!forward) return say_fault(context, message, message_size);
+  constexpr std::size_t stride = 2 * sizeof(double);
+  proj_trans_generic(forward.get(), PJ_FWD, xy, stride, count, xy + 1, stride, count, nullptr, 0, 0,
+                     nullptr, 0, 0);
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    if (!std::isfinite(xy[i])) return say("a point is outside its domain", message, message_size);
+  }
+  return 0;
+}
+
+int roadbed_proj_wkt(const char* crs, char* wkt, std::size_t wkt_size, char* message,
+                     std::size_t message_size) {
+  const Context context = quiet_context();
+  const Object object = horizontal(context, crs);
+  if (!object) return say_fault(context, message, message_size);
+  const char* options[] = {"MULTILINE=NO", nullptr};
+  const char* text = proj_as_wkt(context.get(), object.get(), PJ_WKT1_GDAL, options);
+  if (text == nullptr) return say_fault(context, message, message_size);
+  if (std::strlen(text) >= wkt_size)
+    return say("its description is too long", message, message_size);
+  std::strcpy(wkt, text);
+  return 0;
+}

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace roadbed::map::inline files {
+
+/// Coordinates of a coordinate reference system as longitude (x) and latitude (y) in degrees,
+/// WGS 84, in place. Heights stay what they are: only the horizontal part of `crs` is used. PROJ is
+/// opened now, not when the program starts, which would cost every command 8 ms.
+/// @param crs  EPSG code ("EPSG:25832"), PROJ string or well-known text.
+/// @throws InputError if roadbed was built without PROJ, PROJ does not know the system, or a point
+///         is where the projection has no answer.
+void to_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points);
+
+/// The horizontal part of a system as well-known text (WKT 1). Throws as above.
+std::string well_known_text(const std::string& crs);
+
+/// The number of a system that names itself "EPSG:25832"; none otherwise.
+std::optional<int> epsg_code(const std::string& crs);
+
+/// A transverse Mercator system whose origin is at a place: coordinates of an unknown system taken
+/// as metres east and north of there.
+/// @throws std::invalid_argument if the place is not on the globe.
+std::string system_anchored_at(double latitude_deg, double longitude_deg);
+
+}  // namespace roadbed::map::files

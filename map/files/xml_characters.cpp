@@ -1,0 +1,132 @@
+#include "roadbed/map/files/xml_characters.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <pugixml.hpp>
+#include <sstream>
+#include <utility>
+
+namespace roadbed::map::inline files {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, char>, 5> kNamed = {
+    {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
+
+void append_utf8(std::uint32_t code, std::string& text) {
+  const auto byte = [&](std::uint32_t bits) { text += static_cast<char>(bits); };
+  if (code < 0x80) {
+    byte(code);
+  } else if (code < 0x800) {
+    byte(0xc0 | code >> 6);
+    byte(0x80 | (code & 0x3f));
+  } else if (code < 0x10000) {
+    byte(0xe0 | code >> 12);
+    byte(0x80 | (code >> 6 & 0x3f));
+    byte(0x80 | (code & 0x3f));
+  } else {
+    byte(0xf0 | code >> 18);
+    byte(0x80 | (code >> 12 & 0x3f));
+    byte(0x80 | (code >> 6 & 0x3f));
+    byte(0x80 | (code & 0x3f));
+  }
+}
+
+// The character "#228" or "#xe4", 0 if it names none.
+std::uint32_t numbered(std::string_view name) {
+  const bool hexadecimal = name.starts_with("#x");
+  name.remove_prefix(hexadecimal ? 2 : 1);
+  std::uint32_t code = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data(), end, code, hexadecimal ? 16 : 10);
+  const bool is_character = code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  return error == std::errc() && stop == end && is_character ? code : 0;
+}
+
+// Appends what "name" in "&name;" stands for; false if it is nothing known.
+bool append_reference(std::string_view name, std::string& text) {
+  if (name.starts_with('#')) {
+    const std::uint32_t code = numbered(name);
+    if (code != 0) append_utf8(code, text);
+    return code != 0;
+  }
+  const auto known = std::find_if(kNamed.begin(), kNamed.end(),
+                                  [&](const auto& entry) { return entry.first == name; });
+  if (known != kNamed.end()) text += known->second;
+  return known != kNamed.end();
+}
+
+}  // namespace
+
+std::string decode_xml(std::string_view raw) {
+  constexpr std::size_t longest = 12;  // of a reference
+  std::string text;
+  text.reserve(raw.size());
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const char c = raw[i];
+    const std::size_t end = c == '&' ? raw.substr(i, longest).find(';') : raw.npos;
+    if (end != raw.npos && append_reference(raw.substr(i + 1, end - 1), text)) {
+      i += end;
+    } else if (c == '\r' || c == '\n' || c == '\t') {
+      text += ' ';
+      if (c == '\r' && raw.substr(i + 1).starts_with('\n')) ++i;
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string xml_text(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return result;
+}
+
+bool looks_like_xml(const std::string& bytes) {
+  const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string::npos && bytes[first] == '<';
+}
+
+bool is_other_encoding(std::string_view bytes) {
+  if (bytes.size() < 2) return false;
+  // Byte order marks of UTF-16, or a zero in what would be "<?" or "<o".
+  if (bytes.starts_with("\xfe\xff") || bytes.starts_with("\xff\xfe")) return true;
+  if (bytes[0] == '\0' || bytes[1] == '\0') return true;
+  const auto end = bytes.substr(0, 256).find("?>");
+  if (end == bytes.npos) return false;
+  std::string declaration(bytes.substr(0, end));
+  for (char& c : declaration) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return declaration.find("8859-1") != std::string::npos ||
+         declaration.find("latin1") != std::string::npos;
+}
+
+std::string to_utf8(const std::string& bytes) {
+  pugi::xml_document document;
+  constexpr unsigned all = pugi::parse_full | pugi::parse_ws_pcdata;
+  if (!document.load_buffer(bytes.data(), bytes.size(), all)) return {};
+  std::ostringstream text;
+  document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
+  return std::move(text).str();
+}
+
+}  // namespace roadbed::map::files

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace roadbed::map::inline files {
+
+/// What the value of an attribute says: references to characters (`&lt;`, `&#228;`) replaced, those
+/// to anything else left as they are, and every break, "\r\n" being one, or tab a space.
+std::string decode_xml(std::string_view raw);
+
+/// Text with the characters that XML reserves written as references.
+std::string xml_text(std::string_view text);
+
+/// Whether bytes begin as XML does, blanks and a byte order mark left out.
+bool looks_like_xml(const std::string& bytes);
+
+/// Whether XML says, by its first bytes or its declaration, that it is not UTF-8.
+bool is_other_encoding(std::string_view bytes);
+
+/// The same document in UTF-8, its elements on the same lines; empty if it is not well-formed.
+std::string to_utf8(const std::string& bytes);
+
+}  // namespace roadbed::map::files

@@ -1,0 +1,160 @@
+#include "roadbed/map/geojson/read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "roadbed/geometry/curves/transverse_mercator.h"
+#include "roadbed/geometry/polygons/polygon_fault.h"
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/geojson/document.h"
+
+namespace roadbed::map::geojson {
+namespace {
+
+geometry::GeographicPoint geographic(const Eigen::Vector2d& degrees) {
+  return {degrees.y() * geometry::kRadiansPerDegree, degrees.x() * geometry::kRadiansPerDegree};
+}
+
+/// From positions of the file to metres of the source's plane.
+class Frame {
+ public:
+  Frame(const Document& document, const Eigen::Vector2d& first) : crs_(document.crs) {
+    if (!document.in_degrees) return;
+    const geometry::GeographicPoint point = geographic(first);
+    const int zone = geometry::utm_zone(point);
+    const bool south = first.y() < 0.0;
+    grid_ = geometry::utm_grid(zone, south);
+    crs_ = fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
+  }
+
+  const std::string& crs() const { return crs_; }
+  Eigen::Vector2d to_source(const Eigen::Vector2d& position) const {
+    return grid_ ? grid_->forward(geographic(position)) : position;
+  }
+
+ private:
+  std::optional<geometry::TransverseMercator> grid_;
+  std::string crs_;
+};
+
+const Eigen::Vector2d* first_position(const Document& document) {
+  for (const FeatureRecord& feature : document.features) {
+    for (const PolygonRecord& polygon : feature.polygons) {
+      for (const Positions& ring : polygon.rings) {
+        if (!ring.empty()) return &ring.front();
+      }
+    }
+  }
+  return nullptr;
+}
+
+Eigen::Vector2d origin_near(const Eigen::Vector2d& in_source) {
+  constexpr double far_m = 20'000.0, grid_m = 1'000.0;
+  if (in_source.cwiseAbs().maxCoeff() <= far_m) return {0.0, 0.0};
+  return {grid_m * std::round(in_source.x() / grid_m), grid_m * std::round(in_source.y() / grid_m)};
+}
+
+std::string ring_name(std::size_t ring) {
+  return ring == 0 ? std::string("its outer ring") : fmt::format("its hole {}", ring);
+}
+
+void turn(geometry::Ring& ring, bool counter_clockwise) {
+  if ((geometry::signed_area_m2(ring) > 0.0) != counter_clockwise) {
+    std::reverse(ring.begin(), ring.end());
+  }
+}
+
+class AreaBuilder {
+ public:
+  AreaBuilder(const Frame& frame, RoadMapParts& parts) : frame_(frame), parts_(parts) {}
+
+  void add(const FeatureRecord& feature) {
+    Area area;
+    area.source_id = feature.id;
+    area.is_road = true;
+    area.participants = Participants::vehicles();
+    area.attributes = feature.properties;
+    for (const auto& [key, value] : feature.properties) {
+      if (key == "type" || (key == "highway" && area.type.empty())) area.type = value;
+    }
+    for (std::size_t i = 0; i < feature.polygons.size(); ++i) {
+      const std::string element = fmt::format("feature {}, polygon {}", feature.number, i + 1);
+      if (auto polygon = polygon_of(feature.polygons[i], element)) {
+        area.in_map.push_back(std::move(*polygon));
+      }
+    }
+    if (!area.in_map.empty()) parts_.areas.push_back(std::move(area));
+  }
+
+ private:
+  std::optional<geometry::Polygon> polygon_of(const PolygonRecord& record,
+                                              const std::string& element) {
+    if (record.was_open) {
+      parts_.remarks.push_back({"import.open-ring", true, element, 0,
+                                "a ring does not end where it begins; it is closed"});
+    }
+    geometry::Polygon polygon;
+    for (std::size_t i = 0; i < record.rings.size(); ++i) {
+      geometry::Ring ring;
+      for (const Eigen::Vector2d& position : record.rings[i]) {
+        ring.emplace_back(frame_.to_source(position) - parts_.origin_in_source);
+      }
+      if (i == 0)
+        polygon.outer = std::move(ring);
+      else
+        polygon.holes.push_back(std::move(ring));
+    }
+    if (const auto fault = geometry::find_fault(polygon)) {
+      parts_.remarks.push_back(
+          {"import.polygon", true, element, 0,
+           fmt::format("{}: {}; the polygon is left out", ring_name(fault->ring), fault->what)});
+      return {};
+    }
+    turn(polygon.outer, true);
+    for (geometry::Ring& hole : polygon.holes) turn(hole, false);
+    return polygon;
+  }
+
+  const Frame& frame_;
+  RoadMapParts& parts_;
+};
+
+[[noreturn]] void refuse_empty(const std::string& name, const RoadMapParts& parts) {
+  const bool has_fault = !parts.remarks.empty();
+  throw InputError({.file = name,
+                    .place = {},
+                    .element = has_fault ? parts.remarks.back().element : std::string(),
+                    .found = has_fault ? parts.remarks.back().message : "no polygon",
+                    .needed = "at least one usable Polygon or MultiPolygon",
+                    .remedy = "give a file of road-surface polygons"});
+}
+
+}  // namespace
+
+bool is_geojson(const std::string& bytes) {
+  const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string::npos && bytes[first] == '{';
+}
+
+RoadMapParts read(const std::string& bytes, const std::string& name) {
+  const Document document = parse(bytes, name);
+  RoadMapParts parts;
+  parts.format = "GeoJSON";
+  for (const auto& [kind, count] : document.unused) parts.unused.push_back({kind, count});
+  const Eigen::Vector2d* first = first_position(document);
+  if (!first) refuse_empty(name, parts);
+  const Frame frame(document, *first);
+  parts.crs = frame.crs();
+  parts.origin_in_source = origin_near(frame.to_source(*first));
+  AreaBuilder builder(frame, parts);
+  for (const FeatureRecord& feature : document.features) builder.add(feature);
+  if (parts.areas.empty()) refuse_empty(name, parts);
+  return parts;
+}
+
+}  // namespace roadbed::map::geojson

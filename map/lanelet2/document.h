@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "roadbed/map/files/line_starts.h"
+#include "roadbed/map/files/xml_scanner.h"
+#include "roadbed/map/lanelet2/ids.h"
+#include "roadbed/map/model/road_map.h"
+
+namespace roadbed::map::lanelet2 {
+
+/// Key and value as they stand in the text.
+using Tag = std::pair<std::string_view, std::string_view>;
+using Tags = std::span<const Tag>;
+
+/// A point; its elevation is 0 where the file gives none.
+struct Node {
+  std::int64_t id = 0;
+  Eigen::Vector3d in_map{0, 0, 0};
+  bool placed = false;  ///< it has usable coordinates
+  std::size_t at = 0;   ///< where its start tag is in the text
+};
+
+/// A line through nodes, those that are missing or have no place left out.
+struct Way {
+  std::int64_t id = 0;
+  std::span<const std::uint32_t> nodes;
+  std::string_view type, subtype;
+  Tags tags;
+  std::size_t at = 0;  ///< where its start tag is in the text
+  bool used = false;   ///< the map holds what it says
+};
+
+enum class MemberKind { node, way, relation };
+
+struct Member {
+  MemberKind kind = MemberKind::way;
+  std::int64_t id = 0;
+  std::string_view role;
+};
+
+/// Elements with roles: a lanelet, an area, a regulatory element.
+struct Relation {
+  std::int64_t id = 0;
+  std::string_view type, subtype;
+  std::span<const Member> members;
+  Tags tags;
+  std::size_t at = 0;  ///< where its start tag is in the text
+};
+
+/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the text, and
+/// elements hold views of its lists.
+struct Document {
+  Document(const std::string& bytes, std::string file)
+      : text(bytes), name(std::move(file)), scanner(text, name) {}
+  Document(Document&&) = default;
+
+  std::string_view text;
+  std::string name;
+  XmlScanner scanner;  ///< holds what it decoded
+  std::vector<Node> nodes;
+  std::vector<Way> ways;
+  std::vector<Relation> relations;
+  std::vector<std::uint32_t> way_nodes;  ///< of all ways, one after the other
+  std::vector<Tag> tags;                 ///< of all ways and relations
+  std::vector<Member> members;           ///< of all relations
+  IdIndex node_index, way_index, relation_index;
+  std::string crs;
+  Eigen::Vector2d origin_in_source{0, 0};
+  std::vector<ImportRemark> remarks;
+  std::map<std::string, std::size_t> unused;
+
+  /// Points of a way.
+  std::vector<Eigen::Vector3d> points(const Way& way) const;
+
+  /// All tags of the element that begins at a place of the text.
+  Attributes tags_of(std::size_t at) const;
+
+  /// Remarks a fault of the file at the element that begins there.
+  void fault(std::size_t at, const char* rule, std::string message);
+
+ private:
+  std::optional<LineStarts> line_starts_;  // made for the first fault
+};
+
+/// @param bytes  UTF-8; must outlive the document.
+/// @throws InputError if they are not well-formed XML, or hold more elements than a map of their
+///         size does.
+Document read_document(const std::string& bytes, const std::string& name);
+
+/// Tags as text of its own, and views of such text.
+Attributes attributes_of(Tags tags);
+std::vector<Tag> views_of(const Attributes& tags);
+
+/// A finite number that a text begins and ends with; NaN if it is none.
+double number_in(std::string_view text);
+
+}  // namespace roadbed::map::lanelet2

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "roadbed/geometry/curves/transverse_mercator.h"
+
+namespace roadbed::map::lanelet2 {
+
+/// Where a node says that it is; NaN where it does not.
+struct NodePlace {
+  double latitude_deg, longitude_deg;
+  double local_x_m, local_y_m;  ///< Autoware's tags
+};
+
+/// The one coordinate system of a file: Autoware's `local_x/local_y` where most nodes have them,
+/// else UTM in the zone of the first node; nodes beyond the zone's edge stay in it.
+class Frame {
+ public:
+  /// @param mgrs_code  of the first node that names its grid square; may be empty.
+  Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code);
+
+  /// Coordinates of a node; none if it has none that fit this frame, or impossible ones.
+  std::optional<Eigen::Vector2d> place(const NodePlace& node) const;
+
+  bool is_local() const { return local_; }
+
+  /// EPSG code or PROJ string; empty if nothing in the file tells. Local coordinates have one where
+  /// the nodes that also have lat/lon agree on it within 1 cm, or their MGRS square is known.
+  const std::string& crs() const { return crs_; }
+
+  /// Why the CRS of local coordinates is not known; empty if it is.
+  const std::string& doubt() const { return doubt_; }
+
+ private:
+  void find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code);
+
+  bool local_ = false;
+  std::optional<geometry::TransverseMercator> grid_;  ///< shifted so that it yields local ones
+  std::string crs_, doubt_;
+};
+
+/// South-west corner of the 100 km square that an MGRS code ("54SUE815501") names, and its zone.
+struct MgrsSquare {
+  int zone = 0;
+  bool south = false;
+  Eigen::Vector2d corner_m{0, 0};
+};
+std::optional<MgrsSquare> mgrs_square(std::string_view code);
+
+}  // namespace roadbed::map::lanelet2

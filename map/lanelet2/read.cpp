@@ -1,0 +1,63 @@
+#include "roadbed/map/lanelet2/read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "roadbed/map/lanelet2/areas.h"
+#include "roadbed/map/lanelet2/document.h"
+#include "roadbed/map/lanelet2/lanes.h"
+#include "roadbed/map/lanelet2/links.h"
+#include "roadbed/map/lanelet2/regulations.h"
+
+namespace roadbed::map::lanelet2 {
+namespace {
+
+bool is_known(std::string_view relation_type) {
+  return relation_type == "lanelet" || relation_type == "multipolygon" ||
+         relation_type == "regulatory_element";
+}
+
+// Lines that nothing refers to, and relations of other kinds.
+void count_unused(Document& document) {
+  for (const Way& way : document.ways) {
+    if (!way.used) ++document.unused["way/" + std::string(way.type)];
+  }
+  for (const Relation& relation : document.relations) {
+    if (!is_known(relation.type)) ++document.unused["relation/" + std::string(relation.type)];
+  }
+}
+
+void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportRemark>& remarks) {
+  const auto unknown = std::count_if(lanes.begin(), lanes.end(), [](const Lane& lane) {
+    return is_drivable(lane.type) && lane.speed_limits.empty();
+  });
+  if (unknown == 0) return;
+  remarks.push_back({"import.speed-limit-unknown", false, "file", 0,
+                     fmt::format("{} drivable lanelets have no speed limit", unknown)});
+}
+
+}  // namespace
+
+bool is_lanelet2(std::string_view root_element) { return root_element == "osm"; }
+
+RoadMapParts read(const std::string& bytes, const std::string& file) {
+  Document document = read_document(bytes, file);
+  BuiltLanes built = build_lanes(document);
+  RoadMapParts parts;
+  parts.format = "Lanelet2";
+  parts.crs = document.crs;
+  parts.origin_in_source = document.origin_in_source;
+  parts.links = link_lanes(document, built);
+  add_regulations(document, built, parts);
+  add_areas(document, parts);
+  add_objects(document, parts);
+  count_unused(document);
+  remark_unknown_limits(built.lanes, document.remarks);
+  parts.lanes = std::move(built.lanes);
+  parts.remarks = std::move(document.remarks);
+  for (const auto& [name, count] : document.unused) parts.unused.push_back({name, count});
+  return parts;
+}
+
+}  // namespace roadbed::map::lanelet2

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <unordered_set>
+
+#include "roadbed/map/lanelet2/rules/source.h"
+
+namespace roadbed::map::lanelet2::rules {
+namespace {
+
+void unknown_regulations(const Source& source, const validation::ValidateOptions&,
+                         validation::Report& report) {
+  static const std::set<std::string_view> kKnown = {
+      "traffic_light", "traffic_sign",   "speed_limit",     "right_of_way",
+      "all_way_stop",  "crosswalk",      "road_marking",    "no_stopping_area",
+      "speed_bump",    "detection_area", "no_parking_area", "virtual_traffic_light",
+      "roundabout",    "bus_stop_area"};
+  for (const auto regulation : source.regulations) {
+    const std::string_view subtype = tag(regulation, "subtype");
+    if (kKnown.contains(subtype)) continue;
+    add_at(report, source, regulation,
+           fmt::format("its subtype \"{}\" is no regulatory element that is known; correct it, or "
+                       "see to it that who uses the map knows it",
+                       subtype));
+  }
+}
+
+void regulations_without_refers(const Source& source, const validation::ValidateOptions&,
+                                validation::Report& report) {
+  for (const auto regulation : source.regulations) {
+    const std::string_view subtype = tag(regulation, "subtype");
+    const bool of_lanes = subtype == "right_of_way" || subtype == "all_way_stop";
+    const auto members = regulation.children("member");
+    if (std::any_of(members.begin(), members.end(), [&](pugi::xml_node member) {
+          const std::string_view role = member.attribute("role").value();
+          return role == "refers" || (of_lanes && (role == "yield" || role == "right_of_way"));
+        })) {
+      continue;
+    }
+    add_at(report, source, regulation,
+           of_lanes ? "names no lanelet that yields or has the right of way; add them"
+                    : "refers to nothing; add its sign, light or line as member \"refers\"");
+  }
+}
+
+void unused_regulations(const Source& source, const validation::ValidateOptions&,
+                        validation::Report& report) {
+  std::unordered_set<std::string_view> used;
+  for (const auto relation : source.relation_list) {
+    for (const auto member : relation.children("member")) {
+      if (std::string_view(member.attribute("role").value()) == "regulatory_element") {
+        used.insert(member.attribute("ref").value());
+      }
+    }
+  }
+  for (const auto regulation : source.regulations) {
+    if (used.contains(regulation.attribute("id").value())) continue;
+    add_at(report, source, regulation, "no lanelet or area names it; add it to those it holds for");
+  }
+}
+
+constexpr std::array<SourceRule, 3> kRegulationRules = {{
+    {{"lanelet2.unknown-regulation",
+      {},
+      validation::Severity::info,
+      "a regulatory element has a subtype that is not known"},
+     unknown_regulations},
+    {{"lanelet2.regulation-without-refers",
+      {},
+      validation::Severity::warning,
+      "a regulatory element refers to nothing"},
+     regulations_without_refers},
+    {{"lanelet2.unused-regulation",
+      {},
+      validation::Severity::warning,
+      "no lanelet or area names a regulatory element"},
+     unused_regulations},
+}};
+
+}  // namespace
+
+std::span<const SourceRule> regulation_rules() { return kRegulationRules; }
+
+}  // namespace roadbed::map::lanelet2::rules

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadbed::map::inline occupancy::inline clouds {
+
+/// What one step of a coordinate means, as far as the file says it.
+enum class LengthUnit { unknown, metre, foot, us_survey_foot, degree };
+std::string_view name(LengthUnit unit);
+
+/// Points from `first` on were measured from here, until the next one of these.
+struct ScanStart {
+  std::size_t first = 0;
+  std::optional<Eigen::Vector3d> sensor_in_source;  ///< none: it is not known from where
+};
+
+/// Measured points in the file's own coordinates, double, relative to a local origin.
+///
+/// The origin is 0 where every coordinate stays within 4096 of it, so that small clouds keep their
+/// numbers bit for bit; else it is the middle of the bounds in whole units, per axis. A point in
+/// the source is `origin_in_source + points[i]`.
+struct PointCloud {
+  std::string name;  ///< the file, as the user named it
+  Eigen::Vector3d origin_in_source{0, 0, 0};
+  std::vector<Eigen::Vector3f> points;  ///< relative to the origin [unit], all finite
+  std::string format;                   ///< "PCD 0.7 binary", "LAS 1.2", …
+  std::string crs;                      ///< as the file says, may be empty
+  LengthUnit unit = LengthUnit::unknown;
+  std::size_t dropped_not_finite = 0;
+  std::optional<Eigen::Vector3d> sensor_in_source;  ///< of the file's viewpoint, if it names one
+  std::vector<ScanStart> scans;  ///< in order, from point 0 on, where the file says of each point
+                                 ///< where it was measured from; then `sensor_in_source` is unused
+  std::vector<std::string> notes;  ///< what the user may want to know of the file
+
+  /// Whether rays can be drawn to some of its points.
+  bool has_sensor() const { return sensor_in_source.has_value() || !scans.empty(); }
+
+  Eigen::Vector3d in_source(std::size_t i) const {
+    return origin_in_source + points[i].cast<double>();
+  }
+};
+
+/// An axis-aligned box in source coordinates.
+struct Box3 {
+  Eigen::Vector3d min_in_source, max_in_source;
+};
+
+/// Smallest box around all points. The cloud must hold one.
+Box3 bounds(const PointCloud& cloud);
+
+/// The same cloud with every coordinate times `factor`, in metres and of no known CRS.
+PointCloud scaled_to_metres(const PointCloud& cloud, double factor);
+
+/// @throws InputError if the file says that its unit is another than the metre.
+void check_is_in_metres(const PointCloud& cloud);
+
+/// Reads .pcd (ascii, binary, compressed), .ply, .las, .xyz/.csv; the format is told by content,
+/// and by suffix where content does not tell. No library sees the bytes, and no header makes the
+/// reader allocate more than a small multiple of the file.
+/// @throws InputError if the file is unusable or has no finite point.
+PointCloud read_point_cloud(const std::filesystem::path& file);
+
+/// The same from bytes; `name` stands for the file in messages, its suffix counts.
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name);
+
+}  // namespace roadbed::map::occupancy::clouds

@@ -1,0 +1,201 @@
+// LAS 1.0 to 1.4: ASPRS, "LAS Specification 1.4 - R15", 2019. GeoTIFF keys: OGC 19-008r4.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "roadbed/map/occupancy/clouds/cloud_formats.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+namespace {
+
+// Least bytes of a record of point data format 0 … 10.
+constexpr std::array<std::size_t, 11> kRecordBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+
+// Offsets in the public header block.
+namespace at {
+constexpr std::size_t minor_version = 25, header_size = 94, points = 96, records = 100,
+                      format = 104, record_length = 105, legacy_count = 107, scale = 131,
+                      offset = 155, count = 247;
+}  // namespace at
+
+constexpr std::size_t kLeastHeader = 227, kHeader14 = 375, kRecordHeader = 54;
+
+struct GeoKeys {
+  unsigned projected_crs = 0, geographic_crs = 0, linear_unit = 0;
+  std::string citation, wkt;
+};
+
+class LasParser {
+ public:
+  LasParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  RawCloud parse() {
+    check_header();
+    read_variable_records();
+    name_crs();
+    read_points();
+    return std::move(cloud_);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::size_t byte, const std::string& element, const std::string& found,
+                           const std::string& needed, const std::string& remedy) const {
+    refuse_cloud(name_, fmt::format("byte {}", byte), element, found, needed, remedy);
+  }
+
+  std::uint64_t number(std::size_t offset, std::size_t size) const {
+    return read_unsigned(bytes_, offset, size);
+  }
+
+  double real(std::size_t offset) const {
+    return read_scalar(bytes_.data() + offset, ScalarType::f64);
+  }
+
+  void check_header() {
+    if (bytes_.size() < kLeastHeader || !bytes_.starts_with("LASF")) {
+      refuse(0, "header", "is cut or does not begin with LASF",
+             fmt::format("{} bytes", kLeastHeader), "get the whole file");
+    }
+    const auto major = number(at::minor_version - 1, 1), minor = number(at::minor_version, 1);
+    if (major != 1 || minor > 4) {
+      refuse(at::minor_version - 1, "version", fmt::format("{}.{}", major, minor), "1.0 to 1.4",
+             "convert the file");
+    }
+    if (minor == 4 && bytes_.size() < kHeader14) {
+      refuse(0, "header", fmt::format("{} bytes", bytes_.size()),
+             fmt::format("{} in LAS 1.4", kHeader14), "get the whole file");
+    }
+    cloud_.format = fmt::format("LAS {}.{}", major, minor);
+    check_records();
+    check_count(minor);
+  }
+
+  void check_records() {
+    const auto format = number(at::format, 1);
+    if ((format & 0xc0) != 0) {
+      refuse(at::format, "points", "are compressed (LAZ)", "plain LAS",
+             "uncompress it first, for instance with: laszip -i FILE.laz -o FILE.las");
+    }
+    record_length_ = number(at::record_length, 2);
+    if (format >= kRecordBytes.size() || record_length_ < kRecordBytes[format]) {
+      refuse(at::format, "point data format",
+             fmt::format("{} with records of {} bytes", format, record_length_),
+             "format 0 to 10 with its record length", "check that the file is whole");
+    }
+  }
+
+  void check_count(std::uint64_t minor) {
+    count_ = number(at::legacy_count, 4);
+    if (minor == 4 && count_ == 0) count_ = number(at::count, 8);
+    body_offset_ = number(at::points, 4);
+    if (body_offset_ < kLeastHeader || body_offset_ > bytes_.size()) {
+      refuse(at::points, "offset to the points", fmt::format("{}", body_offset_),
+             fmt::format("{} to {}", kLeastHeader, bytes_.size()), "get the whole file");
+    }
+    const std::size_t fit = (bytes_.size() - body_offset_) / record_length_;
+    if (count_ > fit) {
+      refuse(at::legacy_count, "number of points",
+             fmt::format("{}, but the file ends after {}", count_, fit), "all of them",
+             "get the whole file");
+    }
+  }
+
+  void read_variable_records() {
+    std::size_t offset = number(at::header_size, 2);
+    const auto records = number(at::records, 4);
+    for (std::uint64_t i = 0; i < records; ++i) {
+      if (offset > body_offset_ || body_offset_ - offset < kRecordHeader) return note_cut_records();
+      const std::size_t length = number(offset + 20, 2), begin = offset + kRecordHeader;
+      if (length > body_offset_ - begin) return note_cut_records();
+      if (bytes_.substr(offset + 2, 15) == "LASF_Projection") {
+        read_projection(number(offset + 18, 2), bytes_.substr(begin, length));
+      }
+      offset = begin + length;
+    }
+  }
+
+  void note_cut_records() {
+    cloud_.notes.emplace_back("a variable length record is cut; the rest of them are ignored");
+  }
+
+  void read_projection(std::uint64_t record, std::string_view body) {
+    if (record == 34735) {
+      read_geo_keys(body);
+    } else if (record == 34737) {
+      geo_.citation = body.substr(0, body.find_first_of(std::string_view("|\0", 2)));
+    } else if (record == 2112) {
+      geo_.wkt = body.substr(0, body.find('\0'));
+    }
+  }
+
+  // Rows of four: key, where its value is (0: here), count, value; the first row is a header.
+  void read_geo_keys(std::string_view body) {
+    for (std::size_t row = 8; row + 8 <= body.size(); row += 8) {
+      if (read_unsigned(body, row + 2, 2) != 0) continue;
+      const auto value = static_cast<unsigned>(read_unsigned(body, row + 6, 2));
+      switch (read_unsigned(body, row, 2)) {
+        case 2048:
+          geo_.geographic_crs = value;
+          break;
+        case 3072:
+          geo_.projected_crs = value;
+          break;
+        case 3076:
+          geo_.linear_unit = value;
+          break;
+        default:
+          break;
+      }
+    }
+  }
+
+  void name_crs() {
+    constexpr unsigned user_defined = 32767;
+    const bool projected = geo_.projected_crs != 0 || geo_.wkt.starts_with("PROJCS");
+    const unsigned code = projected ? geo_.projected_crs : geo_.geographic_crs;
+    if (code != 0 && code != user_defined) {
+      cloud_.crs = fmt::format("EPSG:{}", code);
+    } else {
+      cloud_.crs = geo_.wkt.empty() ? geo_.citation : geo_.wkt;
+    }
+    if (geo_.linear_unit == 9001) cloud_.unit = LengthUnit::metre;
+    if (geo_.linear_unit == 9002) cloud_.unit = LengthUnit::foot;
+    if (geo_.linear_unit == 9003) cloud_.unit = LengthUnit::us_survey_foot;
+    const bool geographic = geo_.geographic_crs != 0 || geo_.wkt.starts_with("GEOGCS");
+    if (!projected && geographic) cloud_.unit = LengthUnit::degree;
+  }
+
+  void read_points() {
+    const Eigen::Vector3d scale(real(at::scale), real(at::scale + 8), real(at::scale + 16));
+    const Eigen::Vector3d offset(real(at::offset), real(at::offset + 8), real(at::offset + 16));
+    if (!scale.allFinite() || !offset.allFinite() || (scale.array() == 0.0).any()) {
+      refuse(at::scale, "scale and offset", "a value is 0 or not finite", "finite scales, not 0",
+             "save the cloud again");
+    }
+    cloud_.points_in_source.reserve(count_);
+    for (std::uint64_t i = 0; i < count_; ++i) {
+      const char* record = bytes_.data() + body_offset_ + i * record_length_;
+      const Eigen::Vector3d steps(read_scalar(record, ScalarType::i32),
+                                  read_scalar(record + 4, ScalarType::i32),
+                                  read_scalar(record + 8, ScalarType::i32));
+      cloud_.add(steps.cwiseProduct(scale) + offset);
+    }
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  std::size_t record_length_ = 0;
+  std::size_t body_offset_ = 0;
+  std::uint64_t count_ = 0;
+  GeoKeys geo_;
+  RawCloud cloud_;
+};
+
+}  // namespace
+
+RawCloud parse_las(std::string_view bytes, const std::string& name) {
+  return LasParser(bytes, name).parse();
+}
+
+}  // namespace roadbed::map::occupancy::clouds

@@ -1,0 +1,118 @@
+// Text with a point per line: x, y, z first, or in the columns that a header line names so; it may
+// name columns of the sensor as well.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "roadbed/map/occupancy/clouds/cloud_formats.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+namespace {
+
+std::vector<std::string_view> split(std::string_view line) {
+  constexpr std::string_view space = " \t", separators = ",;";
+  std::vector<std::string_view> words;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(space);
+    if (begin == std::string_view::npos) return words;
+    const std::size_t end = std::min(line.find_first_of(" \t,;", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+    line.remove_prefix(std::min(line.find_first_not_of(space), line.size()));
+    if (!line.empty() && separators.find(line.front()) != std::string_view::npos) {
+      line.remove_prefix(1);
+    }
+  }
+}
+
+// "//X", "x_m" and "\"x\"" all name the x axis.
+std::string axis_of(std::string_view word) {
+  std::string small = lower(word);
+  std::erase_if(small, [](char c) { return c == '"' || c == '/' || c == '#'; });
+  if (small.ends_with("_m")) small.resize(small.size() - 2);
+  return small;
+}
+
+std::vector<std::string> field_names(const std::vector<std::string_view>& words) {
+  std::vector<std::string> names;
+  for (const std::string_view word : words) names.push_back(axis_of(word));
+  return names;
+}
+
+bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
+
+class XyzParser {
+ public:
+  XyzParser(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
+
+  RawCloud parse() {
+    cloud_.format = "XYZ text";
+    while (!lines_.done()) {
+      const std::string_view line = lines_.next_line();
+      const auto words = split(line);
+      if (words.empty() || take_header(line, words)) continue;
+      const Eigen::Vector3d point = numbers(words, columns_, "x, y and z");
+      if (sensor_columns_) {
+        cloud_.add(point, numbers(words, *sensor_columns_, "the sensor's x, y and z"));
+      } else {
+        cloud_.add(point);
+      }
+    }
+    return std::move(cloud_);
+  }
+
+ private:
+  // Comments anywhere; column names or a number of points before the first point.
+  bool take_header(std::string_view line, const std::vector<std::string_view>& words) {
+    const bool before_points = cloud_.points_in_source.empty() && cloud_.dropped_not_finite == 0;
+    const bool is_named = before_points && take_names(field_names(words));
+    if (is_named || is_comment(line)) return true;
+    return before_points && words.size() == 1 && parse_count(words[0]).has_value();
+  }
+
+  bool take_names(const std::vector<std::string>& names) {
+    const auto named = columns_named(names, {"x", "y", "z"});
+    if (!named) return false;
+    columns_ = *named;
+    sensor_columns_ = sensor_columns(names, cloud_.notes);
+    return true;
+  }
+
+  Eigen::Vector3d numbers(const std::vector<std::string_view>& words, const FieldColumns& columns,
+                          const char* needed) const {
+    Eigen::Vector3d numbers;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (columns[axis] >= words.size()) {
+        refuse(fmt::format("has {} values", words.size()), needed);
+      }
+      const std::string_view word = words[columns[axis]];
+      const auto value = parse_number(word);
+      if (!value) refuse(fmt::format("\"{}\" is not a number", word.substr(0, 40)), needed);
+      numbers[static_cast<int>(axis)] = *value;
+    }
+    return numbers;
+  }
+
+  [[noreturn]] void refuse(const std::string& found, const std::string& needed) const {
+    refuse_cloud(name_, std::to_string(lines_.line_number()), "point", found, needed,
+                 "mend the line, or check that the file is text");
+  }
+
+  TextScanner lines_;
+  const std::string& name_;
+  FieldColumns columns_{0, 1, 2};
+  std::optional<FieldColumns> sensor_columns_;
+  RawCloud cloud_;
+};
+
+}  // namespace
+
+RawCloud parse_xyz(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+  return XyzParser(bytes, name).parse();
+}
+
+}  // namespace roadbed::map::occupancy::clouds

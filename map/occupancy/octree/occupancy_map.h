@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
+
+namespace roadbed::map::inline occupancy::inline octree {
+
+struct OccupancyOptions {
+  double resolution_m = 0.1;
+  /// Rays carve free space this far from the sensor; hits beyond count all the same.
+  double carve_range_m = std::numeric_limits<double>::infinity();
+  /// A cell with a hit is occupied. Off: as in OctoMap, each cloud changes the log-odds of a cell
+  /// once, so that later rays carve it away, and hits beyond the carving range do not count.
+  bool sticky_hits = true;
+  /// To take away what moved: a cell with hits is free if so many clouds, and more than have a
+  /// point in it, saw through it, which is to have a ray across it and no point in it. Clouds are
+  /// counted up to 255. In no order; it takes away what is thin, or that rays graze, as well. 0:
+  /// never.
+  int remove_seen_through = 0;
+};
+
+/// Obstacle occupancy, kept as an OctoMap. A measured hit is sticky: rays never carve it away,
+/// unless the options say otherwise.
+class OccupancyMap final : public OccupancySource {
+ public:
+  /// Clouds with a sensor position carve free space along their rays; others only mark hits.
+  /// Cost: a step per cell that a ray crosses; of points in the same cell one ray is drawn.
+  /// @throws InputError if a point or sensor lies beyond OctoMap's ±32768 cells of the origin, or
+  ///         the rays cross too many cells to be kept.
+  /// @throws std::invalid_argument if there is no point, an option is not positive, or
+  ///         `remove_seen_through` is not 0 to 255 or comes with hits that are not sticky.
+  static OccupancyMap build(std::span<const PointCloud> clouds, const OccupancyOptions& options);
+
+  struct File {
+    std::string bytes;
+    std::size_t nodes;
+    std::optional<SeenThrough> seen_through = {};
+  };
+
+  /// The bytes of `build(…).to_bt()`, without making the tree: half the time and a quarter of the
+  /// memory.
+  /// @throws as `build`.
+  static File build_bt(std::span<const PointCloud> clouds, const OccupancyOptions& options);
+
+  /// Reads `.bt` or `.ot`; the header, depth and node count are checked before OctoMap sees a byte.
+  /// @throws InputError if the file is unusable.
+  static OccupancyMap load(const std::filesystem::path& file);
+
+  /// The same from bytes; `name` stands for the file in messages.
+  static OccupancyMap parse(std::string_view bytes, const std::string& name);
+
+  ~OccupancyMap() override;
+  OccupancyMap(OccupancyMap&&) noexcept;
+  OccupancyMap& operator=(OccupancyMap&&) noexcept;
+
+  double resolution_m() const override;
+  const Eigen::Vector3d& origin_in_source() const override;
+  const std::string& crs() const override;
+  std::optional<SeenThrough> seen_through() const override;
+  std::size_t node_count() const;
+
+  std::optional<Box3> bounds() const override;
+
+  /// State at a point; beyond the octree's range it is unknown. O(16).
+  CellState at(const Eigen::Vector3d& in_source) const;
+
+  /// All leaves with a state, in the octree's own order.
+  std::vector<OccupancyCell> cells() const override;
+
+  /// In the same order. O(leaves in the box).
+  std::vector<OccupancyCell> cells_in(const Box3& box) const override;
+
+  /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`, and one
+  /// `# roadbed seen-through CLOUDS removed CELLS` where hits were taken away. Log-odds of an `.ot`
+  /// become free and occupied at OctoMap's threshold, 0.
+  std::string to_bt() const;
+
+  /// The bytes of a standard `.ot`, with the log-odds, and the same lines.
+  std::string to_ot() const;
+
+ private:
+  struct Tree;
+  explicit OccupancyMap(std::unique_ptr<Tree> tree);
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Whether the bytes begin as a `.bt` or `.ot` does.
+bool is_occupancy_file(std::string_view bytes);
+
+}  // namespace roadbed::map::occupancy::octree

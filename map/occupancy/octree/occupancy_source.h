@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
+
+namespace roadbed::map::inline occupancy::inline octree {
+
+/// Measured at a cell: nothing, a way through, or a thing.
+enum class CellState { unknown, free, occupied };
+
+/// An axis-aligned box of occupied or free space, a leaf of the octree.
+struct OccupancyCell {
+  Eigen::Vector3d centre_in_source;
+  double size_m;
+  CellState state;
+};
+
+/// Hits that were taken away since clouds saw through their cells.
+struct SeenThrough {
+  int clouds = 0;         ///< at least so many, and more than hit it
+  std::size_t cells = 0;  ///< that count as free though a point lies in them
+
+  bool operator==(const SeenThrough&) const = default;
+};
+
+/// Where cells of occupied and free space come from.
+class OccupancySource {
+ public:
+  virtual ~OccupancySource() = default;
+
+  virtual double resolution_m() const = 0;
+  virtual const Eigen::Vector3d& origin_in_source() const = 0;
+
+  virtual const std::string& crs() const = 0;
+
+  /// What was taken away of what was measured; none where every hit was kept.
+  virtual std::optional<SeenThrough> seen_through() const = 0;
+
+  /// Around all leaves; none if there is none.
+  virtual std::optional<Box3> bounds() const = 0;
+
+  /// All leaves with a state.
+  virtual std::vector<OccupancyCell> cells() const = 0;
+
+  /// Those that overlap a box, and some around it perhaps. May be called by several threads.
+  virtual std::vector<OccupancyCell> cells_in(const Box3& box) const = 0;
+
+ protected:
+  OccupancySource() = default;
+  OccupancySource(const OccupancySource&) = default;
+  OccupancySource(OccupancySource&&) = default;
+  OccupancySource& operator=(const OccupancySource&) = default;
+  OccupancySource& operator=(OccupancySource&&) = default;
+};
+
+}  // namespace roadbed::map::occupancy::octree

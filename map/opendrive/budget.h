@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace roadbed::map::opendrive {
+
+/// A road whose numbers cannot be those of a road.
+class RoadFault : public std::runtime_error {
+ public:
+  RoadFault(std::size_t road, const std::string& found, const std::string& remedy)
+      : std::runtime_error(found), road_index(road), what_to_do(remedy) {}
+  std::size_t road_index;
+  std::string what_to_do;
+};
+
+/// How many points a map may still be sampled into. A file can ask for endless points with a few
+/// bytes (a road of 1,000 km in millimetre curves); memory stays bounded by the file's size. A
+/// point costs about 160 bytes until it is in the map, so 128 MB and 4 times the file are spent.
+class PointBudget {
+ public:
+  /// What a lane or an object costs beside its points.
+  static constexpr std::size_t kPerThing = 10;
+
+  explicit PointBudget(std::size_t file_bytes) : left_(800'000 + file_bytes / 40) {}
+
+  std::size_t left() const { return left_; }
+
+  /// @throws RoadFault if fewer than `points` are left.
+  void spend(std::size_t points, std::size_t road) {
+    if (!try_to_spend(points)) {
+      throw RoadFault(road,
+                      "its curves and lanes need more points than a map of this size can hold",
+                      "check its lengths, curvatures and lane sections, or sample it with a larger "
+                      "--max-error");
+    }
+  }
+
+  bool try_to_spend(std::size_t points) {
+    if (points > left_) return false;
+    left_ -= points;
+    return true;
+  }
+
+ private:
+  std::size_t left_;
+};
+
+/// How many lanes the budget of a file can hold: each has two points of two borders at least.
+inline std::size_t most_lanes(std::size_t file_bytes) {
+  return PointBudget(file_bytes).left() / (PointBudget::kPerThing + 2);
+}
+
+}  // namespace roadbed::map::opendrive

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadbed/geometry/curves/plan_view.h"
+#include "roadbed/map/opendrive/budget.h"
+#include "roadbed/map/opendrive/document.h"
+
+namespace roadbed::map::opendrive {
+
+/// One side of one lane section: its lanes from the middle of the road outwards.
+struct SectionSide {
+  double from_s_m = 0.0, to_s_m = 0.0;
+  int sign = 1;  ///< of the lanes' ids: +1 left, −1 right
+  std::vector<const LaneRecord*> lanes;
+};
+
+/// The lanes of a section's side, and how far that side reaches: to the next section that says
+/// something of it.
+SectionSide section_side(const RoadRecord& road, std::size_t section, int sign);
+
+/// Index of the next section that says something of that side, or the number of sections.
+std::size_t next_section(const RoadRecord& road, std::size_t section, int sign);
+
+/// A border along a side: its points, and their heights.
+struct BorderLine {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<double> z_m;
+};
+
+/// All borders of a side, at the same stations: border 0 is the lane offset, border i the outer one
+/// of lane i. Of a lane with <height> records its own borders stand higher than the road's.
+struct SideLines {
+  std::vector<double> s_m;
+  std::vector<BorderLine> borders;
+  std::vector<std::vector<LaneHeight>> raised;  ///< by station and lane, or empty: none is
+};
+
+/// Borders along a whole side, at stations dense enough that a straight line between neighbouring
+/// points is nowhere more than `max_error_m` from the border (proven in plan view from bounds of
+/// its second derivative). Where records do not meet, a station occurs twice.
+///
+/// A border at offset t, with the lateral shape's height h(s, t) there, lies at
+/// reference(s) + (t·cos(superelevation) − h·sin(superelevation))·normal(s); its height is
+/// elevation + t·sin(superelevation) + h·cos(superelevation) − |t|·tan(crossfall). A lane with
+/// level="true" goes on flat from its inner border.
+/// @param road_index  of the road, for faults.
+/// @throws RoadFault if a border goes where no road can be, or the budget is spent.
+SideLines sample_side(const RoadRecord& road, std::size_t road_index,
+                      const geometry::PlanView& plan_view, const SectionSide& side,
+                      double max_error_m, PointBudget& budget);
+
+}  // namespace roadbed::map::opendrive

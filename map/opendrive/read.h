@@ -1,0 +1,14 @@
+#pragma once
+
+#include "roadbed/map/files/xml.h"
+#include "roadbed/map/model/load_options.h"
+#include "roadbed/map/model/road_map.h"
+
+namespace roadbed::map::opendrive {
+
+/// Everything of an OpenDRIVE file (ASAM OpenDRIVE 1.4–1.8) that a RoadMap holds.
+/// @throws InputError with the place in the file if it is unusable.
+/// @param xml  is taken, so that its elements are gone before the lanes are built.
+RoadMapParts read(XmlDocument xml, const LoadOptions& options);
+
+}  // namespace roadbed::map::opendrive

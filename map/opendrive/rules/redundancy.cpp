@@ -1,0 +1,148 @@
+// What a file says twice: it can be left out without changing the road.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/opendrive/rules/cubic.h"
+#include "roadbed/map/opendrive/rules/source.h"
+
+namespace roadbed::map::opendrive::rules {
+namespace {
+
+constexpr double kNothing = 1e-6;  // [m], [rad] a difference that no road has
+
+/// Whether the record says over its length what the one before it would, too: cubics that agree at
+/// four stations are the same.
+bool goes_on(const geometry::CubicRecord& before, const geometry::CubicRecord& record,
+             double length_m) {
+  for (const double share : {0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0}) {
+    const double ds_m = share * length_m;
+    const double old = value_at(before, record.s_m - before.s_m + ds_m);
+    if (!(std::abs(value_at(record, ds_m) - old) <= kNothing)) return false;
+  }
+  return record.s_m > before.s_m && length_m > 0.0;
+}
+
+/// Where the records of an element are: under what, called what, with which attribute for s, from
+/// which station on to which.
+struct Records {
+  pugi::xml_node parent;
+  const char *name, *s_attribute;
+  double from_s_m, to_s_m;
+};
+
+void find_redundant(const Source& source, const RoadSource& road, const Records& where,
+                    const std::string& element, validation::Report& report) {
+  const auto records = source.cubics(where.parent, where.name, where.s_attribute, where.from_s_m);
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const geometry::CubicRecord& record = records[i].record;
+    const double end_m = i + 1 < records.size() ? records[i + 1].record.s_m : where.to_s_m;
+    if (!goes_on(records[i - 1].record, record, end_m - record.s_m)) continue;
+    validation::Finding& finding =
+        add_at(report, source, road, records[i].node,
+               fmt::format("<{}> at s {:.3f} m only says how the one before it goes on; remove it",
+                           where.name, record.s_m));
+    finding.element = element;
+    finding.in_map = road.place_at(record.s_m);
+  }
+}
+
+void redundant_records(const Source& source, const validation::ValidateOptions&,
+                       validation::Report& report) {
+  for (const RoadSource& road : source.roads) {
+    const auto find = [&](const char* parent, const char* name) {
+      find_redundant(source, road, {road.node.child(parent), name, "s", 0.0, road.length_m},
+                     road.element(), report);
+    };
+    find("elevationProfile", "elevation");
+    find("lateralProfile", "superelevation");
+    find("lanes", "laneOffset");
+    for (const SectionSource& section : road.sections) {
+      for (const LaneSource& lane : section.lanes) {
+        for (const char* name : {"width", "border"}) {
+          find_redundant(source, road, {lane.node, name, "sOffset", section.s_m, section.end_s_m},
+                         lane_element(road, section, lane.id), report);
+        }
+      }
+    }
+  }
+}
+
+bool is_line(const GeometrySource& piece) {
+  return piece.start && piece.end && piece.node.child("line");
+}
+
+/// Whether the second line begins where the first ends, in its direction.
+bool goes_straight_on(const GeometrySource& before, const GeometrySource& piece) {
+  const double gap_m = (piece.start->pose.position() - before.end->pose.position()).norm();
+  const double turn =
+      geometry::wrap_angle(piece.start->pose.heading_rad - before.end->pose.heading_rad);
+  return gap_m <= 1e-3 && std::abs(turn) <= kNothing;
+}
+
+void redundant_lines(const Source& source, const validation::ValidateOptions&,
+                     validation::Report& report) {
+  for (const RoadSource& road : source.roads) {
+    for (std::size_t i = 1; i < road.geometry.size(); ++i) {
+      const GeometrySource &before = road.geometry[i - 1], &piece = road.geometry[i];
+      if (!is_line(before) || !is_line(piece) || !goes_straight_on(before, piece)) continue;
+      validation::Finding& finding = add_at(
+          report, source, road, piece.node,
+          fmt::format(
+              "the line at s {:.3f} m goes on straight from the one before it; make them one",
+              piece.s_m));
+      finding.in_map = piece.start->pose.position();
+    }
+  }
+}
+
+/// That a connecting road has one connection only was asked for by revision 1.7 alone: the others
+/// let one with lanes in both directions have two.
+void repeated_connecting_roads(const Source& source, const validation::ValidateOptions&,
+                               validation::Report& report) {
+  const auto header = source.xml.root().child("header");
+  if (header.attribute("revMajor").as_int() != 1 || header.attribute("revMinor").as_int() != 7) {
+    return;
+  }
+  std::map<std::string_view, pugi::xml_node> first;
+  for (const auto junction : source.junctions) {
+    for (const auto node : junction.children("connection")) {
+      const std::string_view road = node.attribute("connectingRoad").value();
+      const auto [known, is_new] = first.emplace(road, node);
+      if (road.empty() || is_new) continue;
+      const RoadSource* found = source.find_road(road);
+      report
+          .add(fmt::format("junction {}", junction.attribute("id").value()),
+               found ? found->place() : std::nullopt,
+               fmt::format("connection {} leads over road {}, as connection {} does already; put "
+                           "their laneLinks into one",
+                           node.attribute("id").value(), road,
+                           known->second.attribute("id").value()))
+          .line = source.xml.line_of(node);
+    }
+  }
+}
+
+constexpr std::array<SourceRule, 3> kRules = {{
+    {{"profile.redundant", "asam.net:xodr:1.7.0:performance.avoid_redundant_info",
+      validation::Severity::info,
+      "a record of elevation, superelevation, lane offset, width or border changes nothing"},
+     redundant_records},
+    {{"curve.redundant", "asam.net:xodr:1.7.0:performance.avoid_redundant_info",
+      validation::Severity::info, "two lines of the reference line are one"},
+     redundant_lines},
+    {{"junction.repeated-road", "asam.net:xodr:1.7.0:junctions.connection.one_connection_element",
+      validation::Severity::warning,
+      "two connections of a revision 1.7 file lead over one connecting road"},
+     repeated_connecting_roads},
+}};
+
+}  // namespace
+
+std::span<const SourceRule> redundancy_rules() { return kRules; }
+
+}  // namespace roadbed::map::opendrive::rules

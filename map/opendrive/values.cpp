@@ -1,0 +1,164 @@
+#include "roadbed/map/opendrive/values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace roadbed::map::opendrive {
+
+geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
+                                 const char* s_attribute, double s_add_m) {
+  pugi::xml_attribute next;
+  const geometry::CubicRecord record{s_add_m + xml.number(node, s_attribute, next),
+                                     xml.number(node, "a", next), xml.number(node, "b", next),
+                                     xml.number(node, "c", next), xml.number(node, "d", next)};
+  constexpr double largest = 1e200;  // so that sums of them stay finite
+  for (const double value : {record.s_m, record.a, record.b, record.c, record.d}) {
+    if (std::abs(value) > largest) {
+      xml.refuse(node, fmt::format("a coefficient of {:.3g}", value), "a value of a road",
+                 "correct the value");
+    }
+  }
+  return record;
+}
+
+std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
+  const auto earlier = [](const auto& a, const auto& b) { return a.s_m < b.s_m; };
+  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
+    std::stable_sort(records.begin(), records.end(), earlier);
+  }
+  return records;
+}
+
+geometry::PiecewiseCubic read_cubics(const XmlDocument& xml, pugi::xml_node parent,
+                                     const char* name, const char* s_attribute, double s_add_m) {
+  std::vector<geometry::CubicRecord> records;
+  for (const auto node : parent.children(name)) {
+    records.push_back(read_cubic(xml, node, s_attribute, s_add_m));
+  }
+  return geometry::PiecewiseCubic(sorted(std::move(records)));
+}
+
+std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
+                                 std::vector<ImportRemark>& remarks) {
+  const std::string_view written = speed.attribute("max").value();
+  if (written.empty() || written == "no limit" || written == "undefined") return {};
+  const std::string_view unit = speed.attribute("unit").value();
+  const double to_mps = unit.empty() || unit == "m/s" ? 1.0
+                        : unit == "km/h"              ? 1.0 / 3.6
+                        : unit == "mph"               ? 0.44704
+                                                      : 0.0;
+  const std::optional<double> max = xml.optional_number(speed, "max");
+  if (!max || *max < 0.0 || *max > 1e4 || to_mps == 0.0) {
+    remarks.push_back(
+        {"import.speed", true, xml.place_of(speed), xml.line_of(speed),
+         fmt::format("max=\"{}\" unit=\"{}\" is no speed in m/s, km/h or mph; the limit "
+                     "counts as unknown, correct it",
+                     written, unit)});
+    return {};
+  }
+  return *max * to_mps;
+}
+
+bool is_true(std::string_view word) { return word == "true" || word == "1"; }
+
+char orientation_of(std::string_view word) {
+  return word == "+" || word == "-" ? word.front() : '\0';
+}
+
+std::vector<std::pair<int, int>> read_lane_ranges(const XmlDocument& xml, pugi::xml_node node) {
+  std::vector<std::pair<int, int>> ranges;
+  for (const auto validity : node.children("validity")) {
+    ranges.emplace_back(
+        std::minmax({xml.integer(validity, "fromLane"), xml.integer(validity, "toLane")}));
+  }
+  return ranges;
+}
+
+void keep_attributes(pugi::xml_node node, std::initializer_list<const char*> names,
+                     Attributes& attributes) {
+  for (const char* name : names) {
+    if (const auto found = node.attribute(name)) attributes.emplace_back(name, found.value());
+  }
+}
+
+ImportRemark left_out(const char* rule, const InputError& error) {
+  const InputError::Parts& parts = error.parts();
+  return {rule, true, parts.element, std::strtol(parts.place.c_str(), nullptr, 10),
+          fmt::format("{}, needs {}; it is left out, {}", parts.found, parts.needed, parts.remedy)};
+}
+
+std::string described(pugi::xml_node node) {
+  std::string text;
+  for (const auto attribute : node.attributes()) {
+    if (!text.empty()) text += ", ";
+    text += attribute.name();
+    text += ' ';
+    text += attribute.value();
+  }
+  return text;
+}
+
+Participants participants_of(LaneType type) {
+  switch (type) {
+    case LaneType::bus:
+      return {Participant::bus, Participant::emergency};
+    case LaneType::taxi:
+      return {Participant::taxi, Participant::emergency};
+    case LaneType::biking:
+      return {Participant::bicycle};
+    case LaneType::sidewalk:
+      return {Participant::pedestrian};
+    case LaneType::tram:
+      return {Participant::tram};
+    case LaneType::rail:
+      return {Participant::train};
+    default:
+      return is_surface(type) ? Participants::vehicles() : Participants{};
+  }
+}
+
+LaneType lane_type(std::string_view word) {
+  static constexpr std::array<std::pair<std::string_view, LaneType>, 31> words = {{
+      {"none", LaneType::none},
+      {"driving", LaneType::driving},
+      {"bidirectional", LaneType::bidirectional},
+      {"entry", LaneType::entry},
+      {"mwyEntry", LaneType::entry},
+      {"exit", LaneType::exit},
+      {"mwyExit", LaneType::exit},
+      {"onRamp", LaneType::on_ramp},
+      {"offRamp", LaneType::off_ramp},
+      {"connectingRamp", LaneType::connecting_ramp},
+      {"slipLane", LaneType::connecting_ramp},
+      {"shoulder", LaneType::shoulder},
+      {"stop", LaneType::stop},
+      {"parking", LaneType::parking},
+      {"border", LaneType::border},
+      {"biking", LaneType::biking},
+      {"sidewalk", LaneType::sidewalk},
+      {"walking", LaneType::sidewalk},
+      {"shared", LaneType::other},
+      {"curb", LaneType::curb},
+      {"median", LaneType::median},
+      {"restricted", LaneType::restricted},
+      {"roadWorks", LaneType::roadworks},
+      {"tram", LaneType::tram},
+      {"rail", LaneType::rail},
+      {"bus", LaneType::bus},
+      {"taxi", LaneType::taxi},
+      {"HOV", LaneType::driving},
+      {"special1", LaneType::other},
+      {"special2", LaneType::other},
+      {"special3", LaneType::other},
+  }};
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.first == word; });
+  return found == words.end() ? LaneType::other : found->second;
+}
+
+}  // namespace roadbed::map::opendrive

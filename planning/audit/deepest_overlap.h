@@ -1,0 +1,46 @@
+#pragma once
+
+// Private to planning/audit.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/body_part.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/probe.h"
+
+namespace roadbed::planning::inline audit {
+
+/// How deep a part of a vehicle reaches into what it meets, at moments of a conflict.
+class DeepestOverlapSearch {
+ public:
+  /// @param part       inflated; what is given has to outlive this.
+  /// @param conflicts  how many there are: of very many, fewer moments each are looked at.
+  DeepestOverlapSearch(const map::ClearanceField& field, const Probe& probe,
+                       const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds,
+                       std::span<const MovingObstacle> moving, std::size_t conflicts);
+
+  /// @pre the conflict's least clearance is 0.
+  DeepestOverlap of(const Conflict& conflict) const;
+
+ private:
+  std::vector<double> moments_s(const Conflict& conflict) const;
+  geometry::Overlap with_cells(const geometry::TrajectoryPoint& state) const;
+  geometry::Overlap with(const MovingObstacle& mover, const geometry::TrajectoryPoint& state) const;
+
+  const map::ClearanceField& field_;
+  const Probe& probe_;
+  const geometry::BodyPart& part_;
+  std::vector<map::ObstacleKind> kinds_;
+  std::span<const MovingObstacle> moving_;
+  double most_moments_;
+};
+
+/// The obstacle of an id that is among those that move; null for a cell's empty one.
+const MovingObstacle* find_mover(std::span<const MovingObstacle> moving, const std::string& id);
+
+}  // namespace roadbed::planning::audit

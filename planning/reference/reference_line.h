@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/route/route.h"
+
+namespace roadbed::planning::inline reference {
+
+/// The reference line at one station. Derivatives are with respect to arc length.
+struct ReferencePoint {
+  double s_m = 0.0;
+  Eigen::Vector2d in_map{0, 0};
+  double heading_rad = 0.0;          ///< continuous along the line, not wrapped
+  double curvature_per_m = 0.0;      ///< κ, positive to the left
+  double curvature_d1_per_m2 = 0.0;  ///< κ′
+  double curvature_d2_per_m3 = 0.0;  ///< κ″
+  double curvature_d3_per_m4 = 0.0;  ///< κ‴
+  double curvature_d4_per_m5 = 0.0;  ///< κ⁗, continuous as all before
+};
+
+/// Room beside the line and what the map says there: the own lane, its neighbours in the same
+/// direction across markings that may be crossed, and the lane of the other direction where its
+/// marking may be crossed too, as for passing a parked car.
+struct Corridor {
+  double left_m = 0.0;   ///< distance to the left edge of the drivable road, ≥ 0
+  double right_m = 0.0;  ///< distance to the right edge, ≥ 0
+  double speed_limit_mps = 0.0;
+};
+
+struct ReferenceLineOptions {
+  double step_m = 0.5;                 ///< between support points
+  double max_smoothing_m = 0.3;        ///< largest move off the centreline, or of a way-point
+  double max_curvature_per_m = 0.2;    ///< the vehicle can steer
+  double lane_change_length_m = 40.0;  ///< a lane change takes, where there is room
+  double default_speed_mps = 50.0 / 3.6;
+  double extend_m = 30.0;  ///< how far the line goes on past the goal
+  /// Who is to drive along it. Corners of way-points are rounded for it at the speed below (none:
+  /// by 14 m); bends of a route that it cannot steer are drawn wider, as far as its body keeps to
+  /// the road, and what remains is noted.
+  std::optional<geometry::VehicleShape> corner_vehicle = std::nullopt;
+  double corner_speed_mps = 0.0;
+  double max_widening_m = 1.2;  ///< of such bends: the largest move of theirs
+};
+
+/// A smooth line to drive along: position, heading, κ, κ′, κ″, κ‴ and κ⁗ are continuous and exact
+/// derivatives of one curve (geometry/curves/smooth_curve.h). Immutable; `s` is true arc length.
+class ReferenceLine {
+ public:
+  /// Through way-points (not along a route): cubic spline, resampled, corners rounded by quintic
+  /// Bézier curves (way_point_path.h), then made smooth within `max_smoothing_m`. The corridor is
+  /// `half_width_m` on both sides. The goal is the last way-point.
+  /// @throws std::invalid_argument for fewer than two distinct way-points, or one not finite.
+  static ReferenceLine through(const std::vector<Eigen::Vector2d>& way_points_in_map,
+                               double half_width_m, double speed_limit_mps,
+                               const ReferenceLineOptions& options = {});
+
+  /// Along a route, lane changes included, from its start to `extend_m` past its goal.
+  static ReferenceLine along(const map::RoadMap& road_map, const Route& route,
+                             const ReferenceLineOptions& options = {});
+
+  double length_m() const;
+
+  /// Station of the route's goal, at most length_m().
+  double goal_s_m() const;
+
+  /// Point at `s_m`. Past the end the line goes on straight; before 0 it follows the lane's first
+  /// metres behind the start, where there are any, then goes on straight. O(log N), a few µs.
+  ReferencePoint at(double s_m) const;
+
+  /// Room and speed limit at `s_m`, clamped to the line.
+  Corridor corridor_at(double s_m) const;
+
+  /// Foot of the perpendicular from a point: of the whole line, O(N); with `near_s_m` the nearest
+  /// one downhill from there, O(1). Before and past the line s is that of its straight extensions.
+  geometry::LinePosition project(const Eigen::Vector2d& point_in_map,
+                                 std::optional<double> near_s_m = std::nullopt) const;
+
+  /// Largest distance of a way-point that is no corner, or of the centreline, from the line [m].
+  double largest_move_m() const;
+
+  /// Corners of way-points, and stretches of a route, that cannot be driven as asked, or are drawn
+  /// wider so that they can; a line of text for each.
+  const std::vector<std::string>& notes() const;
+
+ private:
+  struct Data;
+  explicit ReferenceLine(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace roadbed::planning::reference

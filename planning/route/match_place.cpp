@@ -1,0 +1,92 @@
+#include "roadbed/planning/route/match_place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <tuple>
+
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/planning/route/route_network.h"
+
+namespace roadbed::planning::inline route {
+namespace {
+
+constexpr std::array kSearch_m = {10.0, 100.0, 1e3, 1e4, 1e5};
+constexpr std::size_t kNearest = 3;
+
+PlaceCandidate judge(const map::RoadMap& road_map, const map::LaneMatch& match,
+                     std::optional<double> heading_rad, const MatchOptions& options) {
+  PlaceCandidate made{match.place, match.distance_m, match.heading_rad};
+  double turn_rad =
+      heading_rad ? std::abs(geometry::wrap_angle(match.heading_rad - *heading_rad)) : 0.0;
+  if (heading_rad && may_reverse(road_map.lane(match.place.lane), options.participant)) {
+    made.sense = turn_rad > 0.5 * std::numbers::pi ? Sense::against : Sense::along;
+  }
+  if (made.sense == Sense::against) {
+    turn_rad = std::numbers::pi - turn_rad;
+    made.heading_rad = geometry::wrap_angle(made.heading_rad + std::numbers::pi);
+  }
+  made.misfit_m = match.distance_m + options.metres_per_radian * turn_rad +
+                  options.offset_weight * std::abs(match.place.d_m);
+  if (!may_use(road_map.lane(match.place.lane), options.participant)) {
+    made.verdict = MatchVerdict::not_for_participant;
+  } else if (turn_rad > 0.5 * std::numbers::pi) {
+    made.verdict = MatchVerdict::against_heading;
+  }
+  return made;
+}
+
+void sort_by_fit(std::vector<PlaceCandidate>& candidates) {
+  std::sort(candidates.begin(), candidates.end(),
+            [](const PlaceCandidate& a, const PlaceCandidate& b) {
+              return std::tie(a.verdict, a.misfit_m, a.place.lane) <
+                     std::tie(b.verdict, b.misfit_m, b.place.lane);
+            });
+}
+
+std::vector<PlaceCandidate> nearest(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
+                                    std::optional<double> heading_rad,
+                                    const MatchOptions& options) {
+  for (const double radius_m : kSearch_m) {
+    std::vector<PlaceCandidate> found;
+    for (const map::LaneMatch& match : road_map.locate(in_map, radius_m, false)) {
+      PlaceCandidate candidate = judge(road_map, match, heading_rad, options);
+      if (candidate.verdict == MatchVerdict::not_for_participant) continue;
+      candidate.verdict = MatchVerdict::too_far;
+      found.push_back(candidate);
+    }
+    if (found.empty()) continue;
+    if (found.size() > kNearest) found.resize(kNearest);  // locate() gives the nearest first
+    return found;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view name(MatchVerdict verdict) {
+  static constexpr std::array<std::string_view, 5> names = {"chosen", "possible", "against_heading",
+                                                            "not_for_participant", "too_far"};
+  return names.at(static_cast<std::size_t>(verdict));
+}
+
+std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
+                                        std::optional<double> heading_rad,
+                                        const MatchOptions& options) {
+  std::vector<PlaceCandidate> candidates;
+  for (const map::LaneMatch& match : road_map.locate(in_map, options.reach_m, false)) {
+    candidates.push_back(judge(road_map, match, heading_rad, options));
+  }
+  sort_by_fit(candidates);
+  if (candidates.empty() || candidates.front().verdict == MatchVerdict::not_for_participant) {
+    std::vector<PlaceCandidate> far = nearest(road_map, in_map, heading_rad, options);
+    candidates.insert(candidates.begin(), far.begin(), far.end());
+    return candidates;
+  }
+  candidates.front().verdict = MatchVerdict::chosen;
+  return candidates;
+}
+
+}  // namespace roadbed::planning::route

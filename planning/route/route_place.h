@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/route/route_network.h"
+
+namespace roadbed::planning::inline route {
+
+/// Which way a lane is driven at a place: as the lane runs, or against it, where that is allowed.
+enum class Sense { either, along, against };
+
+/// A place that a route starts at, passes or leads to.
+struct RoutePlace : map::LanePlace {
+  Sense sense = Sense::either;
+
+  RoutePlace() = default;
+  RoutePlace(const map::LanePlace& place, Sense way = Sense::either)
+      : map::LanePlace(place), sense(way) {}
+  RoutePlace(map::LaneId on_lane, double at_s_m, double at_d_m = 0.0)
+      : map::LanePlace{on_lane, at_s_m, at_d_m} {}
+};
+
+/// A place by a network's lane, and its station in driving direction.
+struct NetworkPlace {
+  std::uint32_t lane = 0;
+  double s_m = 0.0;
+};
+
+/// The ways in which a place may be driven through: one, or two on lanes of both directions. Where
+/// a lane cannot be driven as asked, it is driven as it can be.
+std::vector<NetworkPlace> ways_through(const RouteNetwork& network, const RoutePlace& place);
+
+}  // namespace roadbed::planning::route

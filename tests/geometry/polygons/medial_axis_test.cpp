@@ -1,0 +1,148 @@
+#include "roadbed/geometry/polygons/medial_axis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "roadbed/geometry/polygons/segment_voronoi.h"
+
+namespace roadbed::geometry {
+namespace {
+
+using Eigen::Vector2d;
+using testing::SizeIs;
+
+double distance_to_ring_m(const Ring& ring, const Vector2d& point) {
+  double least = 1e300;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d a = ring[i], b = ring[(i + 1) % ring.size()];
+    const double share = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (point - a - share * (b - a)).norm());
+  }
+  return least;
+}
+
+double distance_to_boundary_m(const Polygon& polygon, const Vector2d& point) {
+  double least = distance_to_ring_m(polygon.outer, point);
+  for (const Ring& hole : polygon.holes) least = std::min(least, distance_to_ring_m(hole, point));
+  return least;
+}
+
+Polygon rectangle(double length, double width) {
+  return {{{0, 0}, {length, 0}, {length, width}, {0, width}}, {}};
+}
+
+Ring circle(const Vector2d& centre, double radius, int corners, bool clockwise = false) {
+  Ring ring;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = (clockwise ? -2.0 : 2.0) * M_PI * i / corners;
+    ring.emplace_back(centre + radius * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return ring;
+}
+
+// A road of the given width along a sine, its sides sampled every metre.
+Polygon winding_road(double length, double width) {
+  Ring left, right;
+  for (double x = 0.0; x <= length; x += 1.0) {
+    const Vector2d at(x, 8.0 * std::sin(0.05 * x));
+    const Vector2d normal = Vector2d(-0.4 * std::cos(0.05 * x), 1.0).normalized();
+    left.emplace_back(at + 0.5 * width * normal);
+    right.emplace_back(at - 0.5 * width * normal);
+  }
+  right.insert(right.end(), left.rbegin(), left.rend());
+  return {right, {}};
+}
+
+TEST(MedialAxis, OfARectangleIsItsMiddleFromHalfAWidthToHalfAWidth) {
+  const auto branches = medial_axis(rectangle(100, 8));
+  ASSERT_THAT(branches, SizeIs(1));
+  EXPECT_NEAR((branches[0].line.points().front() - Vector2d(4, 4)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((branches[0].line.points().back() - Vector2d(96, 4)).norm(), 0.0, 1e-9);
+  for (const double width_m : branches[0].width_m) EXPECT_NEAR(width_m, 8.0, 1e-9);
+}
+
+TEST(MedialAxis, FollowsAWindingRoadAndKnowsItsWidth) {
+  const auto branches = medial_axis(winding_road(200, 7));
+  ASSERT_THAT(branches, SizeIs(1));
+  EXPECT_GT(branches[0].line.length_m(), 190.0);
+  for (std::size_t i = 0; i < branches[0].width_m.size(); ++i) {
+    const Vector2d at = branches[0].line.points()[i];
+    if (at.x() < 10.0 || at.x() > 190.0) continue;
+    EXPECT_NEAR(branches[0].width_m[i], 7.0, 0.05);
+    EXPECT_NEAR(at.y(), 8.0 * std::sin(0.05 * at.x()), 0.05);
+  }
+}
+
+TEST(MedialAxis, OfARingRoadIsAClosedCircle) {
+  const Polygon ring{circle({5, 5}, 20, 90), {circle({5, 5}, 14, 90, true)}};
+  const auto branches = medial_axis(ring);
+  ASSERT_THAT(branches, SizeIs(1));
+  EXPECT_TRUE(branches[0].closed);
+  EXPECT_NEAR(branches[0].line.length_m(), 2.0 * M_PI * 17.0, 0.2);
+  for (const Vector2d& at : branches[0].line.points()) {
+    EXPECT_NEAR((at - Vector2d(5, 5)).norm(), 17.0, 0.02);
+  }
+}
+
+TEST(MedialAxis, OfACrossroadsHasFourArms) {
+  const Polygon cross{{{-4, -50},
+                       {4, -50},
+                       {4, -4},
+                       {50, -4},
+                       {50, 4},
+                       {4, 4},
+                       {4, 50},
+                       {-4, 50},
+                       {-4, 4},
+                       {-50, 4},
+                       {-50, -4},
+                       {-4, -4}},
+                      {}};
+  EXPECT_THAT(medial_axis(cross), SizeIs(4));
+}
+
+TEST(MedialAxis, ABayShorterThanTheRoadIsWideIsPrunedAndASideRoadIsNot) {
+  const auto with_bay = [](double depth) {
+    return Polygon{
+        {{0, 0}, {100, 0}, {100, 8}, {52, 8}, {52, 8 + depth}, {48, 8 + depth}, {48, 8}, {0, 8}},
+        {}};
+  };
+  EXPECT_THAT(medial_axis(with_bay(3)), SizeIs(1));
+  EXPECT_THAT(medial_axis(with_bay(30)), SizeIs(3));
+}
+
+TEST(MedialAxis, EveryPlaceIsHalfItsWidthFromTheBoundary) {
+  std::mt19937 random(20261121);
+  std::uniform_real_distribution<double> radius(8.0, 20.0);
+  for (int round = 0; round < 20; ++round) {
+    Polygon star{{}, {circle({1, 0}, 3, 7, true)}};
+    for (int i = 0; i < 24; ++i) {
+      const double angle = 2.0 * M_PI * i / 24.0;
+      star.outer.emplace_back(radius(random) * Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    const VoronoiGraph graph = interior_voronoi(star);
+    EXPECT_GT(graph.nodes.size(), 20U);
+    for (const auto& node : graph.nodes) {
+      EXPECT_TRUE(contains(star, node.at));
+      EXPECT_NEAR(node.clearance_m, distance_to_boundary_m(star, node.at), 1e-7);
+    }
+    for (const MedialBranch& branch : medial_axis(star, {.max_error_m = 0.001})) {
+      for (std::size_t i = 0; i < branch.width_m.size(); ++i) {
+        const double clearance_m = distance_to_boundary_m(star, branch.line.points()[i]);
+        EXPECT_NEAR(0.5 * branch.width_m[i], clearance_m, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(MedialAxis, IsTheSameFromRunToRun) {
+  const auto one = medial_axis(winding_road(100, 6)), two = medial_axis(winding_road(100, 6));
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(one[0].line.points(), two[0].line.points());
+}
+
+}  // namespace
+}  // namespace roadbed::geometry

@@ -1,0 +1,141 @@
+// Hostile files: a clear refusal or findings, with memory bounded by the file's size.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/bounded_reading.h"
+#include "roadbed/tests/support/made_road.h"
+
+namespace roadbed::map {
+namespace {
+
+using testing::HasSubstr;
+using tests::made_document;
+using tests::made_lane;
+using tests::made_road;
+using tests::made_section;
+using tests::MadeRoad;
+
+std::string outcome_of(const std::string& bytes) {
+  try {
+    return fmt::format("read {} lanes", parse_map(bytes, "made.xodr").lanes().size());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string sections(int count, const std::string& inside) {
+  std::string all;
+  for (int i = 0; i < count; ++i) {
+    all += fmt::format(R"(<laneSection s="{}">{}</laneSection>)", 100.0 * i / count, inside);
+  }
+  return all;
+}
+
+TEST(OpenDriveLimits, AMillionEmptyLaneSectionsAreRead) {
+  MadeRoad road;
+  road.lanes = sections(1'000'000, "");
+  tests::expect_read_in_bounds(made_document(made_road(road)), "read 0 lanes");
+}
+
+TEST(OpenDriveLimits, AMillionLaneSectionsWithLanesAreRefused) {
+  MadeRoad road;
+  road.lanes = sections(
+      1'000'000,
+      R"(<right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right>)");
+  tests::expect_read_in_bounds(made_document(made_road(road)),
+                               "more lanes than a map of this size can hold");
+}
+
+TEST(OpenDriveLimits, SingleSidedSectionsByTheHundredThousandTakeNoQuadraticTime) {
+  MadeRoad road;
+  const std::string left = R"(<left><lane id="1" type="driving"><link><predecessor id="1"/>
+    <successor id="1"/></link><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>)";
+  std::string all = made_section(0, made_lane(1), made_lane(-1));
+  for (int i = 1; i < 20'000; ++i) {
+    all +=
+        fmt::format(R"(<laneSection s="{}" singleSide="true">{}</laneSection>)", 0.005 * i, left);
+  }
+  road.lanes = all;
+  tests::expect_read_in_bounds(made_document(made_road(road)), "read 20001 lanes");
+}
+
+TEST(OpenDriveLimits, EmptyElementsAndLinesAreBounded) {
+  tests::expect_read_in_bounds("<OpenDRIVE>" + tests::repeated(5'000'000, "<a/>") + "</OpenDRIVE>",
+                               "next to nothing but empty elements");
+  tests::expect_read_in_bounds("<OpenDRIVE>" + std::string(30'000'000, '\n') + "</OpenDRIVE>",
+                               "no road with a geometry");
+  tests::expect_read_in_bounds(tests::repeated(200'000, "<a>"), "not well-formed XML");
+}
+
+TEST(OpenDriveLimits, ARoadOfEndlessCurvesIsRefused) {
+  MadeRoad road;
+  road.length_m = 1e6;
+  std::string pieces;
+  for (int i = 0; i < 10'000; ++i) {
+    pieces += fmt::format(
+        R"(<geometry s="{}" x="0" y="0" hdg="0" length="100"><arc curvature="0.9"/></geometry>)",
+        100 * i);
+  }
+  road.plan_view = pieces;
+  tests::expect_read_in_bounds(made_document(made_road(road)),
+                               "more points than a map of this size can hold");
+}
+
+TEST(OpenDriveLimits, EntityBombsStayWords) {
+  std::string bomb = "<!DOCTYPE x [<!ENTITY a0 \"aaaaaaaaaa\">";
+  for (int i = 1; i < 30; ++i) bomb += fmt::format("<!ENTITY a{} \"&a{};&a{};\">", i, i - 1, i - 1);
+  bomb += "<!ENTITY e SYSTEM \"file:///etc/passwd\">]>";
+  tests::expect_read_in_bounds(
+      bomb + made_document("<road id=\"&a29;&e;\" length=\"0\"/>" + made_road({})), "read 2 lanes");
+}
+
+TEST(OpenDriveLimits, NumbersBeyondAnyRoadAreRefusedOrSaid) {
+  const auto with = [](auto change) {
+    MadeRoad road;
+    change(road);
+    return outcome_of(made_document(made_road(road)));
+  };
+  for (const char* value : {"1e300", "nan", "inf", "-1e308", "1e"}) {
+    const std::string cubic = fmt::format(R"( s="0" a="{}" b="0" c="0" d="0"/>)", value);
+    EXPECT_THAT(with([&](MadeRoad& road) { road.elevation = "<elevation" + cubic; }),
+                HasSubstr("made.xodr:"))
+        << value;
+    EXPECT_THAT(with([&](MadeRoad& road) { road.lateral = "<superelevation" + cubic; }),
+                HasSubstr("made.xodr:"))
+        << value;
+    EXPECT_THAT(with([&](MadeRoad& road) { road.lateral = R"(<shape t="0")" + cubic; }),
+                HasSubstr("made.xodr:"))
+        << value;
+    EXPECT_THAT(with([&](MadeRoad& road) {
+                  road.lanes = made_section(
+                      0, "",
+                      fmt::format(R"(<lane id="-1" type="driving"><width sOffset="{}" a="3"
+                         b="0" c="0" d="0"/></lane>)",
+                                  value));
+                }),
+                HasSubstr("made.xodr:"))
+        << value;
+  }
+}
+
+TEST(OpenDriveLimits, TinyAndZeroLengthsAreFindings) {
+  MadeRoad road;
+  road.lanes =
+      made_section(0, made_lane(1), made_lane(-1)) + made_section(100, made_lane(1), made_lane(-1));
+  road.plan_view = R"(<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>
+    <geometry s="100" x="100" y="0" hdg="0" length="0"><line/></geometry>)";
+  const RoadMap road_map = tests::made_map(
+      made_road(road) + R"(<road id="Z" length="0" junction="-1"><planView/><lanes/></road>)");
+  EXPECT_EQ(road_map.lanes().size(), 2u);
+  EXPECT_EQ(tests::remarks_of(road_map, "import.empty-section").size(), 2u);
+  EXPECT_EQ(tests::remarks_of(road_map, "import.zero-length").size(), 1u);
+  EXPECT_EQ(tests::remarks_of(road_map, "import.no-geometry").size(), 1u);
+}
+
+}  // namespace
+}  // namespace roadbed::map

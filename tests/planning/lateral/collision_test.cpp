@@ -1,0 +1,224 @@
+#include "roadbed/planning/lateral/collision.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/planning/obstacles/static_obstacles.h"
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::Trajectory;
+using geometry::TrajectoryPoint;
+using geometry::VehicleShape;
+
+std::vector<TrajectoryPoint> straight_drive(double length_m, double step_m, double speed_mps) {
+  std::vector<TrajectoryPoint> drive;
+  for (double x = 0.0; x <= length_m + 1e-9; x += step_m) {
+    drive.push_back({.t_s = x / speed_mps, .x_m = x, .speed_mps = speed_mps});
+  }
+  return drive;
+}
+
+bool is_free(const std::vector<TrajectoryPoint>& drive, const std::vector<Obstacle>& obstacles,
+             const CollisionOptions& options = {}) {
+  const CollisionScene scene{.obstacles = obstacles};
+  return CollisionChecker(scene, VehicleShape{}, options).is_free(drive);
+}
+
+// A post or a fence: thinner than the steps of the drive are long.
+Obstacle thing(double x_m, double y_m, double length_m, double width_m, double heading_rad = 0.0) {
+  return {.id = "thing",
+          .length_m = length_m,
+          .width_m = width_m,
+          .motion = Trajectory({{.x_m = x_m, .y_m = y_m, .heading_rad = heading_rad}})};
+}
+
+TEST(CollisionChecker, SeesAThinPostBetweenTwoDistantPoints) {
+  // Points 20 m apart: at none of them is the car near the post.
+  const auto drive = straight_drive(40.0, 20.0, 20.0);
+  EXPECT_FALSE(is_free(drive, {thing(12.0, 0.0, 0.02, 0.02)}));
+  EXPECT_TRUE(is_free(drive, {thing(12.0, 3.0, 0.02, 0.02)}));
+}
+
+TEST(CollisionChecker, DemandsTheClearanceWithinItsTolerance) {
+  const auto drive = straight_drive(40.0, 1.0, 10.0);
+  const double side_m = 0.5 * 1.61 + 0.3;  // where clearance_m is just kept
+  EXPECT_FALSE(is_free(drive, {thing(30.0, side_m + 0.009, 0.02, 0.02)}));  // 0.299 m
+  EXPECT_TRUE(is_free(drive, {thing(30.0, side_m + 0.031, 0.02, 0.02)}));   // 0.321 m
+}
+
+TEST(CollisionChecker, DemandsHalfTheClearanceWhereTheDriveBegins) {
+  const auto drive = straight_drive(40.0, 1.0, 10.0);
+  const double side_m = 0.5 * 1.61 + 0.2 + 0.01;
+  EXPECT_TRUE(is_free(drive, {thing(1.0, side_m, 0.02, 0.02)}));
+  EXPECT_FALSE(is_free(drive, {thing(30.0, side_m, 0.02, 0.02)}));
+}
+
+TEST(CollisionChecker, SeesACarThatCrossesBetweenTwoPoints) {
+  // Both are at x = 20 m at t = 1 s; the drive has points at 0, 2 and 4 s only.
+  const auto drive = straight_drive(80.0, 40.0, 20.0);
+  const auto crossing = [](double at_s) {
+    return Obstacle{
+        .id = "crossing",
+        .motion = Trajectory(
+            {{.t_s = at_s - 1.0, .x_m = 20.0, .y_m = -20.0, .heading_rad = 0.5 * std::numbers::pi},
+             {.t_s = at_s + 1.0,
+              .x_m = 20.0,
+              .y_m = 20.0,
+              .heading_rad = 0.5 * std::numbers::pi}})};
+  };
+  EXPECT_FALSE(is_free(drive, {crossing(1.0)}));
+  EXPECT_TRUE(is_free(drive, {crossing(3.0)}));
+}
+
+TEST(CollisionChecker, LooksAtMovingThingsUpToItsHorizonOnly) {
+  const auto drive = straight_drive(100.0, 1.0, 10.0);
+  const Obstacle oncoming{.id = "oncoming",
+                          .motion = Trajectory({{.t_s = 0.0, .x_m = 160.0},
+                                                {.t_s = 10.0, .x_m = 60.0}})};  // met at 8 s
+  EXPECT_TRUE(is_free(drive, {oncoming}, {.horizon_s = 5.0}));
+  EXPECT_FALSE(is_free(drive, {oncoming}, {.horizon_s = 9.0}));
+}
+
+TEST(CollisionChecker, SeesWhatIsInsideALargeBody) {
+  EXPECT_FALSE(is_free(straight_drive(10.0, 1.0, 10.0), {thing(5.0, 0.0, 80.0, 60.0)}));
+}
+
+// Clearance minus demand at 200 times per leg.
+double least_slack_m(const std::vector<TrajectoryPoint>& drive,
+                     const std::vector<Obstacle>& obstacles) {
+  double slack_m = 1e300, driven_m = 0.0;
+  for (std::size_t i = 0; i + 1 < drive.size(); ++i) {
+    const double leg_m =
+        std::hypot(drive[i + 1].x_m - drive[i].x_m, drive[i + 1].y_m - drive[i].y_m);
+    for (int k = 0; k <= 200; ++k) {
+      const TrajectoryPoint at = interpolate(drive[i], drive[i + 1], k / 200.0);
+      const auto body = geometry::body_at(at.pose(), VehicleShape{});
+      const double demanded_m = 0.15 + 0.15 * std::min(1.0, (driven_m + leg_m * k / 200.0) / 10.0);
+      for (const Obstacle& obstacle : obstacles) {
+        if (!obstacle.is_static() && at.t_s > 5.0) continue;
+        slack_m =
+            std::min(slack_m, geometry::distance_m(body, body_of(obstacle, at.t_s)) - demanded_m);
+      }
+    }
+    driven_m += leg_m;
+  }
+  return slack_m;
+}
+
+// Whether it is found free, which dense sampling has to bear out.
+bool is_free_as_sampled(const std::vector<TrajectoryPoint>& drive,
+                        const std::vector<Obstacle>& obstacles, int scene) {
+  const double slack_m = least_slack_m(drive, obstacles);
+  const bool found_free = is_free(drive, obstacles);
+  if (found_free) {
+    EXPECT_GE(slack_m, -1e-9) << "scene " << scene;
+  } else {
+    EXPECT_LE(slack_m, 0.02 + 0.01) << "scene " << scene;
+  }
+  return found_free;
+}
+
+TEST(CollisionChecker, AgreesWithDenseSamplingOnRandomScenes) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int free = 0, colliding = 0;
+  for (int scene = 0; scene < 300; ++scene) {
+    std::vector<TrajectoryPoint> drive{{}};
+    for (int i = 0; i < 20; ++i) {
+      TrajectoryPoint next = drive.back();
+      next.heading_rad += 0.1 * unit(random);
+      next.x_m += 1.5 * std::cos(next.heading_rad);
+      next.y_m += 1.5 * std::sin(next.heading_rad);
+      next.t_s += 0.3 + 0.2 * unit(random);
+      drive.push_back(next);
+    }
+    std::vector<Obstacle> obstacles;
+    for (int i = 0; i < 2; ++i) {
+      const TrajectoryPoint from{.x_m = 18.0 + 15.0 * unit(random),
+                                 .y_m = 6.0 * unit(random),
+                                 .heading_rad = 4.0 * unit(random)};
+      TrajectoryPoint to = from;
+      to.t_s = 4.0;
+      to.x_m += 20.0 * unit(random);
+      to.y_m += 20.0 * unit(random);
+      to.heading_rad += unit(random);
+      obstacles.push_back(
+          {.id = "random", .motion = i == 0 ? Trajectory({from, to}) : Trajectory({from})});
+    }
+    ++(is_free_as_sampled(drive, obstacles, scene) ? free : colliding);
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(colliding, 50);
+}
+
+// A post beside a bend that comes about as near to the body as is allowed, anywhere.
+Obstacle post_beside(const std::vector<TrajectoryPoint>& drive, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const std::size_t leg = 7 + random() % (drive.size() - 8);  // the whole clearance holds there
+  const auto at = interpolate(drive[leg], drive[leg + 1], 0.5 + 0.5 * unit(random));
+  const auto body = geometry::body_at(at.pose(), VehicleShape{});
+  const double beside_m = body.half_width_m + 0.6 + 0.3 * unit(random);
+  const Eigen::Vector2d left(-body.axis.y(), body.axis.x());
+  const Eigen::Vector2d place = body.centre + unit(random) * body.half_length_m * body.axis +
+                                (random() % 2 == 0 ? 1.0 : -1.0) * beside_m * left;
+  return thing(place.x(), place.y(), 0.1, 0.1, at.heading_rad);
+}
+
+TEST(CollisionChecker, KeepsTheClearanceToWhatABendPassesClosely) {
+  std::mt19937 random(19);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int free = 0, colliding = 0;
+  for (int scene = 0; scene < 800; ++scene) {
+    const double turn_rad = 0.3 * unit(random);
+    std::vector<TrajectoryPoint> drive{{}};
+    for (int i = 0; i < 14; ++i) {
+      TrajectoryPoint next = drive.back();
+      next.heading_rad += turn_rad;
+      next.x_m += 1.5 * std::cos(next.heading_rad - 0.5 * turn_rad);
+      next.y_m += 1.5 * std::sin(next.heading_rad - 0.5 * turn_rad);
+      next.t_s += 0.3;
+      drive.push_back(next);
+    }
+    const std::vector<Obstacle> posts{post_beside(drive, random)};
+    ++(is_free_as_sampled(drive, posts, scene) ? free : colliding);
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(colliding, 50);
+}
+
+TEST(StaticObstacles, BoundIsBelowTheDistanceAndNear) {
+  std::mt19937 random(19);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Obstacle> obstacles;
+  for (int i = 0; i < 40; ++i) {
+    obstacles.push_back(thing(50.0 * unit(random), 50.0 * unit(random), 5.0 + 4.0 * unit(random),
+                              2.0 + unit(random), 4.0 * unit(random)));
+  }
+  const StaticObstacles standing(obstacles);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector2d point(60.0 * unit(random), 60.0 * unit(random));
+    double exact_m = 1e300;
+    for (const Obstacle& obstacle : obstacles) {
+      exact_m = std::min(exact_m, geometry::distance_m(body_of(obstacle, 0.0), point));
+    }
+    EXPECT_LE(standing.distance_bound_m(point), exact_m + 1e-12);
+    EXPECT_GE(standing.distance_bound_m(point), exact_m - 2.0 * StaticObstacles::kLargestGap_m);
+  }
+}
+
+TEST(StaticObstacles, OfNoneAreInfinitelyFar) {
+  const StaticObstacles none({});
+  EXPECT_TRUE(none.empty());
+  EXPECT_TRUE(std::isinf(none.distance_bound_m({0.0, 0.0})));
+  EXPECT_TRUE(std::isinf(none.distance_m(geometry::Rectangle{})));
+}
+
+}  // namespace
+}  // namespace roadbed::planning
