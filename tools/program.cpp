@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/command.h"
-#include "roadbed/tools/support/build_id.h"
-#include "roadbed/tools/support/help_format.h"
-#include "roadbed/tools/support/standard_output.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/cli/help_format.h"
+#include "roadbed/tools/cli/standard_output.h"
+#include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools {
 namespace {
@@ -85,8 +85,8 @@ int run_command_line(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
   app.formatter(make_help_format());
-  app.set_version_flag(
-      "--version", "roadbed " ROADBED_VERSION " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
+  app.set_version_flag("--version",
+                       name_and_version() + " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
   app.require_subcommand(1);
   app.fallthrough();
 

@@ -6,6 +6,11 @@
 
 namespace roadbed::planning::inline obstacles {
 
+/// Seconds of a drive.
+struct TimeSpan {
+  double from_s = 0.0, to_s = 0.0;
+};
+
 /// A rectangle that stands or moves. Its pose is its centre (not an axle) in the map.
 struct Obstacle {
   std::string id;

@@ -22,6 +22,7 @@
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job.h"
+#include "roadbed/tools/commands/commands.h"
 
 namespace {
 
@@ -104,7 +105,7 @@ Lines drives(const tests::TemporaryFolder& folder, int count) {
 
 /// CPU time of the commands alone, one after the other, for each job [s].
 double alone_s(const Lines& lines, const std::shared_ptr<const tools::Inputs>& inputs) {
-  const tools::JobKinds kinds;
+  const tools::JobKinds& kinds = tools::job_kinds();
   const double start = cpu_s();
   for (const std::string& line : lines) {
     const tools::Job job = tools::parse_job(line, kinds);
@@ -135,7 +136,7 @@ void run_batch(const Lines& lines, int threads) {
                                     .threads = threads,
                                     .memory_bytes = kMemory,
                                     .limits = {}};
-  tools::BatchRun run(options, store, progress);
+  tools::BatchRun run(options, tools::job_kinds(), store, progress);
   run.run();
   tools::write_results(store, run.order(), options.folder);
 }

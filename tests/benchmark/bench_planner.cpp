@@ -16,7 +16,7 @@
 #include "roadbed/planning/lateral/row_kernel.h"
 #include "roadbed/tests/benchmark/peak_flops.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
 namespace {
 

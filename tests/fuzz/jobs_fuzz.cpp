@@ -9,10 +9,11 @@
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/result_head.h"
+#include "roadbed/tools/commands/commands.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed;
-  static const tools::JobKinds kinds;  // making them takes longer than any line
+  const tools::JobKinds& kinds = tools::job_kinds();
   constexpr std::size_t longest = 4096;
   std::istringstream stream(std::string(reinterpret_cast<const char*>(data), size));
   tools::JobLines lines(stream, longest);

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/support/obstacles_csv.h"
+#include "roadbed/tools/files/obstacles_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/support/od_csv.h"
-#include "roadbed/tools/support/place.h"
+#include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/files/od_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed;

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/support/points_csv.h"
+#include "roadbed/tools/files/points_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

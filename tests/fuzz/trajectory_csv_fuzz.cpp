@@ -4,7 +4,7 @@
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/support/trajectory_csv.h"
+#include "roadbed/tools/files/trajectory_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

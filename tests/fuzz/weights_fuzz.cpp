@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/support/weights_json.h"
+#include "roadbed/tools/files/weights_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -21,13 +21,12 @@ tools::World straight_world(const StraightRoad& road, std::vector<planning::Obst
                                                 {lane, road.goal_x_m - from_m})
                                .route;
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route);
-  return {.kept_map = std::move(kept_map),
-          .occupancy = {},
-          .field = {},
-          .start = {road.start_x_m, 0.0, 0.0},
-          .route = std::move(route),
-          .line = std::move(line),
-          .obstacles = std::move(obstacles)};
+  return {{.kept_map = std::move(kept_map),
+           .field = {},
+           .start = {road.start_x_m, 0.0, 0.0},
+           .route = std::move(route),
+           .line = std::move(line),
+           .obstacles = std::move(obstacles)}};
 }
 
 }  // namespace roadbed::tests

@@ -24,14 +24,14 @@
 #include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/audit/moving_obstacles.h"
 #include "roadbed/tools/batch/input_cache.h"
-#include "roadbed/tools/support/audited_drive.h"
-#include "roadbed/tools/support/certificate_check.h"
-#include "roadbed/tools/support/certificate_json.h"
-#include "roadbed/tools/support/inputs.h"
-#include "roadbed/tools/support/moving_obstacles.h"
-#include "roadbed/tools/support/trajectory_csv.h"
-#include "roadbed/tools/support/vehicle_json.h"
+#include "roadbed/tools/cli/inputs.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/files/vehicle_json.h"
 
 namespace roadbed::tools {
 namespace {

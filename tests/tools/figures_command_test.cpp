@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_run.h"
-#include "roadbed/tools/support/csv.h"
+#include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tests {
 namespace {

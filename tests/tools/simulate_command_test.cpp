@@ -7,7 +7,7 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
-#include "roadbed/tools/support/trajectory_csv.h"
+#include "roadbed/tools/files/trajectory_csv.h"
 
 namespace roadbed::tests {
 namespace {

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <utility>
 
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {

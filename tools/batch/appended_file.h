@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A file of lines that only grows. A line is written at once, so that of a process that is killed
 /// the last one may be cut off, and no other.

@@ -1,4 +1,5 @@
 #include "roadbed/tools/batch/batch_page.h"
+#include "roadbed/tools/cli/build_id.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,7 @@
 #include "roadbed/tools/batch/counted.h"
 #include "roadbed/tools/report/escape.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 // The colours are those of the report of a drive.
@@ -165,9 +166,9 @@ std::string batch_page(const BatchSummary& summary, const std::string& title) {
   }
   html += "</ul>\n";
   for (const auto& [kind, of_kind] : summary.kinds()) html += section(kind, of_kind);
-  return html + "<footer>roadbed " ROADBED_VERSION
-                ": all results are in <a href=\"results.jsonl\">results.jsonl</a>, counts in "
-                "<a href=\"summary.json\">summary.json</a></footer>\n</body>\n</html>\n";
+  return html + "<footer>" + name_and_version() +
+         ": all results are in <a href=\"results.jsonl\">results.jsonl</a>, counts in "
+         "<a href=\"summary.json\">summary.json</a></footer>\n</body>\n</html>\n";
 }
 
 }  // namespace roadbed::tools

@@ -7,9 +7,9 @@
 #include "roadbed/tools/batch/batch_page.h"
 #include "roadbed/tools/batch/buffered_output.h"
 #include "roadbed/tools/batch/counted.h"
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 constexpr std::size_t kMostListed = 500;  // of each kind

@@ -7,7 +7,7 @@
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/result_store.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Worst cases of each kind in `summary.json`.
 constexpr std::size_t kMostInSummary = 10;

@@ -14,9 +14,9 @@
 #include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/memory_size.h"
 #include "roadbed/tools/batch/stop_signal.h"
-#include "roadbed/tools/support/in_threads.h"
+#include "roadbed/tools/cli/in_threads.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,10 +72,10 @@ std::size_t count_jobs(const fs::path& jobs_file) {
   return count;
 }
 
-void list_missing(const BatchOptions& options, const ResultStore& store, std::ostream& out) {
+void list_missing(const BatchOptions& options, const JobKinds& kinds, const ResultStore& store,
+                  std::ostream& out) {
   std::ifstream stream = open_jobs(options.jobs_file);
   JobLines lines(stream);
-  const JobKinds kinds;
   FileHashes files;
   std::set<JobHash> listed;
   while (const auto line = lines.next()) {
@@ -90,10 +90,12 @@ void list_missing(const BatchOptions& options, const ResultStore& store, std::os
   }
 }
 
-BatchRun::BatchRun(const BatchOptions& options, ResultStore& store, ProgressBar& progress)
+BatchRun::BatchRun(const BatchOptions& options, const JobKinds& kinds, ResultStore& store,
+                   ProgressBar& progress)
     : options_(options),
       store_(store),
       progress_(progress),
+      kinds_(kinds),
       inputs_(std::make_shared<const InputCache>(files_, options.memory_bytes / 2,
                                                  [this] { return resident(); })),
       timings_(options.folder / "timings.jsonl"),

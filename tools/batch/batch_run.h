@@ -19,9 +19,9 @@
 #include "roadbed/tools/batch/job_runner.h"
 #include "roadbed/tools/batch/memory_gate.h"
 #include "roadbed/tools/batch/result_store.h"
-#include "roadbed/tools/support/progress_bar.h"
+#include "roadbed/tools/cli/progress_bar.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 struct BatchOptions {
   std::filesystem::path jobs_file, folder;
@@ -39,15 +39,17 @@ std::size_t count_jobs(const std::filesystem::path& jobs_file);
 /// Prints the jobs that have no result which stands, each once: its hash, a tab, its line. Lines
 /// that are no jobs are left out.
 /// @throws InputError if the file of jobs cannot be read.
-void list_missing(const BatchOptions& options, const ResultStore& store, std::ostream& out);
+void list_missing(const BatchOptions& options, const JobKinds& kinds, const ResultStore& store,
+                  std::ostream& out);
 
 /// Brings the jobs of a file to their results: those that have none that stands run, in threads.
 /// Memory: about 150 bytes a job beside the store, and the jobs that run.
 class BatchRun {
  public:
-  /// @param store, progress  live as long as this.
+  /// @param kinds, store, progress  live as long as this.
   /// @throws InputError if the file of jobs cannot be read.
-  BatchRun(const BatchOptions& options, ResultStore& store, ProgressBar& progress);
+  BatchRun(const BatchOptions& options, const JobKinds& kinds, ResultStore& store,
+           ProgressBar& progress);
 
   /// Until all are done or a stop is asked for, see StopSignal.
   /// @throws OutputError if a result cannot be kept; what was kept before stays.
@@ -85,7 +87,7 @@ class BatchRun {
   const BatchOptions& options_;
   ResultStore& store_;
   ProgressBar& progress_;
-  JobKinds kinds_;
+  const JobKinds& kinds_;
   FileHashes files_;
   std::shared_ptr<const InputCache> inputs_;
   AppendedFile timings_;

@@ -1,4 +1,5 @@
 #include "roadbed/tools/batch/batch_summary.h"
+#include "roadbed/tools/cli/build_id.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,7 @@
 
 #include "roadbed/tools/batch/job_verdict.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;
@@ -121,7 +122,7 @@ std::size_t BatchSummary::count() const {
 }
 
 std::string BatchSummary::document(std::size_t most_worst) const {
-  ordered_json whole = {{"version", ROADBED_VERSION}};
+  ordered_json whole = {{"version", version()}};
   whole.update(
       counts_json(count(), count(JobStatus::done), count(JobStatus::no), count(JobStatus::failed)));
   whole["kinds"] = ordered_json::object();

@@ -10,7 +10,7 @@
 
 #include "roadbed/tools/batch/job_result.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A job as a list of the worst ones shows it.
 struct WorstCase {

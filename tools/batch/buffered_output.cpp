@@ -1,6 +1,6 @@
 #include "roadbed/tools/batch/buffered_output.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 void BufferedOutput::add(std::string_view bytes) {
   constexpr std::size_t piece = std::size_t{1} << 20;

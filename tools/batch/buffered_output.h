@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// An output of many small pieces, one after the other, collected into few writes.
 class BufferedOutput {

@@ -1,6 +1,6 @@
 #include "roadbed/tools/batch/compact_json.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 std::string compact_json(std::string_view json) {
   std::string compact;

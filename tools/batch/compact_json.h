@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A JSON document without the blanks between its parts, so on one line; all else stays as it is
 /// written, numbers too.

@@ -1,6 +1,6 @@
 #include "roadbed/tools/batch/counted.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 std::string with_commas(std::size_t number) {
   std::string text = std::to_string(number);

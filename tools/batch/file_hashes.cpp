@@ -11,7 +11,7 @@
 
 #include "roadbed/map/files/sha256.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "roadbed/tools/batch/recently_used.h"
-#include "roadbed/tools/support/arguments.h"
+#include "roadbed/tools/cli/arguments.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Hashes of what files hold, remembered by path, size and time of last change, of the 100,000
 /// files that were asked for last. May be asked by several threads.

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

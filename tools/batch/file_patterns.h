@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Files and folders that a pattern matches, sorted: `*`, `?` and `[…]` match within a name, `**`
 /// any number of folders. Hidden ones match only where the pattern says the dot. A pattern without

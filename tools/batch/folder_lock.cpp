@@ -13,9 +13,9 @@
 #include <system_error>
 #include <vector>
 
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

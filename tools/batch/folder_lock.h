@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Keeps a folder to one run at a time, by flock on the file `lock` in it: gone with the process,
 /// however it ends.

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 InputCache::InputCache(FileHashes& files, std::uint64_t limit,
                        std::function<std::uint64_t()> resident)

@@ -11,9 +11,9 @@
 
 #include "roadbed/tools/batch/file_hashes.h"
 #include "roadbed/tools/batch/recently_used.h"
-#include "roadbed/tools/support/inputs.h"
+#include "roadbed/tools/cli/inputs.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Inputs that stay loaded, for many jobs on the same files. A thing is kept under its files' names
 /// and counts as long as these are as they were before and after it was made, in their bytes and in

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "roadbed/tools/support/json_node.h"
+#include "roadbed/tools/files/json_node.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;

@@ -7,7 +7,7 @@
 
 #include "roadbed/tools/batch/job_kinds.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// One run of a command, as a line of JSON says it:
 /// `{"job":"audit","options":{"occupancy":"street.bt","trajectory":"a.csv"},"outputs":["report"]}`.

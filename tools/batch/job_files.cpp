@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

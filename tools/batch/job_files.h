@@ -6,7 +6,7 @@
 
 #include "roadbed/tools/batch/job.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// An output whose place the batch chose.
 struct JobOutput {

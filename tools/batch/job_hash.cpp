@@ -1,15 +1,15 @@
 #include "roadbed/tools/batch/job_hash.h"
 
 #include "roadbed/map/files/sha256.h"
-#include "roadbed/tools/support/build_id.h"
+#include "roadbed/tools/cli/build_id.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;
 
 const std::string& program() {
-  static const std::string text = ROADBED_VERSION " " + build_id();
+  static const std::string text = version() + " " + build_id();
   return text;
 }
 

@@ -6,7 +6,7 @@
 #include "roadbed/tools/batch/file_hashes.h"
 #include "roadbed/tools/batch/job.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// What a job is known by: SHA-256 (64 hexadecimal digits) over the program's build (see build_id),
 /// the job as its line says it (the order of options and outputs does not matter), and the contents

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 JobKind kind(std::string name, std::unique_ptr<Command> (*make)()) {
@@ -29,12 +29,8 @@ const ArgumentInfo& JobKind::positional() const {
   return found == arguments.end() ? none : *found;
 }
 
-JobKinds::JobKinds() {
-  kinds_.push_back(kind("import", make_import_command));
-  kinds_.push_back(kind("validate", make_validate_command));
-  kinds_.push_back(kind("route", make_route_command));
-  kinds_.push_back(kind("simulate", make_simulate_command));
-  kinds_.push_back(kind("audit", make_audit_command));
+JobKinds::JobKinds(const std::vector<Maker>& makers) {
+  for (const Maker& maker : makers) kinds_.push_back(kind(maker.name, maker.make));
 }
 
 const JobKind* JobKinds::find(std::string_view name) const {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/tools/command.h"
+#include "roadbed/tools/cli/command.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A command that may be a job, with the arguments that it declares.
 struct JobKind {
@@ -25,7 +25,12 @@ struct JobKind {
 /// All commands that may be jobs.
 class JobKinds {
  public:
-  JobKinds();
+  /// A command and what it is called.
+  struct Maker {
+    std::string name;
+    std::unique_ptr<Command> (*make)() = nullptr;
+  };
+  explicit JobKinds(const std::vector<Maker>& makers);
 
   /// Null if there is none of this name.
   const JobKind* find(std::string_view name) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 bool is_blank(const std::string& text) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Lines of a file of jobs or results, one after the other, with bounded memory.
 class JobLines {

@@ -6,7 +6,7 @@
 
 #include "roadbed/tools/batch/job_hash.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;

@@ -7,7 +7,7 @@
 
 #include "roadbed/tools/batch/job.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 enum class JobStatus {
   done,    ///< exit status 0

@@ -6,7 +6,7 @@
 #include "roadbed/tools/batch/result_head.h"
 #include "roadbed/tools/batch/run_job.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 std::string ThreadRunner::run(const Job& job, const std::string& hash, const std::string&) {
   return line_of(job, run_job(job, hash, folder_, inputs_));

@@ -10,9 +10,9 @@
 
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/serve_process.h"
-#include "roadbed/tools/support/inputs.h"
+#include "roadbed/tools/cli/inputs.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Runs jobs, one after the other.
 class JobRunner {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// What a job's document comes to.
 struct JobVerdict {

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 void MemoryGate::enter() {
   constexpr std::chrono::milliseconds pause{50};  // a running job may give some back before its end

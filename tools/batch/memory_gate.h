@@ -5,7 +5,7 @@
 #include <functional>
 #include <mutex>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Lets jobs start one after the other while memory is short: none starts while the resident memory
 /// is above the limit and another one runs. So one always runs, however much it takes.

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <utility>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{

@@ -7,7 +7,7 @@
 
 #include <sys/types.h>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// "4GB", "4G", "512 MB", "65536": bytes, in powers of 1000. None if it is no such text, or 0.
 std::optional<std::uint64_t> parse_memory_size(std::string_view text);

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Values by name, at most so many: those that were used last. Values stay where they are. One
 /// thread uses it at a time.

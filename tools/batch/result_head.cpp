@@ -6,7 +6,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;

@@ -10,7 +10,7 @@
 
 #include "roadbed/tools/batch/job_result.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// The 256 bits of a job's hash.
 using JobHash = std::array<std::uint64_t, 4>;

@@ -11,9 +11,9 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job_lines.h"
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

@@ -13,7 +13,7 @@
 #include "roadbed/tools/batch/appended_file.h"
 #include "roadbed/tools/batch/result_head.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A line of a file of jobs, by its result.
 struct LineResult {

@@ -10,9 +10,9 @@
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_verdict.h"
 #include "roadbed/tools/batch/result_head.h"
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "roadbed/tools/batch/job_result.h"
-#include "roadbed/tools/support/inputs.h"
+#include "roadbed/tools/cli/inputs.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// Runs a job in this process and thread, by the command that it names. Whatever goes wrong is its
 /// result; then none of its files is left.

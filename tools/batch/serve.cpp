@@ -15,14 +15,14 @@
 #include "roadbed/tools/batch/result_head.h"
 #include "roadbed/tools/batch/run_job.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 constexpr std::size_t kHashAndTab = kHashDigits + 1;
 
 /// What all jobs of a process share.
 struct Shared {
-  JobKinds kinds;
+  const JobKinds& kinds;
   FileHashes files;
   std::shared_ptr<const InputCache> inputs;
 };
@@ -72,8 +72,9 @@ std::string answer(JobLines::Line& line, Shared& shared, const ServeOptions& opt
 
 }  // namespace
 
-void serve(std::istream& in, std::ostream& out, const ServeOptions& options) {
-  Shared shared{.kinds = {}, .files = {}, .inputs = nullptr};
+void serve(std::istream& in, std::ostream& out, const JobKinds& kinds,
+           const ServeOptions& options) {
+  Shared shared{.kinds = kinds, .files = {}, .inputs = nullptr};
   shared.inputs = std::make_shared<const InputCache>(shared.files, options.memory_bytes / 2, [] {
     return memory_of_process(::getpid()).resident;
   });

@@ -5,7 +5,9 @@
 #include <iosfwd>
 #include <string>
 
-namespace roadbed::tools {
+#include "roadbed/tools/batch/job_kinds.h"
+
+namespace roadbed::tools::inline batch {
 
 struct ServeOptions {
   std::filesystem::path folder;
@@ -18,6 +20,6 @@ struct ServeOptions {
 ///
 /// Before a job there may stand a hash and a tab: what it is known by to whoever asks. Its files go
 /// by that name, and if its inputs are not those of that hash, they have changed.
-void serve(std::istream& in, std::ostream& out, const ServeOptions& options);
+void serve(std::istream& in, std::ostream& out, const JobKinds& kinds, const ServeOptions& options);
 
 }  // namespace roadbed::tools

@@ -17,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/tools/support/output_file.h"
+#include "roadbed/tools/files/output_file.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 using Clock = std::chrono::steady_clock;

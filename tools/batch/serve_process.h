@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// A child process `roadbed batch --serve`, which is started when it is first asked. It dies with
 /// the thread that started it, and a Ctrl-C on the terminal does not reach it. One thread asks.

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 namespace {
 
 std::atomic<bool> asked = false;  // a handler of signals has no other place

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline batch {
 
 /// While it lives, the first SIGINT or SIGTERM only asks to stop; the second of either ends the
 /// process. A reader that has gone away is an error of writing, not the end of the process, and so

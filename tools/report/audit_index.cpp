@@ -10,7 +10,7 @@
 #include "roadbed/tools/report/escape.h"
 #include "roadbed/tools/report/page_parts.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 constexpr std::string_view kIndexCss = R"(

@@ -5,7 +5,7 @@
 
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// An audited drive, as a page of many lists it.
 struct IndexedAudit {

@@ -13,7 +13,7 @@
 #include "roadbed/tools/report/close_up.h"
 #include "roadbed/tools/report/svg.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

@@ -10,7 +10,7 @@
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/obstacles/moving_obstacle.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What a picture of an audit shows, all in source coordinates.
 struct AuditPicture {

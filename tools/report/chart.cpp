@@ -8,11 +8,11 @@
 #include <cmath>
 #include <iterator>
 
+#include "roadbed/tools/files/csv.h"
 #include "roadbed/tools/report/escape.h"
 #include "roadbed/tools/report/svg.h"
-#include "roadbed/tools/support/csv.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// How a series is drawn; colours tell apart in print, too.
 enum class Mark { line, dashed, thin, dots, circles, squares };

@@ -12,7 +12,7 @@
 #include "roadbed/planning/obstacles/prediction.h"
 #include "roadbed/tools/report/svg.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

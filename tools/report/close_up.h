@@ -11,7 +11,7 @@
 #include "roadbed/planning/obstacles/moving_obstacle.h"
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What the close-ups of an audit show, all in source coordinates.
 struct CloseUpScene {

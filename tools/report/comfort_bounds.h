@@ -1,6 +1,6 @@
 #pragma once
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 // What passengers bear, from nuPlan's comfort metrics (motional/nuplan-devkit,
 // ego_is_comfortable.yaml).

@@ -9,7 +9,7 @@
 
 #include "roadbed/tools/report/comfort_bounds.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Row = geometry::TrajectoryPoint;

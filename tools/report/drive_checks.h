@@ -7,7 +7,7 @@
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/drive.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What is checked of a drive: outcome, clearance, road, speed limit, accelerations, yaw rate; and
 /// what is only noted: tracking errors, saturation, cycles without a plan. A drive with no row has

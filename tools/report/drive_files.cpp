@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/report/scene_svg.h"
@@ -10,10 +13,8 @@
 #include "roadbed/tools/simulation/common_road_world.h"
 #include "roadbed/tools/simulation/metrics.h"
 #include "roadbed/tools/simulation/solution_xml.h"
-#include "roadbed/tools/support/certificate_json.h"
-#include "roadbed/tools/support/trajectory_csv.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,16 +59,16 @@ struct Driven {
 Driven drive_and_describe(const Scenario& scenario, World& world, const DriveChoice& choice) {
   Driven driven;
   DrivenScenario& result = driven.result;
-  driven.drive = drive(scenario, world,
-                       {.predicts = choice.predicts,
-                        .keeps_candidates = choice.keeps_candidates,
-                        .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
+  driven.drive =
+      drive(scenario, world,
+            {.pilot = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
+             .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
   result.name = scenario.name;
   result.verdict = driven.drive.verdict;
   result.audit = audit_of(scenario, world, driven.drive);
   const ReportInput report = report_of(scenario, world, driven.drive,
                                        {.command = command_of(scenario, choice),
-                                        .version = "roadbed " ROADBED_VERSION,
+                                        .version = name_and_version(),
                                         .sources = sources_of(scenario, choice),
                                         .audit = result.audit});
   result.files = {

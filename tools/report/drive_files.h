@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "roadbed/planning/audit/audit.h"
+#include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario_changes.h"
-#include "roadbed/tools/support/inputs.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// A drive and everything that is written of it.
 struct DrivenScenario {

@@ -7,7 +7,7 @@
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/drive.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Speed, acceleration, curvature, lateral and heading error, and clearance over time. A clearance
 /// of more than 5 m is a gap, so that the near ones can be told apart.

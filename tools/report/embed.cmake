@@ -11,7 +11,7 @@ function(read_part file result)
 endfunction()
 
 set(source "// Made by tools/report/embed.cmake; do not edit.\n#include \"roadbed/tools/report/page_parts.h\"\n\n")
-string(APPEND source "namespace roadbed::tools {\n\n")
+string(APPEND source "namespace roadbed::tools::inline report {\n\n")
 function(append_part name text)
   string(APPEND source "const std::string_view ${name} = R\"roadbed(${text})roadbed\";\n\n")
   set(source "${source}" PARENT_SCOPE)

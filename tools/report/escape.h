@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Text for HTML and SVG, in elements and in quoted attributes: & < > " ' are written as entities,
 /// control characters other than tab and newline and bytes that are no UTF-8 as U+FFFD.

@@ -9,7 +9,7 @@
 #include "roadbed/planning/audit/judged_stretches.h"
 #include "roadbed/tools/report/close_up.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using planning::AuditReport;

@@ -9,7 +9,7 @@
 #include "roadbed/planning/obstacles/moving_obstacle.h"
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What the page of an audit shows besides the audit itself, all in source coordinates.
 struct AuditSurroundings {

@@ -11,7 +11,7 @@
 #include "roadbed/tools/report/from_map.h"
 #include "roadbed/tools/report/from_occupancy.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 constexpr double kMapMargin_m = 150.0, kOccupancyMargin_m = 60.0;
@@ -145,7 +145,7 @@ void add_surroundings(const World& world, const Drive& drive, ReportInput& input
                                  box_around(input.route, drive, kOccupancyMargin_m));
   }
   for (const planning::Obstacle& obstacle : world.obstacles) {
-    input.obstacles.push_back(obstacle_in_source(world.road_map, obstacle));
+    input.obstacles.push_back(planning::obstacle_in_source(world.road_map, obstacle));
   }
 }
 

@@ -10,7 +10,7 @@
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What the report says besides the drive itself.
 struct ReportContext {

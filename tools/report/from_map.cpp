@@ -6,7 +6,7 @@
 
 #include "roadbed/map/index/road_map_index.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyline& in_map) {
@@ -79,19 +79,6 @@ LineInSource reference_points(const map::RoadMap& road_map, const planning::Refe
     points.push_back(road_map.to_source(line.at(line.length_m() * i / pieces).in_map));
   }
   return points;
-}
-
-planning::Obstacle obstacle_in_source(const map::RoadMap& road_map,
-                                      const planning::Obstacle& obstacle) {
-  planning::Obstacle moved = obstacle;
-  std::vector<geometry::TrajectoryPoint> points = obstacle.motion.points();
-  for (geometry::TrajectoryPoint& point : points) {
-    const Eigen::Vector2d place = road_map.to_source(point.pose().position());
-    point.x_m = place.x();
-    point.y_m = place.y();
-  }
-  moved.motion = geometry::Trajectory(std::move(points));
-  return moved;
 }
 
 }  // namespace roadbed::tools

@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/route.h"
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 // From the map's frame to what the report shows, in source coordinates.
 
@@ -27,9 +26,5 @@ std::optional<Eigen::Vector2d> route_goal(const map::RoadMap& road_map,
 
 /// Points of the reference line, one a metre.
 LineInSource reference_points(const map::RoadMap& road_map, const planning::ReferenceLine& line);
-
-/// The obstacle with its motion moved to source coordinates.
-planning::Obstacle obstacle_in_source(const map::RoadMap& road_map,
-                                      const planning::Obstacle& obstacle);
 
 }  // namespace roadbed::tools

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using map::Box2;

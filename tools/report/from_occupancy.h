@@ -6,7 +6,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Occupied space of a height band in plan view, as few boxes: cells of one row that touch are one
 /// box, and so are equal boxes of rows that touch. Only what meets `box_in_source`. The boxes cover

@@ -1,6 +1,6 @@
 #include "roadbed/tools/report/lane_look.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 std::string_view lane_look(const ReportLane& lane) {
   using map::LaneType;

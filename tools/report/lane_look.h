@@ -4,7 +4,7 @@
 
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Which of a few colours a lane has in pictures: "drive", "junction", "shoulder", "walk", "bike",
 /// "other", or empty for a lane that is not drawn.

@@ -7,7 +7,7 @@
 #include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/report/paper_figures.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

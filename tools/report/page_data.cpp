@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/tools/files/json.h"
 #include "roadbed/tools/report/lane_look.h"
 #include "roadbed/tools/report/thin_line.h"
-#include "roadbed/tools/support/json.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 constexpr double kLaneTolerance_m = 0.01;  // less than a pixel at the nearest zoom that is of use

@@ -4,7 +4,7 @@
 
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// What the page's scripts need, as one JSON document (page/decode.js reads it): points in whole
 /// millimetres from an origin near the drive, series in whole steps, both as differences.

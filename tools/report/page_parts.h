@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 // The parts of the report's page, put into the program when it is built (embed.cmake).
 extern const std::string_view kPageTemplate;  ///< with {{name}} where text goes

@@ -10,7 +10,7 @@
 
 #include "roadbed/tools/report/escape.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 // "12.5", not "12.500": at most `decimals`, no zeros at the end, no minus zero.

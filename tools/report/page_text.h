@@ -4,7 +4,7 @@
 
 #include "roadbed/tools/report/report.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 // The parts of the page that are text, as HTML; every text of the input is escaped.
 

@@ -5,7 +5,7 @@
 
 #include "roadbed/tools/report/chart.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// A figure of the paper, computed.
 struct Figure {

@@ -10,7 +10,7 @@
 #include "roadbed/planning/obstacles/static_obstacles.h"
 #include "roadbed/tools/report/svg.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

@@ -7,7 +7,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/lateral/plan.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// One planning cycle as a picture, after the paper's Figs. 8 and 9.
 struct PlanPicture {

@@ -12,7 +12,7 @@
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/tools/report/paper_figures.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

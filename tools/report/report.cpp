@@ -9,7 +9,7 @@
 #include "roadbed/tools/report/page_parts.h"
 #include "roadbed/tools/report/page_text.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Parts = std::map<std::string_view, std::string>;

@@ -12,7 +12,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 // Everything that a report shows, as plain data. All coordinates are the source's raw ones [m], all
 // times are seconds of the drive. Texts are shown as they are: the report escapes them.

@@ -18,7 +18,7 @@
 #include "roadbed/tools/report/svg.h"
 #include "roadbed/tools/report/svg_legend.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Eigen::Vector2d;

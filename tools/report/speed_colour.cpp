@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using Colour = std::array<double, 3>;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Colour of a share 0 … 1 of the largest speed, "#rrggbb": from dark violet over teal to yellow,
 /// as bright as the share is large (stops of viridis, matplotlib, CC0), told apart by all kinds of

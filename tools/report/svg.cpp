@@ -7,7 +7,7 @@
 #include "roadbed/tools/report/escape.h"
 #include "roadbed/tools/report/thin_line.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 constexpr double kTolerance_px = 0.2;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Puts a part of the plane on a picture: x right, y up in the plane, y down in the picture.
 struct PictureFrame {

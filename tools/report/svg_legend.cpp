@@ -5,7 +5,7 @@
 #include "roadbed/tools/report/speed_colour.h"
 #include "roadbed/tools/report/svg.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 constexpr double kSwatch_px = 9.0;

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 
 /// Entries of a picture's legend, one beside the other on one line.
 class SvgLegend {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 double distance_to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& from,

@@ -14,7 +14,7 @@
 #include "roadbed/control/stanley.h"
 #include "roadbed/tools/report/paper_figures.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline report {
 namespace {
 
 using control::CourseRunRow;

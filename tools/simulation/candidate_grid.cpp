@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using planning::Candidate;

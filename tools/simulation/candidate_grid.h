@@ -6,7 +6,7 @@
 
 #include "roadbed/planning/lateral/plan.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// What became of each candidate of a planning cycle, small enough to be kept for every cycle.
 struct CandidateGrid {

@@ -8,14 +8,17 @@
 #include <memory>
 #include <utility>
 
+#include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
+#include "roadbed/control/single_track.h"
 #include "roadbed/control/stanley.h"
+#include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/tools/simulation/event_log.h"
-#include "roadbed/tools/simulation/foot.h"
-#include "roadbed/tools/simulation/observer.h"
-#include "roadbed/tools/simulation/pilot.h"
+#include "roadbed/tools/simulation/ground_truth_monitor.h"
+#include "roadbed/tools/simulation/pedal_model.h"
+#include "roadbed/tools/simulation/sensors.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 constexpr double kControlStep_s = 0.01;
@@ -30,6 +33,32 @@ double most_steering_rad(double speed_mps, double lateral_mps2,
                   std::atan(vehicle.wheelbase_m * lateral_mps2 / squared));
 }
 
+/// The cruise control behind the sensors of the lead.
+class MeasuredCruise : public planning::SpeedController {
+ public:
+  MeasuredCruise(Sensors& sensors, const planning::VehicleState& truth)
+      : sensors_(sensors), truth_(truth) {}
+
+  bool sees_lead(double t_s) override { return sensors_.sees(t_s); }
+
+  double acceleration_mps2(const Question& question) override {
+    const double speed = question.measured.speed_mps;
+    const double acceleration = question.measured.acceleration_mps2;
+    const control::SetSpeed set{question.set.speed_mps, question.set.acceleration_mps2};
+    if (question.is_blind) return cruise_.update_blind(speed, acceleration, set);
+    std::optional<control::LeadMeasurement> seen;
+    if (question.lead) seen = sensors_.measure(*question.lead, truth_.speed_mps);
+    return cruise_.update(speed, acceleration, set, seen);
+  }
+
+ private:
+  static_assert(control::ActuatorOptions{}.lag_s == planning::kActuatorLag_s);
+
+  Sensors& sensors_;
+  const planning::VehicleState& truth_;
+  control::CruiseControl cruise_{{.max_command_mps2 = planning::kMostCommand_mps2}};
+};
+
 class ClosedLoop {
  public:
   ClosedLoop(const Scenario& scenario, World& world, const LoopOptions& options)
@@ -38,13 +67,13 @@ class ClosedLoop {
         options_(options),
         flow_(world.drivers, world.obstacles, scenario.duration_s, {}),
         sensors_(scenario.noise, scenario.seed),
-        pilot_(world.goal ? make_timed_pilot(scenario, world, options)
-                          : make_cruise_pilot(scenario, world, options)),
+        cruise_(sensors_, truth_),
+        pilot_(world.goal ? make_timed_pilot(setup()) : make_cruise_pilot(setup())),
         observer_(world, scenario.vehicle) {
-    truth_.motion.pose = world.start;
-    truth_.motion.speed_mps = scenario.start_speed_mps;
-    truth_.motion.steering_rad = start_steering_rad();
-    if (scenario.options.pedals) {
+    truth_.map_from_vehicle = world.start;
+    truth_.speed_mps = scenario.start_speed_mps;
+    truth_.steering_rad = start_steering_rad();
+    if (scenario.pedals) {
       foot_.emplace(GradeProfile(world.road_map, world.route, world.line));
     }
   }
@@ -52,8 +81,7 @@ class ClosedLoop {
   Drive run() {
     const auto cycles = static_cast<int>(std::ceil(10.0 * scenario_.duration_s - 1e-9));
     for (int cycle = 0; cycle < cycles && !is_over_; ++cycle) {
-      flow_.step(
-          {geometry::body_at(truth_.motion.pose, scenario_.vehicle), truth_.motion.speed_mps});
+      flow_.step({geometry::body_at(truth_.map_from_vehicle, scenario_.vehicle), truth_.speed_mps});
       plan_and_decide();
       record();
       for (int i = 0; i < kControlStepsPerCycle && !is_over_; ++i) control_step();
@@ -63,6 +91,13 @@ class ClosedLoop {
   }
 
  private:
+  planning::PilotSetup setup() const {
+    return {.task = world_,
+            .vehicle = scenario_.vehicle,
+            .driving = scenario_.options,
+            .pilot = options_.pilot};
+  }
+
   double t_s() const { return kControlStep_s * steps_; }
 
   /// Along the lane, as far as the speed allows at the start.
@@ -76,18 +111,15 @@ class ClosedLoop {
                       most);
   }
 
-  const PathKeeper& keeper() const { return pilot_->keeper(); }
+  const planning::LateralReplanner& replanner() const { return pilot_->replanner(); }
 
   void plan_and_decide() {
     const auto begin = std::chrono::steady_clock::now();
-    const VehicleState measured = sensors_.measure(truth_);
-    command_ = pilot_->decide({.t_s = t_s(),
-                               .measured = measured,
-                               .true_speed_mps = truth_.motion.speed_mps,
-                               .sensors = sensors_});
+    const planning::VehicleState measured = sensors_.measure(truth_);
+    command_ = pilot_->decide({.t_s = t_s(), .measured = measured, .speed_controller = cruise_});
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     if (options_.on_cycle) options_.on_cycle(took.count());
-    front_s_m_ = keeper().s_m();
+    front_s_m_ = replanner().s_m();
     saturated_ += command_.saturated ? 1 : 0;
     log_cycle();
   }
@@ -96,14 +128,14 @@ class ClosedLoop {
     DriveCycle cycle{.t_s = t_s(),
                      .behaviour = command_.behaviour,
                      .reason = command_.reason,
-                     .from_measurement = keeper().from_measurement() && !drive_.cycles.empty(),
-                     .chosen = keeper().last_plan().chosen,
-                     .start = keeper().last_plan().start,
-                     .grid = candidate_grid(keeper().last_plan()),
-                     .plan_reason = keeper().last_plan().reason,
-                     .beyond_the_edge_m = keeper().beyond_the_edge_m(),
+                     .from_measurement = replanner().from_measurement() && !drive_.cycles.empty(),
+                     .chosen = replanner().last_plan().chosen,
+                     .start = replanner().last_plan().start,
+                     .grid = candidate_grid(replanner().last_plan()),
+                     .plan_reason = replanner().last_plan().reason,
+                     .beyond_the_edge_m = replanner().beyond_the_edge_m(),
                      .lead = command_.lead};
-    for (const geometry::TrajectoryPoint& point : keeper().last_plan().trajectory.points()) {
+    for (const geometry::TrajectoryPoint& point : replanner().last_plan().trajectory.points()) {
       cycle.path.push_back(world_.road_map.to_source({point.x_m, point.y_m}));
     }
     const DriveCycle* last = drive_.cycles.empty() ? nullptr : &drive_.cycles.back();
@@ -114,32 +146,37 @@ class ClosedLoop {
   control::TrackingError tracking_error_of(const geometry::Pose2& pose) {
     const double wheelbase_m = scenario_.vehicle.wheelbase_m;
     const Eigen::Vector2d front = pose * Eigen::Vector2d(wheelbase_m, 0.0);
-    front_s_m_ = keeper().path().nearest_front_s_m(front, wheelbase_m, front_s_m_);
+    front_s_m_ = replanner().path().nearest_front_s_m(front, wheelbase_m, front_s_m_);
     return control::tracking_error(pose, wheelbase_m,
-                                   keeper().path().front_pose_at(front_s_m_, wheelbase_m));
+                                   replanner().path().front_pose_at(front_s_m_, wheelbase_m));
   }
 
   double acceleration_after_step() {
     if (!foot_) {
       return control::actuate(truth_.acceleration_mps2, command_.acceleration_mps2, kControlStep_s);
     }
-    return foot_->press(command_.acceleration_mps2, truth_.motion.speed_mps, s_m_, kControlStep_s);
+    return foot_->press(command_.acceleration_mps2, truth_.speed_mps, s_m_, kControlStep_s);
   }
 
   void control_step() {
-    const VehicleState measured = sensors_.measure(truth_);
-    const control::TrackingError error = tracking_error_of(measured.motion.pose);
-    const double speed_mps = measured.motion.speed_mps;
+    const planning::VehicleState measured = sensors_.measure(truth_);
+    const control::TrackingError error = tracking_error_of(measured.map_from_vehicle);
+    const double speed_mps = measured.speed_mps;
     const double most = most_steering_rad(speed_mps, kMostLateral_mps2, scenario_.vehicle);
     const double wanted =
         std::clamp(control::stanley_steering_rad(error, speed_mps, scenario_.vehicle), -most, most);
     truth_.acceleration_mps2 = acceleration_after_step();
-    truth_.motion = control::step(
-        truth_.motion,
-        {.acceleration_mps2 = truth_.acceleration_mps2,
-         .steering_rate_radps = (wanted - truth_.motion.steering_rad) / kControlStep_s},
-        kControlStep_s, scenario_.vehicle);
-    if (truth_.motion.speed_mps <= 0.0 && truth_.acceleration_mps2 < 0.0) {
+    const control::SingleTrackState moved =
+        control::step({.pose = truth_.map_from_vehicle,
+                       .speed_mps = truth_.speed_mps,
+                       .steering_rad = truth_.steering_rad},
+                      {.acceleration_mps2 = truth_.acceleration_mps2,
+                       .steering_rate_radps = (wanted - truth_.steering_rad) / kControlStep_s},
+                      kControlStep_s, scenario_.vehicle);
+    truth_.map_from_vehicle = moved.pose;
+    truth_.speed_mps = moved.speed_mps;
+    truth_.steering_rad = moved.steering_rad;
+    if (truth_.speed_mps <= 0.0 && truth_.acceleration_mps2 < 0.0) {
       truth_.acceleration_mps2 = 0.0;  // it stands
     }
     ++steps_;
@@ -148,18 +185,18 @@ class ClosedLoop {
   }
 
   double true_s_m() {
-    s_m_ = world_.line.project(truth_.motion.pose.position(), s_m_).s_m;
+    s_m_ = world_.line.project(truth_.map_from_vehicle.position(), s_m_).s_m;
     return s_m_;
   }
 
   void check_end() {
     if (!observer_.touched().empty()) {
       end(Outcome::collision, fmt::format("touched {} at {:.1f} m/s after {:.2f} s",
-                                          observer_.touched(), truth_.motion.speed_mps, t_s()));
+                                          observer_.touched(), truth_.speed_mps, t_s()));
       drive_.events.push_back({t_s(), EventLevel::fault, drive_.verdict.text});
     } else if (world_.goal) {
       check_timed_goal();
-    } else if (truth_.motion.speed_mps <= 0.0) {
+    } else if (truth_.speed_mps <= 0.0) {
       const double missed_m = true_s_m() - world_.line.goal_s_m();
       if (std::abs(missed_m) > options_.goal_tolerance_m) return;
       end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s, {:.2f} m {} it", t_s(),
@@ -169,13 +206,13 @@ class ClosedLoop {
 
   /// The goal counts at the scenario's time steps; past it the drive goes on to a stop.
   void check_timed_goal() {
-    const TimedGoal& goal = *world_.goal;
+    const planning::TimedGoal& goal = *world_.goal;
     const double step = t_s() / goal.step_s;
     const bool is_step = std::abs(step - std::round(step)) * goal.step_s < 0.5 * kControlStep_s;
-    if (is_step && goal.is_reached(world_.road_map, truth_.motion.pose, truth_.motion.speed_mps,
+    if (is_step && goal.is_reached(world_.road_map, truth_.map_from_vehicle, truth_.speed_mps,
                                    t_s(), scenario_.vehicle)) {
       end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s", t_s()));
-    } else if (truth_.motion.speed_mps <= 0.0 && t_s() > goal.latest_s().value_or(0.0)) {
+    } else if (truth_.speed_mps <= 0.0 && t_s() > goal.latest_s().value_or(0.0)) {
       end(Outcome::stopped,
           goal.latest_s()
               ? fmt::format("stands after {:.2f} s: the goal was to be reached until {:.2f} s",
@@ -198,7 +235,7 @@ class ClosedLoop {
     drive_.trajectory = geometry::Trajectory(std::move(rows_));
     if (is_over_) return;
     const double left_m = world_.line.goal_s_m() - true_s_m();
-    const bool stands = truth_.motion.speed_mps <= 0.0;
+    const bool stands = truth_.speed_mps <= 0.0;
     end(stands ? Outcome::stopped : Outcome::timed_out,
         fmt::format("{} {:.1f} m before the goal after {:.1f} s: {}",
                     stands ? "stands" : "still drives", left_m, t_s(),
@@ -209,7 +246,7 @@ class ClosedLoop {
     rows_.push_back(observer_.row(t_s(), truth_));
     observer_.look(t_s(), truth_);
     const double s_m = true_s_m();
-    const control::TrackingError error = tracking_error_of(truth_.motion.pose);
+    const control::TrackingError error = tracking_error_of(truth_.map_from_vehicle);
     drive_.samples.push_back({.t_s = t_s(),
                               .s_m = s_m,
                               .set_speed_mps = command_.set_speed_mps,
@@ -228,15 +265,16 @@ class ClosedLoop {
   const LoopOptions& options_;
   TrafficFlow flow_;
   Sensors sensors_;
-  std::unique_ptr<Pilot> pilot_;
-  Observer observer_;
+  planning::VehicleState truth_;
+  MeasuredCruise cruise_;
+  std::unique_ptr<planning::Pilot> pilot_;
+  GroundTruthMonitor observer_;
 
-  VehicleState truth_;
-  std::optional<Foot> foot_;
+  std::optional<PedalModel> foot_;
   int steps_ = 0;
   double s_m_ = 0.0;        ///< station on the world's line, when last looked
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
-  PilotCommand command_;
+  planning::PilotCommand command_;
   int saturated_ = 0;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;
@@ -244,14 +282,6 @@ class ClosedLoop {
 };
 
 }  // namespace
-
-planning::SpeedCeiling ceiling_of(const Scenario& scenario, const planning::ReferenceLine& line) {
-  return planning::speed_ceiling(
-      line, scenario.vehicle,
-      {.desired_speed_mps = scenario.options.desired_speed_mps,
-       .max_lateral_acceleration_mps2 = scenario.options.max_lateral_acceleration_mps2,
-       .deceleration_mps2 = scenario.options.comfort_deceleration_mps2});
-}
 
 Drive drive(const Scenario& scenario, World& world, const LoopOptions& options) {
   return ClosedLoop(scenario, world, options).run();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using Values = std::vector<double>;

@@ -4,7 +4,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// Savitzky–Golay: the `derivative` of the polynomial of order `order` that fits a window of
 /// equally spaced values best, at the window's middle; at both ends, of the polynomial of the first

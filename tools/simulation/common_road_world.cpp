@@ -14,12 +14,12 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/route/match_place.h"
-#include "roadbed/tools/simulation/lead.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/recorded_obstacle.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Pose2;
@@ -74,20 +74,24 @@ Pose2 rear_axle(const Source& source, const geometry::VehicleShape& vehicle) {
   return centre * Pose2{vehicle.rear_overhang_m - 0.5 * vehicle.length_m, 0.0, 0.0};
 }
 
-Window seconds(const map::commonroad::Range<long>& steps, long start_step, double step_s) {
+planning::Window seconds(const map::commonroad::Range<long>& steps, long start_step,
+                         double step_s) {
   return {step_s * static_cast<double>(steps.least - start_step),
           step_s * static_cast<double>(steps.most - start_step)};
 }
 
-Window window(const map::commonroad::Range<double>& range) { return {range.least, range.most}; }
+planning::Window window(const map::commonroad::Range<double>& range) {
+  return {range.least, range.most};
+}
 
-GoalState goal_state(const Source& source, const State& from) {
-  GoalState state{.time_s = seconds(from.time_step, source.problem.initial_state.time_step.least,
-                                    source.step_s),
-                  .speed_mps = from.speed_mps ? window(*from.speed_mps) : Window{},
-                  .heading_rad = {},
-                  .region_in_source = from.region,
-                  .lanes = {}};
+planning::GoalState goal_state(const Source& source, const State& from) {
+  planning::GoalState state{
+      .time_s =
+          seconds(from.time_step, source.problem.initial_state.time_step.least, source.step_s),
+      .speed_mps = from.speed_mps ? window(*from.speed_mps) : planning::Window{},
+      .heading_rad = {},
+      .region_in_source = from.region,
+      .lanes = {}};
   if (from.heading_rad) state.heading_rad = window(*from.heading_rad);
   for (const std::string& name : from.lanelets) {
     const auto lane = source.road_map.find_lane(name);
@@ -110,8 +114,8 @@ double start_speed_mps(const Source& source) {
   return speed;
 }
 
-TimedGoal goal_of(const Source& source) {
-  TimedGoal goal{.step_s = source.step_s, .states = {}};
+planning::TimedGoal goal_of(const Source& source) {
+  planning::TimedGoal goal{.step_s = source.step_s, .states = {}};
   for (const State& state : source.problem.goals) goal.states.push_back(goal_state(source, state));
   return goal;
 }
@@ -175,13 +179,14 @@ double reach_m(double speed_mps, double limit_mps, double until_s) {
 }
 
 /// Places of a goal state that a route may lead to.
-std::vector<LanePlace> goal_places(const Source& source, const GoalState& state) {
+std::vector<LanePlace> goal_places(const Source& source, const planning::GoalState& state) {
   std::vector<LanePlace> places;
   for (const map::LaneId lane : state.lanes) {
     places.push_back({.lane = lane, .s_m = source.road_map.lane(lane).length_m()});
   }
   if (!state.region_in_source.empty()) {
-    const Eigen::Vector2d middle = source.road_map.to_map(middle_of(state.region_in_source));
+    const Eigen::Vector2d middle =
+        source.road_map.to_map(planning::middle_of(state.region_in_source));
     std::optional<double> heading;
     if (state.heading_rad) heading = 0.5 * (state.heading_rad->least + state.heading_rad->most);
     for (const auto& match :
@@ -207,7 +212,7 @@ std::optional<Route> cheaper(std::optional<Route> a, std::optional<Route> b) {
 }
 
 std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>& starts,
-                              const GoalState& state, double reach) {
+                              const planning::GoalState& state, double reach) {
   std::optional<Route> best;
   for (const LanePlace& goal : goal_places(source, state)) {
     for (const LanePlace& start : starts) {
@@ -228,12 +233,12 @@ std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>
 
 /// None if no route leads to the goal.
 std::optional<Route> find_route_of(const Source& source, const std::vector<LanePlace>& starts,
-                                   const TimedGoal& goal, double speed_mps) {
+                                   const planning::TimedGoal& goal, double speed_mps) {
   const double until_s = goal.latest_s().value_or(kNothingAsked_s);
   const double reach = reach_m(speed_mps, kDefaultSpeed_mps, until_s);
   std::optional<Route> best;
   bool anywhere = goal.states.empty();
-  for (const GoalState& state : goal.states) {
+  for (const planning::GoalState& state : goal.states) {
     anywhere = anywhere || state.is_anywhere();
     if (!state.is_anywhere())
       best = cheaper(std::move(best), route_to(source, starts, state, reach));
@@ -243,8 +248,8 @@ std::optional<Route> find_route_of(const Source& source, const std::vector<LaneP
   return planning::find_route(source.road_map, {starts.front(), Sense::along}, end).route;
 }
 
-Route route_of(const Source& source, const std::vector<LanePlace>& starts, const TimedGoal& goal,
-               double speed_mps) {
+Route route_of(const Source& source, const std::vector<LanePlace>& starts,
+               const planning::TimedGoal& goal, double speed_mps) {
   std::optional<Route> route = find_route_of(source, starts, goal, speed_mps);
   if (!route) {
     source.refuse("a goal that no route leads to", "a way over lanes that a car may use",
@@ -267,9 +272,9 @@ std::vector<LanePlace> places_beside(const map::RoadMap& road_map, const LanePla
 }
 
 /// Where the file knows no limit: what towns allow, or what start and goal show to be usual.
-double usual_speed_mps(double start_mps, const TimedGoal& goal) {
+double usual_speed_mps(double start_mps, const planning::TimedGoal& goal) {
   double usual = std::max(kDefaultSpeed_mps, start_mps);
-  for (const GoalState& state : goal.states) {
+  for (const planning::GoalState& state : goal.states) {
     if (std::isfinite(state.speed_mps.least)) usual = std::max(usual, state.speed_mps.least + 1.0);
   }
   return usual;
@@ -293,10 +298,11 @@ void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obsta
 }
 
 /// What a file's lights show: red with yellow is red, and one that is off is dark.
-std::vector<ScenarioLight> lights_of(const map::RoadMap& road_map, long start_step, double step_s) {
-  std::vector<ScenarioLight> lights;
+std::vector<planning::LightCycle> lights_of(const map::RoadMap& road_map, long start_step,
+                                            double step_s) {
+  std::vector<planning::LightCycle> lights;
   for (const map::Signal& signal : road_map.signals()) {
-    ScenarioLight light{.signals = {signal.source_id}, .pointer = {}, .phases = {}};
+    planning::LightCycle light{.signals = {signal.source_id}, .pointer = {}, .phases = {}};
     double offset = -static_cast<double>(start_step);
     bool is_on = signal.dynamic;
     for (const auto& [key, value] : signal.attributes) {
@@ -308,9 +314,9 @@ std::vector<ScenarioLight> lights_of(const map::RoadMap& road_map, long start_st
       const double duration_s = step_s * std::atof(value.c_str() + blank + 1);
       is_on = is_on && colour != "inactive";
       if (!(duration_s > 0.0)) continue;
-      light.phases.push_back({colour == "green"    ? LightColour::green
-                              : colour == "yellow" ? LightColour::yellow
-                                                   : LightColour::red,
+      light.phases.push_back({colour == "green"    ? planning::LightColour::green
+                              : colour == "yellow" ? planning::LightColour::yellow
+                                                   : planning::LightColour::red,
                               duration_s});
     }
     light.offset_s = step_s * offset;
@@ -345,7 +351,7 @@ void refuse_overlap(const Source& source, const World& world,
 }
 
 Scenario scenario_of(const std::filesystem::path& file, const std::string& benchmark_id,
-                     double speed_mps, const TimedGoal& goal) {
+                     double speed_mps, const planning::TimedGoal& goal) {
   Scenario scenario;
   scenario.file = scenario.map_file = file;
   scenario.name = benchmark_id.empty() ? file.stem().string() : benchmark_id;
@@ -386,7 +392,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                   fmt::format("{} to {} s", kLeastStep_s, kMostStep_s), "correct timeStepSize");
   }
   const double speed_mps = start_speed_mps(source);
-  TimedGoal goal = goal_of(source);
+  planning::TimedGoal goal = goal_of(source);
   Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
   changes.apply_to(scenario);
   const Pose2 start = rear_axle(source, scenario.vehicle);
@@ -395,15 +401,15 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
       .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route, line_options);
   scenario.lights = lights_of(road_map, problem.initial_state.time_step.least, from.time_step_s);
-  std::vector<WaitingPlace> places = waiting_places(road_map, route, line, scenario.lights);
+  std::vector<planning::StopPoint> places = stop_points(road_map, route, line, scenario.lights);
   std::vector<planning::ReferenceLine> other_lines;
-  std::vector<std::vector<WaitingPlace>> other_places;
+  std::vector<std::vector<planning::StopPoint>> other_places;
   const planning::RouteLeg& first = route.legs.front();
   for (const LanePlace& place :
        places_beside(road_map, {.lane = first.lane, .s_m = first.from_s_m})) {
     if (const auto other = find_route_of(source, {place}, goal, speed_mps)) {
       other_lines.push_back(planning::ReferenceLine::along(road_map, *other, line_options));
-      other_places.push_back(waiting_places(road_map, *other, other_lines.back(), scenario.lights));
+      other_places.push_back(stop_points(road_map, *other, other_lines.back(), scenario.lights));
     }
   }
   const planning::RouteLeg& last = route.legs.back();
@@ -412,19 +418,18 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
           ? std::min(last.to_s_m, kBeyondGoal_m)
           : road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
   const double road_end_s_m = line.goal_s_m() + beyond_m;
-  World world{.kept_map = std::move(kept_map),
-              .occupancy = {},
-              .field = {},
-              .start = start,
-              .route = std::move(route),
-              .line = std::move(line),
-              .obstacles = {},
-              .presence = {},
-              .goal = std::move(goal),
-              .other_lines = std::move(other_lines),
-              .waiting_places = std::move(places),
-              .other_waiting_places = std::move(other_places),
-              .road_end_s_m = road_end_s_m};
+  World world{{.kept_map = std::move(kept_map),
+               .field = {},
+               .start = start,
+               .route = std::move(route),
+               .line = std::move(line),
+               .obstacles = {},
+               .goal = std::move(goal),
+               .lights = scenario.lights,
+               .stop_points = std::move(places),
+               .other_lines = std::move(other_lines),
+               .other_stop_points = std::move(other_places),
+               .road_end_s_m = road_end_s_m}};
   const Source placed{file.string(), world.road_map, problem, from.time_step_s};
   add_obstacles(from, placed, world);
   refuse_overlap(placed, world, scenario.vehicle);

@@ -7,7 +7,7 @@
 #include "roadbed/tools/simulation/scenario_changes.h"
 #include "roadbed/tools/simulation/world.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// A CommonRoad planning problem, ready to be driven.
 struct CommonRoadDrive {

@@ -1,24 +1,6 @@
 #include "roadbed/tools/simulation/drive.h"
 
-namespace roadbed::tools {
-
-std::string_view name(Behaviour behaviour) {
-  switch (behaviour) {
-    case Behaviour::cruise:
-      return "cruise";
-    case Behaviour::pass:
-      return "pass";
-    case Behaviour::follow:
-      return "follow";
-    case Behaviour::yield:
-      return "yield";
-    case Behaviour::stop:
-      return "stop";
-    case Behaviour::emergency:
-      return "emergency";
-  }
-  return "";
-}
+namespace roadbed::tools::inline simulation {
 
 std::string_view name(Outcome outcome) {
   switch (outcome) {

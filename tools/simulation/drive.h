@@ -7,36 +7,19 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/planning/lateral/plan.h"
 #include "roadbed/tools/simulation/candidate_grid.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 // What a closed-loop drive left behind, as plain data. Coordinates are the source's raw ones [m],
 // times are seconds of the drive.
 
-/// What the decision layer does; few and readable.
-enum class Behaviour {
-  cruise,     ///< the road ahead is free: hold the set speed
-  pass,       ///< beside the reference line, because something stands or moves on it
-  follow,     ///< behind a lead
-  yield,      ///< waits at a light or sign, or for those who have the right of way
-  stop,       ///< comes to rest: at the goal, or because no candidate is left
-  emergency,  ///< the safety layer brakes harder than the cruise control may
-};
-std::string_view name(Behaviour behaviour);
-
-/// The vehicle ahead that the cruise control follows.
-struct DriveLead {
-  std::string id;
-  double gap_m = 0.0;  ///< true, bumper to bumper along the path
-  double speed_mps = 0.0;
-};
-
 /// One planning cycle, every 0.1 s.
 struct DriveCycle {
   double t_s = 0.0;
-  Behaviour behaviour = Behaviour::cruise;
+  planning::Behaviour behaviour = planning::Behaviour::cruise;
   std::string reason = {};        ///< "car p1 is 22.4 m ahead"
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
@@ -46,7 +29,7 @@ struct DriveCycle {
   std::string plan_reason = {};            ///< why nothing was feasible
   double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
-  std::optional<DriveLead> lead = {};
+  std::optional<planning::DriveLead> lead = {};
 };
 
 /// What is known at each row of the trajectory.

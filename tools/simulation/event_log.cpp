@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last) {
   std::vector<DriveEvent> events;
@@ -23,8 +23,8 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
     log(EventLevel::info, fmt::format("no candidate keeps to the lanes; up to {:.1f} m beyond",
                                       cycle.beyond_the_edge_m));
   }
-  if (cycle.behaviour == Behaviour::emergency &&
-      (!last || last->behaviour != Behaviour::emergency)) {
+  if (cycle.behaviour == planning::Behaviour::emergency &&
+      (!last || last->behaviour != planning::Behaviour::emergency)) {
     log(EventLevel::warning, "emergency: " + cycle.reason);
   }
   const std::string lead = cycle.lead ? cycle.lead->id : "";

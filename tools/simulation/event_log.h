@@ -4,7 +4,7 @@
 
 #include "roadbed/tools/simulation/drive.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// What is worth telling of a cycle after the one before it: nothing feasible, an emergency,
 /// another lead, …

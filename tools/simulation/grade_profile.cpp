@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 constexpr double kApart_m = 1.0;  // least, between heights

@@ -6,7 +6,7 @@
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/route.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// How steep a route is, from the heights of its lanes' centres; level where there are none.
 class GradeProfile {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "roadbed/tools/simulation/comfort.h"
-#include "roadbed/tools/simulation/encounters.h"
+#include "roadbed/tools/simulation/safety_metrics.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::TrajectoryPoint;
@@ -121,8 +121,9 @@ ordered_json tracking(const Drive& drive) {
 
 ordered_json cycles(const Drive& drive) {
   ordered_json per_behaviour = ordered_json::object();
-  for (const Behaviour behaviour : {Behaviour::cruise, Behaviour::pass, Behaviour::follow,
-                                    Behaviour::yield, Behaviour::stop, Behaviour::emergency}) {
+  for (const planning::Behaviour behaviour :
+       {planning::Behaviour::cruise, planning::Behaviour::pass, planning::Behaviour::follow,
+        planning::Behaviour::yield, planning::Behaviour::stop, planning::Behaviour::emergency}) {
     const std::size_t cycles =
         count(drive.cycles, [&](const DriveCycle& cycle) { return cycle.behaviour == behaviour; });
     per_behaviour[std::string(name(behaviour)) + "_s"] = kCycle_s * static_cast<double>(cycles);
@@ -163,7 +164,7 @@ ordered_json decisions(const Drive& drive) {
   for (const DriveCycle& cycle : drive.cycles) {
     if (!last || last->behaviour != cycle.behaviour) {
       list.push_back({{"t_s", cycle.t_s},
-                      {"behaviour", tools::name(cycle.behaviour)},
+                      {"behaviour", planning::name(cycle.behaviour)},
                       {"reason", cycle.reason}});
     }
     last = &cycle;
@@ -173,7 +174,7 @@ ordered_json decisions(const Drive& drive) {
 
 /// How the pedals were used; null without any.
 ordered_json pedals(const Scenario& scenario, const Drive& drive) {
-  if (!scenario.options.pedals) return nullptr;
+  if (!scenario.pedals) return nullptr;
   int changes = 0;
   for (std::size_t i = 1; i < drive.samples.size(); ++i) {
     const bool braked = drive.samples[i - 1].brake > 0.0, brakes = drive.samples[i].brake > 0.0;

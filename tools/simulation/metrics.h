@@ -8,7 +8,7 @@
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// What `metrics.json` holds: the verdict, extremes of speed, acceleration and tracking errors with
 /// their units in the keys, time per behaviour, and the audit. See the table in this folder's

@@ -6,7 +6,7 @@
 
 #include "roadbed/geometry/primitives/angle.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Pose2;

@@ -9,7 +9,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/tools/simulation/scenario.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// Pose of a centre at a distance along its way, in the map.
 using Way = std::function<geometry::Pose2(double distance_m)>;

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "roadbed/geometry/primitives/pose2.h"
-#include "roadbed/tools/simulation/shape_bounds.h"
-#include "roadbed/tools/simulation/timed_goal.h"
+#include "roadbed/planning/behaviour/shape_bounds.h"
+#include "roadbed/planning/behaviour/timed_goal.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Pose2;
@@ -31,7 +31,8 @@ class Recording {
       : road_map_(road_map), start_step_(start_step), step_s_(step_s) {}
 
   void add(const State& state, const Eigen::Vector2d& middle_in_shape) {
-    const Eigen::Vector2d place = state.position_m ? *state.position_m : middle_of(state.region);
+    const Eigen::Vector2d place =
+        state.position_m ? *state.position_m : planning::middle_of(state.region);
     const Pose2 reference{place.x(), place.y(), middle(state.heading_rad)};
     add(state.time_step.least, reference * middle_in_shape, reference.heading_rad,
         middle(state.speed_mps));
@@ -62,14 +63,14 @@ class Recording {
 
 RecordedObstacle recorded_obstacle(const map::commonroad::Obstacle& from,
                                    const map::RoadMap& road_map, long start_step, double step_s) {
-  Eigen::AlignedBox2d box = bounds_of(from.shape);
+  Eigen::AlignedBox2d box = planning::bounds_of(from.shape);
   Recording recording(road_map, start_step, step_s);
   recording.add(*from.initial_state, box.center());
   for (const State& state : from.trajectory) recording.add(state, box.center());
   Eigen::Vector2d size = box.sizes();
   for (const Occupancy& part : from.occupancy_set) {
     if (part.region.empty()) continue;
-    const Eigen::AlignedBox2d area = bounds_of(part.region);
+    const Eigen::AlignedBox2d area = planning::bounds_of(part.region);
     size = size.cwiseMax(area.sizes());
     recording.add(part.time_step.least, area.center(), 0.0, 0.0);
   }

@@ -5,12 +5,12 @@
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/world.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// An obstacle as recorded, and when it is there.
 struct RecordedObstacle {
   planning::Obstacle obstacle;
-  Presence presence;
+  planning::TimeSpan presence;
 };
 
 /// An obstacle of a CommonRoad file as the smallest rectangle along its heading that holds its

@@ -10,10 +10,10 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/support/json_node.h"
-#include "roadbed/tools/support/vehicle_json.h"
+#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/vehicle_json.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 constexpr Range kCoordinate{-1e9, 1e9};
@@ -137,22 +137,24 @@ std::vector<ScenarioObstacle> obstacles(const JsonNode& list) {
   return result;
 }
 
-std::vector<TimeSpan> time_spans(const JsonNode& list) {
-  std::vector<TimeSpan> spans;
+std::vector<planning::TimeSpan> time_spans(const JsonNode& list) {
+  std::vector<planning::TimeSpan> spans;
   for (const JsonNode& node : not_empty(list)) {
     node.require_object({"from_s", "to_s"});
-    const TimeSpan span{node.at("from_s").number(kTime), node.at("to_s").number(kTime)};
+    const planning::TimeSpan span{node.at("from_s").number(kTime), node.at("to_s").number(kTime)};
     require_later(node.at("to_s"), span.to_s, span.from_s);
     spans.push_back(span);
   }
   return spans;
 }
 
-LightPhase light_phase(const JsonNode& node) {
+planning::LightPhase light_phase(const JsonNode& node) {
   node.require_object({"colour", "duration_s"});
   const JsonNode colour = node.at("colour");
-  const std::map<std::string, LightColour> colours{
-      {"green", LightColour::green}, {"yellow", LightColour::yellow}, {"red", LightColour::red}};
+  const std::map<std::string, planning::LightColour> colours{
+      {"green", planning::LightColour::green},
+      {"yellow", planning::LightColour::yellow},
+      {"red", planning::LightColour::red}};
   const auto known = colours.find(colour.text());
   if (known == colours.end()) {
     colour.refuse(fmt::format("is \"{}\"", colour.text()), "green, yellow or red", "choose one");
@@ -160,11 +162,11 @@ LightPhase light_phase(const JsonNode& node) {
   return {known->second, node.at("duration_s").number(kDuration)};
 }
 
-std::vector<ScenarioLight> lights(const JsonNode& list) {
-  std::vector<ScenarioLight> result;
+std::vector<planning::LightCycle> lights(const JsonNode& list) {
+  std::vector<planning::LightCycle> result;
   for (const JsonNode& node : list.elements()) {
     node.require_object({"signals", "offset_s", "phases"});
-    ScenarioLight light{.signals = {}, .pointer = node.pointer(), .phases = {}};
+    planning::LightCycle light{.signals = {}, .pointer = node.pointer(), .phases = {}};
     for (const JsonNode& signal : not_empty(node.at("signals"))) {
       light.signals.push_back(signal.text());
     }
@@ -177,14 +179,10 @@ std::vector<ScenarioLight> lights(const JsonNode& list) {
   return result;
 }
 
-ScenarioOptions options(const JsonNode& node) {
+planning::DrivingOptions options(const JsonNode& node) {
   node.require_object({"desired_speed_mps", "max_lateral_acceleration_mps2",
                        "comfort_deceleration_mps2", "clearance_m", "pedals"});
-  const auto pedals = node.find("pedals");
-  if (pedals && !pedals->value().is_boolean()) {
-    pedals->refuse("is no truth value", "true or false", "correct it");
-  }
-  const ScenarioOptions otherwise;
+  const planning::DrivingOptions otherwise;
   return {
       .desired_speed_mps =
           node.number_or("desired_speed_mps", otherwise.desired_speed_mps, {0.5, 100.0}),
@@ -192,8 +190,15 @@ ScenarioOptions options(const JsonNode& node) {
           "max_lateral_acceleration_mps2", otherwise.max_lateral_acceleration_mps2, {0.1, 10.0}),
       .comfort_deceleration_mps2 = node.number_or("comfort_deceleration_mps2",
                                                   otherwise.comfort_deceleration_mps2, {0.1, 10.0}),
-      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0}),
-      .pedals = pedals && pedals->value().get<bool>()};
+      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0})};
+}
+
+bool has_pedals(const JsonNode& options) {
+  const auto pedals = options.find("pedals");
+  if (pedals && !pedals->value().is_boolean()) {
+    pedals->refuse("is no truth value", "true or false", "correct it");
+  }
+  return pedals && pedals->value().get<bool>();
 }
 
 std::uint64_t seed(const JsonNode& node) {
@@ -218,7 +223,10 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle_shape_in(*node);
   if (const auto node = root.find("seed")) scenario.seed = seed(*node);
   if (const auto node = root.find("noise")) scenario.noise = noise_in(*node);
-  if (const auto node = root.find("options")) scenario.options = options(*node);
+  if (const auto node = root.find("options")) {
+    scenario.options = options(*node);
+    scenario.pedals = has_pedals(*node);
+  }
   if (const auto node = root.find("lights")) scenario.lights = lights(*node);
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
 }
@@ -235,7 +243,7 @@ ScenarioNoise noise_in(const JsonNode& node) {
           .position_m = node.number_or("position_m", 0.0, kDeviation),
           .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
           .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
-          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<TimeSpan>{},
+          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<planning::TimeSpan>{},
           .dropout_share = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
 }
 

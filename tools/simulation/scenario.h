@@ -10,11 +10,11 @@
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
-#include "roadbed/tools/simulation/light.h"
+#include "roadbed/planning/behaviour/driving_task.h"
 
-namespace roadbed::tools {
+#include "roadbed/tools/files/json_node.h"
 
-class JsonNode;
+namespace roadbed::tools::inline simulation {
 
 // A scenario file, as it is written: places are still texts and coordinates the source's raw ones.
 // The schema is in tools/simulation/README.md. make_world() turns it into what is driven.
@@ -66,11 +66,6 @@ struct ScenarioObstacle {
   std::variant<ParkedObstacle, ScriptedObstacle, TrafficObstacle> motion;
 };
 
-/// Seconds of the drive.
-struct TimeSpan {
-  double from_s = 0.0, to_s = 0.0;
-};
-
 /// Standard deviations of what is measured; white and Gaussian.
 struct ScenarioNoise {
   double gap_m = 0.0;
@@ -79,16 +74,8 @@ struct ScenarioNoise {
   double position_m = 0.0;  ///< of each coordinate
   double heading_rad = 0.0;
   double speed_mps = 0.0;
-  std::vector<TimeSpan> dropouts = {};  ///< in which nothing is measured of a lead
-  double dropout_share = 0.0;           ///< of the other measurements of a lead, lost at random
-};
-
-struct ScenarioOptions {
-  double desired_speed_mps = 130.0 / 3.6;
-  double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
-  double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
-  double clearance_m = 0.3;                    ///< to obstacles and occupied space
-  bool pedals = false;  ///< acceleration goes through throttle and brake, air, tyres and grade
+  std::vector<planning::TimeSpan> dropouts = {};  ///< in which nothing is measured of a lead
+  double dropout_share = 0.0;  ///< of the other measurements of a lead, lost at random
 };
 
 struct Scenario {
@@ -102,8 +89,9 @@ struct Scenario {
   double duration_s = 60.0;
   std::uint64_t seed = 1;
   ScenarioNoise noise;
-  ScenarioOptions options;
-  std::vector<ScenarioLight> lights;
+  planning::DrivingOptions options;
+  bool pedals = false;  ///< acceleration goes through throttle and brake, air, tyres and grade
+  std::vector<planning::LightCycle> lights;
   std::vector<ScenarioObstacle> obstacles;
 };
 

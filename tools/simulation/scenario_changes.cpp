@@ -5,9 +5,9 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/support/json_node.h"
+#include "roadbed/tools/files/json_node.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 bool is_random(const ScenarioNoise& noise) {

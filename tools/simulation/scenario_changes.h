@@ -8,7 +8,7 @@
 
 #include "roadbed/tools/simulation/scenario.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// What a scenario is driven with otherwise than its file says.
 struct ScenarioChanges {

@@ -2,32 +2,32 @@
 
 #include <algorithm>
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 Sensors::Sensors(const ScenarioNoise& noise, std::uint64_t seed)
     : deviations_(noise), random_(seed) {}
 
 double Sensors::noise(double deviation) { return deviation * normal_(random_); }
 
-VehicleState Sensors::measure(const VehicleState& truth) {
-  VehicleState seen = truth;
-  seen.motion.pose.x_m += noise(deviations_.position_m);
-  seen.motion.pose.y_m += noise(deviations_.position_m);
-  seen.motion.pose.heading_rad += noise(deviations_.heading_rad);
-  seen.motion.speed_mps = std::max(0.0, seen.motion.speed_mps + noise(deviations_.speed_mps));
+planning::VehicleState Sensors::measure(const planning::VehicleState& truth) {
+  planning::VehicleState seen = truth;
+  seen.map_from_vehicle.x_m += noise(deviations_.position_m);
+  seen.map_from_vehicle.y_m += noise(deviations_.position_m);
+  seen.map_from_vehicle.heading_rad += noise(deviations_.heading_rad);
+  seen.speed_mps = std::max(0.0, seen.speed_mps + noise(deviations_.speed_mps));
   seen.acceleration_mps2 += noise(deviations_.acceleration_mps2);
   return seen;
 }
 
 bool Sensors::sees(double t_s) {
-  const bool is_blind = std::ranges::any_of(deviations_.dropouts, [&](const TimeSpan& span) {
-    return t_s >= span.from_s && t_s < span.to_s;
-  });
+  const bool is_blind = std::ranges::any_of(
+      deviations_.dropouts,
+      [&](const planning::TimeSpan& span) { return t_s >= span.from_s && t_s < span.to_s; });
   if (is_blind || deviations_.dropout_share <= 0.0) return !is_blind;
   return std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= deviations_.dropout_share;
 }
 
-control::LeadMeasurement Sensors::measure(const Lead& truth, double own_speed_mps) {
+control::LeadMeasurement Sensors::measure(const planning::Lead& truth, double own_speed_mps) {
   return {.gap_m = truth.gap_m + noise(deviations_.gap_m),
           .relative_speed_mps =
               truth.speed_mps - own_speed_mps + noise(deviations_.relative_speed_mps)};

@@ -3,28 +3,22 @@
 #include <random>
 
 #include "roadbed/control/cruise_control.h"
-#include "roadbed/control/single_track.h"
-#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/vehicle_state.h"
 #include "roadbed/tools/simulation/scenario.h"
 
-namespace roadbed::tools {
-
-/// State of the vehicle, true or measured.
-struct VehicleState {
-  control::SingleTrackState motion;
-  double acceleration_mps2 = 0.0;
-};
+namespace roadbed::tools::inline simulation {
 
 /// What the controllers get to see: the truth plus white Gaussian noise. Deterministic by seed.
 class Sensors {
  public:
   Sensors(const ScenarioNoise& noise, std::uint64_t seed);
 
-  VehicleState measure(const VehicleState& truth);
+  planning::VehicleState measure(const planning::VehicleState& truth);
 
   /// Whether a lead is measured at a time at all; to be asked once per time.
   bool sees(double t_s);
-  control::LeadMeasurement measure(const Lead& truth, double own_speed_mps);
+  control::LeadMeasurement measure(const planning::Lead& truth, double own_speed_mps);
 
  private:
   double noise(double deviation);

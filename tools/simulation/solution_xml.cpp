@@ -6,7 +6,7 @@
 
 #include "roadbed/map/files/xml_characters.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 std::string state_xml(const geometry::TrajectoryPoint& row, long step, double ahead_m) {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/planning/behaviour/lead.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Rectangle;

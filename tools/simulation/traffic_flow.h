@@ -10,7 +10,7 @@
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/scenario.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 
 /// Somebody who drives along lanes at wanted speeds, and keeps a distance from whoever is ahead.
 struct LaneDriver {

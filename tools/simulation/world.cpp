@@ -8,11 +8,11 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/simulation/lead.h"
+#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
-#include "roadbed/tools/support/place.h"
 
-namespace roadbed::tools {
+namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Pose2;
@@ -133,7 +133,7 @@ class ObstacleMaker {
 
 /// A light that the map does not have would never be seen.
 void refuse_unknown_signals(const Scenario& scenario, const map::RoadMap& road_map) {
-  for (const ScenarioLight& light : scenario.lights) {
+  for (const planning::LightCycle& light : scenario.lights) {
     for (const std::string& id : light.signals) {
       const bool known = std::ranges::any_of(
           road_map.signals(), [&](const map::Signal& signal) { return signal.source_id == id; });
@@ -156,14 +156,6 @@ void refuse_overlap(const Scenario& scenario, const World& world) {
 }
 
 }  // namespace
-
-std::vector<Obstacle> World::obstacles_at(double t_s) const {
-  std::vector<Obstacle> there;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (is_there(i, t_s)) there.push_back(obstacles[i]);
-  }
-  return there;
-}
 
 World make_world(const Scenario& scenario, const Inputs& inputs) {
   auto kept_map = inputs.road_map(scenario.map_file);
@@ -191,16 +183,18 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
     field = inputs.field_of(scenario.occupancy_files, scenario.vehicle.height_m);
   }
   refuse_unknown_signals(scenario, road_map);
-  std::vector<WaitingPlace> places = waiting_places(road_map, route, line, scenario.lights);
-  World world{.kept_map = std::move(kept_map),
-              .occupancy = std::move(occupancy),
-              .field = std::move(field),
-              .start = start.map_from_vehicle,
-              .route = std::move(route),
-              .line = std::move(line),
-              .obstacles = std::move(obstacles),
-              .drivers = std::move(drivers),
-              .waiting_places = std::move(places)};
+  std::vector<planning::StopPoint> places =
+      planning::stop_points(road_map, route, line, scenario.lights);
+  World world{{.kept_map = std::move(kept_map),
+               .field = std::move(field),
+               .start = start.map_from_vehicle,
+               .route = std::move(route),
+               .line = std::move(line),
+               .obstacles = std::move(obstacles),
+               .lights = scenario.lights,
+               .stop_points = std::move(places)},
+              std::move(occupancy),
+              std::move(drivers)};
   refuse_overlap(scenario, world);
   return world;
 }

@@ -119,7 +119,7 @@ TEST(XmlScanner, SaysWhereAndWhyATextIsNotWellFormed) {
       {"<!DOCTYPE a [<a>", "the document type does not end"},
       {"<a><!DOCTYPE b></a>", "a tag begins with <!"}};
   for (const auto& [text, reason] : bad) {
-    EXPECT_THAT(refusal([&] { read_all(text); }), HasSubstr(reason)) << text;
+    EXPECT_THAT(refusal([&text = text] { read_all(text); }), HasSubstr(reason)) << text;
   }
 }
 

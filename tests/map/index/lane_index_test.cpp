@@ -168,7 +168,7 @@ TEST(LaneIndex, AnswersManyPointsAsOneByOne) {
   auto points = points_near_lanes(town, 2000, 60.0);
   points[7] = {std::nan(""), 0.0};
   points[8] = {INFINITY, 0.0};
-  for (const std::size_t count : {1, 2, 5}) {
+  for (const std::size_t count : {1U, 2U, 5U}) {
     expect_as_one_by_one(town, points, {.radius_m = 25.0, .count = count});
     expect_as_one_by_one(town, points, {.radius_m = 1000.0, .count = count});
   }

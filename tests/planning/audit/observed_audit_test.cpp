@@ -23,7 +23,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr map::HeightBand kLowBand{0.2, 1.5};
 constexpr double kSide_m = 0.5;
 
 OccupancyMap hits(const std::vector<Eigen::Vector3d>& points) {

@@ -54,7 +54,7 @@ TEST(PlanChanges, FindsAboutTheRoomThatTryingEveryPlaceFinds) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   int planned = 0, refused = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    const std::size_t lanes = 2 + trial % 2;
+    const std::size_t lanes = 2U + static_cast<unsigned>(trial % 2);
     std::vector<std::vector<map::StationRange>> windows(lanes - 1);
     for (auto& of_lane : windows) {
       for (double at = 30.0 * unit(random); at < 90.0; at += 5.0 + 30.0 * unit(random)) {

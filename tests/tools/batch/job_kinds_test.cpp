@@ -1,4 +1,5 @@
 #include "roadbed/tools/batch/job_kinds.h"
+#include "roadbed/tools/commands/commands.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@ namespace {
 using tools::ArgumentInfo;
 
 TEST(JobKinds, EveryPathOfEveryKindIsDeclaredAsReadOrWritten) {
-  const tools::JobKinds kinds;
+  const tools::JobKinds& kinds = tools::job_kinds();
   ASSERT_EQ(kinds.all().size(), 5U);
   for (const tools::JobKind& kind : kinds.all()) {
     for (const ArgumentInfo& argument : kind.arguments) {
@@ -20,14 +21,14 @@ TEST(JobKinds, EveryPathOfEveryKindIsDeclaredAsReadOrWritten) {
 }
 
 TEST(JobKinds, EveryKindPrintsJson) {
-  const tools::JobKinds kinds;
+  const tools::JobKinds& kinds = tools::job_kinds();
   for (const tools::JobKind& kind : kinds.all()) {
     EXPECT_NE(kind.option("json"), nullptr) << kind.name;
   }
 }
 
 TEST(JobKinds, OnlyOnePositionalArgumentIsReadAtMost) {
-  const tools::JobKinds kinds;
+  const tools::JobKinds& kinds = tools::job_kinds();
   for (const tools::JobKind& kind : kinds.all()) {
     int count = 0;
     for (const ArgumentInfo& argument : kind.arguments) count += argument.is_positional;

@@ -1,4 +1,5 @@
 #include "roadbed/tools/batch/serve.h"
+#include "roadbed/tools/commands/commands.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ const std::string kTownMap = (data_folder() / "town.xodr").string();
 std::vector<json> served(const std::string& lines, const std::filesystem::path& folder) {
   std::istringstream in(lines);
   std::stringstream out;
-  tools::serve(in, out, {.folder = folder});
+  tools::serve(in, out, tools::job_kinds(), {.folder = folder});
   std::vector<json> results;
   for (std::string line; std::getline(out, line);) results.push_back(json::parse(line));
   return results;
@@ -206,7 +207,8 @@ TEST(Serve, AnswersFromTheMapAsItIsWhenTheJobBegins) {
                        {write(town), job.dump()}});
   std::istream in(&bytes);
   std::stringstream out;
-  tools::serve(in, out, {.folder = folder.path(), .memory_bytes = 4'000'000'000});
+  tools::serve(in, out, tools::job_kinds(),
+               {.folder = folder.path(), .memory_bytes = 4'000'000'000});
   std::vector<json> results;
   for (std::string line; std::getline(out, line);) results.push_back(json::parse(line));
   ASSERT_EQ(results.size(), 4U);

@@ -10,7 +10,7 @@
 namespace roadbed::tools {
 namespace {
 
-DriveCycle cycle_at(double t_s, Behaviour behaviour, const std::string& reason) {
+DriveCycle cycle_at(double t_s, planning::Behaviour behaviour, const std::string& reason) {
   DriveCycle cycle;
   cycle.t_s = t_s;
   cycle.behaviour = behaviour;
@@ -27,10 +27,11 @@ Drive short_drive() {
     drive.samples.push_back({.t_s = 0.1 * i, .speed_limit_mps = 13.0, .clearance_m = 2.0});
   }
   drive.trajectory = geometry::Trajectory(points);
-  drive.cycles = {
-      cycle_at(0.0, Behaviour::cruise, "free"), cycle_at(0.1, Behaviour::cruise, "free"),
-      cycle_at(0.2, Behaviour::follow, "car a"), cycle_at(0.3, Behaviour::follow, "car b"),
-      cycle_at(0.4, Behaviour::cruise, "free again")};
+  drive.cycles = {cycle_at(0.0, planning::Behaviour::cruise, "free"),
+                  cycle_at(0.1, planning::Behaviour::cruise, "free"),
+                  cycle_at(0.2, planning::Behaviour::follow, "car a"),
+                  cycle_at(0.3, planning::Behaviour::follow, "car b"),
+                  cycle_at(0.4, planning::Behaviour::cruise, "free again")};
   drive.cycles[1].chosen = planning::Candidate{.end_d_m = -0.42, .end_l_m = 22.0};
   drive.cycles[1].path = {{61.0, 196.7}, {80.0, 196.3}};
   drive.cycles[2].plan_reason = "all collide";

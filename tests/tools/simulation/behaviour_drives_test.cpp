@@ -48,7 +48,7 @@ Kept kept_on(const Drive& drive) {
 
 bool brakes_hard(const Drive& drive) {
   return std::ranges::any_of(drive.cycles, [](const DriveCycle& cycle) {
-    return cycle.behaviour == Behaviour::emergency;
+    return cycle.behaviour == planning::Behaviour::emergency;
   });
 }
 
@@ -64,7 +64,7 @@ Scenario at_speed(double speed_mps) {
 class BehaviourDrives : public testing::TestWithParam<bool> {
  protected:
   static Drive driven(const Scenario& scenario, World world) {
-    return tools::drive(scenario, world, {.predicts = GetParam()});
+    return tools::drive(scenario, world, {.pilot = {.predicts = GetParam()}});
   }
 };
 INSTANTIATE_TEST_SUITE_P(KnownOrForeseen, BehaviourDrives, testing::Bool());

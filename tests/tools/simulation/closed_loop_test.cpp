@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "roadbed/tests/support/straight_world.h"
+#include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/simulation/metrics.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
-#include "roadbed/tools/support/trajectory_csv.h"
 
 namespace roadbed::tools {
 namespace {
@@ -55,7 +55,7 @@ double least_clearance_m(const Drive& drive) {
   return least;
 }
 
-bool does(const Drive& drive, Behaviour behaviour) {
+bool does(const Drive& drive, planning::Behaviour behaviour) {
   return std::any_of(drive.cycles.begin(), drive.cycles.end(),
                      [&](const DriveCycle& cycle) { return cycle.behaviour == behaviour; });
 }
@@ -72,7 +72,7 @@ TEST(ClosedLoop, FreeRoadIsDrivenStraightToTheGoal) {
     EXPECT_LE(row.speed_mps, 10.1);
     EXPECT_LE(std::abs(row.acceleration_mps2), 1.9);
   }
-  EXPECT_FALSE(does(drive, Behaviour::emergency));
+  EXPECT_FALSE(does(drive, planning::Behaviour::emergency));
 }
 
 TEST(ClosedLoop, RowsObeyTheVehiclesKinematics) {
@@ -98,7 +98,7 @@ TEST(ClosedLoop, PassesAParkedCarAndComesBack) {
   const Drive drive = tools::drive(scenario_at(8.0), world);
   ASSERT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
   EXPECT_GT(least_clearance_m(drive), 0.2);
-  EXPECT_TRUE(does(drive, Behaviour::pass));
+  EXPECT_TRUE(does(drive, planning::Behaviour::pass));
   EXPECT_NEAR(drive.trajectory.points().back().y_m, 0.0, 0.1);
   for (const DriveSample& sample : drive.samples) EXPECT_EQ(sample.off_road_m, 0.0);
 }
@@ -112,7 +112,7 @@ TEST(ClosedLoop, StopsBehindACarThatLeavesNoWay) {
   EXPECT_THAT(drive.verdict.text, testing::HasSubstr("before the goal"));
   EXPECT_GT(least_clearance_m(drive), 2.0);
   EXPECT_LT(least_clearance_m(drive), 8.0);
-  EXPECT_FALSE(does(drive, Behaviour::emergency));
+  EXPECT_FALSE(does(drive, planning::Behaviour::emergency));
 }
 
 TEST(ClosedLoop, FollowsASlowerCarAtItsHeadway) {
@@ -120,7 +120,7 @@ TEST(ClosedLoop, FollowsASlowerCarAtItsHeadway) {
   Scenario scenario = scenario_at(9.0);
   scenario.duration_s = 26.0;
   const Drive drive = tools::drive(scenario, world);
-  EXPECT_TRUE(does(drive, Behaviour::follow));
+  EXPECT_TRUE(does(drive, planning::Behaviour::follow));
   const DriveCycle& cycle = drive.cycles.at(250);  // at 25 s
   ASSERT_TRUE(cycle.lead);
   EXPECT_NEAR(cycle.lead->gap_m, 1.5 * 4.0 + 5.0, 0.5);
@@ -134,7 +134,7 @@ TEST(ClosedLoop, BrakesHarderThanTheCruiseControlMayOnlyIfItMust) {
   scenario.duration_s = 6.0;
   const Drive drive = tools::drive(scenario, world);
   EXPECT_NE(drive.verdict.outcome, Outcome::collision) << drive.verdict.text;
-  EXPECT_TRUE(does(drive, Behaviour::emergency));
+  EXPECT_TRUE(does(drive, planning::Behaviour::emergency));
   EXPECT_GT(least_clearance_m(drive), 0.3);
   EXPECT_TRUE(std::any_of(drive.events.begin(), drive.events.end(), [](const DriveEvent& event) {
     return event.text.starts_with("emergency: ");
@@ -181,7 +181,7 @@ TEST(ClosedLoop, NoiseIsLivedWith) {
                     .speed_mps = 0.1};
   const Drive drive = tools::drive(scenario, world);
   EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
-  EXPECT_FALSE(does(drive, Behaviour::emergency));
+  EXPECT_FALSE(does(drive, planning::Behaviour::emergency));
   for (const auto& row : drive.trajectory.points()) EXPECT_NEAR(row.y_m, 0.0, 0.15);
 }
 

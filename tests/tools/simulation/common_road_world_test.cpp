@@ -10,9 +10,9 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/solution_xml.h"
-#include "roadbed/tools/support/trajectory_csv.h"
 
 namespace roadbed::tools {
 namespace {
@@ -85,7 +85,8 @@ TEST(CommonRoadWorld, RedLightIsWaitedAtAndGreenIsDrivenOnAt) {
   EXPECT_GT(passes_line_at_s(waits), 9.0);
   EXPECT_LT(passes_line_at_s(waits), 11.0);
   EXPECT_TRUE(std::ranges::any_of(waits.cycles, [](const DriveCycle& cycle) {
-    return cycle.behaviour == Behaviour::yield && cycle.reason.starts_with("light 51 is red");
+    return cycle.behaviour == planning::Behaviour::yield &&
+           cycle.reason.starts_with("light 51 is red");
   }));
   CommonRoadDrive dark =
       problem_of(replaced(on_right_lane, "<active>true</active>", "<active>false</active>"));

@@ -5,22 +5,24 @@
 #include <cmath>
 #include <limits>
 
+#include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/common_road_world.h"
-#include "roadbed/tools/simulation/driven_way.h"
 
 namespace roadbed::tools {
 namespace {
 
 /// The way along a path that leaves the middle of a road of 4 m by `slope`.
-DrivenWay leaving_way(const World& world, double slope, double from_d_m) {
+planning::PathProfile leaving_way(const World& world, double slope, double from_d_m) {
   const Scenario scenario;
-  const PlannedPath path(world.line, [=](double s_m) {
+  const planning::PlannedPath path(world.line, [=](double s_m) {
     return planning::LateralState{.s_m = s_m, .d_m = from_d_m + slope * s_m, .d_slope = slope};
   });
-  return sample_way(path, 0.0, 60.0, ceiling_of(scenario, world.line), scenario.vehicle);
+  return sample_path_profile(path, 0.0, 60.0,
+                             ceiling_of(world.line, scenario.vehicle, scenario.options),
+                             scenario.vehicle);
 }
 
 TEST(OnRoad, WayEndsBeforeTheFirstCornerLeavesTheRoad) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/closed_loop.h"
-#include "roadbed/tools/support/place.h"
 
 namespace roadbed::tools {
 namespace {
@@ -99,13 +99,12 @@ TEST_P(RealRoutes, AreDrivenToTheEndOnTheRoad) {
     Scenario scenario;
     scenario.duration_s = std::min(3600.0, 60.0 + trip.route.length_m);
     planning::ReferenceLine line = planning::ReferenceLine::along(road_map, trip.route);
-    World world{.kept_map = kept_map,
-                .occupancy = {},
-                .field = {},
-                .start = {},
-                .route = trip.route,
-                .line = std::move(line),
-                .obstacles = {}};
+    World world{{.kept_map = kept_map,
+                 .field = {},
+                 .start = {},
+                 .route = trip.route,
+                 .line = std::move(line),
+                 .obstacles = {}}};
     world.start = find_place(world.road_map, from).map_from_vehicle;
     const Result result = measure(drive(scenario, world));
     fmt::print(

@@ -24,7 +24,7 @@ struct Driven {
   double speed_at(double t_s) const { return drive.trajectory.at(t_s).speed_mps; }
 
   /// First cycle of a behaviour whose reason holds a text; null if there is none.
-  const DriveCycle* first(Behaviour behaviour, const std::string& text = "") const {
+  const DriveCycle* first(planning::Behaviour behaviour, const std::string& text = "") const {
     const auto found = std::ranges::find_if(drive.cycles, [&](const DriveCycle& cycle) {
       return cycle.behaviour == behaviour && cycle.reason.find(text) != std::string::npos;
     });
@@ -57,13 +57,13 @@ void expect_arrives(const Driven& driven, double clearance_m) {
   EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
   EXPECT_GE(driven.clearance_m(), clearance_m);
   EXPECT_EQ(driven.off_road_m(), 0.0);
-  EXPECT_EQ(driven.first(Behaviour::emergency), nullptr);
+  EXPECT_EQ(driven.first(planning::Behaviour::emergency), nullptr);
 }
 
 TEST(ScenarioDrives, RedLightIsStoppedAtAndGreenIsDrivenOnAt) {
   const Driven d = driven("red_light");
   expect_arrives(d, 1.0);
-  EXPECT_NE(d.first(Behaviour::yield, "light 2 is red"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "light 2 is red"), nullptr);
   // The light stands at x = 279 m and is red until 26 s.
   EXPECT_LT(d.speed_at(25.9), 0.05);
   const double front_m = d.drive.trajectory.at(25.9).x_m + geometry::VehicleShape{}.front_m();
@@ -78,10 +78,10 @@ TEST(ScenarioDrives, LightThatTurnsYellowIsNeverPassedAtRed) {
   int stops = 0;
   for (int k = 0; k < 12; ++k) {
     const double yellow_at_s = 11.0 + 0.3 * k;
-    scenario.lights.front().phases = {{LightColour::green, yellow_at_s},
-                                      {LightColour::yellow, 3.0},
-                                      {LightColour::red, 20.0},
-                                      {LightColour::green, 60.0}};
+    scenario.lights.front().phases = {{planning::LightColour::green, yellow_at_s},
+                                      {planning::LightColour::yellow, 3.0},
+                                      {planning::LightColour::red, 20.0},
+                                      {planning::LightColour::green, 60.0}};
     const Driven d = driven(scenario);
     expect_arrives(d, 1.0);
     const double passes_s = d.passes_x_at_s(279.0);
@@ -102,14 +102,15 @@ TEST(ScenarioDrives, LightThatTurnsYellowAtFiftyIsNeverPassedAtRedEither) {
   int hard = 0, stops = 0;
   for (int k = 0; k < 14; ++k) {
     const double yellow_at_s = 8.1 + 0.12 * k;
-    scenario.lights.front().phases = {
-        {LightColour::green, yellow_at_s}, {LightColour::yellow, 3.0}, {LightColour::red, 60.0}};
+    scenario.lights.front().phases = {{planning::LightColour::green, yellow_at_s},
+                                      {planning::LightColour::yellow, 3.0},
+                                      {planning::LightColour::red, 60.0}};
     const Driven d = driven(scenario);
     const double passes_s = d.passes_x_at_s(279.0);
     stops += passes_s > scenario.duration_s;
     EXPECT_TRUE(passes_s > scenario.duration_s || passes_s < yellow_at_s + 3.0)
         << "yellow at " << yellow_at_s << " s, passed at " << passes_s << " s";
-    if (const DriveCycle* braking = d.first(Behaviour::emergency)) {
+    if (const DriveCycle* braking = d.first(planning::Behaviour::emergency)) {
       ++hard;
       EXPECT_NE(braking->reason.find("light 2 is yellow"), std::string::npos) << braking->reason;
     }
@@ -123,7 +124,7 @@ TEST(ScenarioDrives, LightThatTurnsYellowAtFiftyIsNeverPassedAtRedEither) {
 TEST(ScenarioDrives, StopSignIsStoppedAtAndThenAGapIsTaken) {
   const Driven d = driven("stop_sign");
   expect_arrives(d, 1.5);
-  EXPECT_NE(d.first(Behaviour::yield, "stop sign 1 is"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "stop sign 1 is"), nullptr);
   // The line is at y = −21 m; the drive comes from the south.
   double stands_s = 0.0, leaves_s = 1e9;
   for (const auto& row : d.drive.trajectory.points()) {
@@ -133,7 +134,7 @@ TEST(ScenarioDrives, StopSignIsStoppedAtAndThenAGapIsTaken) {
   }
   EXPECT_GT(stands_s, 5.0);
   EXPECT_GT(leaves_s, stands_s);
-  EXPECT_NE(d.first(Behaviour::yield, "would be met"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "would be met"), nullptr);
   // Nobody who has the right of way has to brake; at the end of its way a car rests.
   for (const planning::Obstacle& other : d.world.obstacles) {
     const auto& points = other.motion.points();
@@ -170,19 +171,19 @@ TEST(ScenarioDrives, WhoFollowsIntoTheRoundaboutIsNotGivenWayTo) {
   d.world.obstacles = {follower(d, 1.8)};
   d.drive = drive(scenario, d.world);
   expect_arrives(d, 1.0);
-  EXPECT_EQ(d.first(Behaviour::yield), nullptr);
+  EXPECT_EQ(d.first(planning::Behaviour::yield), nullptr);
 }
 
 TEST(ScenarioDrives, LeftTurnWaitsForThoseWhoComeTheOtherWay) {
   const Driven d = driven("left_turn");
   expect_arrives(d, 1.0);
-  EXPECT_NE(d.first(Behaviour::yield, "left turn: car"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "left turn: car"), nullptr);
 }
 
 TEST(ScenarioDrives, RoundaboutIsEnteredBehindWhoIsInIt) {
   const Driven d = driven("roundabout");
   expect_arrives(d, 1.0);
-  EXPECT_NE(d.first(Behaviour::yield, "give way sign 7: car in the ring"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "give way sign 7: car in the ring"), nullptr);
 }
 
 TEST(ScenarioDrives, PedestrianIsGivenRoom) {
@@ -200,7 +201,7 @@ TEST(ScenarioDrives, StopAndGoWithLostMeasurementsIsFollowed) {
 TEST(ScenarioDrives, CarThatCutsInIsGivenRoomWithoutHardBraking) {
   const Driven d = driven("cut_in");
   expect_arrives(d, 0.3);
-  EXPECT_NE(d.first(Behaviour::follow, "cutter"), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::follow, "cutter"), nullptr);
 }
 
 TEST(ScenarioDrives, LaneChangeOfTheRouteIsMade) {
@@ -211,7 +212,7 @@ TEST(ScenarioDrives, LaneChangeOfTheRouteIsMade) {
 TEST(ScenarioDrives, NarrowingIsPassedAfterWhoComesTheOtherWay) {
   const Driven d = driven("narrowing");
   expect_arrives(d, 0.25);
-  EXPECT_NE(d.first(Behaviour::pass), nullptr);
+  EXPECT_NE(d.first(planning::Behaviour::pass), nullptr);
   // The two cars stand at x = 152 m; who comes the other way starts at x = 205 m with 7 m/s.
   EXPECT_GT(d.passes_x_at_s(150.0), (205.0 - 152.0) / 7.0 - 3.0);
 }

@@ -163,9 +163,9 @@ TEST(Scenario, LightsAndDropoutsAreReadAndChecked) {
   const Scenario scenario = parsed(document);
   ASSERT_EQ(scenario.lights.size(), 1U);
   EXPECT_EQ(scenario.lights[0].signals, (std::vector<std::string>{"1", "2"}));
-  EXPECT_EQ(colour_at(scenario.lights[0], 4.9), LightColour::green);
-  EXPECT_EQ(colour_at(scenario.lights[0], 5.1), LightColour::red);
-  EXPECT_EQ(colour_at(scenario.lights[0], 17.1), LightColour::green);
+  EXPECT_EQ(colour_at(scenario.lights[0], 4.9), planning::LightColour::green);
+  EXPECT_EQ(colour_at(scenario.lights[0], 5.1), planning::LightColour::red);
+  EXPECT_EQ(colour_at(scenario.lights[0], 17.1), planning::LightColour::green);
   EXPECT_EQ(scenario.noise.dropouts[0].to_s, 2.5);
   EXPECT_EQ(scenario.noise.dropout_share, 0.1);
   const auto message = [&](const std::string& pointer, const json& value) {

@@ -30,7 +30,7 @@ double most_driven_m(double speed_mps, double duration_s) {
 double nearest_goal_m(const CommonRoadDrive& problem) {
   const World& world = problem.world;
   double nearest_m = 1e9;
-  for (const GoalStretch& stretch :
+  for (const planning::GoalStretch& stretch :
        goal_stretches(*world.goal, world.road_map, world.line, problem.scenario.vehicle)) {
     const double end_m = std::min(stretch.s_m.most, world.line.length_m());
     for (double s_m = std::max(0.0, stretch.s_m.least); s_m <= end_m; s_m += 0.1) {

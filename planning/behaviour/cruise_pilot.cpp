@@ -1,0 +1,274 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "roadbed/planning/behaviour/decision.h"
+#include "roadbed/planning/behaviour/follower.h"
+#include "roadbed/planning/behaviour/overtaking.h"
+#include "roadbed/planning/behaviour/pilot.h"
+#include "roadbed/planning/behaviour/right_of_way.h"
+#include "roadbed/planning/behaviour/safety.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
+constexpr double kBeyondHalt_m = 1.0;
+constexpr double kBeforeHalt_m = 0.4;  // of the room before a line, that hard braking may use
+constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
+constexpr double kHoldingBrake_mps2 = -1.0;
+constexpr double kPassOffset_m = 0.5;  // off the reference line this far is passing
+constexpr double kChange_s = 3.0;      // to change lanes in, to overtake
+constexpr double kPassRoom_m = 0.25;   // more or less than asked for
+constexpr double kBehindToReturn_m = 1.0, kFallsBehind_mps = 3.0;  // overtaking given up
+
+/// Distance ahead that matters: to brake comfortably, and the gap to keep.
+double look_ahead_m(double speed_mps, const DecisionOptions& options) {
+  return 20.0 + options.standstill_gap_m + options.headway_s * speed_mps +
+         0.5 * speed_mps * speed_mps / options.deceleration_mps2;
+}
+
+/// In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
+std::vector<Room> rooms(double clearance_m) {
+  return {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
+}
+
+class CruisePilot : public Pilot {
+ public:
+  explicit CruisePilot(const PilotSetup& setup)
+      : vehicle_(setup.vehicle),
+        task_(setup.task),
+        predicts_(setup.pilot.predicts),
+        ceiling_(ceiling_of(task_.line, vehicle_, setup.driving)),
+        replanner_(vehicle_, task_, task_.line,
+                   {.tracking_error_m = setup.pilot.max_tracking_error_m,
+                    .heading_error_rad = setup.pilot.max_heading_error_rad,
+                    .rooms = rooms(setup.driving.clearance_m),
+                    .keeps_candidates = setup.pilot.keeps_candidates}),
+        right_of_way_(vehicle_, setup.driving, task_),
+        overtaking_(vehicle_, task_, ceiling_) {
+    decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
+  }
+
+  const LateralReplanner& replanner() const override { return replanner_; }
+
+  /// Set speed, cruise control and safety layer.
+  PilotCommand decide(const PilotView& view) override {
+    const double speed = view.measured.speed_mps;
+    t_s_ = view.t_s;
+    if (predicts_) predicted_.emplace(true_traffic(task_), view.t_s);
+    replanner_.locate(view.measured);
+    const Overtaking::Decision passing = look_at_passing(view);
+    plan_path(view, passing);
+    const std::optional<StopConstraint> halt = halt_ahead(view);
+    const std::optional<Lead> truth = lead_ahead(view, halt);
+    const bool is_blind = truth && !view.speed_controller.sees_lead(view.t_s);
+    const std::optional<Lead> lead = is_blind ? remembered(view) : truth;
+    if (!is_blind) last_seen_ = {view.t_s, lead};
+    const SpeedAnswer answer = choose_speed(question(view.measured, lead, halt), decision_options_);
+    PilotCommand command;
+    command.acceleration_mps2 = view.speed_controller.acceleration_mps2(
+        {.measured = view.measured, .set = answer.set, .lead = truth, .is_blind = is_blind});
+    command.saturated = std::abs(command.acceleration_mps2) >= kMostCommand_mps2;
+    if (answer.hold) {
+      command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
+    }
+    command.set_speed_mps = set_speed_mps_ = answer.set.speed_mps;
+    if (lead) {
+      command.lead = {task_.obstacles[lead->obstacle].id, lead->gap_m, lead->speed_mps};
+    }
+    explain(answer, lead, speed, command);
+    if (halt && halt->is_hard) brake_for(*halt, speed, command);
+    if (passing.overtaken) overtake(passing, speed, command);
+    if (!passing.overtaken && !passing.reason.empty() && command.behaviour == Behaviour::follow) {
+      command.reason += "; " + passing.reason;
+    }
+    return command;
+  }
+
+ private:
+  Overtaking::Decision look_at_passing(const PilotView& view) {
+    const double s_m = replanner_.s_m();
+    const geometry::LinePosition at =
+        task_.line.project(view.measured.map_from_vehicle.position(), s_m);
+    return overtaking_.look(
+        {.t_s = view.t_s, .at = at, .speed_mps = view.measured.speed_mps, .traffic = traffic()});
+  }
+
+  /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
+  /// lane of those who come the other way while somebody drives ahead.
+  void plan_path(const PilotView& view, const Overtaking::Decision& passing) {
+    const double speed = view.measured.speed_mps;
+    const std::vector<Obstacle> ahead = obstacles_to_plan_for(view);
+    LateralReplanner::Question question{
+        .t_s = view.t_s,
+        .measured = view.measured,
+        .speed = {.speed_mps = speed,
+                  .acceleration_mps2 = view.measured.acceleration_mps2,
+                  .target_mps = set_speed_mps_},
+        .obstacles = ahead};
+    const bool stays_beside =
+        passing.overtaken && (!passing.falls_back || passing.gap_m < kBehindToReturn_m);
+    if (stays_beside) {
+      LateralReplanner::Question beside = question;
+      beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
+      beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
+      beside.asks_for_way_on = false;
+      const LateralReplanner::Proposal proposal = replanner_.propose(
+          beside, {*passing.pass_at_m - kPassRoom_m, *passing.pass_at_m + kPassRoom_m});
+      if (proposal.plan.chosen) return replanner_.take(proposal);
+    }
+    LateralReplanner::Offsets offsets;
+    if (passing.keep_within_m) {
+      (passing.side > 0.0 ? offsets.most_m : offsets.least_m) =
+          passing.side * *passing.keep_within_m;
+    }
+    replanner_.take(replanner_.propose(question, offsets));
+  }
+
+  void overtake(const Overtaking::Decision& passing, double speed_mps,
+                PilotCommand& command) const {
+    if (command.behaviour == Behaviour::emergency) return;
+    command.behaviour = Behaviour::pass;
+    command.reason = passing.reason;
+    if (!passing.falls_back) return;
+    const double lead_mps = traffic().obstacles[*passing.overtaken].motion.at(t_s_).speed_mps;
+    const bool falls_behind = speed_mps < lead_mps - kFallsBehind_mps;
+    command.acceleration_mps2 =
+        std::min(command.acceleration_mps2, falls_behind ? 0.0 : -kMostCommand_mps2);
+  }
+  /// Who follows keeps its own distance: no path is given up for it.
+  std::vector<Obstacle> obstacles_to_plan_for(const PilotView& view) const {
+    std::vector<Obstacle> ahead = predicted_ ? predicted_->obstacles() : task_.obstacles;
+    const geometry::LinePosition at =
+        task_.line.project(view.measured.map_from_vehicle.position(), replanner_.s_m());
+    const VehicleOnLine vehicle{task_.line, at.s_m, at.d_m, vehicle_.width_m};
+    std::erase_if(ahead, [&](const Obstacle& obstacle) {
+      return !obstacle.is_static() && is_following(obstacle, view.t_s, vehicle);
+    });
+    return ahead;
+  }
+
+  std::optional<StopConstraint> halt_ahead(const PilotView& view) {
+    const PlannedPath path = replanner_.expected_path();
+    return right_of_way_.look({.t_s = view.t_s,
+                               .s_m = replanner_.s_m(),
+                               .speed_mps = view.measured.speed_mps,
+                               .path = path,
+                               .ceiling = ceiling_,
+                               .traffic = traffic(),
+                               .acceleration_mps2 = view.measured.acceleration_mps2});
+  }
+
+  /// Who is beyond the place to halt at is none.
+  std::optional<Lead> lead_ahead(const PilotView& view,
+                                 const std::optional<StopConstraint>& halt) const {
+    const double speed = view.measured.speed_mps;
+    const double to_goal_m = task_.line.goal_s_m() - replanner_.s_m();
+    const double look_m = std::min(look_ahead_m(speed, decision_options_),
+                                   std::max(0.0, to_goal_m) + vehicle_.front_m());
+    std::optional<Lead> lead =
+        find_lead(replanner_.expected_path(), replanner_.s_m(), look_m, task_.obstacles, view.t_s,
+                  vehicle_, kSideMargin_m, right_of_way_.crossing());
+    if (lead && halt && lead->gap_m > halt->s_m - replanner_.s_m() + kBeyondHalt_m) lead.reset();
+    return lead;
+  }
+
+  /// A lead that is not measured is taken to drive on at its speed, for a while.
+  std::optional<Lead> remembered(const PilotView& view) const {
+    const double since_s = view.t_s - last_seen_.t_s;
+    if (!last_seen_.lead || since_s > kRemembered_s) return std::nullopt;
+    Lead lead = *last_seen_.lead;
+    const double closing = view.measured.speed_mps - lead.speed_mps;
+    lead.gap_m = std::max(0.0, lead.gap_m - closing * since_s);
+    return lead;
+  }
+
+  Traffic traffic() const { return predicted_ ? predicted_->traffic() : true_traffic(task_); }
+
+  SpeedQuestion question(const VehicleState& measured, const std::optional<Lead>& lead,
+                         const std::optional<StopConstraint>& halt) const {
+    return {.ceiling = ceiling_,
+            .s_m = replanner_.s_m(),
+            .goal_s_m = task_.line.goal_s_m(),
+            .speed_mps = measured.speed_mps,
+            .acceleration_mps2 = measured.acceleration_mps2,
+            .lead = lead,
+            .lead_name = lead ? lead_name(*lead) : "",
+            .path_left_m = path_left_m(lead),
+            .halt = halt};
+  }
+
+  /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
+  std::optional<double> path_left_m(const std::optional<Lead>& lead) const {
+    if (replanner_.last_plan().chosen) return std::nullopt;
+    if (replanner_.something_is_in_the_way() && !lead) return 0.0;
+    return replanner_.checked_ahead_m();
+  }
+
+  /// The cruise control cannot ask for what this halt takes.
+  void brake_for(const StopConstraint& halt, double speed_mps, PilotCommand& command) const {
+    const auto braking =
+        emergency_stop_mps2(speed_mps, halt.s_m + kBeforeHalt_m - replanner_.s_m());
+    if (!braking || -*braking > command.acceleration_mps2) return;
+    command.acceleration_mps2 = -*braking;
+    command.behaviour = Behaviour::emergency;
+    command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);
+  }
+
+  std::string lead_name(const Lead& lead) const {
+    const Obstacle& obstacle = task_.obstacles[lead.obstacle];
+    return fmt::format("{} {}", obstacle.kind, obstacle.id);
+  }
+
+  void explain(const SpeedAnswer& answer, const std::optional<Lead>& lead, double speed_mps,
+               PilotCommand& command) const {
+    command.behaviour = answer.behaviour;
+    command.reason = answer.reason;
+    const double offset_m = replanner_.path().lateral_at(replanner_.s_m()).d_m;
+    const auto& chosen = replanner_.last_plan().chosen;
+    const double end_m = chosen ? chosen->end_d_m : offset_m;
+    if (answer.behaviour == Behaviour::cruise &&
+        std::max(std::abs(offset_m), std::abs(end_m)) > kPassOffset_m) {
+      command.behaviour = Behaviour::pass;
+      command.reason = fmt::format("the way is free {:.1f} m {} of the reference line",
+                                   std::abs(end_m), end_m < 0.0 ? "right" : "left");
+    }
+    if (!lead) return;
+    if (const auto braking = emergency_deceleration_mps2(speed_mps, *lead)) {
+      command.acceleration_mps2 = std::min(command.acceleration_mps2, -*braking);
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("braking at {:.1f} m/s²: {} is {:.1f} m ahead, closing at {:.1f} m/s",
+                      *braking, lead_name(*lead), lead->gap_m, speed_mps - lead->speed_mps);
+    }
+  }
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  bool predicts_;
+  std::optional<PredictedTraffic> predicted_;  ///< none: the true future is known
+  DecisionOptions decision_options_;
+  SpeedCeiling ceiling_;
+  LateralReplanner replanner_;
+  RightOfWay right_of_way_;
+  Overtaking overtaking_;
+  struct {
+    double t_s = 0.0;
+    std::optional<Lead> lead;
+  } last_seen_;
+  double set_speed_mps_ = 0.0;
+  double t_s_ = 0.0;  ///< of the cycle
+};
+
+}  // namespace
+
+std::unique_ptr<Pilot> make_cruise_pilot(const PilotSetup& setup) {
+  return std::make_unique<CruisePilot>(setup);
+}
+
+}  // namespace roadbed::planning::behaviour

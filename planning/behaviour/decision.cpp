@@ -1,0 +1,131 @@
+#include "roadbed/planning/behaviour/decision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kStands_mps = 0.3;
+constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
+constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
+constexpr double kFollowSlack_mps = 2.0;
+constexpr double kBrakes_mps2 = 0.5;  // less is no braking
+constexpr double kFar_m = 1e4;
+
+struct Option {
+  SpeedTarget now, ahead;  ///< at the station, and where the actuator will have answered
+  Behaviour behaviour;
+  std::string reason;
+};
+
+/// Distance driven until the actuator has answered.
+double preview_m(const SpeedQuestion& q, double preview_s) {
+  return std::max(0.0, (q.speed_mps + 0.5 * q.acceleration_mps2 * preview_s) * preview_s);
+}
+
+Option by_ceiling(const SpeedQuestion& q, double ahead_m) {
+  const SpeedTarget now = q.ceiling.at(q.s_m);
+  return {now, q.ceiling.at(q.s_m + ahead_m), Behaviour::cruise,
+          fmt::format("at most {:.1f} m/s here", now.speed_mps)};
+}
+
+Option by_goal(const SpeedQuestion& q, double ahead_m, double deceleration) {
+  const double distance = q.goal_s_m - q.s_m;
+  return {stopping_speed(distance, deceleration), stopping_speed(distance - ahead_m, deceleration),
+          Behaviour::stop, fmt::format("the goal is {:.1f} m ahead", std::max(0.0, distance))};
+}
+
+Option by_halt(const SpeedQuestion& q, double ahead_m) {
+  const double distance = q.halt->s_m - q.s_m;
+  return {stopping_speed(distance, q.halt->deceleration_mps2),
+          stopping_speed(distance - ahead_m, q.halt->deceleration_mps2), Behaviour::yield,
+          q.halt->reason};
+}
+
+/// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
+Option by_path(const SpeedQuestion& q, double ahead_m, double deceleration) {
+  const double left_m = *q.path_left_m;
+  return {stopping_speed(left_m, deceleration), stopping_speed(left_m - ahead_m, deceleration),
+          Behaviour::stop,
+          fmt::format("no candidate is feasible, the last path is good for {:.1f} m", left_m)};
+}
+
+/// Until a braking lead will stand if it brakes on; far for one that does not brake.
+double stopping_way_m(const Lead& lead) {
+  if (lead.acceleration_mps2 > -kBrakes_mps2 || lead.speed_mps <= 0.0) return kFar_m;
+  return 0.5 * lead.speed_mps * lead.speed_mps / -lead.acceleration_mps2;
+}
+
+/// In the lead's frame the approach is a stop, at the gap that belongs to the lead's speed; behind
+/// a lead that brakes it is one in the road's frame, where the lead will stand.
+Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
+  const double lead_mps = std::max(0.0, q.lead->speed_mps);
+  const double room = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
+  const double closing_m =
+      std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
+  const double stop_m = q.lead->gap_m - options.standstill_gap_m + stopping_way_m(*q.lead);
+  const auto approach = [&](double driven_m, double closed_m) {
+    SpeedTarget target = stopping_speed(room - closed_m, options.deceleration_mps2);
+    target.speed_mps += lead_mps;
+    const SpeedTarget stop = stopping_speed(stop_m - driven_m, options.deceleration_mps2);
+    return stop.speed_mps < target.speed_mps ? stop : target;
+  };
+  return {approach(0.0, 0.0), approach(preview_m(q, options.preview_s), closing_m),
+          Behaviour::follow,
+          fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
+                      q.lead->speed_mps)};
+}
+
+std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
+  const double ahead_m = preview_m(q, options.preview_s);
+  std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
+  if (q.halt) all.push_back(by_halt(q, ahead_m));
+  if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
+  if (q.lead) all.push_back(by_lead(q, options));
+  return all;
+}
+
+const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*when) {
+  return *std::min_element(options.begin(), options.end(), [&](const Option& a, const Option& b) {
+    return (a.*when).speed_mps < (b.*when).speed_mps;
+  });
+}
+
+bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
+  if (q.speed_mps > kStands_mps) return false;
+  if (q.goal_s_m - q.s_m < kStopping_m) return true;
+  if (q.halt && q.halt->s_m - q.s_m < kStopping_m) return true;
+  if (q.path_left_m && *q.path_left_m < kStopping_m) return true;
+  return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
+         q.lead->speed_mps < kStands_mps;
+}
+
+}  // namespace
+
+SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options) {
+  const std::vector<Option> all = options_of(question, options);
+  const Option& now = slowest(all, &Option::now);
+  const SpeedTarget& ahead = slowest(all, &Option::ahead).ahead;
+  SpeedAnswer answer{.set = {.speed_mps = now.now.speed_mps, .acceleration_mps2 = 0.0},
+                     .behaviour = now.behaviour,
+                     .reason = now.reason,
+                     .hold = is_at_rest(question, options)};
+  // The planned deceleration is that of a vehicle at the planned speed; a slower one needs none.
+  if (question.speed_mps > ahead.speed_mps - 0.5) {
+    answer.set.acceleration_mps2 = ahead.acceleration_mps2;
+  }
+  if (question.lead && now.behaviour == Behaviour::cruise &&
+      all.back().now.speed_mps < now.now.speed_mps + kFollowSlack_mps) {
+    answer.behaviour = Behaviour::follow;
+    answer.reason = all.back().reason;
+  }
+  answer.set.speed_mps =
+      std::min(answer.set.speed_mps, question.speed_mps + options.most_speed_up_mps);
+  return answer;
+}
+
+}  // namespace roadbed::planning::behaviour

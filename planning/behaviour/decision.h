@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "roadbed/planning/behaviour/behaviour.h"
+#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/right_of_way.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// What the set speed is chosen from, at one planning cycle.
+struct SpeedQuestion {
+  const SpeedCeiling& ceiling;
+  double s_m = 0.0;       ///< station of the rear axle
+  double goal_s_m = 0.0;  ///< to stop at
+  double speed_mps = 0.0;
+  double acceleration_mps2 = 0.0;
+  std::optional<Lead> lead;
+  std::string lead_name;  ///< for the reason
+  /// Set if the planner found nothing: the last path is still good for so far; stop on it.
+  std::optional<double> path_left_m;
+  std::optional<StopConstraint> halt = {};  ///< where a rule of the road asks to wait
+};
+
+/// The set speed, and what it is due to.
+struct SpeedAnswer {
+  SpeedTarget set;
+  Behaviour behaviour = Behaviour::cruise;
+  std::string reason;
+  bool hold = false;  ///< the vehicle has come to rest on purpose: keep the brake on
+};
+
+struct DecisionOptions {
+  double deceleration_mps2 = 1.5;
+  double most_deceleration_mps2 = 2.0;  ///< to stop on a path that ends
+  double headway_s = 1.5;
+  double standstill_gap_m = 5.0;
+  double preview_s = 0.45;  ///< the actuator's lag: deceleration is asked for this much ahead
+  double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
+};
+
+/// The least of: the ceiling, the stop at the goal, the halt that a rule asks for, the stop on a
+/// path that ends, and the approach to the lead, which closes up at a comfortable deceleration to
+/// the gap that the cruise control then keeps.
+SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options);
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/behaviour/light_cycle.h"
+#include "roadbed/planning/behaviour/stop_points.h"
+#include "roadbed/planning/behaviour/timed_goal.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+#include "roadbed/planning/route/route.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Where to drive, and among what. All poses are in the map's frame.
+struct DrivingTask {
+  std::shared_ptr<const map::RoadMap> kept_map;
+  const map::RoadMap& road_map = *kept_map;
+  std::shared_ptr<const map::ClearanceField> field;  ///< of the occupancy; none without one
+  geometry::Pose2 start;                             ///< of the ego's rear axle
+  Route route;
+  ReferenceLine line;
+  std::vector<Obstacle> obstacles;          ///< motions last for the duration of the drive
+  std::vector<TimeSpan> presence = {};      ///< one per obstacle; empty: always there
+  std::optional<TimedGoal> goal = {};       ///< none: to stand at the end of the route
+  std::vector<LightCycle> lights = {};      ///< what the traffic lights show
+  std::vector<StopPoint> stop_points = {};  ///< on the route, by station
+  /// To the goal too, from lanes beside the start that may be changed to there.
+  std::vector<ReferenceLine> other_lines = {};
+  std::vector<std::vector<StopPoint>> other_stop_points = {};  ///< on each other line
+  double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
+
+  bool is_there(std::size_t obstacle, double t_s) const {
+    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
+  }
+
+  /// Obstacles that are there at a time.
+  std::vector<Obstacle> obstacles_at(double t_s) const;
+};
+
+/// How the ego is to be driven.
+struct DrivingOptions {
+  double desired_speed_mps = 130.0 / 3.6;
+  double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
+  double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
+  double clearance_m = 0.3;                    ///< to obstacles and occupied space
+};
+
+/// Greatest speeds along a line for a vehicle that is driven so.
+SpeedCeiling ceiling_of(const ReferenceLine& line, const geometry::VehicleShape& vehicle,
+                        const DrivingOptions& options);
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/behaviour/vehicle_state.h"
+#include "roadbed/planning/lateral/plan.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// The path that is being driven, from cycle to cycle: plans on from the last plan while the
+/// vehicle follows it well enough, and keeps the last path when nothing is feasible.
+class LateralReplanner {
+ public:
+  struct Bounds {
+    double tracking_error_m;
+    double heading_error_rad;
+    /// What is tried in turn until something is feasible.
+    std::vector<Room> rooms;
+    /// Whether an obstacle in the way is a reason to ask for less room, or to wait.
+    bool squeezes_past = false;
+    bool keeps_candidates = false;  ///< in the plan; every one is judged then
+  };
+
+  /// @param line  to drive along, of the world.
+  LateralReplanner(const geometry::VehicleShape& vehicle, const DrivingTask& task,
+                   const ReferenceLine& line, const Bounds& bounds);
+
+  /// How far ahead candidates may end.
+  struct Ends {
+    double least_m = PlanOptions{}.min_l_m, most_m = PlanOptions{}.max_l_m;
+  };
+
+  /// What is planned from and against.
+  struct Question {
+    double t_s;
+    const VehicleState& measured;
+    SpeedPlan speed;  ///< the longitudinal plan so far
+    Ends ends = {};
+    const std::vector<Obstacle>& obstacles;
+    bool asks_for_way_on = true;  ///< what is begun among who moves has to be ended (way_on.h)
+  };
+
+  /// End offsets that candidates may have.
+  struct Offsets {
+    double least_m = PlanOptions{}.min_d_m, most_m = PlanOptions{}.max_d_m;
+  };
+
+  /// A plan to look at before it is taken.
+  struct Proposal {
+    Plan plan;
+    double beyond_the_edge_m = 0.0;
+    double checked_m = 0.0;  ///< from the start on
+  };
+
+  /// Where the vehicle is: the start of what is proposed until the next call.
+  void locate(const VehicleState& measured) {
+    start_ = start_state(measured);
+    cycles_.reset();
+  }
+
+  /// Until the next call of locate() every question but its offsets is the same one.
+  /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too;
+  ///                         if not, it is one of several tries, on a coarser grid.
+  Proposal propose(const Question& question, const Offsets& offsets,
+                   bool may_leave_lanes = true) const;
+  void take(const Proposal& proposal);
+  /// The path of a proposal. @pre it has a candidate
+  PlannedPath path_of(const Proposal& proposal) const;
+
+  /// Of the last cycle; `chosen` is empty if nothing was feasible.
+  const Plan& last_plan() const { return plan_; }
+  bool from_measurement() const { return from_measurement_; }
+
+  /// How far the body was allowed past the corridor's edge, because nothing keeps to it [m].
+  double beyond_the_edge_m() const { return beyond_the_edge_m_; }
+
+  /// Station of the measured rear axle at the last cycle.
+  double s_m() const { return s_m_; }
+
+  /// How far the kept path was found feasible when it was planned, from the vehicle on.
+  double checked_ahead_m() const { return checked_to_s_m_ - s_m_; }
+
+  /// Whether the last cycle rejected candidates because they would touch something.
+  bool something_is_in_the_way() const;
+
+  /// The path to drive.
+  const PlannedPath& path() const { return *path_; }
+
+  /// The same, led back to the reference line beyond the plan's end: where the vehicle is expected
+  /// to drive later on.
+  PlannedPath expected_path() const;
+
+ private:
+  LateralState start_state(const VehicleState& measured);
+  struct Cycles;
+
+  std::shared_ptr<Cycles> cycles_for(const Question& question) const;
+  PlanInput input_for(const Question& question) const;
+  PlanOptions options_for(const Question& question, const Offsets& offsets, double l_step_m) const;
+  Proposal squeeze(const Question& question, const Offsets& offsets, bool may_leave_lanes) const;
+  std::vector<Room> rooms(bool may_leave_lanes) const;
+  double held_until_m(const Plan& plan) const;
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  const ReferenceLine& reference_;
+  Bounds bounds_;
+  LineView line_;
+  LateralState start_;
+  Plan plan_;
+  std::optional<PlannedPath> path_;
+  double path_end_s_m_ = 0.0;
+  double checked_to_s_m_ = 0.0;
+  double s_m_ = 0.0;
+  double beyond_the_edge_m_ = 0.0;
+  bool from_measurement_ = false;
+  mutable std::shared_ptr<Cycles> cycles_;  ///< what was evaluated since locate()
+};
+
+}  // namespace roadbed::planning::behaviour

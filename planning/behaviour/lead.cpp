@@ -1,0 +1,96 @@
+#include "roadbed/planning/behaviour/lead.h"
+
+#include <cmath>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+using geometry::Rectangle;
+
+constexpr double kStep_m = 0.5;
+constexpr double kSeenFor_s = 0.3;    // a lead's acceleration is taken over the last moments
+constexpr double kMostStretch = 1.5;  // of a path against its line, outside of a bend
+constexpr int kHalvings = 8;          // 0.5 m to 2 mm
+
+/// Distances from the body at stations of the path to one obstacle.
+class Sweep {
+ public:
+  Sweep(const PlannedPath& path, const geometry::VehicleShape& vehicle, const Rectangle& obstacle,
+        double margin_m)
+      : path_(path), vehicle_(vehicle), obstacle_(obstacle), margin_m_(margin_m) {}
+
+  bool touches(double s_m) const {
+    const Rectangle body = geometry::body_at(path_.pose_at(s_m), vehicle_);
+    const double reach = body.radius_m() + obstacle_.radius_m() + margin_m_;
+    if ((body.centre - obstacle_.centre).squaredNorm() > reach * reach) return false;
+    return geometry::distance_m(body, obstacle_) <= margin_m_;
+  }
+
+  /// First station in [from, to] that touches, given that `to` does.
+  double first_touch_m(double from_m, double to_m) const {
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (from_m + to_m);
+      (touches(middle) ? to_m : from_m) = middle;
+    }
+    return to_m;
+  }
+
+ private:
+  const PlannedPath& path_;
+  const geometry::VehicleShape& vehicle_;
+  const Rectangle& obstacle_;
+  double margin_m_;
+};
+
+double speed_along(const Obstacle& obstacle, double t_s, double heading_rad) {
+  if (obstacle.is_static()) return 0.0;
+  const geometry::TrajectoryPoint at = obstacle.motion.at(t_s);
+  return at.speed_mps * std::cos(at.heading_rad - heading_rad);
+}
+
+std::optional<double> first_touch_m(const Sweep& sweep, double s_m, double look_ahead_m) {
+  if (sweep.touches(s_m)) return s_m;
+  for (double ahead = kStep_m; ahead <= look_ahead_m; ahead += kStep_m) {
+    if (sweep.touches(s_m + ahead)) return sweep.first_touch_m(s_m + ahead - kStep_m, s_m + ahead);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Rectangle rectangle_at(const Obstacle& obstacle, double t_s) {
+  const geometry::TrajectoryPoint at = obstacle.motion.at(t_s);
+  return {.centre = {at.x_m, at.y_m},
+          .axis = {std::cos(at.heading_rad), std::sin(at.heading_rad)},
+          .half_length_m = 0.5 * obstacle.length_m,
+          .half_width_m = 0.5 * obstacle.width_m};
+}
+
+std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
+                              const std::vector<Obstacle>& obstacles, double t_s,
+                              const geometry::VehicleShape& vehicle, double side_margin_m,
+                              const std::vector<bool>& ignored) {
+  std::optional<Lead> nearest;
+  double within_m = look_ahead_m;
+  const Eigen::Vector2d here = path.pose_at(s_m).position();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!ignored.empty() && ignored[i]) continue;
+    const Rectangle body = rectangle_at(obstacles[i], t_s);
+    const double far = within_m + vehicle.reach_m() + body.radius_m() + side_margin_m;
+    if ((body.centre - here).norm() > kMostStretch * far) continue;
+    const Sweep sweep(path, vehicle, body, side_margin_m);
+    const std::optional<double> touch = first_touch_m(sweep, s_m, within_m);
+    if (!touch) continue;
+    const double heading = path.pose_at(*touch).heading_rad;
+    within_m = *touch - s_m;
+    const double speed = speed_along(obstacles[i], t_s, heading);
+    nearest = {.obstacle = i,
+               .gap_m = within_m,
+               .speed_mps = speed,
+               .acceleration_mps2 =
+                   (speed - speed_along(obstacles[i], t_s - kSeenFor_s, heading)) / kSeenFor_s};
+  }
+  return nearest;
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// The first obstacle that the vehicle would touch if it drove on along its path and everything
+/// else stood still.
+struct Lead {
+  std::size_t obstacle = 0;        ///< index
+  double gap_m = 0.0;              ///< that the vehicle can still drive, along the reference line
+  double speed_mps = 0.0;          ///< of the obstacle along the path; negative if it comes nearer
+  double acceleration_mps2 = 0.0;  ///< of the same, over the last 0.3 s
+};
+
+/// @param s_m            station of the rear axle.
+/// @param look_ahead_m   no further than this.
+/// @param side_margin_m  an obstacle this near to the body's sides counts as touched.
+/// @param ignored        obstacles that are not looked at; none if empty.
+std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
+                              const std::vector<Obstacle>& obstacles, double t_s,
+                              const geometry::VehicleShape& vehicle, double side_margin_m,
+                              const std::vector<bool>& ignored = {});
+
+/// Rectangle of an obstacle at a time.
+geometry::Rectangle rectangle_at(const Obstacle& obstacle, double t_s);
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "roadbed/planning/behaviour/behaviour.h"
+#include "roadbed/planning/behaviour/lateral_replanner.h"
+#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/behaviour/speed_search.h"
+#include "roadbed/planning/behaviour/st_graph.h"
+#include "roadbed/planning/behaviour/stop_points.h"
+#include "roadbed/planning/behaviour/timed_goal.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// How much is dared: room to obstacles, and braking.
+struct RiskLevel {
+  double margin_m;
+  SpeedSearchOptions speed;
+  bool is_emergency;
+};
+
+/// From the most careful on.
+inline constexpr std::array<RiskLevel, 3> kRiskLevels{{
+    {.margin_m = 0.4, .speed = {}, .is_emergency = false},
+    {.margin_m = 0.4, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
+    {.margin_m = 0.1, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
+}};
+
+/// One line to the goal, and the path that is kept along it.
+struct GoalLine {
+  const ReferenceLine& line;
+  SpeedCeiling ceiling;
+  std::vector<GoalStretch> stretches;
+  std::vector<StopPoint> lights;
+  LateralReplanner replanner;
+};
+
+/// One path, the way along it, and the best drive found on it.
+struct ManeuverHypothesis {
+  const GoalLine* goal_line;
+  std::optional<LateralReplanner::Proposal> proposal;  ///< none: the path that is being driven
+  PathProfile way;
+  double on_road_m;  ///< how far along the way the body keeps to the road
+  SpeedSearchAnswer answer;
+  const RiskLevel* risk_level = nullptr;
+  std::shared_ptr<const StGraph> occupancy = nullptr;  ///< with that room
+  double cost = 0.0;
+  std::optional<DriveLead> lead;
+};
+
+/// How far beside the reference line the path ends.
+double beside_m(const ManeuverHypothesis& hypothesis);
+
+/// Whether it meets nothing, and takes no bend faster than can be borne.
+bool is_drivable(const ManeuverHypothesis& hypothesis);
+
+/// Whether nothing else need be tried: it is drivable, and does not miss the goal.
+bool is_good(const ManeuverHypothesis& hypothesis);
+
+/// Free before not free; then by cost, or by how long it is free and how slow it is by then.
+bool is_better(const ManeuverHypothesis& a, const ManeuverHypothesis& b);
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,278 @@
+#include "roadbed/planning/behaviour/overtaking.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kOvertakeStep_s = 0.1;
+constexpr double kLongest_s = 25.0;  // that overtaking may take
+// What the vehicle does: less than what the cruise control was seen to do, both times.
+constexpr double kPassing_mps2 = 0.9, kFallingBack_mps2 = 2.0;
+constexpr double kBackInLane_s = 3.5;  // from beside to back in the lane
+// What others do at worst: speed up, to a tenth above the limit.
+constexpr double kSpeedsUp_mps2 = 1.0, kAboveLimit = 1.1;
+constexpr double kMargin_s = 1.5;     // of the way on which two come towards each other
+constexpr double kBeside_m = 1.0;     // kept from who is overtaken
+constexpr double kNotInLane_m = 0.3;  // between sides that do not matter to each other
+constexpr double kReturnGap_m = 4.0, kReturnGap_s = 0.4;  // before who was overtaken
+constexpr double kGapAhead_m = 5.0, kGapAhead_s = 1.0;    // to who drives ahead of that one
+constexpr double kBehindRear_m = 3.0;                     // of who is not overtaken after all
+constexpr double kMoves_mps = 1.0, kSlower_mps = 2.5;
+constexpr double kLeadWithin_m = 70.0;
+constexpr double kBeforeEnd_m = 10.0;  // of the stretch, to be back in the lane
+constexpr double kBehind_m = 3.0;      // kept from who comes up behind in the other lane
+constexpr double kRelease_mps2 = 2.0;  // at which a faster vehicle closes up comfortably
+
+}  // namespace
+
+/// One of the others, along the line and beside it.
+struct Overtaking::Mover {
+  std::size_t obstacle;
+  double s_m, d_m, half_length_m, half_width_m;
+  double speed_mps;  ///< along the line; less than 0 if it comes the other way
+
+  double rear_m() const { return s_m - half_length_m; }
+  double front_m() const { return s_m + half_length_m; }
+
+  /// Where it is at worst after some time, for who is to be met or followed in its lane.
+  double at_worst_m(double after_s, double limit_mps) const {
+    const double most = std::max(std::abs(speed_mps), kAboveLimit * limit_mps);
+    const double up_s = std::min(after_s, (most - std::abs(speed_mps)) / kSpeedsUp_mps2);
+    const double way_m = std::abs(speed_mps) * after_s + 0.5 * kSpeedsUp_mps2 * up_s * up_s +
+                         kSpeedsUp_mps2 * up_s * (after_s - up_s);
+    return s_m + (speed_mps < 0.0 ? -way_m : way_m);
+  }
+  double worst_speed_mps(double after_s, double limit_mps) const {
+    return std::max(std::abs(speed_mps), std::min(std::abs(speed_mps) + kSpeedsUp_mps2 * after_s,
+                                                  kAboveLimit * limit_mps));
+  }
+};
+
+/// Of the vehicle, as it is planned; station of the rear axle.
+struct Overtaking::State {
+  double after_s, s_m, speed_mps;
+};
+
+Overtaking::Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,
+                       const SpeedCeiling& ceiling)
+    : vehicle_(vehicle),
+      task_(task),
+      ceiling_(ceiling),
+      stretches_(oncoming_lane_segments(task.road_map, task.route, task.line)) {}
+
+std::vector<Overtaking::Mover> Overtaking::movers_of(const View& view) const {
+  std::vector<Mover> movers;
+  for (std::size_t i = 0; i < view.traffic.obstacles.size(); ++i) {
+    const Obstacle& obstacle = view.traffic.obstacles[i];
+    if (obstacle.is_static() || !view.traffic.is_there(i, view.t_s)) continue;
+    const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
+    const geometry::LinePosition at = task_.line.project(now.pose().position());
+    const double turned = now.heading_rad - task_.line.at(at.s_m).heading_rad;
+    const double along = std::abs(std::cos(turned)), across = std::abs(std::sin(turned));
+    movers.push_back(
+        {.obstacle = i,
+         .s_m = at.s_m,
+         .d_m = at.d_m,
+         .half_length_m = 0.5 * (obstacle.length_m * along + obstacle.width_m * across),
+         .half_width_m = 0.5 * (obstacle.width_m * along + obstacle.length_m * across),
+         .speed_mps = now.speed_mps * std::cos(turned)});
+  }
+  return movers;
+}
+
+/// The nearest one ahead in the vehicle's lane, if it moves.
+const Overtaking::Mover* Overtaking::slower_ahead(const std::vector<Mover>& movers,
+                                                  const View& view) const {
+  const Mover* nearest = nullptr;
+  const double front_m = view.at.s_m + vehicle_.front_m();
+  for (const Mover& mover : movers) {
+    if (!shares_way(mover, 0.0) || mover.s_m < view.at.s_m ||
+        mover.rear_m() > front_m + kLeadWithin_m)
+      continue;
+    if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
+  }
+  return nearest && nearest->speed_mps > kMoves_mps ? nearest : nullptr;
+}
+
+double Overtaking::pass_at_m(const Mover& lead, const OncomingLaneSegment& stretch) const {
+  return lead.d_m + stretch.side * (lead.half_width_m + 0.5 * vehicle_.width_m + kBeside_m);
+}
+
+const OncomingLaneSegment* Overtaking::stretch_at(double s_m) const {
+  const auto found = std::ranges::find_if(stretches_, [&](const OncomingLaneSegment& stretch) {
+    return s_m >= stretch.from_s_m && s_m <= stretch.to_s_m;
+  });
+  return found == stretches_.end() ? nullptr : &*found;
+}
+
+Overtaking::State Overtaking::step(State state) const {
+  const double most = ceiling_.at(state.s_m).speed_mps;
+  state.after_s += kOvertakeStep_s;
+  state.speed_mps = std::min(state.speed_mps + kPassing_mps2 * kOvertakeStep_s, most);
+  state.s_m += state.speed_mps * kOvertakeStep_s;
+  return state;
+}
+
+/// Where the vehicle is when it is past the one that is overtaken; none: that takes too long.
+std::optional<Overtaking::State> Overtaking::past(State state, const Mover& lead) const {
+  const double gap_m = kReturnGap_m + kReturnGap_s * lead.speed_mps;
+  const auto is_past = [&] {
+    return state.s_m - vehicle_.rear_overhang_m >
+           lead.front_m() + lead.speed_mps * state.after_s + gap_m;
+  };
+  while (!is_past()) {
+    if (state.after_s > kLongest_s) return std::nullopt;
+    state = step(state);
+  }
+  return state;
+}
+
+/// Whether two bodies beside the line, `at_m` the vehicle's middle, would get into each other's
+/// way.
+bool Overtaking::shares_way(const Mover& mover, double at_m) const {
+  return std::abs(mover.d_m - at_m) < mover.half_width_m + 0.5 * vehicle_.width_m + kNotInLane_m;
+}
+
+/// Whether somebody drives neither where the vehicle overtakes nor in its lane, or is past already,
+/// or follows in its lane.
+bool Overtaking::is_no_matter(const Mover& mover, const State& now, double pass_at_m) const {
+  const bool in_lane = shares_way(mover, 0.0), in_way = shares_way(mover, pass_at_m);
+  if (!in_lane && !in_way) return true;
+  const bool is_behind = mover.front_m() < now.s_m;
+  return is_behind && (mover.speed_mps < 0.0 || !in_way);
+}
+
+/// Metres that are missing to one of the others until the vehicle is back in its lane; 0 or less:
+/// none.
+double Overtaking::missing_m(const Mover& mover, double now_s_m, const State& past,
+                             const State& back, double limit_mps) const {
+  const geometry::VehicleShape& vehicle = vehicle_;
+  if (mover.speed_mps < 0.0) {
+    const double closing_mps = back.speed_mps + mover.worst_speed_mps(back.after_s, limit_mps);
+    const double nearest_m = mover.at_worst_m(back.after_s, limit_mps) - mover.half_length_m;
+    return back.s_m + vehicle.front_m() + kMargin_s * closing_mps - nearest_m;
+  }
+  if (mover.s_m < now_s_m) {  // comes up behind in the other lane
+    const double front_m = mover.at_worst_m(past.after_s, limit_mps) + mover.half_length_m;
+    return front_m + kBehind_m - past.s_m + vehicle.rear_overhang_m;
+  }
+  const double closing_mps = std::max(0.0, back.speed_mps - mover.speed_mps);
+  const double gap_m =
+      kGapAhead_m + kGapAhead_s * mover.speed_mps + 0.5 * closing_mps * closing_mps / kRelease_mps2;
+  return back.s_m + vehicle.front_m() + gap_m - mover.rear_m() - mover.speed_mps * back.after_s;
+}
+
+/// Why overtaking would not end in time; none: it does.
+std::optional<std::string> Overtaking::why_not(const State& from, const Mover& lead,
+                                               const std::vector<Mover>& movers,
+                                               const OncomingLaneSegment& stretch) const {
+  const std::optional<State> past = this->past(from, lead);
+  if (!past) return fmt::format("it would take more than {:.0f} s", kLongest_s);
+  State back = *past;
+  while (back.after_s < past->after_s + kBackInLane_s) back = step(back);
+  const double to_end_m = std::min(stretch.to_s_m, task_.line.goal_s_m()) - back.s_m;
+  if (to_end_m < kBeforeEnd_m) {
+    return fmt::format("it would end {:.0f} m past where it has to", kBeforeEnd_m - to_end_m);
+  }
+  const double pass_m = pass_at_m(lead, stretch);
+  for (const Mover& mover : movers) {
+    if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
+    const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
+    if (missing <= 0.0) continue;
+    return fmt::format("{} {}, {:.0f} m of way are missing", task_.obstacles[mover.obstacle].id,
+                       mover.speed_mps < 0.0 ? "comes" : "drives there", missing);
+  }
+  return std::nullopt;
+}
+
+/// Where the vehicle is when its front is beside the rear of the one that is overtaken.
+Overtaking::State Overtaking::beside_rear(State state, const Mover& lead) const {
+  const auto is_behind = [&] {
+    return state.s_m + vehicle_.front_m() < lead.rear_m() + lead.speed_mps * state.after_s;
+  };
+  while (is_behind() && state.after_s < kLongest_s) state = step(state);
+  return state;
+}
+
+/// Whether braking leads behind the one that was to be overtaken, and back into the lane, before
+/// anybody comes.
+bool Overtaking::can_fall_back(const State& from, const Mover& lead,
+                               const std::vector<Mover>& movers,
+                               const OncomingLaneSegment& stretch) const {
+  const geometry::VehicleShape& vehicle = vehicle_;
+  State state = from;
+  const auto rear_m = [&] { return lead.rear_m() + lead.speed_mps * state.after_s; };
+  while (state.s_m + vehicle.front_m() > rear_m() - kBehindRear_m) {
+    if (state.after_s > from.after_s + kLongest_s) return false;
+    state.after_s += kOvertakeStep_s;
+    state.speed_mps = std::max(0.0, state.speed_mps - kFallingBack_mps2 * kOvertakeStep_s);
+    state.s_m += state.speed_mps * kOvertakeStep_s;
+  }
+  state.after_s += kBackInLane_s;
+  state.s_m += std::max(state.speed_mps, lead.speed_mps) * kBackInLane_s;
+  const double pass_m = pass_at_m(lead, stretch);
+  return std::ranges::none_of(movers, [&](const Mover& mover) {
+    if (mover.obstacle == lead.obstacle || mover.speed_mps >= 0.0) return false;
+    if (!shares_way(mover, pass_m) || mover.front_m() < from.s_m) return false;
+    return mover.at_worst_m(state.after_s, stretch.limit_mps) - mover.half_length_m <
+           state.s_m + vehicle.front_m();
+  });
+}
+
+/// The one that is being overtaken, or else a slower one ahead.
+const Overtaking::Mover* Overtaking::lead_of(const std::vector<Mover>& movers,
+                                             const View& view) const {
+  const auto found = std::ranges::find_if(
+      movers, [&](const Mover& mover) { return overtaken_ == mover.obstacle; });
+  return found != movers.end() ? &*found : slower_ahead(movers, view);
+}
+
+/// Whether it is over: past the other one, or behind it again.
+bool Overtaking::has_ended(const View& view, const Mover& lead) const {
+  const geometry::VehicleShape& vehicle = vehicle_;
+  const double past_m = lead.front_m() + kReturnGap_m + kReturnGap_s * lead.speed_mps;
+  const double front_m = view.at.s_m + vehicle.front_m();
+  return view.at.s_m - vehicle.rear_overhang_m > past_m ||
+         (falls_back_ && front_m < lead.rear_m() - kBehindRear_m);
+}
+
+Overtaking::Decision Overtaking::look(const View& view) {
+  const OncomingLaneSegment* stretch = stretch_at(view.at.s_m);
+  const std::vector<Mover> movers = stretch ? movers_of(view) : std::vector<Mover>{};
+  const Mover* lead = lead_of(movers, view);
+  const geometry::VehicleShape& vehicle = vehicle_;
+  const double within_m = stretch ? stretch->own_edge_m - 0.5 * vehicle.width_m : 0.0;
+  if (!lead || stretch->side * pass_at_m(*lead, *stretch) <= within_m + kNotInLane_m) {
+    overtaken_.reset();
+    return {};
+  }
+  const State now{0.0, view.at.s_m, view.speed_mps};
+  const std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
+  const std::string& name = task_.obstacles[lead->obstacle].id;
+  Decision decision{.keep_within_m = std::max(0.0, within_m), .side = stretch->side};
+  if (!overtaken_) {
+    falls_back_ = false;
+    const bool is_wanted = ceiling_.at(view.at.s_m).speed_mps >= lead->speed_mps + kSlower_mps;
+    if (is_wanted && why) decision.reason = fmt::format("{} is not overtaken: {}", name, *why);
+    if (is_wanted && !why && can_fall_back(beside_rear(now, *lead), *lead, movers, *stretch)) {
+      overtaken_ = lead->obstacle;
+    }
+  } else if (has_ended(view, *lead)) {
+    overtaken_.reset();
+  }
+  if (!overtaken_) return decision;
+  falls_back_ = falls_back_ || (why && can_fall_back(now, *lead, movers, *stretch));
+  decision.overtaken = overtaken_;
+  decision.falls_back = falls_back_;
+  decision.gap_m = lead->rear_m() - view.at.s_m - vehicle.front_m();
+  decision.pass_at_m = pass_at_m(*lead, *stretch);
+  decision.reason = falls_back_ ? fmt::format("falls back behind {} again", name)
+                                : fmt::format("overtakes {}", name);
+  return decision;
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/oncoming_lane_segments.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Whether to overtake a slower vehicle through the lane of those who come the other way.
+///
+///     s ▲                       ╲  who comes, at worst: speeding up to the limit and a tenth
+///       │              ╱ margin  ╲
+///       │     back ╱●╱─ ─ ─ ─ ─ ─ ╲
+///       │       ╱╱   ╱ lead
+///       │   ╱●╱  ╱╱╱              ●  in the other lane, from the first to the second
+///       └──────────────────────────▶ t
+///
+/// It is begun if, accelerating as the cruise control does, the vehicle is back in its lane, with
+/// room to the one overtaken and to whoever drives ahead of that one, before the nearest of those
+/// who come is there at its worst; and if it can be given up, by braking and falling back behind
+/// the one overtaken, until the front is beside that one's rear. All of this is asked again in each
+/// cycle: what can no longer be ended in time is given up while that is possible.
+/// Where the vehicle may not, or does not want to, it keeps to its own lane as long as the one
+/// ahead moves; what stands is passed as the lateral planner chooses.
+class Overtaking {
+ public:
+  struct View {
+    double t_s;
+    geometry::LinePosition at;  ///< of the rear axle, on the world's line
+    double speed_mps;
+    Traffic traffic;  ///< only what is there now is looked at
+  };
+
+  /// What the lateral planner is asked for.
+  struct Decision {
+    std::optional<double> keep_within_m = {};   ///< offsets towards the other lane, up to this one
+    std::optional<double> pass_at_m = {};       ///< offset to overtake at
+    std::optional<std::size_t> overtaken = {};  ///< obstacle that is being overtaken
+    bool falls_back = false;                    ///< overtaking is given up: get behind it
+    double gap_m = 0.0;                         ///< to its rear; less than 0 beside it
+    double side = 1.0;                          ///< of the other lane: 1 left, −1 right
+    std::string reason = {};  ///< why it is (not) overtaken; empty: nobody to overtake
+  };
+
+  Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,
+             const SpeedCeiling& ceiling);
+
+  Decision look(const View& view);
+
+ private:
+  struct Mover;
+  struct State;
+  std::vector<Mover> movers_of(const View& view) const;
+  const Mover* slower_ahead(const std::vector<Mover>& movers, const View& view) const;
+  double pass_at_m(const Mover& lead, const OncomingLaneSegment& stretch) const;
+  const OncomingLaneSegment* stretch_at(double s_m) const;
+  std::optional<std::string> why_not(const State& from, const Mover& lead,
+                                     const std::vector<Mover>& movers,
+                                     const OncomingLaneSegment& stretch) const;
+  bool can_fall_back(const State& from, const Mover& lead, const std::vector<Mover>& movers,
+                     const OncomingLaneSegment& stretch) const;
+  std::optional<State> past(State state, const Mover& lead) const;
+  State beside_rear(State state, const Mover& lead) const;
+  bool shares_way(const Mover& mover, double at_m) const;
+  bool is_no_matter(const Mover& mover, const State& now, double pass_at_m) const;
+  double missing_m(const Mover& mover, double now_s_m, const State& past, const State& back,
+                   double limit_mps) const;
+  const Mover* lead_of(const std::vector<Mover>& movers, const View& view) const;
+  bool has_ended(const View& view, const Mover& lead) const;
+  State step(State state) const;
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  const SpeedCeiling& ceiling_;
+  std::vector<OncomingLaneSegment> stretches_;
+  std::optional<std::size_t> overtaken_;
+  bool falls_back_ = false;
+};
+
+}  // namespace roadbed::planning::behaviour

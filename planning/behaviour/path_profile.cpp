@@ -1,0 +1,71 @@
+#include "roadbed/planning/behaviour/path_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kFine_m = 0.5, kWayStep_m = 1.0, kFineUntil_m = 40.0;
+constexpr double kFastest_mps = 60.0;
+constexpr double kSurfaceSlack_m = 0.01;  // lanes of real files do not meet exactly
+
+double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
+                      const geometry::VehicleShape& vehicle, const BendLimits& limits) {
+  const double by_acceleration =
+      std::sqrt(limits.max_lateral_acceleration_mps2 / std::max(1e-6, std::abs(curvature_per_m)));
+  const double turn = vehicle.wheelbase_m * curvature_per_m;
+  const double steering_per_m =
+      vehicle.wheelbase_m * std::abs(curvature_d1_per_m2) / (1.0 + turn * turn);  // of atan(L k)
+  const double rate = limits.steering_rate_share * vehicle.max_steering_rate_radps;
+  return std::min({kFastest_mps, by_acceleration, rate / std::max(1e-6, steering_per_m)});
+}
+
+bool is_on_road(const geometry::Rectangle& body, const map::RoadMap& road_map) {
+  return std::ranges::all_of(body.corners(), [&](const Eigen::Vector2d& corner) {
+    return road_map.on_surface(corner, kSurfaceSlack_m);
+  });
+}
+
+}  // namespace
+
+std::size_t PathProfile::before(double distance_m) const {
+  const auto after = std::upper_bound(ahead_m.begin(), ahead_m.end(), distance_m);
+  return after == ahead_m.begin() ? 0 : static_cast<std::size_t>(after - ahead_m.begin() - 1);
+}
+
+PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double length_m,
+                                const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
+                                const BendLimits& limits) {
+  PathProfile way;
+  std::vector<double> curvature;
+  Eigen::Vector2d last(0.0, 0.0);
+  for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kWayStep_m) {
+    const PlannedPath::Place place = path.place_at(from_s_m + l_m);
+    const Eigen::Vector2d here = place.pose.position();
+    const double ahead_m = way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (here - last).norm();
+    last = here;
+    way.ahead_m.push_back(ahead_m);
+    way.station_m.push_back(from_s_m + l_m);
+    way.body.push_back(geometry::body_at(place.pose, vehicle));
+    way.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
+    curvature.push_back(place.curvature_per_m);
+  }
+  for (std::size_t i = 0; i < curvature.size(); ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, curvature.size() - 1);
+    const double apart = std::max(1e-6, way.ahead_m[b] - way.ahead_m[a]);
+    way.most_mps.push_back(
+        bend_speed_mps(curvature[i], (curvature[b] - curvature[a]) / apart, vehicle, limits));
+  }
+  return way;
+}
+
+double on_road_m(const PathProfile& way, const map::RoadMap& road_map) {
+  std::size_t i = 0;
+  while (i < way.body.size() && !is_on_road(way.body[i], road_map)) ++i;
+  while (i < way.body.size() && is_on_road(way.body[i], road_map)) ++i;
+  return i < way.body.size() ? way.ahead_m[i - 1] : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,217 @@
+#include "roadbed/planning/behaviour/right_of_way.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "roadbed/planning/behaviour/follower.h"
+#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/behaviour/safety.h"
+#include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/behaviour/st_graph.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kBeforeLine_m = 0.5;  // kept from a line
+constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
+constexpr double kLookAhead_m = 80.0;
+constexpr double kSameHalt_m = 0.5;
+constexpr double kShareOfBrakes = 0.9;  // the rest is left to the cruise control
+constexpr double kStopsShort_m = 0.1;   // of a line, at the latest
+constexpr double kRedSlack_s = 0.2;     // before red, to be past the line
+constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
+constexpr double kStartsWithin_mps2 = 1.0;  // as the cruise control does
+constexpr double kJoining_m = 40.0;         // beyond a junction, to be as fast as others
+constexpr int kMostSteps = 150;
+constexpr double kSideRoom_m = 0.4;
+constexpr double kMovingOther_mps = 0.5;
+constexpr double kLeastAlong = 0.8;   // cosine of the angle up to which somebody drives along
+constexpr double kGapsFrom_m = 15.0;  // beyond the way to stop on
+
+/// Distances driven by each step, accelerating comfortably to the ceiling.
+std::vector<double> drive_on(const PathProfile& way, double speed_mps, double until_m) {
+  std::vector<double> ahead{0.0};
+  while (ahead.back() < until_m && ahead.size() < kMostSteps) {
+    const double most = std::max(1.0, way.wanted_mps[way.before(ahead.back())]);
+    speed_mps = std::min(speed_mps + kStartsWithin_mps2 * StGraph::kStep_s, most);
+    ahead.push_back(ahead.back() + StGraph::kStep_s * speed_mps);
+  }
+  return ahead;
+}
+
+/// How obstacles that are no lead drive now; one entry per obstacle.
+struct Others {
+  std::vector<bool> crossing;   ///< on the way, but across it
+  std::vector<bool> following;  ///< behind the vehicle in its lane: they keep their distance
+};
+
+/// Obstacles that are on the way now, but cross it.
+std::vector<bool> crossing_now(const PathProfile& way, const StGraph& occupancy,
+                               const RightOfWay::View& view) {
+  std::vector<bool> crossing(view.traffic.obstacles.size(), false);
+  for (const StInterval& part : occupancy.at(0)) {
+    const Obstacle& obstacle = view.traffic.obstacles[part.obstacle];
+    if (obstacle.is_static()) continue;
+    const geometry::TrajectoryPoint at = obstacle.motion.at(view.t_s);
+    const Eigen::Vector2d along(std::cos(at.heading_rad), std::sin(at.heading_rad));
+    const Eigen::Vector2d& way_along = way.body[way.before(std::max(0.0, part.from_m))].axis;
+    crossing[part.obstacle] = at.speed_mps > kMovingOther_mps && along.dot(way_along) < kLeastAlong;
+  }
+  return crossing;
+}
+
+/// Whether an obstacle that is not the lead blocks a place at one of the steps `from` to `to`.
+std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& others, int from,
+                                      int to, double ahead_m) {
+  const auto is_lead = [&](std::size_t obstacle) {
+    return !others.crossing[obstacle] &&
+           std::ranges::any_of(occupancy.at(0),
+                               [&](const StInterval& part) { return part.obstacle == obstacle; });
+  };
+  for (int k = std::max(0, from); k <= to; ++k) {
+    for (const StInterval& part : occupancy.at(k)) {
+      const bool is_behind = part.from_m < 0.0 || others.following[part.obstacle];
+      if (is_behind || ahead_m <= part.from_m || ahead_m >= part.to_m) continue;
+      if (!is_lead(part.obstacle)) return part.obstacle;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string_view colour_name(LightColour colour) {
+  return colour == LightColour::yellow ? "yellow" : "red";
+}
+
+}  // namespace
+
+RightOfWay::RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
+                       const DrivingTask& task)
+    : vehicle_(vehicle),
+      comfort_deceleration_mps2_(options.comfort_deceleration_mps2),
+      task_(task) {}
+
+double RightOfWay::left_m(const StopPoint& place, const View& view) const {
+  return place.s_m - view.s_m - vehicle_.front_m();
+}
+
+/// Who has begun to cross looks further at those who may cross the way.
+void RightOfWay::pass_places(const View& view) {
+  const std::vector<StopPoint>& places = task_.stop_points;
+  while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
+    ++next_;
+    has_stopped_ = false;
+  }
+  if (next_ == 0) return;
+  const StopPoint& last = places[next_ - 1];
+  const bool is_crossing = view.s_m - vehicle_.rear_overhang_m < last.clear_s_m;
+  if (last.kind != StopKind::light && is_crossing) who_comes(last, view, kGapOnTheWay);
+}
+
+/// The deceleration to stop with before a place; none: it is too late for that. The actuator's lag
+/// lets the vehicle drive on for a while at the speed that its acceleration still leads to.
+std::optional<double> RightOfWay::stops_with_mps2(const StopPoint& place, const View& view) const {
+  if (kept_ && std::abs(kept_->s_m - place.s_m) < kSameHalt_m) return kept_->deceleration_mps2;
+  const double hardest = kShareOfBrakes * kMostCommand_mps2;
+  const double comfortable = comfort_deceleration_mps2_;
+  const double speed = std::max(0.0, view.speed_mps + view.acceleration_mps2 * kActuatorLag_s);
+  const double left = left_m(place, view) - view.speed_mps * kActuatorLag_s;
+  const double way_m = 0.5 * speed * speed / hardest;  // to stop in
+  if (speed > kAtRest_mps && way_m > left - kStopsShort_m) {
+    return stops_before_red_mps2(place, view);
+  }
+  if (way_m >= left - kBeforeLine_m) return hardest;
+  return std::max(comfortable, 0.5 * speed * speed / (left - kBeforeLine_m));
+}
+
+/// Between the last place to stop at comfortably and the first from which a light is passed while
+/// it is yellow there may be some metres: v² / 2a + v T against v · yellow.
+std::optional<double> RightOfWay::stops_before_red_mps2(const StopPoint& place,
+                                                        const View& view) const {
+  if (place.kind != StopKind::light) return std::nullopt;
+  const LightCycle& light = task_.lights[*place.light];
+  if (colour_at(light, view.t_s) == LightColour::green) return std::nullopt;
+  const double left = left_m(place, view);
+  const double passes_in_s = left / std::max(kAtRest_mps, view.speed_mps) + kRedSlack_s;
+  double red_in_s = 0.0;
+  while (red_in_s <= passes_in_s && colour_at(light, view.t_s + red_in_s) != LightColour::red) {
+    red_in_s += StGraph::kStep_s;
+  }
+  if (red_in_s > passes_in_s) return std::nullopt;
+  const double room_m = left - kStopsShort_m - view.speed_mps * kActuatorLag_s;
+  const double hard = 0.5 * view.speed_mps * view.speed_mps / std::max(0.1, room_m);
+  if (hard > SafetyOptions{}.most_mps2) return std::nullopt;
+  return hard;
+}
+
+std::optional<StopConstraint> RightOfWay::look(const View& view) {
+  const std::vector<StopPoint>& places = task_.stop_points;
+  crossing_.assign(view.traffic.obstacles.size(), false);
+  pass_places(view);
+  for (std::size_t i = next_; i < places.size(); ++i) {
+    if (left_m(places[i], view) > kLookAhead_m) break;
+    const std::optional<double> deceleration = stops_with_mps2(places[i], view);
+    if (!deceleration) {
+      if (places[i].kind != StopKind::light) who_comes(places[i], view, kGapOnTheWay);
+      continue;
+    }
+    if (auto why = why_wait(places[i], view)) {
+      kept_ = {places[i].s_m, *deceleration};
+      return StopConstraint{places[i].s_m - vehicle_.front_m() - kBeforeLine_m, *std::move(why),
+                            *deceleration, *deceleration > kShareOfBrakes * kMostCommand_mps2};
+    }
+  }
+  kept_.reset();
+  return std::nullopt;
+}
+
+std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const View& view) {
+  const double left = left_m(place, view);
+  if (place.kind == StopKind::light) {
+    const LightColour colour = colour_at(task_.lights[*place.light], view.t_s);
+    if (colour == LightColour::green) return std::nullopt;
+    return fmt::format("{} is {}, {:.1f} m ahead", place.name, colour_name(colour), left);
+  }
+  if (place.kind == StopKind::stop_sign && &place == &task_.stop_points[next_]) {
+    has_stopped_ = has_stopped_ || (view.speed_mps < kAtRest_mps && left < kAtLine_m);
+    if (!has_stopped_) return fmt::format("{} is {:.1f} m ahead", place.name, left);
+  }
+  const double stopping_m = 0.5 * view.speed_mps * view.speed_mps / comfort_deceleration_mps2_;
+  if (left > stopping_m + kGapsFrom_m) return std::nullopt;
+  return who_comes(place, view, kGapToTake);
+}
+
+/// None also marks those who only cross.
+std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const View& view,
+                                                 Gap gap) {
+  // Who joins those who come from the side is not to be caught up with soon.
+  const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
+  const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
+                         (joins ? kJoining_m : 0.0);  // of the rear axle
+  const PathProfile way = sample_path_profile(view.path, view.s_m, std::max(1.0, until_m) + 2.0,
+                                              view.ceiling, vehicle_);
+  const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);
+  const auto steps = static_cast<int>(ahead.size());
+  const StGraph occupancy(way, view.traffic, view.t_s, steps + gap.after, kSideRoom_m);
+  const VehicleOnLine vehicle{task_.line, view.s_m, view.path.lateral_at(view.s_m).d_m,
+                              vehicle_.width_m};
+  std::vector<bool> following;
+  for (const Obstacle& obstacle : view.traffic.obstacles) {
+    following.push_back(is_following(obstacle, view.t_s, vehicle));
+  }
+  const Others others{crossing_now(way, occupancy, view), std::move(following)};
+  for (int k = 0; k < steps; ++k) {
+    const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after,
+                                ahead[static_cast<std::size_t>(k)]);
+    if (!who) continue;
+    const Obstacle& obstacle = view.traffic.obstacles[*who];
+    return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,
+                       StGraph::kStep_s * k);
+  }
+  crossing_ = others.crossing;
+  return std::nullopt;
+}
+
+}  // namespace roadbed::planning::behaviour

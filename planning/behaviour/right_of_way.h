@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Where the vehicle has to stop for now, and why.
+struct StopConstraint {
+  double s_m = 0.0;  ///< station of the rear axle
+  std::string reason;
+  double deceleration_mps2 = 1.5;  ///< to stop with, the same as long as the halt is asked for
+  bool is_hard = false;            ///< more than the cruise control may ask for
+};
+
+/// Looks at the waiting places of a world, one after the other: lights, signs, and gaps in the
+/// traffic that has the right of way.
+///
+/// A gap is good if the vehicle, driving on from here at a comfortable acceleration, leaves what it
+/// crosses with 1 s to who was there before and 1.5 s to who comes after. Who drives along on the
+/// path already is the cruise control's lead, and not looked at here.
+class RightOfWay {
+ public:
+  /// What is known at one cycle.
+  struct View {
+    double t_s, s_m, speed_mps;
+    const PlannedPath& path;
+    const SpeedCeiling& ceiling;
+    Traffic traffic;
+    double acceleration_mps2 = 0.0;
+  };
+
+  RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
+             const DrivingTask& task);
+
+  /// The nearest place that is not to be passed now; none: drive on. A place that cannot be stopped
+  /// at with 0.9 of what the cruise control may ask for, when that is first wanted, is passed; a
+  /// halt that was asked for stays until the place is free or passed. A light that cannot be passed
+  /// either before it is red, at the present speed, is stopped at as hard as that takes, up to what
+  /// the vehicle can do.
+  std::optional<StopConstraint> look(const View& view);
+
+  /// Per obstacle, whether it is on the path, but only crosses it, and will be gone in time: it is
+  /// no lead. Of the last look.
+  const std::vector<bool>& crossing() const { return crossing_; }
+
+ private:
+  std::optional<std::string> why_wait(const StopPoint& place, const View& view);
+  /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
+  struct Gap {
+    int before, after;
+  };
+  static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
+
+  std::optional<std::string> who_comes(const StopPoint& place, const View& view, Gap gap);
+  void pass_places(const View& view);
+  double left_m(const StopPoint& place, const View& view) const;
+  std::optional<double> stops_with_mps2(const StopPoint& place, const View& view) const;
+  std::optional<double> stops_before_red_mps2(const StopPoint& place, const View& view) const;
+
+  const geometry::VehicleShape& vehicle_;
+  double comfort_deceleration_mps2_;
+  const DrivingTask& task_;
+  std::size_t next_ = 0;      ///< the first place that is not passed
+  bool has_stopped_ = false;  ///< at that one
+  std::vector<bool> crossing_;
+  struct Kept {
+    double s_m, deceleration_mps2;
+  };
+  std::optional<Kept> kept_;  ///< the place that the last look asked to wait at
+};
+
+}  // namespace roadbed::planning::behaviour

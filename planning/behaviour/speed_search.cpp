@@ -1,0 +1,359 @@
+#include "roadbed/planning/behaviour/speed_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <queue>
+#include <tuple>
+
+#include "roadbed/planning/behaviour/path_speed_limits.h"
+#include "roadbed/planning/behaviour/state_table.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kSubstep_s = StGraph::kStep_s;
+constexpr double kCell_m = 0.75, kCell_mps = 0.6;
+constexpr double kLeast_mps2 = -12.0;  // no vehicle brakes harder
+constexpr double kMostLayers = 16.0;
+constexpr double kTimeSlack_s = 0.051;  // a goal's moment may lie between two substeps
+
+// Costs per second, in units of a speed that is missing altogether.
+constexpr double kTooFast = 4.0;
+constexpr double kCommand = 0.04, kChange = 0.05;  // of (m/s²)²
+constexpr double kBend = 60.0;                     // of (m/s)² beyond what a bend allows
+constexpr double kNearAhead = 1.5, kNearBehind = 0.5;
+constexpr double kMissedGoal = 40.0, kMissPerMetre = 1.0;
+constexpr double kTouchAfterGoal = 15.0;
+
+struct Node {
+  double ahead_m, speed_mps, acceleration_mps2, command_mps2;
+  double cost, miss, bend_excess_mps;
+  int parent, layer;
+  bool reached, touched, is_done;
+};
+
+/// What the actuator's lag makes of a constant command after some substeps.
+struct Response {
+  double t_s, decay, lag_way_s, lag_square_s2;
+};
+
+class Search {
+ public:
+  Search(const SpeedSearchQuestion& question, const SpeedSearchOptions& options)
+      : q_(question), options_(options), speeds_(question.way) {
+    substeps_ = std::max(3, static_cast<int>(std::ceil(q_.horizon_s / kSubstep_s / kMostLayers)));
+    layers_ = std::max(1, static_cast<int>(std::ceil(q_.horizon_s / (kSubstep_s * substeps_))));
+    for (int i = 1; i <= substeps_; ++i) {
+      const double t = kSubstep_s * i, lag = options.actuator_lag_s, decay = std::exp(-t / lag);
+      responses_.push_back({t, decay, lag * (1.0 - decay), lag * (t - lag * (1.0 - decay))});
+    }
+    drive_.resize(responses_.size());
+    ends_within_horizon_ = goal_ends_within_horizon();
+    for (int layer = 0; layer < layers_; ++layer) may_reach_.push_back(may_reach_goal_in(layer));
+    for (const double share : {-1.0, -0.7, -0.45, -0.25, -0.1, 0.0, 0.1, 0.25, 0.45, 0.7, 1.0}) {
+      commands_.push_back(share < 0.0 ? -share * options.least_mps2 : share * options.most_mps2);
+    }
+  }
+
+  /// The cheapest state goes on first. Nothing is ever paid back, so that a state that is the
+  /// cheapest of all is the cheapest of its cell, and the first at the horizon the answer: that of
+  /// going on with every state of a layer before the next.
+  SpeedSearchAnswer run() {
+    nodes_.push_back({.ahead_m = 0.0,
+                      .speed_mps = q_.speed_mps,
+                      .acceleration_mps2 = q_.acceleration_mps2,
+                      .command_mps2 = q_.last_command_mps2,
+                      .cost = 0.0,
+                      .miss = q_.goals.empty() ? 0.0 : 1e3,
+                      .bend_excess_mps = 0.0,
+                      .parent = -1,
+                      .layer = 0,
+                      .reached = q_.goals.empty(),
+                      .touched = false,
+                      .is_done = false});
+    for (queue_.push({0.0, 0}); !queue_.empty();) {
+      const int index = queue_.top().node;
+      queue_.pop();
+      Node& node = nodes_[static_cast<std::size_t>(index)];
+      if (node.is_done) continue;  // it was found again, cheaper
+      node.is_done = true;
+      if (node.layer == layers_) return answer(index, true);
+      expand(index);
+    }
+    return answer(deepest(), false);
+  }
+
+ private:
+  /// Where a drive is after a substep.
+  struct Motion {
+    double ahead_m, speed_mps, acceleration_mps2;
+  };
+
+  struct Waiting {
+    double cost;
+    int node;
+    bool operator<(const Waiting& other) const {  // the top of a queue is the largest
+      return cost != other.cost ? cost > other.cost : node > other.node;
+    }
+  };
+
+  double wanted_mps(double ahead_m) const {
+    return std::min(q_.most_wanted_mps, speeds_.wanted_mps(ahead_m));
+  }
+
+  void expand(int index) {
+    const Node from = nodes_[static_cast<std::size_t>(index)];
+    for (const double command : commands_) follow(index, from, command);
+    const double hold = std::clamp(0.8 * (wanted_mps(from.ahead_m) - from.speed_mps), -1.2, 1.2);
+    follow(index, from, std::clamp(hold, options_.least_mps2, options_.most_mps2));
+  }
+
+  /// Drives one layer on with a constant command; keeps the end if it is the best of its cell.
+  /// Whether anything is touched on the way is asked last: most ends are not the best anyway.
+  void follow(int index, const Node& from, double command) {
+    move(from, command);
+    Node to = from;
+    to.parent = index;
+    to.layer = from.layer + 1;
+    to.is_done = false;
+    to.command_mps2 = command;
+    to.ahead_m = drive_.back().ahead_m;
+    to.speed_mps = drive_.back().speed_mps;
+    to.acceleration_mps2 = drive_.back().acceleration_mps2;
+    const auto key = key_of(to);
+    if (!key) return;
+    StateTable::Cell& cell = cells_.at(*key);
+    const double bend_mps = bend_excess_mps(to), own_cost = cost_of(to, bend_mps);
+    const double change = command - from.command_mps2;
+    const auto with = [&](double nearness_cost, double touch) {
+      return from.cost + (kSubstep_s * substeps_ * (own_cost + nearness_cost) +
+                          kChange * change * change + touch);
+    };
+    if (is_dearer(with(0.0, 0.0), cell, from)) return;
+    const double nearness_cost = nearness(to, to.layer * substeps_);
+    if (is_dearer(with(nearness_cost, 0.0), cell, from) || !drives(to)) return;
+    to.bend_excess_mps = std::max(from.bend_excess_mps, bend_mps);
+    to.cost = with(nearness_cost, to.touched && !from.touched ? kTouchAfterGoal : 0.0);
+    keep(to, to.reached ? cell.after_goal : cell.before_goal);
+  }
+
+  /// Fills drive_.
+  void move(const Node& from, double command) {
+    const double lagging = from.acceleration_mps2 - command;
+    double last_m = from.ahead_m;
+    for (std::size_t i = 0; i < drive_.size(); ++i) {
+      const Response& r = responses_[i];
+      Motion& to = drive_[i];
+      to.acceleration_mps2 = command + lagging * r.decay;
+      to.speed_mps = from.speed_mps + command * r.t_s + lagging * r.lag_way_s;
+      to.ahead_m = last_m;
+      if (to.speed_mps <= 0.0) {
+        to.speed_mps = to.acceleration_mps2 = 0.0;
+      } else {
+        to.ahead_m =
+            std::max(last_m, from.ahead_m + from.speed_mps * r.t_s + 0.5 * command * r.t_s * r.t_s +
+                                 lagging * r.lag_square_s2);
+      }
+      last_m = to.ahead_m;
+    }
+  }
+
+  /// Whether drive_ may be driven; what it reaches and touches on the way is noted.
+  bool drives(Node& node) const {
+    const int before = (node.layer - 1) * substeps_;
+    for (std::size_t i = 0; i < drive_.size(); ++i) {
+      const int substep = before + static_cast<int>(i) + 1;
+      if (!may_be_there(node, drive_[i], substep)) return false;
+    }
+    return true;
+  }
+
+  bool may_be_there(Node& node, const Motion& at, int substep) const {
+    const bool is_past = at.ahead_m > q_.end_m;
+    if (is_past && !node.reached) return false;
+    const bool hit = is_past || q_.occupancy.is_blocked(substep, at.ahead_m);
+    if (hit && (q_.goals.empty() || !node.reached)) return false;
+    node.touched = node.touched || hit;
+    if (!node.reached) look_at_goals(node, at, kSubstep_s * substep);
+    return true;
+  }
+
+  static double outside(const Window& window, double value) {
+    return std::max({0.0, window.least - value, value - window.most});
+  }
+
+  bool may_reach_goal_in(int layer) const {
+    for (int i = 1; i <= substeps_; ++i) {
+      const double t_s = kSubstep_s * (layer * substeps_ + i);
+      const auto is_time = [&](const GoalAhead& goal) {
+        return outside(goal.time_s, t_s) <= kTimeSlack_s;
+      };
+      if (std::ranges::any_of(q_.goals, is_time)) return true;
+    }
+    return false;
+  }
+
+  void look_at_goals(Node& node, const Motion& at, double t_s) const {
+    for (const GoalAhead& goal : q_.goals) {
+      if (outside(goal.time_s, t_s) > kTimeSlack_s) continue;
+      const double miss =
+          outside(goal.ahead_m, at.ahead_m) + 2.0 * outside(goal.speed_mps, at.speed_mps);
+      node.miss = std::min(node.miss, miss);
+      node.reached = node.reached || miss <= 0.0;
+    }
+  }
+
+  /// Per second, but for what is near.
+  double cost_of(const Node& to, double bend_mps) const {
+    const double wanted = wanted_mps(to.ahead_m);
+    const double missing = (wanted - to.speed_mps) / std::max(5.0, wanted);
+    double cost = missing > 0.0 ? missing * missing : kTooFast * missing * missing;
+    cost += kCommand * to.command_mps2 * to.command_mps2;
+    return cost + kBend * bend_mps * bend_mps;
+  }
+
+  double bend_excess_mps(const Node& node) const {
+    return std::max(0.0, node.speed_mps - speeds_.most_mps(node.ahead_m));
+  }
+
+  double nearness(const Node& node, int substep) const {
+    const double keep_ahead = 1.5 + 0.8 * node.speed_mps, keep_behind = 1.0 + 0.1 * node.speed_mps;
+    const double ahead = std::min(keep_ahead, q_.occupancy.gap_ahead_m(substep, node.ahead_m));
+    const double behind = std::min(keep_behind, q_.occupancy.gap_behind_m(substep, node.ahead_m));
+    const double a = 1.0 - ahead / keep_ahead, b = 1.0 - behind / keep_behind;
+    return kNearAhead * a * a + kNearBehind * b * b;
+  }
+
+  /// With the lag T, s + T v and v + T a follow the command as a double integrator does, whatever a
+  /// is now. So states of one layer and one cell of these two go on alike, which those of one cell
+  /// of s and v do not. None: too fast for any vehicle.
+  std::optional<std::uint64_t> key_of(const Node& node) const {
+    constexpr std::uint64_t columns = 128, rows = 1U << 20U;
+    const double lag_s = options_.actuator_lag_s;
+    const double future_mps = node.speed_mps + lag_s * (node.acceleration_mps2 - kLeast_mps2);
+    const auto column = static_cast<std::uint64_t>(std::max(0.0, future_mps) / kCell_mps);
+    const auto row = static_cast<std::uint64_t>((node.ahead_m + lag_s * node.speed_mps) / kCell_m);
+    if (column >= columns || row >= rows) return std::nullopt;
+    return (static_cast<std::uint64_t>(node.layer) * rows + row) * columns + column;
+  }
+
+  /// Whether a state is dearer than what its cell holds, be it before or after the goal.
+  bool is_dearer(double cost, const StateTable::Cell& cell, const Node& from) const {
+    const auto is_better = [&](int kept) {
+      return kept >= 0 && nodes_[static_cast<std::size_t>(kept)].cost <= cost;
+    };
+    if (from.reached) return is_better(cell.after_goal);
+    const bool may_reach = may_reach_[static_cast<std::size_t>(from.layer)];
+    return is_better(cell.before_goal) && (!may_reach || is_better(cell.after_goal));
+  }
+
+  void keep(const Node& node, int& kept) {
+    if (kept < 0) {
+      kept = static_cast<int>(nodes_.size());
+      nodes_.push_back(node);
+    } else {
+      Node& other = nodes_[static_cast<std::size_t>(kept)];
+      if (other.is_done || other.cost <= node.cost) return;
+      other = node;
+    }
+    const double rest = node.layer == layers_ ? missed_cost(node.miss) : least_missed_cost(node);
+    queue_.push({node.cost + (node.reached ? 0.0 : rest), kept});
+  }
+
+  bool goal_ends_within_horizon() const {
+    return std::ranges::any_of(q_.goals, [&](const GoalAhead& goal) {
+      return goal.time_s.most <= kSubstep_s * substeps_ * layers_ + kTimeSlack_s;
+    });
+  }
+
+  double missed_cost(double miss) const {
+    return ends_within_horizon_ && miss > 0.0 ? kMissedGoal + kMissPerMetre * std::min(miss, 1e3)
+                                              : 0.0;
+  }
+
+  double total(const Node& node) const {
+    return node.cost + (node.reached ? 0.0 : missed_cost(node.miss));
+  }
+
+  /// Of all that a state may lead to: what it can reach by the strongest commands.
+  double least_missed_cost(const Node& node) const {
+    double miss = node.miss;
+    for (const GoalAhead& goal : q_.goals) miss = std::min(miss, least_miss(node, goal));
+    return missed_cost(miss);
+  }
+
+  double least_miss(const Node& node, const GoalAhead& goal) const {
+    const double t_s = kSubstep_s * substeps_ * node.layer;
+    const double last_s = goal.time_s.most + kTimeSlack_s - t_s;
+    if (last_s < 0.0) return std::numeric_limits<double>::infinity();
+    const double first_s = std::max(0.0, goal.time_s.least - kTimeSlack_s - t_s);
+    return std::max({0.0, goal.ahead_m.least - node.ahead_m - farthest_m(node, last_s),
+                     node.ahead_m + nearest_m(node, first_s) - goal.ahead_m.most});
+  }
+
+  /// No drive comes farther within a time.
+  double farthest_m(const Node& node, double within_s) const {
+    const double lag_s = options_.actuator_lag_s, most = options_.most_mps2;
+    const double lagging_s = lag_s * (1.0 - std::exp(-within_s / lag_s));
+    return node.speed_mps * within_s + 0.5 * most * within_s * within_s +
+           (std::max(0.0, node.acceleration_mps2) - most) * lag_s * (within_s - lagging_s);
+  }
+
+  /// Every drive comes as far within a time.
+  double nearest_m(const Node& node, double within_s) const {
+    const double least = std::min({-1e-3, options_.least_mps2, node.acceleration_mps2});
+    const double braking_s = std::min(within_s, node.speed_mps / -least);
+    return braking_s * (node.speed_mps + 0.5 * least * braking_s);
+  }
+
+  /// Of the states that came farthest, the slowest; of those the cheapest.
+  int deepest() const {
+    const auto is_before = [](const Node& a, const Node& b) {
+      return std::tuple(-a.layer, a.speed_mps, a.cost) < std::tuple(-b.layer, b.speed_mps, b.cost);
+    };
+    return static_cast<int>(std::ranges::min_element(nodes_, is_before) - nodes_.begin());
+  }
+
+  SpeedSearchAnswer answer(int end, bool is_free) const {
+    SpeedSearchAnswer found;
+    const Node& last = nodes_[static_cast<std::size_t>(end)];
+    found.is_free = is_free;
+    found.misses_goal = !last.reached && ends_within_horizon_;
+    found.reaches_goal = last.reached && !q_.goals.empty();
+    found.free_until_s = kSubstep_s * substeps_ * last.layer;
+    found.bend_excess_mps = last.bend_excess_mps;
+    if (is_free) found.cost = total(last);
+    for (int i = end; i >= 0; i = nodes_[static_cast<std::size_t>(i)].parent) {
+      const Node& node = nodes_[static_cast<std::size_t>(i)];
+      found.plan.push_back({kSubstep_s * substeps_ * node.layer, node.ahead_m, node.speed_mps,
+                            node.acceleration_mps2, node.command_mps2});
+    }
+    std::ranges::reverse(found.plan);
+    return found;
+  }
+
+  const SpeedSearchQuestion& q_;
+  const SpeedSearchOptions& options_;
+  PathSpeedLimits speeds_;
+  int substeps_ = 3, layers_ = 1;
+  bool ends_within_horizon_ = false;  ///< a goal's time
+  std::vector<bool> may_reach_;       ///< a goal, on the way from a layer to the next
+  std::vector<Response> responses_;
+  std::vector<Motion> drive_;  ///< of one command, by substep
+  std::vector<double> commands_;
+  std::vector<Node> nodes_;
+  StateTable cells_;
+  std::priority_queue<Waiting> queue_;
+};
+
+}  // namespace
+
+SpeedSearchAnswer search_speed(const SpeedSearchQuestion& question,
+                               const SpeedSearchOptions& options) {
+  return Search(question, options).run();
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/behaviour/st_graph.h"
+#include "roadbed/planning/behaviour/timed_goal.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// A goal as the search sees it: times from now, distances along the way.
+struct GoalAhead {
+  Window time_s, speed_mps, ahead_m;
+};
+
+struct SpeedSearchQuestion {
+  const PathProfile& way;
+  const StGraph& occupancy;
+  double speed_mps = 0.0, acceleration_mps2 = 0.0;
+  double last_command_mps2 = 0.0;
+  double horizon_s = 5.0;
+  double end_m = 0.0;            ///< of the way that may be driven; the vehicle stops before
+  std::vector<GoalAhead> goals;  ///< reaching one of them is enough
+  double most_wanted_mps = 1e3;  ///< beside what the way wants
+};
+
+struct SpeedSearchOptions {
+  double least_mps2 = -0.25 * 9.81;
+  double most_mps2 = 0.25 * 9.81;
+  double actuator_lag_s = 0.45;
+};
+
+/// State and command of a plan at one time.
+struct SpeedState {
+  double t_s = 0.0;  ///< from now
+  double ahead_m = 0.0, speed_mps = 0.0, acceleration_mps2 = 0.0, command_mps2 = 0.0;
+};
+
+struct SpeedSearchAnswer {
+  bool is_free = false;          ///< nothing is touched up to the horizon, or up to the goal
+  bool reaches_goal = false;     ///< within the horizon
+  bool misses_goal = false;      ///< its time is over within the horizon, and it is not reached
+  double free_until_s = 0.0;     ///< the last time up to which something untouched was found
+  double bend_excess_mps = 0.0;  ///< largest speed beyond what the way's bends allow
+  double cost = std::numeric_limits<double>::infinity();
+  std::vector<SpeedState> plan;  ///< the cheapest found, or the one free the longest; not empty
+};
+
+/// Least-cost drive along a way among everything that moves: a search over the s–t graph, where
+/// the desired acceleration is chosen anew a few times up to the horizon and reaches the vehicle
+/// through the actuator, a = K/(T s + 1) u, exactly. Of states of one time that go on
+/// nearly alike the cheapest is kept. Cost counts the speed that is missing, commands
+/// and their changes, gaps to what is ahead and behind, and a goal that is missed.
+SpeedSearchAnswer search_speed(const SpeedSearchQuestion& question,
+                               const SpeedSearchOptions& options);
+
+}  // namespace roadbed::planning::behaviour

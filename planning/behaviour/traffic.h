@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "roadbed/planning/behaviour/driving_task.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Obstacles as a pilot foresees them: where each will be, and from when to when it is there.
+struct Traffic {
+  std::span<const Obstacle> obstacles;
+  std::span<const TimeSpan> presence;  ///< one per obstacle; empty: always there
+
+  bool is_there(std::size_t obstacle, double t_s) const {
+    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
+  }
+};
+
+/// The true future, as peers of CommonRoad problems are measured.
+Traffic true_traffic(const DrivingTask& task);
+
+/// What could be foreseen at one time by looking at the past only: what is there then keeps the
+/// bend of its last 0.3 s for two seconds, goes on braking as long, up to a standstill, or speeding
+/// up for one, and stays; what is not there yet is not known of.
+class PredictedTraffic {
+ public:
+  PredictedTraffic(const Traffic& truth, double now_s);
+
+  Traffic traffic() const { return {obstacles_, presence_}; }
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+
+ private:
+  std::vector<Obstacle> obstacles_;  ///< in the truth's order
+  std::vector<TimeSpan> presence_;
+};
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,104 @@
+#include "roadbed/planning/behaviour/decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace roadbed::tools {
+namespace {
+
+const planning::SpeedCeiling kTen({10.0, 10.0}, 1000.0, 1.5);
+
+planning::SpeedAnswer ask(const planning::SpeedQuestion& question) {
+  return choose_speed(question, {});
+}
+
+planning::SpeedQuestion free_road(double speed_mps) {
+  return {.ceiling = kTen,
+          .goal_s_m = 1000.0,
+          .speed_mps = speed_mps,
+          .lead = {},
+          .lead_name = {},
+          .path_left_m = {}};
+}
+
+TEST(Decision, FreeRoadIsDrivenAtTheCeiling) {
+  const planning::SpeedAnswer answer = ask(free_road(9.5));
+  EXPECT_EQ(answer.behaviour, planning::Behaviour::cruise);
+  EXPECT_EQ(answer.set.speed_mps, 10.0);
+  EXPECT_EQ(answer.set.acceleration_mps2, 0.0);
+  EXPECT_FALSE(answer.hold);
+}
+
+TEST(Decision, SetSpeedStaysNearTheSpeedSoThatSpeedingUpIsComfortable) {
+  EXPECT_EQ(ask(free_road(2.0)).set.speed_mps, 3.5);
+}
+
+TEST(Decision, StopsAtTheGoalAndHoldsThere) {
+  planning::SpeedQuestion question = free_road(7.0);
+  question.s_m = 980.0;
+  EXPECT_EQ(ask(question).behaviour, planning::Behaviour::stop);
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -1.5, 1e-12);
+  EXPECT_THAT(ask(question).reason, testing::HasSubstr("20.0 m ahead"));
+  question.s_m = 999.9;
+  question.speed_mps = 0.1;
+  EXPECT_TRUE(ask(question).hold);
+  question.s_m = 1003.0;
+  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
+}
+
+TEST(Decision, ApproachesALeadDownToItsSpeedAndGap) {
+  planning::SpeedQuestion question = free_road(10.0);
+  question.lead_name = "car a";
+  question.lead = planning::Lead{.gap_m = 1.5 * 4.0 + 5.0, .speed_mps = 4.0};
+  const planning::SpeedAnswer close = ask(question);
+  EXPECT_EQ(close.behaviour, planning::Behaviour::follow);
+  EXPECT_NEAR(close.set.speed_mps, 4.0, 1e-12);
+  EXPECT_THAT(close.reason, testing::StartsWith("car a is 11.0 m ahead"));
+  question.lead->gap_m = 200.0;
+  EXPECT_EQ(ask(question).behaviour, planning::Behaviour::cruise);
+}
+
+TEST(Decision, BrakesForALeadThatBrakesToAStop) {
+  planning::SpeedQuestion question = free_road(10.0);
+  question.lead = planning::Lead{.gap_m = 35.0, .speed_mps = 8.0};
+  EXPECT_EQ(ask(question).behaviour, planning::Behaviour::cruise);
+  question.lead->acceleration_mps2 = -4.0;  // it stands after 8 m: 38 m are left to stop in
+  question.speed_mps = 12.0;
+  const planning::SpeedAnswer answer = ask(question);
+  EXPECT_LT(answer.set.speed_mps, 10.7);
+  EXPECT_EQ(answer.behaviour, planning::Behaviour::follow);
+  question.lead->gap_m = 20.0;
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -1.5, 1e-12);
+}
+
+TEST(Decision, WaitsBehindAStandingLeadAndFollowsWhenItLeaves) {
+  planning::SpeedQuestion question = free_road(0.0);
+  question.lead = planning::Lead{.gap_m = 5.2};
+  EXPECT_TRUE(ask(question).hold);
+  question.lead->speed_mps = 1.0;
+  EXPECT_FALSE(ask(question).hold);
+}
+
+TEST(Decision, HaltIsStoppedAtWithItsOwnDeceleration) {
+  planning::SpeedQuestion question = free_road(10.0);
+  question.halt = planning::StopConstraint{
+      .s_m = 24.0, .reason = "light 1 is yellow", .deceleration_mps2 = 2.1};
+  const planning::SpeedAnswer answer = ask(question);
+  EXPECT_EQ(answer.behaviour, planning::Behaviour::yield);
+  EXPECT_NEAR(answer.set.acceleration_mps2, -2.1, 1e-12);
+}
+
+TEST(Decision, StopsBeforeTheLastPathEndsWhenNothingIsFeasible) {
+  planning::SpeedQuestion question = free_road(8.0);
+  question.path_left_m = 16.0;
+  EXPECT_EQ(ask(question).behaviour, planning::Behaviour::stop);
+  EXPECT_NEAR(ask(question).set.acceleration_mps2, -2.0, 1e-12);
+  EXPECT_FALSE(ask(question).hold);
+  question.path_left_m = 200.0;  // far enough to drive on until the next cycle
+  EXPECT_EQ(ask(question).behaviour, planning::Behaviour::cruise);
+  question.path_left_m = 0.0;
+  EXPECT_EQ(ask(question).set.speed_mps, 0.0);
+}
+
+}  // namespace
+}  // namespace roadbed::tools

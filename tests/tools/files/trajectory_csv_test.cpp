@@ -1,0 +1,123 @@
+#include "roadbed/tools/files/trajectory_csv.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "roadbed/map/files/input_error.h"
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::Trajectory;
+using geometry::TrajectoryPoint;
+using testing::HasSubstr;
+
+std::string refusal(std::string_view text) {
+  try {
+    parse_trajectory_csv(text, "drive.csv");
+  } catch (const map::InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(TrajectoryCsv, ReadsBackEveryNumberThatItWroteBitForBit) {
+  std::mt19937 random(20261121);
+  std::uniform_real_distribution<double> any(-1e6, 1e6), turn(-3.0, 3.0);
+  std::vector<TrajectoryPoint> points;
+  for (int i = 0; i < 200; ++i) {
+    points.push_back({1e5 * i, any(random), any(random), turn(random), any(random), any(random),
+                      any(random), any(random)});
+  }
+  const Trajectory drive(points);
+  const Trajectory again = parse_trajectory_csv(write_trajectory_csv(drive), "drive.csv");
+  ASSERT_EQ(again.points().size(), drive.points().size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const TrajectoryPoint &a = again.points()[i], &b = drive.points()[i];
+    EXPECT_EQ(a.t_s, b.t_s);
+    EXPECT_EQ(a.x_m, b.x_m);
+    EXPECT_EQ(a.y_m, b.y_m);
+    EXPECT_NEAR(a.heading_rad, b.heading_rad, 1e-12);  // unwrapping adds turns
+    EXPECT_EQ(a.speed_mps, b.speed_mps);
+    EXPECT_EQ(a.acceleration_mps2, b.acceleration_mps2);
+    EXPECT_EQ(a.steering_rad, b.steering_rad);
+    EXPECT_EQ(a.curvature_per_m, b.curvature_per_m);
+  }
+}
+
+TEST(TrajectoryCsv, TakesColumnsByNameInAnyOrderWithSpacesCarriageReturnsAndExtraColumns) {
+  const Trajectory drive = parse_trajectory_csv(
+      "\xef\xbb\xbfnote, y_m ,x_m,heading_rad,t_s\r\nhello,2, +1.5,0.25,0\r\n\r\n,4,3,0.5,1\r\n",
+      "a");
+  ASSERT_EQ(drive.points().size(), 2u);
+  EXPECT_EQ(drive.points()[0].x_m, 1.5);
+  EXPECT_EQ(drive.points()[0].y_m, 2.0);
+  EXPECT_EQ(drive.points()[1].heading_rad, 0.5);
+  EXPECT_EQ(drive.points()[1].speed_mps, 0.0);
+}
+
+TEST(TrajectoryCsv, NamesLineAndColumnOfWhatItCannotUse) {
+  const std::string header = "t_s,x_m,y_m,heading_rad\n";
+  EXPECT_THAT(refusal("t_s,x_m,heading_rad\n0,0,0\n"), HasSubstr("drive.csv:1: column y_m"));
+  EXPECT_THAT(refusal("t_s,t_s,x_m,y_m,heading_rad\n"), HasSubstr("column t_s: is there twice"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n1,2,zebra,0\n"),
+              HasSubstr("drive.csv:3: column y_m: \"zebra\""));
+  EXPECT_THAT(refusal(header + "0,nan,0,0\n"), HasSubstr("drive.csv:2: column x_m: \"nan\""));
+  EXPECT_THAT(refusal(header + "0,1e300,0,0\n"), HasSubstr("column x_m"));
+  EXPECT_THAT(refusal(header + "0,1e999,0,0\n"), HasSubstr("column x_m"));
+  EXPECT_THAT(refusal(header + "0,,0,0\n"), HasSubstr("column x_m: \"\""));
+  EXPECT_THAT(refusal(header + "0,1,0\n"), HasSubstr("drive.csv:2: row: has 3 fields"));
+  EXPECT_THAT(refusal(header), HasSubstr("at least one"));
+  EXPECT_THAT(refusal(""), HasSubstr("column t_s"));
+}
+
+TEST(TrajectoryCsv, SaysWhereTimeDoesNotIncrease) {
+  const std::string header = "t_s,x_m,y_m,heading_rad\n";
+  EXPECT_THAT(refusal(header + "0,0,0,0\n1,0,0,0\n1,0,0,0\n"), HasSubstr("drive.csv:4"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n-1,0,0,0\n"),
+              HasSubstr("-1 s does not come after 0 s of the row before"));
+}
+
+TEST(TrajectoryCsv, RefusesStepsThatNoVehicleMakes) {
+  const std::string header = "t_s,x_m,y_m,heading_rad\n";
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,51,0,0\n"),
+              HasSubstr("drive.csv:4: columns x_m, y_m: 50 m in 0.1 s"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,1,0,0\n0.2,20001,0,0\n0.3,3,0,0\n"),
+              HasSubstr("drive.csv:4"));
+  EXPECT_THAT(refusal(header + "0,0,0,0\n0.1,0.5,0,3.1\n"),
+              HasSubstr("drive.csv:3: column heading_rad: turns by 3.1 rad in 0.1 s"));
+  // Sparse rows, noise between dense ones, and headings that pass by ±π are a drive.
+  EXPECT_EQ(refusal(header + "0,0,0,0\n10,400,0,0\n"), "accepted");
+  EXPECT_EQ(refusal(header + "0,0,0,0\n0.001,0.4,0.3,0.1\n0.002,0,0,0\n"), "accepted");
+  EXPECT_EQ(refusal(header + "0,0,0,3.1\n0.1,-1,0,-3.1\n0.2,-2,0,3.1\n"), "accepted");
+}
+
+// A drive along a bend, with headings as they are and in degrees.
+TEST(TrajectoryCsv, RefusesHeadingsThatAreDegrees) {
+  for (const double start_rad : {-3.0, -1.5, -0.4, 0.3, 0.8, 1.7, 2.9}) {
+    for (const double per_m : {0.0, 0.02, -0.05}) {
+      std::string radians = "t_s,x_m,y_m,heading_rad\n", degrees = radians, backwards = radians;
+      double x_m = 100.0, y_m = 50.0, heading_rad = start_rad;
+      for (int i = 0; i < 100; ++i) {
+        radians += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad);
+        degrees += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad * 180.0 / M_PI);
+        backwards += fmt::format("{},{},{},{}\n", 0.1 * i, x_m, y_m, heading_rad + M_PI);
+        x_m += 0.5 * std::cos(heading_rad + 0.25 * per_m);
+        y_m += 0.5 * std::sin(heading_rad + 0.25 * per_m);
+        heading_rad += 0.5 * per_m;
+      }
+      EXPECT_EQ(refusal(radians), "accepted") << start_rad << " " << per_m;
+      EXPECT_EQ(refusal(backwards), "accepted") << start_rad << " " << per_m;
+      EXPECT_THAT(refusal(degrees), HasSubstr("looks like degrees")) << start_rad << " " << per_m;
+      EXPECT_THAT(refusal(degrees), HasSubstr("divide the headings by 57.29577951308232"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roadbed::tools

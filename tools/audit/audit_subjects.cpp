@@ -1,0 +1,153 @@
+#include "roadbed/tools/audit/audit_subjects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/swept_drive.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
+#include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+
+namespace roadbed::tools::inline audit {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::Pose2;
+
+constexpr double kShortestSweep_m = 0.01;
+
+Pose2 in_source(const map::RoadMap& road_map, const Pose2& in_map) {
+  const Eigen::Vector2d place = road_map.to_source(in_map.position());
+  return {place.x(), place.y(), in_map.heading_rad};
+}
+
+[[noreturn]] void refuse_subject(const std::string& subject, const std::string& found,
+                                 const std::string& needed, const std::string& remedy) {
+  throw map::InputError({.file = subject,
+                         .place = {},
+                         .element = {},
+                         .found = found,
+                         .needed = needed,
+                         .remedy = remedy});
+}
+
+bool is_drive(const fs::path& file, const fs::path& folder) {
+  if (file.filename() == "trajectory.csv") return true;
+  return file.extension() == ".csv" && file.parent_path() == folder;
+}
+
+}  // namespace
+
+geometry::Trajectory AuditSubject::drive() const {
+  return file.empty() ? swept : read_trajectory_csv(file);
+}
+
+std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
+  arguments.heading("Drives");
+  Argument trajectory =
+      arguments
+          .add("--trajectory", trajectory_,
+               "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
+               "the body is covered. Or a folder: its .csv files, and each trajectory.csv below")
+          .reads();
+  std::vector<Argument> of_sweeps = question_.declare(arguments, true);
+  Argument lane = arguments.add(
+      "--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]");
+  for (const Argument& rule : of_sweeps) lane.excludes(rule);  // they are about finding a route
+  lane.checked([](const std::string& text) {
+    return text.starts_with("lane:") ? place_syntax_fault(text) : "is not lane:NAME[@S]";
+  });
+  of_sweeps.push_back(
+      arguments.add("--speed", speed_kmh_, "Of a drive along a route or lane [km/h]")
+          .within(0.1, 1000.0)
+          .with_default());
+  of_sweeps.push_back(
+      arguments
+          .add("--offset", offset_m_,
+               "Of the rear axle from the route's line or the lane's centre, to the left [m]")
+          .within(-1000.0, 1000.0)
+          .with_default());
+  for (const Argument& other : of_sweeps) trajectory.excludes(other);
+  return of_sweeps;
+}
+
+std::string AuditSubjects::fault(bool has_map) const {
+  const bool has_file = !trajectory_.empty(), has_lane = !lane_.empty();
+  if (has_file + has_lane + question_.has_any_place() != 1) {
+    return "just one of --trajectory, --lane, and --from with --to";
+  }
+  if (has_file) return {};
+  if (!has_lane && !question_.has_places()) return "--from and --to";
+  return has_map ? "" : "--map";
+}
+
+std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map) const {
+  if (is_folder()) return in_folder();
+  if (!is_swept()) return {{.name = trajectory_.string(), .file = trajectory_}};
+  return {lane_.empty() ? route(*road_map) : lane(*road_map)};
+}
+
+std::vector<AuditSubject> AuditSubjects::in_folder() const {
+  std::vector<AuditSubject> subjects;
+  std::error_code unreadable;
+  for (const auto& entry : fs::recursive_directory_iterator(
+           trajectory_, fs::directory_options::skip_permission_denied, unreadable)) {
+    if (!entry.is_regular_file() || !is_drive(entry.path(), trajectory_)) continue;
+    subjects.push_back(
+        {.name = entry.path().lexically_relative(trajectory_).string(), .file = entry.path()});
+  }
+  if (subjects.empty()) {
+    refuse_subject(trajectory_.string(), "no drive",
+                   "files that end in .csv, or folders with a trajectory.csv",
+                   "give another folder");
+  }
+  std::ranges::sort(subjects, {}, &AuditSubject::name);
+  return subjects;
+}
+
+std::string AuditSubjects::suffix() const {
+  return offset_m_ == 0.0 ? "" : fmt::format(", {} m to the left", offset_m_);
+}
+
+AuditSubject AuditSubjects::route(const map::RoadMap& road_map) const {
+  const RouteQuestion::Asked asked = question_.on(road_map);
+  const planning::RouteAnswer answer =
+      planning::Router(road_map, asked.options).find(asked.places());
+  if (!answer.route) refuse_subject("route", answer.reason, "", "choose another start or goal");
+  const auto line = planning::ReferenceLine::along(road_map, *answer.route);
+  const double length_m = line.goal_s_m();
+  if (!(length_m > kShortestSweep_m)) {
+    refuse_subject("route", fmt::format("is {} m long", length_m), "a way to drive",
+                   "choose a goal ahead of the start");
+  }
+  const auto pose_at = [&](double s_m) {
+    const planning::ReferencePoint point = line.at(s_m);
+    return in_source(road_map, {point.in_map.x(), point.in_map.y(), point.heading_rad});
+  };
+  return {.name = fmt::format("route of {:.1f} m{}", length_m, suffix()),
+          .file = {},
+          .swept = planning::swept_along(pose_at, length_m,
+                                         {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
+}
+
+AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
+  const map::LanePlace from = find_place(road_map, lane_, question_.rules().participant()).on_lane;
+  const map::Lane& lane = road_map.lane(from.lane);
+  const double length_m = lane.length_m() - from.s_m;
+  if (!(length_m > kShortestSweep_m)) {
+    refuse_subject(lane_, fmt::format("is {} m before the lane's end", length_m),
+                   "a part of the lane", "choose a lower S");
+  }
+  const auto pose_at = [&](double s_m) {
+    return in_source(road_map, lane.pose_at(from.s_m + s_m));
+  };
+  return {.name = fmt::format("lane {}{}", lane.name, suffix()),
+          .file = {},
+          .swept = planning::swept_along(pose_at, length_m,
+                                         {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/route_question.h"
+
+namespace roadbed::tools::inline audit {
+
+/// A drive to audit: a file, or what was made by sweeping a line.
+struct AuditSubject {
+  std::string name;            ///< of the file, within its folder where that was given
+  std::filesystem::path file;  ///< empty: swept
+  geometry::Trajectory swept = {};
+
+  /// @throws InputError if the file is unusable.
+  geometry::Trajectory drive() const;
+};
+
+/// The options that say what is audited: `--trajectory` (a file or a folder), or a route or lane of
+/// the map, swept: `--from --to` with the rules of routes, `--lane`, `--speed --offset`.
+class AuditSubjects {
+ public:
+  /// @returns what says how a line is found and swept, which drives of files do not have.
+  std::vector<Argument> declare(Arguments& arguments);
+
+  /// What is wrong with the options together; empty if nothing is.
+  std::string fault(bool has_map) const;
+
+  bool is_swept() const { return trajectory_.empty(); }
+
+  /// The file or folder that was given; may be empty.
+  const std::filesystem::path& file() const { return trajectory_; }
+
+  /// All files that end in .csv in the folder, and the trajectory.csv of folders below it, by name;
+  /// one subject otherwise.
+  /// @param road_map  null unless it is swept.
+  /// @throws InputError if the folder holds none, or there is no such route or lane.
+  std::vector<AuditSubject> list(const map::RoadMap* road_map) const;
+
+  /// Whether a folder was given, whose drives are listed in a table.
+  bool is_folder() const { return std::filesystem::is_directory(trajectory_); }
+
+ private:
+  std::vector<AuditSubject> in_folder() const;
+  AuditSubject route(const map::RoadMap& road_map) const;
+  AuditSubject lane(const map::RoadMap& road_map) const;
+  std::string suffix() const;
+
+  std::filesystem::path trajectory_;
+  RouteQuestion question_;
+  std::string lane_;
+  double speed_kmh_ = 30.0, offset_m_ = 0.0;
+};
+
+}  // namespace roadbed::tools

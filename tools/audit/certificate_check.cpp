@@ -1,0 +1,284 @@
+#include "roadbed/tools/audit/certificate_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/ground/ground.h"
+#include "roadbed/map/occupancy/ground/ground_claims.h"
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
+#include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/audit/certified_question.h"
+#include "roadbed/tools/audit/moving_obstacles.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+
+namespace roadbed::tools::inline audit {
+namespace {
+
+namespace fs = std::filesystem;
+/// A file that a certificate is about, as it was found.
+struct CheckedFile {
+  std::string role;
+  CertifiedFile file;
+};
+
+/// Looks at one certificate.
+class CertificateCheck {
+ public:
+  CertificateCheck(const fs::path& name, const CertificateDemands& demands, const Inputs& inputs)
+      : name_(name), demands_(demands), inputs_(inputs), file_(read_certificate_json(name)) {}
+
+  bool run() {
+    compare_files();
+    compare_demands();
+    if (!faults_.empty()) return false;
+    drive_ = read_trajectory_csv(path_of(file_.trajectory, demands_.trajectory));
+    check_claims();
+    return faults_.empty();
+  }
+
+  void print(std::ostream& out) const;
+  Json json() const;
+
+ private:
+  static fs::path path_of(const CertifiedFile& named, const fs::path& demanded) {
+    return demanded.empty() ? fs::path(named.name) : demanded;
+  }
+
+  // What cannot be read proves nothing: no claim may rest on it.
+  void compare(const std::string& role, const std::optional<CertifiedFile>& named,
+               const fs::path& demanded) {
+    if (!named) {
+      if (!demanded.empty()) {
+        faults_.push_back(
+            fmt::format("it is about no {}, and {} is asked for", role, demanded.string()));
+      }
+      return;
+    }
+    try {
+      const CertifiedFile found = certified(role, path_of(*named, demanded));
+      files_.push_back({role, found});
+      if (found.sha256 == named->sha256) return;
+      faults_.push_back(fmt::format("{} {} has the hash {}, the certificate is about one with {}",
+                                    role, found.name, found.sha256, named->sha256));
+    } catch (const map::InputError& error) {
+      faults_.push_back(fmt::format("{} cannot be looked at: {}", role, error.what()));
+    }
+  }
+
+  CertifiedFile certified(const std::string& role, const fs::path& path) {
+    if (role != "obstacles") return certified_file(path);
+    moving_ = read_moving_obstacles(path, inputs_);
+    return certified_obstacles(path, moving_);
+  }
+
+  void compare_files() {
+    compare("occupancy", file_.occupancy, demands_.occupancy);
+    compare("trajectory", file_.trajectory, demands_.trajectory);
+    compare("vehicle", file_.vehicle, demands_.vehicle);
+    compare("map", file_.roads, demands_.map);
+    compare("obstacles", file_.obstacles, demands_.obstacles);
+  }
+
+  void demand(const std::string& what, std::optional<double> demanded, double proven,
+              const std::string& unit = " m") {
+    constexpr double rounding = 1e-12;
+    if (!demanded || std::abs(*demanded - proven) <= rounding) return;
+    faults_.push_back(
+        fmt::format("it is about {} {:.9g}{}, not {:.9g}{}", what, proven, unit, *demanded, unit));
+  }
+
+  void compare_demands() {
+    const planning::AuditCertificate& question = file_.parts.front();
+    demand("a clearance of", demands_.clearance_m, question.clearance_m);
+    demand("a margin around the vehicle of", demands_.inflate_m, question.inflate_m);
+    demand("an underside at", demands_.underside_m, file_.underside_m);
+    demand("a measured share of at least", demands_.least_measured, file_.least_measured, "");
+    if (demands_.unknown && *demands_.unknown != question.unknown_policy) {
+      faults_.push_back(fmt::format("unknown space counts as {}, not {}",
+                                    planning::name(question.unknown_policy),
+                                    planning::name(*demands_.unknown)));
+    }
+    if (!demands_.ground.empty() && ground_text() != demands_.ground) compare_ground();
+  }
+
+  void compare_ground() {
+    const GroundRule asked = ground_rule(demands_.ground, nullptr);
+    const bool is_map = demands_.ground == "map";
+    const GroundRule::Kind kind = is_map ? GroundRule::Kind::map : asked.kind;
+    const bool is_same = kind == file_.ground.kind && (kind != GroundRule::Kind::level ||
+                                                       asked.level_m == file_.ground.under.level_m);
+    if (is_same) return;
+    faults_.push_back(fmt::format("heights are above {}, not {}", ground_text(), demands_.ground));
+  }
+
+  std::string ground_text() const {
+    if (file_.ground.kind == GroundRule::Kind::map) return "map";
+    if (file_.ground.kind == GroundRule::Kind::measured) return "measured";
+    return fmt::format("{:.9g}", file_.ground.under.level_m);
+  }
+
+  // Of a tiled occupancy only the tiles within reach of the claims.
+  std::vector<map::OccupancyCell> cells_of(const map::OccupancySource& occupancy) const {
+    const auto* tiles = dynamic_cast<const map::TiledOccupancy*>(&occupancy);
+    if (tiles == nullptr) return occupancy.cells();
+    double far_m = 0.0;
+    for (const planning::AuditCertificate& part : file_.parts) {
+      far_m = std::max(far_m, planning::checked_distance_m(part, drive_));
+    }
+    constexpr double any_height_m = 1e6;
+    const Eigen::Vector3d margin(far_m, far_m, any_height_m);
+    std::vector<map::Box3> boxes;
+    for (const geometry::TrajectoryPoint& row : drive_.points()) {
+      const Eigen::Vector3d at(row.x_m, row.y_m, 0.0);
+      boxes.push_back({at - margin, at + margin});
+    }
+    return tiles->cells_of_tiles(boxes);
+  }
+
+  void check_claims() {
+    const auto occupancy = inputs_.occupancy(path_of(file_.occupancy, demands_.occupancy));
+    std::shared_ptr<const map::RoadMap> road_map;
+    if (file_.ground.kind == GroundRule::Kind::map && file_.roads) {
+      road_map = inputs_.road_map(path_of(*file_.roads, demands_.map));
+    }
+    const Vehicle vehicle =
+        file_.vehicle ? read_vehicle_json(path_of(*file_.vehicle, demands_.vehicle)) : Vehicle{};
+    faults_ = part_faults(file_, vehicle);
+    if (!faults_.empty()) return;
+    try {
+      const std::vector<map::OccupancyCell> cells = cells_of(*occupancy);
+      faults_ = ground_faults_of(file_, drive_, road_map.get(), cells, occupancy->resolution_m());
+      for (const planning::AuditCertificate& part : file_.parts) {
+        for (const std::string& fault :
+             planning::check_certificate(part, cells, occupancy->resolution_m(), drive_, moving_)) {
+          faults_.push_back(file_.parts.size() == 1 ? fault : part.part.name + ": " + fault);
+        }
+      }
+    } catch (const std::length_error& too_long) {
+      throw map::InputError({.file = name_.string(),
+                             .place = {},
+                             .element = {},
+                             .found = too_long.what(),
+                             .needed = {},
+                             .remedy = "audit the drive in parts"});
+    }
+  }
+
+  std::string question() const;
+  bool is_whole() const {
+    return std::ranges::all_of(file_.parts, [](const planning::AuditCertificate& part) {
+      return part.certified_clearance_m > 0.0;
+    });
+  }
+
+  fs::path name_;
+  const CertificateDemands& demands_;
+  const Inputs& inputs_;
+  CertificateFile file_;
+  geometry::Trajectory drive_;
+  std::vector<planning::MovingObstacle> moving_;
+  std::vector<CheckedFile> files_;
+  std::vector<std::string> faults_;
+};
+
+std::string part_text(const planning::AuditCertificate& audit) {
+  const geometry::BodyPart& part = audit.part;
+  const std::string heights =
+      fmt::format("heights {:.9g} m to {:.9g} m", audit.band.from_m, audit.band.to_m);
+  if (part.is_circle()) {
+    return fmt::format("{} of radius {:.9g} m at ({:.9g} m, {:.9g} m), {}", part.name,
+                       part.radius_m, part.front_m, part.left_m, heights);
+  }
+  const std::string aside =
+      part.left_m + part.right_m == 0.0
+          ? ""
+          : fmt::format(", its middle {:.9g} m to the left", part.middle_in_vehicle().y());
+  return fmt::format("{} {:.9g} m by {:.9g} m, {:.9g} m of it behind the rear axle{}, {}",
+                     part.name, part.length_m(), part.width_m(), -part.rear_m, aside, heights);
+}
+
+// What the verdict is about: a certificate of another question proves nothing of one's own.
+std::string CertificateCheck::question() const {
+  const planning::AuditCertificate& audit = file_.parts.front();
+  std::string text;
+  for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
+  if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
+    const auto [low_m, high_m] = map::heights_at_rows_m(*ground, drive_);
+    text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's rows ({}); ", low_m,
+                        high_m, ground_text());
+  }
+  return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
+                            audit.inflate_m, audit.clearance_m,
+                            planning::name(audit.unknown_policy),
+                            file_.obstacles ? "what moves is that of " + file_.obstacles->name
+                                            : "nothing moves");
+}
+
+void CertificateCheck::print(std::ostream& out) const {
+  const auto line = [&](const std::string& head, const std::string& text) {
+    out << fmt::format("{:<17}{}\n", head, text);
+  };
+  line("certificate", faults_.empty() ? "holds" : "does not hold");
+  line("verdict", fmt::format("{}, as written by {}", name(file_.verdict()), file_.program));
+  line("question", question());
+  for (const CheckedFile& checked : files_) {
+    line(checked.role, fmt::format("{}, SHA-256 {}", checked.file.name, checked.file.sha256));
+  }
+  if (!file_.vehicle) line("vehicle", "none named: CommonRoad's vehicle 2");
+  line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % asked for",
+                               100.0 * file_.measured_share(), 100.0 * file_.least_measured));
+  std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
+  for (const planning::AuditCertificate& part : file_.parts) {
+    from_occupied += part.from_occupied.size();
+    from_unknown += part.from_unknown.size();
+    from_moving += part.from_moving.size();
+  }
+  line("proven spans",
+       fmt::format("{} from occupied space, {} from unknown space, {} from what moves",
+                   from_occupied, from_unknown, from_moving));
+  if (is_whole()) line("certified", fmt::format("{:.3f} m", file_.certified_clearance_m()));
+  for (const std::string& fault : faults_) line("fault", fault);
+}
+
+Json CertificateCheck::json() const {
+  Json files = Json::array();
+  for (const CheckedFile& checked : files_) {
+    files.push_back(
+        {{"role", checked.role}, {"file", checked.file.name}, {"sha256", checked.file.sha256}});
+  }
+  return {{"holds", faults_.empty()},
+          {"question", question()},
+          {"verdict", name(file_.verdict())},
+          {"certified_clearance_m", file_.certified_clearance_m()},
+          {"measured_share", file_.measured_share()},
+          {"least_measured", file_.least_measured},
+          {"files", std::move(files)},
+          {"faults", faults_}};
+}
+
+}  // namespace
+
+bool check_certificate_file(const fs::path& certificate, const CertificateDemands& demands,
+                            bool json, const Inputs& inputs, std::ostream& out) {
+  CertificateCheck check(certificate, demands, inputs);
+  const bool holds = check.run();
+  if (json) {
+    out << check.json().dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    check.print(out);
+  }
+  return holds;
+}
+
+}  // namespace roadbed::tools

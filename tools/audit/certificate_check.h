@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/tools/cli/inputs.h"
+
+namespace roadbed::tools::inline audit {
+
+/// What a certificate has to be about; what is not given may be anything. A file that is given is
+/// also where the certificate's is read from: it is the same one if its hash is.
+struct CertificateDemands {
+  std::filesystem::path occupancy = {}, trajectory = {}, vehicle = {}, map = {}, obstacles = {};
+  std::string ground = {};  ///< the words of `--ground`
+  std::optional<double> clearance_m = {}, inflate_m = {}, underside_m = {}, least_measured = {};
+  std::optional<planning::UnknownPolicy> unknown = {};
+};
+
+/// Whether every claim of a certificate holds, by brute force, and it is about what is demanded;
+/// what does not or is not is printed, with the files that were looked at and their hashes. All
+/// that is claimed is taken from these files anew: the vehicle's parts and their heights, the
+/// ground, what moves, what was measured.
+/// @throws InputError if the certificate, or what a file of the right hash holds, is unusable.
+bool check_certificate_file(const std::filesystem::path& certificate,
+                            const CertificateDemands& demands, bool json, const Inputs& inputs,
+                            std::ostream& out);
+
+}  // namespace roadbed::tools

@@ -1,0 +1,200 @@
+#include "roadbed/tools/cli/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace roadbed::tools::inline cli {
+namespace {
+
+std::string refuse_nan(const std::string& text) {
+  double number = 0.0;
+  const bool is_nan = CLI::detail::lexical_cast(text, number) && std::isnan(number);
+  return is_nan ? "is not a number" : "";
+}
+
+// CLI11's own check names the greatest number that there is.
+std::string refuse_not_positive(const std::string& text) {
+  double number = 0.0;
+  const bool is_positive = CLI::detail::lexical_cast(text, number) && number > 0.0;
+  return is_positive ? "" : text + " is not greater than 0";
+}
+
+}  // namespace
+
+Argument& Argument::required() {
+  option_->required();
+  info_->is_required = true;
+  return *this;
+}
+
+Argument& Argument::with_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Argument& Argument::within(double least, double most) {
+  option_->check(refuse_nan);  // which is neither below a range nor above it
+  option_->check(CLI::Range(least, most));
+  return *this;
+}
+
+Argument& Argument::positive() {
+  option_->check(refuse_nan);
+  option_->check(refuse_not_positive, "POSITIVE");
+  return *this;
+}
+
+Argument& Argument::not_negative() {
+  option_->check(refuse_nan);
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+Argument& Argument::values(int count) {
+  option_->expected(count);
+  return *this;
+}
+
+Argument& Argument::separated_by(char sign) {
+  option_->delimiter(sign);
+  return *this;
+}
+
+Argument& Argument::one_of(const std::vector<std::string>& accepted) {
+  option_->check(CLI::IsMember(accepted));
+  return *this;
+}
+
+Argument& Argument::checked(std::function<std::string(const std::string&)> fault) {
+  option_->check(std::move(fault));
+  return *this;
+}
+
+bool Argument::given() const { return option_->count() > 0; }
+
+Argument& Argument::excludes(const Argument& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Argument& Argument::reads(FilesNamed named) {
+  info_->use = ArgumentInfo::Use::input;
+  info_->named = std::move(named);
+  return *this;
+}
+
+Argument& Argument::writes(const std::string& suffix) {
+  info_->use = ArgumentInfo::Use::output;
+  info_->suffix = suffix;
+  return *this;
+}
+
+void Arguments::description(const std::string& text) { app_->description(text); }
+
+std::string Arguments::heading(const std::string& text) { return std::exchange(*group_, text); }
+
+void Arguments::example(const std::string& lines) { app_->footer("Example:\n" + lines); }
+
+Argument Arguments::add(const std::string& names, std::string& value, const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::filesystem::path& value,
+                        const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::path);
+}
+
+Argument Arguments::add(const std::string& names, double& value, const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, int& value, const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::size_t& value, const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::optional<double>& value,
+                        const std::string& help) {
+  return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::vector<double>& values,
+                        const std::string& help) {
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::vector<std::string>& values,
+                        const std::string& help) {
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::value);
+}
+
+Argument Arguments::add(const std::string& names, std::vector<std::filesystem::path>& values,
+                        const std::string& help) {
+  return note(*app_->add_option(names, values, help), ArgumentInfo::Kind::path);
+}
+
+Argument Arguments::flag(const std::string& names, bool& value, const std::string& help) {
+  return note(*app_->add_flag(names, value, help), ArgumentInfo::Kind::flag);
+}
+
+Arguments Arguments::part(const std::string& name) {
+  app_->require_subcommand(1);
+  return Arguments(*app_->add_subcommand(name));
+}
+
+bool Arguments::given() const { return app_->parsed(); }
+
+void Arguments::require(std::function<std::string()> fault) {
+  app_->callback([fault = std::move(fault)] {
+    const std::string missing = fault();
+    if (!missing.empty()) throw CLI::ValidationError(missing);
+  });
+}
+
+Argument Arguments::note(CLI::Option& option, ArgumentInfo::Kind kind) {
+  if (kind == ArgumentInfo::Kind::path) option.type_name("PATH");
+  option.group(*group_);
+  declared_->push_back(
+      {.name = option.get_single_name(), .kind = kind, .is_positional = option.get_positional()});
+  return {option, declared_->back()};
+}
+
+Argument Arguments::choose(const std::string& names, const std::vector<std::string>& words,
+                           const std::string& standing, std::function<void(std::size_t)> take,
+                           const std::string& help) {
+  const auto take_word = [words, take = std::move(take)](const std::string& word) {
+    const auto found = std::find(words.begin(), words.end(), CLI::detail::to_lower(word));
+    take(static_cast<std::size_t>(found - words.begin()));
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(
+      names, take_word, fmt::format("{} ({}; default {})", help, fmt::join(words, ", "), standing));
+  option->check(CLI::IsMember(words, CLI::ignore_case));
+  option->option_text("WORD");
+  return note(*option, ArgumentInfo::Kind::value);
+}
+
+ArgumentSet::ArgumentSet() : app_(std::make_unique<CLI::App>()), arguments_(*app_) {}
+
+ArgumentSet::~ArgumentSet() = default;
+
+std::string ArgumentSet::parse(std::vector<std::string> words) {
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  try {
+    app_->parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    std::string fault = error.what();
+    std::replace(fault.begin(), fault.end(), '\n', ' ');
+    return fault.empty() ? "the options are wrong" : fault;
+  }
+  return {};
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace roadbed::tools::inline cli {
+
+/// Of the project, as "0.1.0".
+std::string version();
+
+/// "roadbed 0.1.0".
+std::string name_and_version();
+
+/// What the linker calls this program (ELF's note NT_GNU_BUILD_ID, a hash of what it linked), in
+/// hexadecimal digits: the same for the same sources, compiler and options, another one after any
+/// change of the code. Empty where the linker wrote none.
+std::string build_id();
+
+}  // namespace roadbed::tools

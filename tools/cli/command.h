@@ -1,0 +1,43 @@
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/inputs.h"
+
+namespace roadbed::tools::inline cli {
+
+/// Exit status of the program.
+enum class Exit {
+  ok = 0,
+  failed = 1,  ///< the answer is bad: unusable input, no route, conflict, …
+  usage = 2,   ///< the command line is wrong
+};
+
+/// Options that every command has.
+struct CommonOptions {
+  bool quiet = false;
+  int threads = 1;
+  /// Whether the process runs this command only, which may then set up its heap.
+  bool is_alone = true;
+  /// Where it gets what it may share with other runs in the process; never null.
+  std::shared_ptr<const Inputs> inputs = std::make_shared<const Inputs>();
+};
+
+/// Where a command prints: results to `out`, everything else to `err`.
+struct Streams {
+  std::ostream& out;
+  std::ostream& err;
+};
+
+/// One command of the program. `declare` names options and touches no file; `run` does the work.
+class Command {
+ public:
+  virtual ~Command() = default;
+  virtual void declare(Arguments& arguments) = 0;
+  virtual Exit run(const Streams& streams, const CommonOptions& common) = 0;
+};
+
+}  // namespace roadbed::tools

@@ -1,0 +1,163 @@
+#include "roadbed/tools/cli/place.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/route/route_options.h"
+
+namespace roadbed::tools::inline cli {
+namespace {
+
+constexpr std::string_view kLanePrefix = "lane:";
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.push_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+// Radians, or degrees with their unit behind.
+std::optional<double> heading(std::string_view text) {
+  constexpr std::string_view kDegrees = "deg";
+  if (text.ends_with(kDegrees)) {
+    const auto degrees = number(text.substr(0, text.size() - kDegrees.size()));
+    return degrees ? std::optional(*degrees * std::numbers::pi / 180.0) : std::nullopt;
+  }
+  const auto radians = number(text);
+  return radians && std::abs(*radians) <= 2.0 * std::numbers::pi ? radians : std::nullopt;
+}
+
+struct LaneText {
+  std::string_view name;
+  std::string_view station;  ///< empty if none is given
+};
+
+LaneText lane_text(std::string_view text) {
+  text.remove_prefix(kLanePrefix.size());
+  const std::size_t at = text.rfind('@');
+  if (at == std::string_view::npos) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+[[noreturn]] void refuse_place(const std::string& text, const std::string& found,
+                               const std::string& needed, const std::string& remedy) {
+  throw map::InputError({.file = "place \"" + text + "\"",
+                         .place = {},
+                         .element = {},
+                         .found = found,
+                         .needed = needed,
+                         .remedy = remedy});
+}
+
+Place at_lane(const map::RoadMap& road_map, const std::string& text) {
+  const LaneText parts = lane_text(text);
+  const auto id = road_map.find_lane(parts.name);
+  if (!id) {
+    refuse_place(text, fmt::format("the map has no lane {}", parts.name), "",
+                 "see the names with: roadbed locate MAP --at X,Y");
+  }
+  const map::Lane& lane = road_map.lane(*id);
+  const double s_m = parts.station.empty() ? 0.0 : number(parts.station).value();
+  if (s_m < 0.0 || s_m > lane.length_m()) {
+    refuse_place(text, fmt::format("station {} m", s_m),
+                 fmt::format("0 to {:.3f} m, the lane's length", lane.length_m()), "");
+  }
+  return {{*id, s_m, 0.0}, lane.pose_at(s_m), false, planning::Sense::either, {}};
+}
+
+[[noreturn]] void refuse_far(const map::RoadMap& road_map, const std::string& text,
+                             const std::vector<planning::PlaceCandidate>& candidates,
+                             map::Participant participant) {
+  std::string found = "is off the road", remedy;
+  for (const planning::PlaceCandidate& candidate : candidates) {
+    const map::Lane& lane = road_map.lane(candidate.place.lane);
+    if (candidate.verdict == planning::MatchVerdict::not_for_participant) {
+      found = fmt::format("is on lane {}, where a {} may not drive: its type is {}", lane.name,
+                          planning::name(participant), map::name(lane.type));
+      break;
+    }
+    const Eigen::Vector2d on_lane =
+        road_map.to_source(lane.pose_at(candidate.place.s_m).position());
+    remedy += remedy.empty()
+                  ? fmt::format(
+                        "the nearest drivable lane is {}, {:.2f} m away; its centre there "
+                        "is at {:.3f},{:.3f}",
+                        lane.name, candidate.distance_m, on_lane.x(), on_lane.y())
+                  : fmt::format("; next {}, {:.2f} m", lane.name, candidate.distance_m);
+  }
+  if (remedy.empty()) remedy = "no drivable lane is within 100 km: mind the coordinates";
+  refuse_place(text, found, "", remedy);
+}
+
+Place at_point(const map::RoadMap& road_map, const std::string& text,
+               map::Participant participant) {
+  const auto parts = split(text);
+  const Eigen::Vector2d in_map =
+      road_map.to_map({number(parts[0]).value(), number(parts[1]).value()});
+  const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
+  auto candidates =
+      planning::match_place(road_map, in_map, heading_rad, {.participant = participant});
+  if (candidates.empty() || candidates.front().verdict != planning::MatchVerdict::chosen) {
+    refuse_far(road_map, text, candidates, participant);
+  }
+  const planning::PlaceCandidate& chosen = candidates.front();
+  Place place{chosen.place,
+              {in_map.x(), in_map.y(), heading_rad.value_or(chosen.heading_rad)},
+              heading_rad.has_value(),
+              chosen.sense,
+              {}};
+  place.candidates = std::move(candidates);
+  return place;
+}
+
+}  // namespace
+
+std::string place_syntax_fault(const std::string& text) {
+  if (text.starts_with(kLanePrefix)) {
+    const LaneText parts = lane_text(text);
+    if (parts.name.empty()) return "the lane's name is missing";
+    const bool has_station = text.find('@') != std::string::npos;
+    if (has_station && !number(parts.station)) return "the station behind @ is not a number";
+    return "";
+  }
+  const auto parts = split(text);
+  if (parts.size() < 2 || parts.size() > 3) return std::string("is not ") + kPlaceSyntax;
+  if (!number(parts[0]) || !number(parts[1])) return "X or Y is not a number";
+  if (parts.size() == 3 && !heading(parts[2])) {
+    return "the heading is not a number of radians up to 2π; write degrees as 90deg";
+  }
+  return "";
+}
+
+std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
+  const auto parts = split(text);
+  if (parts.size() != 2) return {};
+  const auto x = number(parts[0]), y = number(parts[1]);
+  return x && y ? std::optional(Eigen::Vector2d(*x, *y)) : std::nullopt;
+}
+
+Place find_place(const map::RoadMap& road_map, const std::string& text,
+                 map::Participant participant) {
+  const std::string fault = place_syntax_fault(text);
+  if (!fault.empty()) refuse_place(text, fault, "", "");
+  return text.starts_with(kLanePrefix) ? at_lane(road_map, text)
+                                       : at_point(road_map, text, participant);
+}
+
+}  // namespace roadbed::tools

@@ -1,0 +1,450 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/vehicle_audit.h"
+#include "roadbed/tools/audit/audit_subjects.h"
+#include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/audit/moving_obstacles.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/cli/progress_bar.h"
+#include "roadbed/tools/commands/audit_files.h"
+#include "roadbed/tools/commands/audit_frames.h"
+#include "roadbed/tools/commands/audit_json.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/drive_plausibility.h"
+#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/report/audit_index.h"
+#include "roadbed/tools/report/audit_svg.h"
+#include "roadbed/tools/report/close_up.h"
+#include "roadbed/tools/report/from_audit.h"
+#include "roadbed/tools/report/from_map.h"
+#include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/simulation/scenario.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+using planning::UnknownPolicy;
+
+class AuditCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description(
+        "Prove that drives keep clear of occupied space, or show where they do not");
+    arguments
+        .add("--occupancy", occupancy_,
+             "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
+             "that it meets")
+        .reads();
+    const std::vector<Argument> not_with_check = subjects_.declare(arguments);
+    arguments.heading("Question");
+    arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
+        .reads();
+    arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
+        .reads();
+    arguments
+        .add("--obstacles", obstacles_,
+             "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
+             "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
+             "centre; an id of one row stands for ever, one of several is there from its "
+             "first to its last), in the drive's time and coordinates")
+        .reads(files_named_by_scenario);
+    declare_question(arguments);
+    declare_outputs(arguments, not_with_check);
+    arguments.require([this] { return missing(); });
+    arguments.example(
+        "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
+        "--certificate proof.json\n"
+        "  roadbed audit --check proof.json --vehicle car.json --clearance 0.3\n"
+        "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
+        "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    inputs_ = common.inputs;
+    if (!check_.empty()) {
+      const bool holds = check_certificate_file(check_, demands(), json_, *inputs_, streams.out);
+      return holds ? Exit::ok : Exit::failed;
+    }
+    for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
+      if (!output.empty()) check_writable(output, force_);
+    }
+    AuditQuestion question = asked();
+    std::shared_ptr<const map::RoadMap> road_map;
+    if (!map_.empty()) road_map = inputs_->road_map(map_);
+    question.ground = ground_rule(ground_, road_map.get());
+    question.ground.body = reach_of(question);
+    const std::vector<AuditSubject> subjects = subjects_.list(road_map.get());
+    const Scene scene = make_scene(road_map.get(), streams, common);
+    return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
+                                 : run_one(subjects.front(), question, scene, streams, common);
+  }
+
+ private:
+  /// What all drives are audited against.
+  struct Scene {
+    std::shared_ptr<const map::OccupancySource> occupancy;
+    const map::RoadMap* road_map;
+  };
+
+  // Beside --check it is what a certificate has to be about.
+  void declare_question(Arguments& arguments) {
+    clearance_argument_ =
+        arguments
+            .add("--clearance", options_.clearance_m, "Less distance than this is a conflict [m]")
+            .within(0.0, 100.0)
+            .with_default();
+    inflate_argument_ =
+        arguments.add("--inflate", options_.inflate_m, "Margin added around the vehicle [m]")
+            .within(0.0, 100.0)
+            .with_default();
+    unknown_argument_ = arguments.choice(
+        "--unknown", options_.unknown,
+        {{"free", UnknownPolicy::free},
+         {"occupied", UnknownPolicy::occupied},
+         {"report", UnknownPolicy::report}},
+        "What space counts as that was not measured: free, occupied, or report: no obstacle, but a "
+        "drive over it is not clear. Where nothing was measured within 10 m of the body at its "
+        "heights, a drive is not clear either way");
+    least_measured_argument_ =
+        arguments
+            .add("--least-measured", options_.least_measured,
+                 "Share of the space that the vehicle takes that has to be measured, else no drive "
+                 "is clear, whatever --unknown says")
+            .within(0.0, 1.0)
+            .with_default();
+    arguments
+        .add("--ground", ground_,
+             "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
+             "road's surface of --map, which the band follows; measured: the surface that was "
+             "measured along the drive, to a cell, with nothing below it, on all sides and "
+             "without a step, refused elsewhere; heights are widened by a cell. A drive that "
+             "is all upon an obstacle takes its top for ground. Default: map with --map, else "
+             "0")
+        .checked(ground_rule_fault);
+    from_height_argument_ =
+        arguments
+            .add("--from-height", from_height_m_,
+                 "The vehicle's underside above the ground [m]; its top is the vehicle's height")
+            .within(-100.0, 100.0)
+            .with_default();
+  }
+
+  // Only what the command line says.
+  CertificateDemands demands() const {
+    const auto if_given = [](const std::optional<Argument>& argument, auto value) {
+      return argument->given() ? std::optional(value) : std::nullopt;
+    };
+    return {.occupancy = occupancy_,
+            .trajectory = subjects_.file(),
+            .vehicle = vehicle_,
+            .map = map_,
+            .obstacles = obstacles_,
+            .ground = ground_,
+            .clearance_m = if_given(clearance_argument_, options_.clearance_m),
+            .inflate_m = if_given(inflate_argument_, options_.inflate_m),
+            .underside_m = if_given(from_height_argument_, from_height_m_),
+            .least_measured = if_given(least_measured_argument_, options_.least_measured),
+            .unknown = if_given(unknown_argument_, options_.unknown)};
+  }
+
+  void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
+    arguments.heading("Outputs");
+    arguments.flag("--json", json_, "Print one JSON document");
+    const Argument svg =
+        arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")
+            .writes(".svg");
+    const Argument page =
+        arguments
+            .add("--report", report_,
+                 "Write a page that plays the audit of one drive, or lists those of a folder, with "
+                 "close-ups (.html)")
+            .writes(".html");
+    const Argument certificate =
+        arguments
+            .add("--certificate", certificate_,
+                 "Write the proof of one drive (.json): spans of time, what holds in them, "
+                 "witnesses, hashes of the inputs")
+            .writes(".json");
+    const Argument junit =
+        arguments.add("--junit", junit_, "Write a test case per drive (.xml)").writes(".xml");
+    const Argument geojson =
+        arguments
+            .add("--geojson", geojson_,
+                 "Write stretches, conflicts and witnesses (.geojson), in the occupancy's "
+                 "coordinates")
+            .writes(".geojson");
+    const Argument saved =
+        arguments.add("--save-drive", saved_drive_, "Write the drive along a route or lane (.csv)")
+            .writes(".csv");
+    Argument check =
+        arguments
+            .add("--check", check_,
+                 "Verify a certificate by brute force instead, from the files that it names. The "
+                 "question's options, --occupancy and --trajectory say what it has to be about; "
+                 "files may have moved, if they are the same")
+            .reads(files_named_by_certificate);
+    for (const Argument& other : {svg, page, certificate, junit, geojson, saved})
+      check.excludes(other);
+    for (const Argument& other : not_with_check) check.excludes(other);
+    arguments.flag("--force", force_, "Replace outputs that exist");
+  }
+
+  std::string missing() const {
+    if (!check_.empty()) return {};
+    if (ground_ == "map" && map_.empty()) return "--map, for --ground map";
+    if (occupancy_.empty()) return "--occupancy";
+    if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
+    if (!subjects_.is_swept()) {
+      return saved_drive_.empty() ? "" : "--lane, or --from and --to, for --save-drive";
+    }
+    const bool proves_nothing = !certificate_.empty() && saved_drive_.empty();
+    return proves_nothing ? "--save-drive, as a certificate is about a file" : "";
+  }
+
+  AuditQuestion asked() const {
+    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
+    AuditQuestion question{.shape = vehicle.shape,
+                           .parts = vehicle.parts(from_height_m_),
+                           .ground = {},
+                           .options = options_};
+    if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_, *inputs_);
+    return question;
+  }
+
+  Scene make_scene(const map::RoadMap* road_map, const Streams& streams,
+                   const CommonOptions& common) const {
+    Scene scene{inputs_->occupancy(occupancy_), road_map};
+    if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
+      fmt::print(streams.err,
+                 "note: {} was built with --remove-seen-through {}: {} cells with points count as "
+                 "free\n",
+                 occupancy_.string(), removed->clouds, removed->cells);
+    }
+    if (road_map == nullptr) return scene;
+    check_overlap(road_bounds(*road_map), measured_bounds(*scene.occupancy), occupancy_.string());
+    const std::string &of_map = road_map->crs(), &of_occupancy = scene.occupancy->crs();
+    if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
+      fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
+                 of_occupancy);
+    }
+    return scene;
+  }
+
+  Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditQuestion& question,
+                  const Scene& scene, const Streams& streams, const CommonOptions& common) const {
+    if (!svg_.empty() || !certificate_.empty()) {
+      throw map::InputError({.file = "--svg or --certificate",
+                             .place = {},
+                             .element = {},
+                             .found = "is about one drive, and --trajectory is a folder",
+                             .needed = {},
+                             .remedy = "give one file"});
+    }
+    ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    const std::vector<AuditedDrive> audits = audit_all(
+        *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+    for (const AuditedDrive& audited : audits) {
+      if (!common.quiet && audited.fault.empty()) note_curvature(audited, question, streams.err);
+    }
+    write_index(audits, question, scene);
+    write_files(audits, question, scene);
+    if (json_) {
+      streams.out << text_of_json(with_removal(audits_json(audits), scene));
+    } else {
+      streams.out << audits_table(audits);
+    }
+    return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::failed;
+  }
+
+  // Of what the vehicle could not drive; audited all the same.
+  static void note_curvature(const AuditedDrive& audited, const AuditQuestion& question,
+                             std::ostream& err) {
+    const std::string note = curvature_note(audited.drive, question.shape);
+    if (!note.empty()) fmt::print(err, "note: {}: {}\n", audited.name, note);
+  }
+
+  Exit run_one(const AuditSubject& subject, const AuditQuestion& question, const Scene& scene,
+               const Streams& streams, const CommonOptions& common) const {
+    AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
+    if (!common.quiet) note_curvature(audited, question, streams.err);
+    audited.ground = ground_under(*scene.occupancy, audited.drive, question.ground);
+    const planning::GroundUnder& ground = audited.ground;
+    if (!common.quiet) {
+      fmt::print(streams.err, "{}", ground_note(ground, question, scene.occupancy->resolution_m()));
+    }
+    const planning::VehicleSurroundings surrounded =
+        surroundings(*scene.occupancy, audited.drive, ground, question);
+    const planning::VehicleAudit audit =
+        planning::audit_vehicle(surrounded, audited.drive, options_, question.moving);
+    audited.report = audit.whole;
+    if (!saved_drive_.empty()) write_output(saved_drive_, write_trajectory_csv(audited.drive));
+    write_picture(audited, question, scene, question.heights(ground));
+    write_report(audited, question, scene, question.heights(ground));
+    write_certificate(audited, question, surrounded, audit, ground);
+    write_files({audited}, question, scene);
+    if (json_) {
+      streams.out << text_of_json(with_removal(audit_json(audited), scene));
+    } else {
+      streams.out << audit_text(audited.report);
+    }
+    return audited.is_clear() ? Exit::ok : Exit::failed;
+  }
+
+  static nlohmann::ordered_json with_removal(nlohmann::ordered_json json, const Scene& scene) {
+    if (const auto removed = scene.occupancy->seen_through()) {
+      json["occupancy_seen_through"] = {{"clouds", removed->clouds},
+                                        {"removed_cells", removed->cells}};
+    }
+    return json;
+  }
+
+  // File names may hold bytes that are no UTF-8.
+  static std::string text_of_json(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  }
+
+  // What a picture of a drive can show.
+  map::Box2 drawn(const AuditedDrive& audited, const AuditQuestion& question) const {
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
+    const map::Box2 around =
+        planning::audited_region(audited.drive, question.parts, options_).around;
+    return {around.min_in_source - margin_m, around.max_in_source + margin_m};
+  }
+
+  // Lanes that a picture of a drive can show: it is wider or higher than the drive's box by less
+  // than three times the box's longer side.
+  std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited,
+                                          const AuditQuestion& question, const Scene& scene) const {
+    if (scene.road_map == nullptr) return {};
+    const map::Box2 box = drawn(audited, question);
+    const double side_m = (box.max_in_source - box.min_in_source).maxCoeff();
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(3.0 * side_m);
+    return drivable_rings(*scene.road_map,
+                          {box.min_in_source - margin_m, box.max_in_source + margin_m});
+  }
+
+  void write_picture(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
+                     const map::HeightBand& heights) const {
+    if (svg_.empty()) return;
+    write_output(svg_,
+                 audit_svg({audited.drive, inflated_parts(question), audited.report,
+                            occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
+                            drawn_lanes(audited, question, scene), question.moving}));
+  }
+
+  void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
+                    const map::HeightBand& heights) const {
+    if (report_.empty()) return;
+    const map::Box2 around = drawn(audited, question);
+    const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
+    AuditSurroundings page{.name = audited.name,
+                           .body = inflated_shape(question),
+                           .parts = inflated_parts(question),
+                           .clearance_m = options_.clearance_m,
+                           .occupied = occupied_in(*scene.occupancy, heights, box),
+                           .lanes = {},
+                           .moving = question.moving,
+                           .command = "roadbed audit --occupancy " + occupancy_.string(),
+                           .version = name_and_version(),
+                           .crs = scene.occupancy->crs(),
+                           .sources = {source("occupancy", certified_once(occupancy_))}};
+    if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
+    if (!subjects_.is_swept()) {
+      page.sources.push_back(source("trajectory", certified_file(subjects_.file())));
+    }
+    write_output(report_, drive_report_html(report_of_audit(audited.drive, audited.report, page)));
+  }
+
+  void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
+                   const Scene& scene) const {
+    if (report_.empty()) return;
+    const std::vector<geometry::BodyPart> parts = inflated_parts(question);
+    std::vector<IndexedAudit> index;
+    for (const AuditedDrive& audited : audits) {
+      index.push_back(indexed(audited));
+      if (!audited.fault.empty()) continue;
+      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground),
+                                           drawn(audited, question));
+      const std::vector<geometry::Ring> lanes = drawn_lanes(audited, question, scene);
+      index.back().pictures =
+          close_ups(audited.report, {audited.drive, parts, occupied, lanes, question.moving});
+    }
+    write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()));
+  }
+
+  static ReportSource source(const char* role, const CertifiedFile& file) {
+    return {.role = role, .name = file.name, .sha256 = file.sha256};
+  }
+
+  // Of what many audits share.
+  CertifiedFile certified_once(const std::filesystem::path& file) const {
+    return *inputs_->of<CertifiedFile>("certified file", {file}, [&] {
+      return std::make_shared<const CertifiedFile>(certified_file(file));
+    });
+  }
+
+  void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
+                         const planning::VehicleSurroundings& surrounded,
+                         const planning::VehicleAudit& audit,
+                         const planning::GroundUnder& ground) const {
+    if (certificate_.empty()) return;
+    const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
+    CertificateFile file{.program = name_and_version(),
+                         .occupancy = certified_once(occupancy_),
+                         .trajectory = certified_file(drive),
+                         .underside_m = from_height_m_,
+                         .ground = {question.ground.kind, ground},
+                         .least_measured = options_.least_measured,
+                         .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
+                                                            audit, question.moving)};
+    if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
+    if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
+    if (!map_.empty()) file.roads = certified_once(map_);
+    write_output(certificate_, write_certificate_json(file));
+  }
+
+  void write_files(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
+                   const Scene& scene) const {
+    if (!junit_.empty()) write_output(junit_, audits_junit(audits, occupancy_.string()));
+    if (!geojson_.empty()) {
+      write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()));
+    }
+  }
+
+  // To tell what a certificate has to be about from what is a default.
+  std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
+      least_measured_argument_, from_height_argument_;
+  std::shared_ptr<const Inputs> inputs_;
+  std::filesystem::path occupancy_, vehicle_, map_, obstacles_, svg_, report_, certificate_, junit_,
+      geojson_, saved_drive_, check_;
+  AuditSubjects subjects_;
+  planning::AuditOptions options_;
+  std::string ground_;
+  double from_height_m_ = map::HeightBand{}.from_m;
+  bool json_ = false, force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_audit_command() { return std::make_unique<AuditCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,143 @@
+#include "roadbed/tools/commands/audit_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/planning/audit/judged_stretches.h"
+#include "roadbed/tools/commands/audit_json.h"
+#include "roadbed/tools/files/json.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+using Eigen::Vector2d;
+
+std::string audit_case(const AuditedDrive& audited, const std::string& occupancy) {
+  std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")",
+                                 map::xml_text(occupancy), map::xml_text(audited.name));
+  if (!audited.fault.empty()) {
+    return text + fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n",
+                              map::xml_text(audited.fault));
+  }
+  const std::string report = map::xml_text(audit_text(audited.report));
+  if (audited.is_clear()) {
+    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", report);
+  }
+  return text + fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                            audited.outcome(), report);
+}
+
+Json position(const Vector2d& point) { return Json::array({point.x(), point.y()}); }
+
+// GeoJSON wants the first position again at the end.
+Json polygon(const geometry::Ring& ring) {
+  Json positions = Json::array();
+  for (const Vector2d& point : ring) positions.push_back(position(point));
+  positions.push_back(position(ring.front()));
+  return {{"type", "Polygon"}, {"coordinates", Json::array({std::move(positions)})}};
+}
+
+Json feature(Json geometry, Json properties) {
+  return {{"type", "Feature"},
+          {"geometry", std::move(geometry)},
+          {"properties", std::move(properties)}};
+}
+
+Json stretch_feature(const AuditedDrive& audited, const planning::JudgedStretch& stretch) {
+  Json line = Json::array();
+  line.push_back(position(audited.drive.at(stretch.from_s).pose().position()));
+  for (const geometry::TrajectoryPoint& row : audited.drive.points()) {
+    if (row.t_s > stretch.from_s && row.t_s < stretch.to_s) {
+      line.push_back(position(row.pose().position()));
+    }
+  }
+  line.push_back(position(audited.drive.at(stretch.to_s).pose().position()));
+  return feature({{"type", "LineString"}, {"coordinates", std::move(line)}},
+                 {{"drive", audited.name},
+                  {"kind", "stretch"},
+                  {"verdict", planning::name(stretch.verdict)},
+                  {"from_s", stretch.from_s},
+                  {"to_s", stretch.to_s}});
+}
+
+geometry::Ring box_outline(const map::Box2& box) {
+  const Vector2d &a = box.min_in_source, &b = box.max_in_source;
+  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
+}
+
+// The outlines of all parts; one polygon where there is one part.
+Json outlines(const std::vector<geometry::BodyPart>& parts, const geometry::Pose2& pose) {
+  if (parts.size() == 1) return polygon(parts.front().outline_at(pose));
+  Json polygons = Json::array();
+  for (const geometry::BodyPart& part : parts) {
+    polygons.push_back(polygon(part.outline_at(pose)).at("coordinates"));
+  }
+  return {{"type", "MultiPolygon"}, {"coordinates", std::move(polygons)}};
+}
+
+void add_conflict(Json& features, const AuditedDrive& audited, const planning::Conflict& conflict,
+                  const std::vector<geometry::BodyPart>& parts) {
+  const Json about = {{"drive", audited.name},
+                      {"kind", "conflict"},
+                      {"from_s", conflict.from_s},
+                      {"to_s", conflict.to_s},
+                      {"at_s", conflict.at.t_s},
+                      {"clearance_m", conflict.least_clearance_m},
+                      {"overlap_depth_m", conflict.deepest.overlap.depth_m},
+                      {"overlap_area_m2", conflict.deepest.overlap.area_m2},
+                      {"part", conflict.part},
+                      {"obstacle", conflict.obstacle.empty() ? Json() : Json(conflict.obstacle)}};
+  features.push_back(feature(outlines(parts, conflict.at.pose()), about));
+  Json witness = about;
+  witness["kind"] = "witness";
+  features.push_back(feature(polygon(box_outline(conflict.witness)), std::move(witness)));
+}
+
+}  // namespace
+
+std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& occupancy) {
+  const auto errors = std::ranges::count(audits, "unusable", &AuditedDrive::outcome);
+  const auto clear = std::ranges::count(audits, true, &AuditedDrive::is_clear);
+  const auto all = static_cast<std::ptrdiff_t>(audits.size());
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+      "  <testsuite name=\"roadbed audit {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
+      map::xml_text(occupancy), all, all - clear - errors, errors);
+  for (const AuditedDrive& audited : audits) text += audit_case(audited, occupancy);
+  return text + "  </testsuite>\n</testsuites>\n";
+}
+
+std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
+                           const std::string& crs) {
+  const std::vector<geometry::BodyPart> parts = inflated_parts(question);
+  Json features = Json::array();
+  for (const AuditedDrive& audited : audits) {
+    if (!audited.fault.empty()) continue;
+    const geometry::Trajectory& drive = audited.drive;
+    for (const auto& stretch : judged_stretches(audited.report, drive.start_s(), drive.end_s())) {
+      features.push_back(stretch_feature(audited, stretch));
+    }
+    for (const planning::Conflict& conflict : audited.report.conflicts) {
+      add_conflict(features, audited, conflict, parts);
+    }
+  }
+  const auto text_of = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  std::string text = "{\"type\":\"FeatureCollection\",\n";
+  if (!crs.empty()) {
+    text +=
+        fmt::format("\"crs\":{},\n", text_of({{"type", "name"}, {"properties", {{"name", crs}}}}));
+  }
+  text += "\"features\":[";
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    text += (i == 0 ? "\n" : ",\n") + text_of(features[i]);
+  }
+  return text + "\n]}\n";
+}
+
+}  // namespace roadbed::tools

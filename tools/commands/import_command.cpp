@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/planning/route/stored_network.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/heap.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/output_file.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+// A CRS of the user's own in place of the file's.
+map::RoadMap with_crs(map::RoadMap road_map, const std::string& crs) {
+  if (crs.empty()) return road_map;
+  map::RoadMapParts parts = road_map.parts();
+  parts.crs = crs;
+  return map::RoadMap(std::move(parts));
+}
+
+class ImportCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Read a digital road map and write it as a compiled map");
+    arguments
+        .add("IN", input_, "Map file: OpenDRIVE, Lanelet2, CommonRoad, GeoJSON, or a compiled one")
+        .required()
+        .reads();
+    arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required().writes(".rbm");
+    arguments.add("--crs", crs_,
+                  "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
+                  "the file gives none or a wrong one; nothing is reprojected");
+    arguments
+        .add("--max-error", max_error_m_,
+             "Largest distance between a sampled border and the true curve [m]")
+        .within(1e-6, 1.0)
+        .with_default();
+    arguments.flag("--json", json_, "Print what was imported as one JSON document");
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed import town.xodr -o town.rbm");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    check_writable(output_, force_);
+    if (common.is_alone) keep_heap_in_huge_pages(input_);
+    const map::RoadMap road_map =
+        with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
+    const std::string network = planning::write_route_network(planning::route_network_of(road_map));
+    OutputFile output(output_);
+    map::write_compiled_map(road_map, network, output);
+    output.commit();
+    if (json_) print_json(streams.out, road_map);
+    if (!common.quiet) report(streams.err, road_map);
+    return Exit::ok;
+  }
+
+ private:
+  static std::ptrdiff_t faults_of(const map::RoadMap& road_map) {
+    return std::ranges::count_if(road_map.remarks(), &map::ImportRemark::is_fault);
+  }
+
+  static void print_json(std::ostream& out, const map::RoadMap& road_map) {
+    const Json json{{"format", road_map.format()},
+                    {"crs", road_map.crs().empty() ? Json() : Json(road_map.crs())},
+                    {"roads", road_map.roads().size()},
+                    {"lanes", road_map.lanes().size()},
+                    {"junctions", road_map.junctions().size()},
+                    {"signals", road_map.signals().size()},
+                    {"faults", faults_of(road_map)}};
+    out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+
+  void report(std::ostream& err, const map::RoadMap& road_map) const {
+    const std::ptrdiff_t faults = faults_of(road_map);
+    fmt::print(err, "{}: {}, {} roads, {} lanes, {} junctions, {} signals\n", output_.string(),
+               road_map.format(), road_map.roads().size(), road_map.lanes().size(),
+               road_map.junctions().size(), road_map.signals().size());
+    if (road_map.crs().empty()) {
+      fmt::print(err, "note: the file names no CRS; give --crs if you know it\n");
+    }
+    if (faults > 0) {
+      fmt::print(err,
+                 "note: {} faults of the file were mended or left out; see: roadbed validate\n",
+                 faults);
+    }
+  }
+
+  std::filesystem::path input_, output_;
+  std::string crs_;
+  double max_error_m_ = 1e-3;
+  bool json_ = false, force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_import_command() { return std::make_unique<ImportCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roadbed/map/derived/road_place.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/points_csv.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+constexpr double kSearch_m[] = {5.0, 50.0, 500.0, 5e3, 5e4};
+
+/// Of each point the nearest lanes first, at most `count`, searched ever farther until there is
+/// one.
+std::vector<std::vector<map::LaneMatch>> nearest_lanes(
+    const map::RoadMap& road_map, const std::vector<Eigen::Vector2d>& points_in_map,
+    std::size_t count, bool only_drivable) {
+  std::vector<std::vector<map::LaneMatch>> nearest(points_in_map.size());
+  std::vector<std::size_t> open(points_in_map.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  for (const double radius_m : kSearch_m) {
+    std::vector<Eigen::Vector2d> points;
+    for (const std::size_t i : open) points.push_back(points_in_map[i]);
+    const auto matches = road_map.locate(points, radius_m, count, only_drivable);
+    std::vector<std::size_t> still_open;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const auto found = matches.of(k);
+      nearest[open[k]].assign(found.begin(), found.end());
+      if (found.empty()) still_open.push_back(open[k]);
+    }
+    open = std::move(still_open);
+  }
+  return nearest;
+}
+
+Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
+                const Eigen::Vector2d& point_in_map) {
+  const map::Lane& lane = road_map.lane(match.place.lane);
+  const auto on_road = map::road_place(road_map, lane.id, point_in_map);
+  Json json = {{"lane", lane.name}};
+  json["road"] = lane.road ? Json(road_map.road(*lane.road).source_id) : Json();
+  json["section"] = lane.origin.section;
+  json["lane_id"] = lane.origin.source_id;
+  json["type"] = name(lane.type);
+  json["one_way"] = lane.one_way;
+  json["s_m"] = match.place.s_m;
+  json["d_m"] = match.place.d_m;
+  json["distance_m"] = match.distance_m;
+  json["heading_rad"] = match.heading_rad;
+  json["road_s_m"] = on_road ? Json(on_road->s_m) : Json();
+  json["road_t_m"] = on_road ? Json(on_road->t_m) : Json();
+  return json;
+}
+
+Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source,
+             const std::vector<map::LaneMatch>& nearest) {
+  Json lanes = Json::array();
+  for (const auto& match : nearest) {
+    lanes.push_back(match_json(road_map, match, road_map.to_map(in_source)));
+  }
+  return {{"x_m", in_source.x()}, {"y_m", in_source.y()}, {"lanes", std::move(lanes)}};
+}
+
+void print_places(std::ostream& out, const Json& point) {
+  fmt::print(out, "{:.3f},{:.3f}\n", point["x_m"].get<double>(), point["y_m"].get<double>());
+  const auto shown = [](const Json& value) {
+    return value.is_null() ? std::string("-") : fmt::format("{:.3f}", value.get<double>());
+  };
+  if (!point["lanes"].empty()) {
+    fmt::print(out, "  {:<16} {:<10} {:>10} {:>8} {:>9} {:>8} {:>10} {:>8}\n", "lane", "type",
+               "s_m", "d_m", "away_m", "heading", "road_s_m", "road_t_m");
+  }
+  for (const Json& lane : point["lanes"]) {
+    fmt::print(out, "  {:<16} {:<10} {:>10} {:>8} {:>9} {:>8} {:>10} {:>8}\n",
+               lane["lane"].get<std::string>(), lane["type"].get<std::string>(), shown(lane["s_m"]),
+               shown(lane["d_m"]), shown(lane["distance_m"]), shown(lane["heading_rad"]),
+               shown(lane["road_s_m"]), shown(lane["road_t_m"]));
+  }
+}
+
+class LocateCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Find the lanes nearest to points");
+    arguments.add("MAP", map_file_, "Any readable map").required();
+    const Argument at = arguments.add("--at", at_, "Point X,Y in the map's coordinates [m]")
+                            .checked([](const std::string& text) {
+                              return parse_point(text) ? std::string() : "is not X,Y: two numbers";
+                            });
+    Argument points = arguments.add("--points", points_file_, "CSV file with columns x_m,y_m");
+    points.excludes(at);
+    arguments.add("--count", count_, "Most lanes to name per point").positive().with_default();
+    arguments.flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.require([this] {
+      return at_.empty() && points_file_.empty() ? std::string("--at or --points") : std::string();
+    });
+    arguments.example("  roadbed locate town.xodr --at 20,-1.8");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions&) override {
+    const map::RoadMap road_map = map::load_map(map_file_);
+    Json answers = Json::array();
+    bool all_found = true;
+    const std::vector<Eigen::Vector2d> in_source = points();
+    std::vector<Eigen::Vector2d> in_map;
+    for (const Eigen::Vector2d& point : in_source) in_map.push_back(road_map.to_map(point));
+    const auto nearest = nearest_lanes(road_map, in_map, count_, only_drivable_);
+    for (std::size_t i = 0; i < in_source.size(); ++i) {
+      answers.push_back(located(road_map, in_source[i], nearest[i]));
+      all_found = all_found && !answers.back()["lanes"].empty();
+    }
+    if (json_) {
+      fmt::print(streams.out, "{}\n",
+                 Json{{"points", answers}}.dump(2, ' ', false, Json::error_handler_t::replace));
+    } else {
+      for (const Json& answer : answers) print_places(streams.out, answer);
+    }
+    if (!all_found) fmt::print(streams.err, "roadbed: a point has no lane within 50 km\n");
+    return all_found ? Exit::ok : Exit::failed;
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> points() const {
+    if (!points_file_.empty()) return read_points_csv(points_file_);
+    return {parse_point(at_).value()};
+  }
+
+  std::filesystem::path map_file_, points_file_;
+  std::string at_;
+  std::size_t count_ = 5;
+  bool only_drivable_ = false, json_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_locate_command() { return std::make_unique<LocateCommand>(); }
+
+}  // namespace roadbed::tools

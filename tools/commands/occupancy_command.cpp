@@ -1,0 +1,44 @@
+#include <array>
+#include <optional>
+
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/occupancy_parts.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+class OccupancyCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Make obstacle occupancy from point clouds, or say what one holds");
+    arguments.example(
+        "  roadbed occupancy build scan.pcd -o scan.bt\n"
+        "  roadbed occupancy info scan.bt");
+    for (Part& part : parts_) {
+      part.arguments = arguments.part(part.name);
+      part.command->declare(*part.arguments);
+    }
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    for (const Part& part : parts_) {
+      if (part.arguments->given()) return part.command->run(streams, common);
+    }
+    return Exit::usage;
+  }
+
+ private:
+  struct Part {
+    const char* name;
+    std::unique_ptr<Command> command;
+    std::optional<Arguments> arguments = {};
+  };
+  std::array<Part, 2> parts_{Part{"build", make_occupancy_build_command()},
+                             Part{"info", make_occupancy_info_command()}};
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_occupancy_command() { return std::make_unique<OccupancyCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/planning/route/reach.h"
+#include "roadbed/tools/cli/route_question.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/route_output.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/output_file.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+struct Limit {
+  double value = 0.0;
+  planning::RouteCost measure = planning::RouteCost::time;
+};
+
+std::optional<Limit> limit_of(const std::string& text) {
+  constexpr double kMost = 1e5;  // 27 hours, 100 km
+  Limit limit;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), limit.value);
+  const std::string unit(rest, text.data() + text.size());
+  if (error != std::errc() || !(limit.value > 0.0 && limit.value <= kMost)) return {};
+  if (unit != "s" && unit != "m") return {};
+  limit.measure = unit == "s" ? planning::RouteCost::time : planning::RouteCost::distance;
+  return limit;
+}
+
+std::string reached_csv(const map::RoadMap& road_map,
+                        const std::vector<planning::ReachedLane>& reached, const char* unit) {
+  std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed\n", unit);
+  for (const planning::ReachedLane& lane : reached) {
+    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n", road_map.lane(lane.part.lane).name,
+                        lane.part.from_s_m, lane.part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
+  }
+  return text;
+}
+
+class ReachCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Find what can be reached within a time or a distance");
+    arguments.add("MAP", map_file_, "Any readable map").required();
+    arguments.add("--from", from_, std::string("Start: ") + kPlaceSyntax)
+        .required()
+        .checked(place_syntax_fault);
+    arguments.add("--within", within_, "How far: 60s or 500m, up to 100000")
+        .required()
+        .checked([](const std::string& text) {
+          return limit_of(text) ? "" : "is not a number up to 100000 with s or m behind it";
+        });
+    rules_.declare(arguments, false);
+    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.add("-o,--output", output_,
+                  "Write too: .geojson the area, .csv a row per lane, .svg a picture");
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.example("  roadbed reach town.xodr --from lane:1/0/-1@10 --within 60s -o reach.svg");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions&) override {
+    if (!output_.empty()) {
+      check_suffix(output_, kAreaSuffixes);
+      check_writable(output_, force_);
+    }
+    const Limit limit = limit_of(within_).value();
+    const map::RoadMap road_map = map::load_map(map_file_);
+    const Place from = find_place(road_map, from_, rules_.participant());
+    planning::Router router(road_map, rules_.on(road_map, limit.measure));
+    const std::string fault = router.unfit(from.on_lane, "start");
+    if (!fault.empty()) {
+      fmt::print(streams.err, "roadbed: nothing can be reached: {}\n", fault);
+      return Exit::failed;
+    }
+    const auto reached = planning::reach(router, from.for_route(), limit.value);
+    const char* unit = limit.measure == planning::RouteCost::time ? "s" : "m";
+    if (!output_.empty()) write(road_map, reached, unit);
+    print(streams, road_map, reached, unit);
+    return Exit::ok;
+  }
+
+ private:
+  void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
+             const char* unit) const {
+    if (output_.extension() == ".csv")
+      return write_output(output_, reached_csv(road_map, reached, unit));
+    std::vector<planning::LanePart> parts;
+    for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
+    const auto area = planning::area_of(road_map, parts);
+    write_output(output_, output_.extension() == ".svg"
+                              ? area_svg(road_map, area, {})
+                              : area_geojson(road_map, area, {{"within", within_}}));
+  }
+
+  void print(const Streams& streams, const map::RoadMap& road_map,
+             const std::vector<planning::ReachedLane>& reached, const char* unit) const {
+    double length_m = 0.0;
+    Json lanes = Json::array();
+    for (const planning::ReachedLane& lane : reached) {
+      length_m += std::abs(lane.part.to_s_m - lane.part.from_s_m);
+      lanes.push_back({{"lane", road_map.lane(lane.part.lane).name},
+                       {"from_s_m", lane.part.from_s_m},
+                       {"to_s_m", lane.part.to_s_m},
+                       {"reversed", lane.reversed},
+                       {std::string("cost_") + unit, lane.cost}});
+    }
+    if (json_) {
+      fmt::print(streams.out, "{}\n",
+                 text_of({{"within", within_}, {"length_m", length_m}, {"lanes", lanes}}, 2));
+      return;
+    }
+    fmt::print(streams.out, "{} lanes, {:.1f} m, within {}\n", reached.size(), length_m, within_);
+    for (const planning::ReachedLane& lane : reached) {
+      fmt::print(streams.out, "  {:<16} {:>9.2f} to {:>9.2f} m  from {:.2f} {}{}\n",
+                 road_map.lane(lane.part.lane).name, lane.part.from_s_m, lane.part.to_s_m,
+                 lane.cost, unit, lane.reversed ? ", reversed" : "");
+    }
+  }
+
+  std::filesystem::path map_file_, output_;
+  std::string from_, within_;
+  RouteRules rules_;
+  bool json_ = false, force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_reach_command() { return std::make_unique<ReachCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <string>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/planning/reference/line_driving.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/route.h"
+#include "roadbed/tools/cli/route_question.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/way_point_line.h"
+#include "roadbed/tools/files/output_file.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+void append_row(fmt::memory_buffer& text, const map::RoadMap& road_map,
+                const planning::ReferenceLine& line, double s_m) {
+  const planning::ReferencePoint point = line.at(s_m);
+  const planning::Corridor room = line.corridor_at(s_m);
+  const Eigen::Vector2d in_source = road_map.to_source(point.in_map);
+  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", s_m, in_source.x(),
+                 in_source.y(), point.heading_rad, point.curvature_per_m, point.curvature_d1_per_m2,
+                 room.left_m, room.right_m, room.speed_limit_mps);
+}
+
+/// Rows from the start to the goal, the last step shortened.
+std::string line_csv(const map::RoadMap& road_map, const planning::ReferenceLine& line,
+                     double step_m) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text),
+                 "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
+                 "speed_limit_mps\n");
+  const double end_m = line.goal_s_m();
+  for (int i = 0; i * step_m < end_m - 1e-6; ++i) append_row(text, road_map, line, i * step_m);
+  append_row(text, road_map, line, end_m);
+  return fmt::to_string(text);
+}
+
+class ReferenceCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Draw the smooth line to drive along a route, or through way-points");
+    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints");
+    question_.declare(arguments, true);
+    way_points_.declare(arguments);
+    arguments.add("-o,--output", output_, "CSV file to write").required();
+    arguments.add("--step", step_m_, "Distance between rows [m]")
+        .within(1e-3, 100.0)
+        .with_default();
+    arguments
+        .add("--max-move", options_.max_smoothing_m,
+             "Largest distance of the line from the centreline or way-points [m]")
+        .within(0.01, 2.0)
+        .with_default();
+    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.require([this] { return fault(); });
+    arguments.example(
+        "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv\n"
+        "  roadbed reference --waypoints points.csv --interpolate --ends periodic -o ring.csv");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    check_writable(output_, force_);
+    return way_points_.asked() ? through_way_points(streams, common) : along_route(streams, common);
+  }
+
+ private:
+  std::string fault() const {
+    if (way_points_.asked() == !map_file_.empty()) return "just one of MAP and --waypoints";
+    if (!way_points_.asked() && !question_.has_places()) return "--from and --to";
+    if (way_points_.asked() && question_.has_any_place())
+      return "MAP, not --waypoints, for a route";
+    return way_points_.fault();
+  }
+
+  Exit through_way_points(const Streams& streams, const CommonOptions& common) const {
+    const WayPointLine::Table table = way_points_.table(step_m_, options_.max_smoothing_m);
+    write_output(output_, table.csv);
+    if (!common.quiet) {
+      for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
+      fmt::print(streams.err,
+                 "{}: {:.1f} m, peak curvature {:.3f} 1/m, at most {:.2f} m off the way-points\n",
+                 output_.string(), table.length_m, table.peak_curvature_per_m,
+                 table.largest_move_m);
+    }
+    return Exit::ok;
+  }
+
+  Exit along_route(const Streams& streams, const CommonOptions& common) const {
+    const map::RoadMap road_map = map::load_map(map_file_);
+    const RouteQuestion::Asked asked = question_.on(road_map);
+    const planning::RouteAnswer answer =
+        planning::Router(road_map, asked.options).find(asked.places());
+    if (!answer.route) {
+      fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
+      return Exit::failed;
+    }
+    planning::ReferenceLineOptions options = options_;
+    options.corner_vehicle = way_points_.vehicle();
+    const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
+    write_output(output_, line_csv(road_map, line, step_m_));
+    if (!common.quiet) {
+      for (const std::string& note : line.notes()) fmt::print(streams.err, "note: {}\n", note);
+      const planning::LineDriving driving = planning::driving_along(
+          line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}), {});
+      fmt::print(streams.err,
+                 "{}: {:.1f} m, peak curvature {:.3f} 1/m at {:.0f} m, of its rate {:.3f} 1/m² at "
+                 "{:.0f} m, at most {:.2f} m off the centreline\n",
+                 output_.string(), line.goal_s_m(), driving.peak_curvature_per_m.value,
+                 driving.peak_curvature_per_m.s_m, driving.peak_curvature_rate_per_m2.value,
+                 driving.peak_curvature_rate_per_m2.s_m, line.largest_move_m());
+    }
+    return Exit::ok;
+  }
+
+  std::filesystem::path map_file_, output_;
+  RouteQuestion question_;
+  WayPointLine way_points_;
+  planning::ReferenceLineOptions options_;
+  double step_m_ = 0.5;
+  bool force_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_reference_command() { return std::make_unique<ReferenceCommand>(); }
+
+}  // namespace roadbed::tools

@@ -1,0 +1,278 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/audit.h"
+#include "roadbed/tools/cli/in_threads.h"
+#include "roadbed/tools/cli/progress_bar.h"
+#include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/report/drive_files.h"
+#include "roadbed/tools/simulation/scenario.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+namespace fs = std::filesystem;
+using DrivenFile = decltype(DrivenScenario::files)::value_type;
+
+/// Of what an earlier drive left, the solution goes, too, where this drive has none: nobody could
+/// tell that it is not this drive's.
+void write_files(const DrivenScenario& driven, const fs::path& folder) {
+  for (const auto& [name, bytes] : driven.files) write_output(folder / name, bytes);
+  if (std::ranges::find(driven.files, "solution.xml", &DrivenFile::first) == driven.files.end()) {
+    fs::remove(folder / "solution.xml");
+  }
+}
+
+std::string timings_csv(const std::vector<double>& cycle_ms) {
+  std::string csv = "cycle,wall_ms\n";
+  for (std::size_t i = 0; i < cycle_ms.size(); ++i)
+    csv += fmt::format("{},{:.3f}\n", i, cycle_ms[i]);
+  return csv;
+}
+
+std::string seed_fault(const std::string& text) {
+  return parse_seed(text) ? "" : "is no whole number from 0 to 2^53";
+}
+
+/// One scenario of many: what became of it.
+struct Row {
+  fs::path file;
+  std::string outcome = {}, text = {};
+  double at_s = 0.0, slowest_ms = 0.0, median_ms = 0.0;
+  bool is_good = false;
+};
+
+/// Scenarios right in the folder, by name, which is also that of a scenario's outputs.
+std::vector<Row> rows_of(const fs::path& folder) {
+  std::vector<Row> rows;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string suffix = entry.path().extension().string();
+    if (suffix == ".json" || suffix == ".xml") rows.push_back({.file = entry.path()});
+  }
+  const auto stem = [](const Row& row) { return row.file.stem(); };
+  std::ranges::sort(rows, {}, stem);
+  const auto twice = std::ranges::adjacent_find(rows, {}, stem);
+  if (twice != rows.end()) {
+    throw map::InputError({.file = folder.string(),
+                           .place = {},
+                           .element = {},
+                           .found = "two scenarios of the name " + twice->file.stem().string(),
+                           .needed = "names that differ, not only in their suffix",
+                           .remedy = "rename one"});
+  }
+  return rows;
+}
+
+void note_times(std::vector<double> cycle_ms, Row& row) {
+  if (cycle_ms.empty()) return;
+  std::ranges::sort(cycle_ms);
+  row.slowest_ms = cycle_ms.back();
+  row.median_ms = cycle_ms[cycle_ms.size() / 2];
+}
+
+struct DriveOptions {
+  fs::path output;
+  DriveChoice choice;
+  std::shared_ptr<const Inputs> inputs;
+  int threads;
+};
+
+/// Drives one; whatever is wrong with it is its own outcome.
+/// @throws OutputError, std::bad_alloc  which say nothing of the scenario.
+void drive_row(const DriveOptions& options, Row& row) {
+  try {
+    const DrivenScenario driven = drive_scenario(row.file, options.choice, *options.inputs);
+    const fs::path folder = options.output / row.file.stem();
+    make_output_folder(folder, true);
+    write_files(driven, folder);
+    row.outcome = name(driven.verdict.outcome);
+    row.text = driven.verdict.text;
+    row.at_s = driven.verdict.at_s;
+    row.is_good = driven.verdict.outcome == Outcome::goal_reached;
+    note_times(driven.cycle_ms, row);
+  } catch (const OutputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    row.outcome = "unusable";
+    row.text = error.what();
+  }
+}
+
+void drive_all(std::vector<Row>& rows, const DriveOptions& options, ProgressBar& progress) {
+  in_threads(rows.size(), options.threads, [&](std::size_t i) {
+    drive_row(options, rows[i]);
+    progress.done_one();
+  });
+}
+
+std::string table_csv(const std::vector<Row>& rows) {
+  std::string csv = "scenario,outcome,at_s,text\n";
+  for (const Row& row : rows) {
+    std::string text = row.text;
+    std::ranges::replace(text, '"', '\'');
+    csv +=
+        fmt::format("{},{},{:.2f},\"{}\"\n", row.file.stem().string(), row.outcome, row.at_s, text);
+  }
+  return csv;
+}
+
+class SimulateCommand : public Command {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Drive scenarios in a closed loop and report on them");
+    arguments
+        .add("SCENARIO", scenario_file_,
+             "Scenario file (.json, or CommonRoad .xml), or a folder of them")
+        .required()
+        .reads(files_named_by_scenario);
+    arguments
+        .add("-o,--output", folder_,
+             "Folder for trajectory.csv, metrics.json, report.html and drive.svg, for CommonRoad "
+             "solution.xml too; of a folder, one for each scenario, and drives.csv")
+        .required()
+        .writes("/");
+    arguments
+        .add("--timings", timings_file_, "File for the wall clock of each planning cycle (.csv)")
+        .writes("");
+    arguments.flag("--json", json_, "Print the metrics as one JSON document");
+    arguments.flag("--candidates", choice_.keeps_candidates,
+                   "Keep what became of each candidate, for the report; takes longer");
+    arguments.flag("--predict", choice_.predicts,
+                   "Foresee others from what could be seen of them, not by their true future");
+    declare_changes(arguments);
+    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.example(
+        "  roadbed simulate data/drive.json -o drive\n"
+        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (!timings_file_.empty()) check_writable(timings_file_, force_);
+    read_changes();
+    return fs::is_directory(scenario_file_) ? run_folder(streams, common)
+                                            : run_one(streams, common);
+  }
+
+ private:
+  void declare_changes(Arguments& arguments) {
+    arguments
+        .add("--vehicle", choice_.vehicle_file,
+             "Vehicle (.json) in place of the scenario's; of CommonRoad files there is no "
+             "solution.xml then, as that names vehicle 2")
+        .reads();
+    arguments
+        .add("--noise", choice_.noise_file,
+             "Noise of what is measured (.json, the keys of a scenario's noise), in place of the "
+             "scenario's")
+        .reads();
+    arguments
+        .add("--seed", seed_,
+             "Seed of the noise in place of the scenario's: the same drive for the same seed; "
+             "refused where there is no noise")
+        .checked(seed_fault);
+  }
+
+  void read_changes() {
+    ScenarioChanges& changes = choice_.changes;
+    if (!choice_.vehicle_file.empty()) {
+      changes.vehicle = read_vehicle_shape_json(choice_.vehicle_file);
+    }
+    if (!choice_.noise_file.empty()) changes.noise = read_noise_json(choice_.noise_file);
+    if (!seed_.empty()) changes.seed = parse_seed(seed_);
+  }
+
+  Exit run_one(const Streams& streams, const CommonOptions& common) const {
+    const DrivenScenario driven = drive_scenario(scenario_file_, choice_, *common.inputs);
+    make_output_folder(folder_, force_);
+    write_files(driven, folder_);
+    if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
+    print_one(streams.out, driven);
+    if (!common.quiet) {
+      fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
+    }
+    return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::failed;
+  }
+
+  void print_one(std::ostream& out, const DrivenScenario& driven) const {
+    if (json_) {
+      out << std::ranges::find(driven.files, "metrics.json", &DrivenFile::first)->second;
+      return;
+    }
+    fmt::print(out, "{}: {}\n", driven.name, driven.verdict.text);
+    if (driven.audit) {
+      fmt::print(out, "occupancy: {}\n", planning::name(driven.audit->verdict));
+    }
+  }
+
+  Exit run_folder(const Streams& streams, const CommonOptions& common) const {
+    std::vector<Row> rows = rows_of(scenario_file_);
+    if (rows.empty()) {
+      throw map::InputError({.file = scenario_file_.string(),
+                             .place = {},
+                             .element = {},
+                             .found = "no scenario",
+                             .needed = "files that end in .json or .xml",
+                             .remedy = "give another folder"});
+    }
+    make_output_folder(folder_, force_);
+    ProgressBar progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    drive_all(rows, {folder_, choice_, common.inputs, common.threads}, progress);
+    write_output(folder_ / "drives.csv", table_csv(rows));
+    if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
+    json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);
+    const bool all_good = std::ranges::all_of(rows, &Row::is_good);
+    return all_good ? Exit::ok : Exit::failed;
+  }
+
+  static std::string folder_timings_csv(const std::vector<Row>& rows) {
+    std::string csv = "scenario,median_ms,slowest_ms\n";
+    for (const Row& row : rows) {
+      csv += fmt::format("{},{:.3f},{:.3f}\n", row.file.stem().string(), row.median_ms,
+                         row.slowest_ms);
+    }
+    return csv;
+  }
+
+  static void print_json(std::ostream& out, const std::vector<Row>& rows) {
+    Json drives = Json::array();
+    for (const Row& row : rows) {
+      drives.push_back({{"scenario", row.file.stem().string()},
+                        {"outcome", row.outcome},
+                        {"at_s", row.at_s},
+                        {"text", row.text}});
+    }
+    out << Json{{"drives", drives}}.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+
+  static void print_table(std::ostream& out, const std::vector<Row>& rows) {
+    for (const Row& row : rows) {
+      fmt::print(out, "{:32} {:13} {}\n", row.file.stem().string(), row.outcome, row.text);
+    }
+    fmt::print(out, "{} of {} reach their goal\n", std::ranges::count_if(rows, &Row::is_good),
+               rows.size());
+  }
+
+  fs::path scenario_file_, folder_, timings_file_;
+  std::string seed_;
+  bool json_ = false, force_ = false;
+  DriveChoice choice_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_simulate_command() { return std::make_unique<SimulateCommand>(); }
+
+}  // namespace roadbed::tools

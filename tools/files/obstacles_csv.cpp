@@ -1,0 +1,123 @@
+#include "roadbed/tools/files/obstacles_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "roadbed/tools/files/csv.h"
+
+namespace roadbed::tools::inline files {
+namespace {
+
+enum ObstacleColumn : std::size_t { kTime, kX, kY, kHeading, kLength, kWidth, kId };
+
+struct ColumnRule {
+  std::string_view name;
+  double least, most;
+};
+
+constexpr double kFarthest = 1e9, kLongestBox_m = 1000.0;
+constexpr std::array<ColumnRule, 7> kRules{{
+    {"t_s", -kFarthest, kFarthest},
+    {"x_m", -kFarthest, kFarthest},
+    {"y_m", -kFarthest, kFarthest},
+    {"heading_rad", -kFarthest, kFarthest},
+    {"length_m", 1e-3, kLongestBox_m},
+    {"width_m", 1e-3, kLongestBox_m},
+    {"id", 0.0, 0.0},
+}};
+
+using Places = std::array<std::size_t, kRules.size()>;
+
+Places places_of_columns(const CsvReader& table) {
+  Places places{};
+  for (std::size_t c = 0; c < kRules.size(); ++c) {
+    places[c] = table.column(kRules[c].name, "t_s,id,x_m,y_m,heading_rad,length_m,width_m");
+  }
+  return places;
+}
+
+double number_in(const CsvReader& row, const Places& places, ObstacleColumn column) {
+  return row.number(places[column], kRules[column].least, kRules[column].most);
+}
+
+/// Gathers the rows of each id.
+class ObstacleTable {
+ public:
+  void add(const CsvReader& row, const Places& places) {
+    row.check_width();
+    const std::string& id = row.fields()[places[kId]];
+    if (id.empty()) row.refuse("column id", "is empty", "a name");
+    const auto [known, is_new] = number_of_.emplace(id, rows_.size());
+    if (is_new) {
+      rows_.emplace_back();
+      boxes_.push_back({.id = id, .length_m = 0.0, .width_m = 0.0, .motion = {}});
+    }
+    auto& rows = rows_[known->second];
+    rows.push_back({.t_s = number_in(row, places, kTime),
+                    .x_m = number_in(row, places, kX),
+                    .y_m = number_in(row, places, kY),
+                    .heading_rad = number_in(row, places, kHeading)});
+    if (rows.size() > 1 && !(rows.back().t_s > rows[rows.size() - 2].t_s)) {
+      row.refuse("column t_s",
+                 fmt::format("{} s does not come after {} s of the row before of \"{}\"",
+                             rows.back().t_s, rows[rows.size() - 2].t_s, id),
+                 "increasing times of each id");
+    }
+    planning::Obstacle& box = boxes_[known->second];
+    box.length_m = std::max(box.length_m, number_in(row, places, kLength));
+    box.width_m = std::max(box.width_m, number_in(row, places, kWidth));
+  }
+
+  std::vector<planning::MovingObstacle> take() {
+    std::vector<planning::MovingObstacle> obstacles;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      boxes_[i].motion = geometry::Trajectory(std::move(rows_[i]));
+      planning::MovingObstacle obstacle{.obstacle = std::move(boxes_[i])};
+      if (!obstacle.obstacle.is_static()) {
+        obstacle.from_s = obstacle.obstacle.motion.start_s();
+        obstacle.to_s = obstacle.obstacle.motion.end_s();
+      }
+      obstacles.push_back(std::move(obstacle));
+    }
+    return obstacles;
+  }
+
+ private:
+  std::map<std::string, std::size_t> number_of_;
+  std::vector<planning::Obstacle> boxes_;
+  std::vector<std::vector<geometry::TrajectoryPoint>> rows_;
+};
+
+}  // namespace
+
+std::vector<planning::MovingObstacle> parse_obstacles_csv(std::string_view bytes,
+                                                          const std::string& name) {
+  CsvReader table(bytes, name);
+  const Places places = places_of_columns(table);
+  ObstacleTable gathered;
+  while (table.next_row()) gathered.add(table, places);
+  std::vector<planning::MovingObstacle> obstacles = gathered.take();
+  if (obstacles.empty()) table.refuse("row", "there is none", "at least one below the header");
+  return obstacles;
+}
+
+std::string obstacles_text(const std::vector<planning::MovingObstacle>& obstacles) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  for (const planning::MovingObstacle& moving : obstacles) {
+    const planning::Obstacle& box = moving.obstacle;
+    fmt::format_to(out, "{},{},{},{},{}\n", box.id, box.length_m, box.width_m, moving.from_s,
+                   moving.to_s);
+    for (const auto& row : box.motion.points()) {
+      fmt::format_to(out, "{},{},{},{}\n", row.t_s, row.x_m, row.y_m, row.heading_rad);
+    }
+  }
+  return fmt::to_string(text);
+}
+
+}  // namespace roadbed::tools
