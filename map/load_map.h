@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "roadbed/map/formats.h"
 #include "roadbed/map/model/load_options.h"
 #include "roadbed/map/model/road_map.h"
 
@@ -14,5 +15,21 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options =
 
 /// The same from bytes; `name` stands for the file in messages.
 RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions& options = {});
+
+/// Writes a map in the format that the file's suffix names, over what is there. Compiled maps are
+/// written by write_compiled_map().
+/// @throws InputError if the suffix names none, the format cannot hold the map, or the file cannot
+///         be written.
+void save_map(const RoadMap& road_map, const std::filesystem::path& file,
+              const SaveOptions& options = {});
+
+/// A map file's bytes, XML in UTF-16 as UTF-8, and their format.
+struct MapBytes {
+  std::string bytes;
+  const Format& format;
+};
+
+/// @throws InputError if they are of no known format.
+MapBytes map_bytes(std::string bytes, const std::string& name);
 
 }  // namespace roadbed::map

@@ -4,12 +4,8 @@
 #include <iterator>
 #include <set>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/files/xml.h"
-#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/source_rules.h"
 #include "roadbed/map/validation/rules.h"
 #include "roadbed/map/validation/validate.h"
 
@@ -69,39 +65,22 @@ void add_lines(Findings& findings, const validation::ElementLines& lines) {
   }
 }
 
-validation::Finding refused(const std::string& message) {
-  return {.rule = "import.refused",
-          .asam_rule = {},
-          .severity = validation::Severity::error,
-          .element = "file",
-          .line = 0,
-          .in_map = std::nullopt,
-          .message = message};
-}
-
-/// What the text of the file shows, and the lines of its elements.
-struct TextFindings {
-  Findings findings;
-  validation::ElementLines lines;
-  bool is_well_formed = false;
-};
-
-TextFindings check_text(const std::string& bytes, const std::string& name,
-                        const validation::ValidateOptions& options) {
-  if (!looks_like_xml(bytes)) return {};
-  try {
-    const XmlDocument xml(bytes, name);
-    return {check_source(xml, options), element_lines(xml), true};
-  } catch (const InputError& error) {
-    if (!names_known_format(bytes)) throw;
-    return {{not_well_formed(name, error.what())}, {}, false};
-  }
+JudgedFile judge(MapBytes map, const std::string& name,
+                 const validation::ValidateOptions& options) {
+  if (map.format.judge != nullptr) return map.format.judge(std::move(map.bytes), name, options);
+  JudgedFile judged;
+  judged.road_map = map.format.read(std::move(map.bytes), name, {});
+  return judged;
 }
 
 }  // namespace
 
 std::vector<validation::RuleInfo> rule_catalogue() {
-  std::vector<validation::RuleInfo> catalogue = source_rule_infos();
+  std::vector<validation::RuleInfo> catalogue{well_formed_rule()};
+  for (const Format& format : formats()) {
+    if (format.rules == nullptr) continue;
+    for (const validation::RuleInfo& rule : format.rules()) catalogue.push_back(rule);
+  }
   for (const validation::MapRule& rule : validation::map_rules()) catalogue.push_back(rule.info);
   for (const validation::RuleInfo& rule : validation::import_rules()) catalogue.push_back(rule);
   std::sort(
@@ -112,24 +91,16 @@ std::vector<validation::RuleInfo> rule_catalogue() {
 
 Validation validate_bytes(std::string bytes, const std::string& name,
                           const validation::ValidateOptions& options) {
-  TextFindings text = check_text(bytes, name, options);
-  const bool names_format = names_known_format(bytes);
-  Validation validation;
-  validation.findings = std::move(text.findings);
-  try {
-    validation.road_map = parse_map(std::move(bytes), name);
-  } catch (const InputError& error) {
-    if (!names_format) throw;
-    validation.refusal = error.what();
-    if (text.is_well_formed) validation.findings.push_back(refused(error.what()));
-  }
+  JudgedFile judged = judge(map_bytes(std::move(bytes), name), name, options);
+  Validation validation{std::move(judged.road_map), std::move(judged.refusal),
+                        std::move(judged.findings)};
   if (validation.road_map) {
     for (validation::Finding& finding : validation.findings) {
       if (finding.in_map) finding.in_map = validation.road_map->to_map(*finding.in_map);
     }
     Findings of_map = validation::validate(*validation.road_map, options);
     drop_repeats(of_map, validation.findings);
-    add_lines(of_map, text.lines);
+    add_lines(of_map, judged.lines);
     append(validation.findings, std::move(of_map));
   }
   sort_by_rule(validation.findings);

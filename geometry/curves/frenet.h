@@ -24,7 +24,7 @@ struct OffsetCurve {
 };
 
 /// The parts of a curve beside a line that its curvature and its derivatives are made of, see
-/// geometry/README.md, section "Frenet frame": g = |p′|², q = p′ × p″ and their derivatives with
+/// README.md, section "Frenet frame": g = |p′|², q = p′ × p″ and their derivatives with
 /// respect to s. Where d is linear in a parameter, all eight are quadratic in it.
 struct SpeedAndTurn {
   std::array<double, 4> g;

@@ -1,7 +1,6 @@
 #include "roadbed/geometry/index/box_tree.h"
 
 #include <algorithm>
-#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -12,11 +11,10 @@ namespace {
 
 constexpr std::size_t kChildren = 8;
 
-Box parent_box(const std::vector<Box>& children, std::size_t parent) {
-  Box box;
-  const std::size_t end = std::min(children.size(), (parent + 1) * kChildren);
-  for (std::size_t i = parent * kChildren; i < end; ++i) box.extend(children[i]);
-  return box;
+std::vector<Box> parents_of(const std::vector<Box>& children, std::size_t width) {
+  std::vector<Box> parents((children.size() + width - 1) / width);
+  for (std::size_t i = 0; i < children.size(); ++i) parents[i / width].extend(children[i]);
+  return parents;
 }
 
 std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
@@ -25,12 +23,7 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
   std::vector<std::uint32_t> key;
   key.reserve(boxes.size());
   for (const Box& box : boxes) key.push_back(hilbert_key(all, box.center()));
-  std::vector<std::uint32_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(key[a], a) < std::pair(key[b], b);
-  });
-  return order;
+  return order_of_keys(key);
 }
 
 /// A node or box still to look at, the nearest first.
@@ -48,23 +41,25 @@ Box box_around(std::span<const Eigen::Vector2d> points) {
   return box;
 }
 
+std::vector<std::vector<Box>> packed_levels(std::vector<Box> leaves, std::size_t width) {
+  std::vector<std::vector<Box>> levels{std::move(leaves)};
+  do levels.push_back(parents_of(levels.back(), width));
+  while (levels.back().size() > 1);
+  return levels;
+}
+
 BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(hilbert_order(boxes)) {
   if (boxes.empty()) return;
-  levels_.emplace_back();
-  levels_.back().reserve(boxes.size());
-  for (const std::uint32_t index : order_) levels_.back().push_back(boxes[index]);
-  while (levels_.back().size() > kChildren) {
-    const std::vector<Box>& children = levels_.back();
-    std::vector<Box> parents((children.size() + kChildren - 1) / kChildren);
-    for (std::size_t i = 0; i < parents.size(); ++i) parents[i] = parent_box(children, i);
-    levels_.push_back(std::move(parents));
-  }
+  std::vector<Box> leaves;
+  leaves.reserve(boxes.size());
+  for (const std::uint32_t index : order_) leaves.push_back(boxes[index]);
+  levels_ = packed_levels(std::move(leaves), kChildren);
 }
 
 void BoxTree::visit(const Box& box, const std::function<void(std::size_t)>& found) const {
   if (levels_.empty()) return;
   std::vector<std::pair<std::size_t, std::size_t>> open;  // level, index
-  for (std::size_t i = levels_.back().size(); i-- > 0;) open.emplace_back(levels_.size() - 1, i);
+  open.emplace_back(levels_.size() - 1, 0);
   while (!open.empty()) {
     const auto [level, index] = open.back();
     open.pop_back();
@@ -89,7 +84,7 @@ std::size_t BoxTree::nearest(const Eigen::Vector2d& point, double most_m,
       if (lower_m < most_m) open.push({lower_m, level, i});
     }
   };
-  add(levels_.size() - 1, 0, levels_.back().size());
+  add(levels_.size() - 1, 0, 1);
   while (!open.empty() && open.top().distance_m < most_m) {
     const Open next = open.top();
     open.pop();

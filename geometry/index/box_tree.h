@@ -15,6 +15,10 @@ using Box = Eigen::AlignedBox2d;
 /// The least box around points; empty for none.
 Box box_around(std::span<const Eigen::Vector2d> points);
 
+/// A packed tree: the leaves, then level by level the boxes around each `width` of the level below,
+/// up to one root. Not of nothing.
+std::vector<std::vector<Box>> packed_levels(std::vector<Box> leaves, std::size_t width);
+
 /// Finds those of a fixed set of boxes that meet a box. A packed tree: boxes in the order of their
 /// centres along a Hilbert curve, eight to a node. Immutable. O(N log N) to make.
 class BoxTree {
@@ -36,7 +40,7 @@ class BoxTree {
 
  private:
   std::vector<std::uint32_t> order_;      ///< index of each leaf box
-  std::vector<std::vector<Box>> levels_;  ///< leaves first, the root's children last
+  std::vector<std::vector<Box>> levels_;  ///< leaves first, the root last
 };
 
 }  // namespace roadbed::geometry::index

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 // What of polygons needs exact arithmetic. exact.cpp is the only file that sees CGAL.
 

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/polygons/exact.h"
-#include "roadbed/geometry/polygons/monotone_ring.h"
-#include "roadbed/geometry/polygons/ring_crossings.h"
+#include "roadbed/geometry/polygons/ring_checks.h"
 #include "roadbed/geometry/polygons/weld.h"
 
 namespace roadbed::geometry::inline polygons {
@@ -215,6 +214,10 @@ bool is_on_ring(const Ring& ring, const Vector2d& point) {
 }
 
 }  // namespace
+
+Ring box_ring(const Vector2d& least, const Vector2d& most) {
+  return {least, {most.x(), least.y()}, most, {least.x(), most.y()}};
+}
 
 double signed_area_m2(const Ring& ring) {
   double twice_m2 = 0.0;

@@ -4,18 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 namespace roadbed::geometry::inline polygons {
 
-/// A closed ring of points, the last one not repeated.
-using Ring = std::vector<Eigen::Vector2d>;
-
-/// A region with holes: the outer ring counter-clockwise, holes clockwise, all simple.
-struct Polygon {
-  Ring outer;
-  std::vector<Ring> holes;
-};
+/// The corners of a box, counter-clockwise from its least one.
+Ring box_ring(const Eigen::Vector2d& least, const Eigen::Vector2d& most);
 
 /// Area inside the ring [m²], positive if it runs counter-clockwise.
 double signed_area_m2(const Ring& ring);
@@ -39,7 +33,7 @@ enum class RayCrossing { misses, crosses, on_edge };
 RayCrossing crossing(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                      const Eigen::Vector2d& point);
 
-/// Whether no two edges meet except neighbours at their shared point. Exact predicates (CGAL).
+/// Whether no two edges meet except neighbours at their shared point. Exact (CGAL).
 bool is_simple(const Ring& ring);
 
 /// What a ring winds around (non-zero rule) as simple polygons: where it folds over itself it falls
@@ -49,5 +43,15 @@ std::vector<Polygon> make_simple(const Ring& ring);
 /// Union of regions. Points within `weld_m` of each other are taken as one first, since roads of
 /// real files do not meet exactly; 0 welds nothing. Exact (CGAL). O((N + K) log N) for K crossings.
 std::vector<Polygon> unite(std::span<const Polygon> polygons, double weld_m);
+
+/// A union, and what the welding before it moved.
+struct United {
+  std::vector<Polygon> polygons;
+  std::size_t moved_points = 0;
+  double most_moved_m = 0.0;
+};
+
+/// `unite` that says what its welding did.
+United unite_and_report(std::span<const Polygon> polygons, double weld_m);
 
 }  // namespace roadbed::geometry::polygons

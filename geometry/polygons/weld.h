@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
-#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 namespace roadbed::geometry::inline polygons {
 
@@ -29,15 +28,5 @@ struct Welded {
 /// O(N log N) for rings whose edges are short against the whole.
 /// @throws std::invalid_argument if `weld_m` is negative or not finite.
 Welded weld(std::vector<Ring> rings, double weld_m);
-
-/// A union, and what the welding before it moved.
-struct United {
-  std::vector<Polygon> polygons;
-  std::size_t moved_points = 0;
-  double most_moved_m = 0.0;
-};
-
-/// `unite` that says what its welding did.
-United unite_and_report(std::span<const Polygon> polygons, double weld_m);
 
 }  // namespace roadbed::geometry::polygons

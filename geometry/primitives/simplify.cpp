@@ -12,11 +12,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-double distance_to_segment_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
-  const Vector2d along = b - a;
+double share_along(const Vector2d& along, const Vector2d& from_a) {
   const double squared = along.squaredNorm();
-  const double share = squared > 0.0 ? std::clamp((point - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (a + share * along - point).norm();
+  return squared > 0.0 ? std::clamp(from_a.dot(along) / squared, 0.0, 1.0) : 0.0;
 }
 
 struct Farthest {
@@ -24,10 +22,11 @@ struct Farthest {
   double distance_m;
 };
 
-Farthest farthest_between(std::span<const Vector2d> points, std::size_t first, std::size_t last) {
+Farthest farthest_between(std::span<const Vector2d> points, std::size_t first, std::size_t last,
+                          decltype(distance_to_foot_m)* distance) {
   Farthest farthest{first, 0.0};
   for (std::size_t i = first + 1; i < last; ++i) {
-    const double distance_m = distance_to_segment_m(points[first], points[last], points[i]);
+    const double distance_m = distance(points[first], points[last], points[i]);
     if (distance_m > farthest.distance_m) farthest = {i, distance_m};
   }
   return farthest;
@@ -35,7 +34,18 @@ Farthest farthest_between(std::span<const Vector2d> points, std::size_t first, s
 
 }  // namespace
 
-std::vector<Vector2d> simplify(std::span<const Vector2d> points, double tolerance_m) {
+double distance_to_foot_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
+  const Vector2d along = b - a;
+  return (a + share_along(along, point - a) * along - point).norm();
+}
+
+double distance_from_start_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
+  const Vector2d along = b - a;
+  return (point - a - share_along(along, point - a) * along).norm();
+}
+
+std::vector<Vector2d> simplify(std::span<const Vector2d> points, double tolerance_m,
+                               decltype(distance_to_foot_m)* distance) {
   if (!(tolerance_m >= 0.0) || !std::isfinite(tolerance_m)) {
     throw std::invalid_argument(
         fmt::format("simplify: tolerance must be finite and not negative, got {} m", tolerance_m));
@@ -47,7 +57,7 @@ std::vector<Vector2d> simplify(std::span<const Vector2d> points, double toleranc
   while (!open.empty()) {
     const auto [first, last] = open.back();
     open.pop_back();
-    const Farthest farthest = farthest_between(points, first, last);
+    const Farthest farthest = farthest_between(points, first, last, distance);
     if (farthest.distance_m <= tolerance_m) continue;
     keeps[farthest.index] = true;
     open.emplace_back(first, farthest.index);

@@ -113,7 +113,7 @@ void set_use(const XmlDocument& xml, pugi::xml_node lanelet, Lane& lane) {
 class LaneBuilder {
  public:
   LaneBuilder(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
-              std::vector<ImportRemark>& remarks)
+              std::vector<ImportDiagnostic>& remarks)
       : xml_(xml), origin_in_source_(origin_in_source), remarks_(remarks) {}
 
   void add(pugi::xml_node lanelet) {
@@ -188,7 +188,7 @@ class LaneBuilder {
 
   const XmlDocument& xml_;
   Eigen::Vector2d origin_in_source_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::size_t faults_ = 0;
   BuiltLanes built_;
 };
@@ -206,7 +206,7 @@ std::optional<BorderMark> read_marking(pugi::xml_node bound) {
 }
 
 BuiltLanes build_lanes(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
-                       std::vector<ImportRemark>& remarks) {
+                       std::vector<ImportDiagnostic>& remarks) {
   LaneBuilder builder(xml, origin_in_source, remarks);
   for (const pugi::xml_node lanelet : xml.root().children("lanelet")) builder.add(lanelet);
   return builder.take();

@@ -25,7 +25,7 @@ struct BuiltLanes {
 /// point, no length, an id that another one has) are remarked and left out.
 /// @throws InputError if a coordinate is unusable.
 BuiltLanes build_lanes(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
-                       std::vector<ImportRemark>& remarks);
+                       std::vector<ImportDiagnostic>& remarks);
 
 /// What a `lineMarking` child of a bound says; none if nothing.
 std::optional<BorderMark> read_marking(pugi::xml_node bound);

@@ -102,7 +102,7 @@ bool may_cross(MarkType type, bool from_right) {
 
 class Linker {
  public:
-  Linker(const XmlDocument& xml, const BuiltLanes& built, std::vector<ImportRemark>& remarks)
+  Linker(const XmlDocument& xml, const BuiltLanes& built, std::vector<ImportDiagnostic>& remarks)
       : xml_(xml), built_(built), remarks_(remarks), links_(built.lanes.size()) {}
 
   std::vector<LaneLinks> link() {
@@ -219,14 +219,14 @@ class Linker {
 
   const XmlDocument& xml_;
   const BuiltLanes& built_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::vector<LaneLinks> links_;
 };
 
 }  // namespace
 
 std::vector<LaneLinks> link_lanes(const XmlDocument& xml, const BuiltLanes& built,
-                                  std::vector<ImportRemark>& remarks) {
+                                  std::vector<ImportDiagnostic>& remarks) {
   return Linker(xml, built, remarks).link();
 }
 

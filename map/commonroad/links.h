@@ -14,6 +14,6 @@ namespace roadbed::map::commonroad {
 /// crossed, without one between lanes of the same direction, and only where the two borders run
 /// within 1 m of each other.
 std::vector<LaneLinks> link_lanes(const XmlDocument& xml, const BuiltLanes& built,
-                                  std::vector<ImportRemark>& remarks);
+                                  std::vector<ImportDiagnostic>& remarks);
 
 }  // namespace roadbed::map::commonroad

@@ -83,8 +83,6 @@ std::string format_name(const XmlDocument& xml) {
 
 }  // namespace
 
-bool is_common_road(std::string_view root_element) { return root_element == "commonRoad"; }
-
 RoadMapParts read(const XmlDocument& xml) {
   RoadMapParts parts;
   parts.format = format_name(xml);

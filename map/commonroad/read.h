@@ -1,14 +1,9 @@
 #pragma once
 
-#include <string_view>
-
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map::commonroad {
-
-/// Whether an XML document with this root element is CommonRoad.
-bool is_common_road(std::string_view root_element);
 
 /// The road network of a CommonRoad file (XML formats 2018b and 2020a). What moves on it is read by
 /// `read_scenario` of common_road_scenario.h.

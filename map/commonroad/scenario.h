@@ -73,6 +73,20 @@ struct PlanningProblem {
   std::vector<State> goals;  ///< reaching one of them is enough
 };
 
+/// A piece of a light's cycle.
+struct LightPhase {
+  std::string colour;  ///< the file's word: "red", "redYellow", "green", "yellow", "inactive"
+  double duration_steps = 0.0;  ///< 0 where the file has no number
+};
+
+/// What a traffic light shows; the map's signal of this id is where it stands.
+struct TrafficLight {
+  std::string id;
+  std::vector<LightPhase> cycle;  ///< over and over again
+  double offset_steps = 0.0;      ///< time step at which the cycle begins
+  bool is_active = true;
+};
+
 /// What a CommonRoad file says beyond its road network.
 struct Scenario {
   std::string benchmark_id, version;  ///< "DEU_Flensburg-35_1_T-1", "2020a"
@@ -81,6 +95,7 @@ struct Scenario {
   double time_step_s = 0.0;
   std::vector<Obstacle> obstacles;
   std::vector<PlanningProblem> planning_problems;
+  std::vector<TrafficLight> lights;
 };
 
 }  // namespace roadbed::map::commonroad

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "roadbed/map/commonroad/elements.h"
-#include "roadbed/map/commonroad/read.h"
 #include "roadbed/map/files/xml.h"
 
 namespace roadbed::map::commonroad {
@@ -183,6 +182,19 @@ PlanningProblem read_problem(const XmlDocument& xml, pugi::xml_node node) {
   return problem;
 }
 
+TrafficLight read_light(pugi::xml_node node) {
+  const pugi::xml_node cycle = node.child("cycle");
+  TrafficLight light{.id = node.attribute("id").value(),
+                     .cycle = {},
+                     .offset_steps = cycle.child("timeOffset").text().as_double(),
+                     .is_active = text_of(node.child("active")) != "false"};
+  for (const pugi::xml_node element : cycle.children("cycleElement")) {
+    light.cycle.push_back(
+        {text_of(element.child("color")), element.child("duration").text().as_double()});
+  }
+  return light;
+}
+
 /// 2018b lists the tags in an attribute, 2020a as elements.
 std::vector<std::string> read_tags(pugi::xml_node root) {
   std::vector<std::string> tags;
@@ -209,16 +221,10 @@ double read_time_step_s(const XmlDocument& xml) {
 
 }  // namespace
 
-bool holds_scenario(const std::string& bytes) {
-  constexpr std::size_t head = 100'000;
-  const auto at = std::string_view(bytes).substr(0, head).find("<commonRoad");
-  return at != std::string_view::npos;
-}
-
 Scenario parse_scenario(const std::string& bytes, const std::string& name) {
   const XmlDocument xml(bytes, name);
   const pugi::xml_node root = xml.root();
-  if (!is_common_road(root.name())) {
+  if (std::string_view(root.name()) != "commonRoad") {
     xml.refuse(root, fmt::format("root element <{}>", root.name()), "<commonRoad>",
                "give a CommonRoad file");
   }
@@ -236,6 +242,8 @@ Scenario parse_scenario(const std::string& bytes, const std::string& name) {
       scenario.planning_problems.push_back(read_problem(xml, child));
     } else if (kind == "obstacle" || kind.ends_with("Obstacle")) {
       scenario.obstacles.push_back(read_obstacle(xml, child));
+    } else if (kind == "trafficLight") {
+      scenario.lights.push_back(read_light(child));
     }
   }
   return scenario;

@@ -6,9 +6,6 @@
 
 namespace roadbed::map::commonroad {
 
-/// Whether the bytes are a CommonRoad file, by a look at the first element.
-bool holds_scenario(const std::string& bytes);
-
 /// Obstacles and planning problems of a CommonRoad file (XML formats 2018b and 2020a).
 /// @param name  stands for the file in messages.
 /// @throws InputError with the place in the file if one of them is unusable.

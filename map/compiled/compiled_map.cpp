@@ -19,7 +19,7 @@ namespace {
 
 using File = std::shared_ptr<const ChunkedFile>;
 
-constexpr std::string_view kNames = "names", kTotals = "totals", kAppendix = "appendix";
+constexpr std::string_view kNames = "names", kTotals = "totals", kRouting = "appendix";
 
 // Where the records of a list begin; one more than there are records.
 std::string places(std::string_view list) { return fmt::format("{}.at", list); }
@@ -54,7 +54,7 @@ void add_list(std::string_view name, const Fields& fields, const List& list,
     ByteWriter records(file.pending());
     for (const auto& item : list) {
       fields(records, item);
-      file.hand_on();
+      file.flush();
     }
   };
   outputs.push_back({std::string(name), count.size, write});
@@ -172,7 +172,7 @@ RoadMapIndex open_index(const File& file) {
     return file->has(name) ? FlatArray<char>(file, name) : FlatArray<char>();
   };
   return {LaneIndex(std::move(data)), FlatArray<std::uint32_t>(file, kNames), optional(kTotals),
-          optional(kAppendix)};
+          optional(kRouting)};
 }
 
 RoadMap open_map(const File& file) {
@@ -191,7 +191,7 @@ std::size_t visit_records(const File& file, std::string_view name, const Fields&
   const ListSections sections(file, name);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     visit(read_record<T>(*file, name, sections, fields, limits, i));
-    file->let_go_of_many();
+    file->evict_over_budget();
   }
   return sections.size();
 }
@@ -221,16 +221,16 @@ VerifiedMap verify(const File& file) {
 }  // namespace
 
 std::string write_compiled_map(const RoadMap& road_map) {
-  return write_compiled_map(road_map, road_map.index().appendix.bytes());
+  return write_compiled_map(road_map, road_map.index().routing.bytes());
 }
 
-std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix) {
+std::string write_compiled_map(const RoadMap& road_map, std::string_view routing) {
   StringSink sink;
-  write_compiled_map(road_map, appendix, sink);
+  write_compiled_map(road_map, routing, sink);
   return sink.take();
 }
 
-void write_compiled_map(const RoadMap& road_map, std::string_view appendix, ByteSink& sink) {
+void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink) {
   std::string head;
   ByteWriter head_writer(head);
   fields::head(head_writer, road_map.content());
@@ -245,7 +245,7 @@ void write_compiled_map(const RoadMap& road_map, std::string_view appendix, Byte
     add_list(name, fields, list, outputs);
   };
   fields::lists(add, road_map.content());
-  if (!appendix.empty()) outputs.push_back(output_of(std::string(kAppendix), appendix));
+  if (!routing.empty()) outputs.push_back(output_of(std::string(kRouting), routing));
   write_outputs(outputs, sink);
 }
 

@@ -11,13 +11,13 @@
 namespace roadbed::map::inline compiled {
 
 /// The compiled form of a map (`.rbm`): everything of it, with the index that locates points,
-/// ready to use. map/README.md shows its layout. The second form puts an appendix in place of the
-/// map's own, see RoadMapIndex.
+/// ready to use. map/README.md shows its layout. The second form puts a routing section in place of
+/// the map's own, see RoadMapIndex.
 std::string write_compiled_map(const RoadMap& road_map);
-std::string write_compiled_map(const RoadMap& road_map, std::string_view appendix);
+std::string write_compiled_map(const RoadMap& road_map, std::string_view routing);
 
 /// The same into a sink, piece by piece: the file never stands in memory.
-void write_compiled_map(const RoadMap& road_map, std::string_view appendix, ByteSink& sink);
+void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink);
 
 /// Whether the bytes begin as a compiled map does.
 bool is_compiled_map(std::string_view bytes);

@@ -94,7 +94,7 @@ void TotalsCounter::add(const Area& area) {
   for (const geometry::Polygon& polygon : area.in_map) extend(polygon.outer);
 }
 
-void TotalsCounter::add(const ImportRemark& remark) {
+void TotalsCounter::add(const ImportDiagnostic& remark) {
   const auto at = std::ranges::lower_bound(totals_.remarks, remark.rule, {},
                                            &std::pair<std::string, std::uint64_t>::first);
   if (at == totals_.remarks.end() || at->first != remark.rule) {

@@ -44,7 +44,7 @@ class TotalsCounter {
   void add(const Lane& lane);
   void add(const LaneLinks& links);
   void add(const Area& area);
-  void add(const ImportRemark& remark);
+  void add(const ImportDiagnostic& remark);
 
   /// Other things count for nothing.
   template <typename Thing>

@@ -38,17 +38,17 @@ Stacked stacked_groups(const RoadMap& road_map, double headroom_m) {
 
 }  // namespace
 
-std::vector<int> storeys_of_lanes(const RoadMap& road_map, double headroom_m) {
-  constexpr int kMostStoreys = 8;  // roads that wind around each other have no end
+std::vector<int> levels_of_lanes(const RoadMap& road_map, double headroom_m) {
+  constexpr int kMostLevels = 8;  // roads that wind around each other have no end
   const Stacked stacked = stacked_groups(road_map, headroom_m);
-  std::vector<int> storey(road_map.roads().size() + road_map.lanes().size(), 0);
-  for (int pass = 0; pass < kMostStoreys; ++pass) {
+  std::vector<int> level(road_map.roads().size() + road_map.lanes().size(), 0);
+  for (int pass = 0; pass < kMostLevels; ++pass) {
     for (const auto& [lower, upper] : stacked) {
-      storey[upper] = std::min(std::max(storey[upper], storey[lower] + 1), kMostStoreys);
+      level[upper] = std::min(std::max(level[upper], level[lower] + 1), kMostLevels);
     }
   }
   std::vector<int> of_lanes;
-  for (const Lane& lane : road_map.lanes()) of_lanes.push_back(storey[group_of(road_map, lane.id)]);
+  for (const Lane& lane : road_map.lanes()) of_lanes.push_back(level[group_of(road_map, lane.id)]);
   return of_lanes;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "roadbed/geometry/polygons/weld.h"
+#include "roadbed/geometry/polygons/polygon.h"
 
 namespace roadbed::map::inline derived {
 namespace {

@@ -37,15 +37,6 @@ class Caption {
   double px_, top_m_;
 };
 
-/// The largest of 1, 2, 5, 10, … metres that is no longer.
-double round_length_m(double longest_m) {
-  const double power = std::pow(10.0, std::floor(std::log10(longest_m)));
-  for (const double digit : {5.0, 2.0}) {
-    if (digit * power <= longest_m) return digit * power;
-  }
-  return power;
-}
-
 /// A bar of four fields in turn dark and light, and how long it is.
 void draw_scale_bar(const Drawing& drawing, Caption& caption) {
   const double length_m = round_length_m(0.18 * drawing.sheet.size_m.x());

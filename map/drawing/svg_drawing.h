@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/map/drawing/svg_canvas.h"
+#include "roadbed/map/drawing/svg.h"
 #include "roadbed/map/model/road_map.h"
 
 // Private to write_svg.cpp and its parts.
@@ -57,7 +57,7 @@ std::string_view ground_colour(LaneType type);
 /// Attributes of a line without fill.
 std::string stroke(std::string_view colour, double width_m, std::string_view more = {});
 
-// Each draws one part; `lanes` are those of one storey, in order of id.
+// Each draws one part; `lanes` are those of one level, in order of id.
 void draw_grid(Drawing& drawing);
 void draw_areas(Drawing& drawing);
 void draw_surfaces(Drawing& drawing, const std::vector<LaneId>& lanes, bool is_bridge);

@@ -48,14 +48,14 @@ double Sheet::stroke_m(double least_m, double least_px) const {
 
 namespace {
 
-/// Lanes by storey, in order of id.
-std::vector<std::vector<LaneId>> lanes_of_storeys(const RoadMap& road_map) {
-  const std::vector<int> storeys = storeys_of_lanes(road_map);
+/// Lanes by level, in order of id.
+std::vector<std::vector<LaneId>> lanes_of_levels(const RoadMap& road_map) {
+  const std::vector<int> levels = levels_of_lanes(road_map);
   std::vector<std::vector<LaneId>> lanes(1);
   for (const Lane& lane : road_map.lanes()) {
-    const auto storey = static_cast<std::size_t>(storeys[lane.id.index]);
-    if (storey >= lanes.size()) lanes.resize(storey + 1);
-    lanes[storey].push_back(lane.id);
+    const auto level = static_cast<std::size_t>(levels[lane.id.index]);
+    if (level >= lanes.size()) lanes.resize(level + 1);
+    lanes[level].push_back(lane.id);
   }
   return lanes;
 }
@@ -94,7 +94,7 @@ std::string write_svg(const RoadMap& road_map, const SvgOptions& options) {
   draw_areas(drawing);
   draw_objects(drawing);
   bool is_bridge = false;
-  for (const std::vector<LaneId>& lanes : svg::lanes_of_storeys(road_map)) {
+  for (const std::vector<LaneId>& lanes : svg::lanes_of_levels(road_map)) {
     draw_surfaces(drawing, lanes, is_bridge);
     draw_directions(drawing, lanes);
     draw_markings(drawing, lanes);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "roadbed/map/elements/lane.h"
+#include "roadbed/map/elements/lane_types.h"
 
 namespace roadbed::map::inline elements {
 
@@ -27,6 +29,13 @@ struct LaneMatches {
   std::span<const LaneMatch> of(std::size_t point) const {
     return std::span(all).subspan(ranges[point].from, ranges[point].to - ranges[point].from);
   }
+};
+
+/// What is looked for near a point.
+struct LaneQuery {
+  double radius_m = std::numeric_limits<double>::infinity();    ///< farthest lane
+  std::size_t count = std::numeric_limits<std::size_t>::max();  ///< most lanes
+  LaneTypes types = LaneTypes::all();
 };
 
 }  // namespace roadbed::map::elements

@@ -16,7 +16,7 @@
 namespace roadbed::map::inline elements {
 
 /// What the loader saw and did not keep, or had to mend: for `info` and `validate`.
-struct ImportRemark {
+struct ImportDiagnostic {
   std::string rule;       ///< "import.unused-element", …
   bool is_fault = false;  ///< a fault of the file (a warning of `validate`), else a note
   std::string element;    ///< "road 12"
@@ -59,7 +59,7 @@ struct MapContent : MapHead {
   List<Area> areas;
   List<Lane> lanes;
   List<LaneLinks> links;  ///< one per lane
-  List<ImportRemark> remarks;
+  List<ImportDiagnostic> remarks;
   List<UnusedContent> unused;  ///< in order of name
 };
 

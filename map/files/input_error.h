@@ -12,12 +12,12 @@ class InputError : public std::runtime_error {
  public:
   /// What the message is made of; empty parts are left out.
   struct Parts {
-    std::string file;     ///< as the user named it
-    std::string place;    ///< line number, "byte 1234", or empty
-    std::string element;  ///< "road 12, lane -1"
-    std::string found;    ///< what is there
-    std::string needed;   ///< what has to be there
-    std::string remedy;   ///< what the user can do
+    std::string file = {};     ///< as the user named it
+    std::string place = {};    ///< line number, "byte 1234", or empty
+    std::string element = {};  ///< "road 12, lane -1"
+    std::string found = {};    ///< what is there
+    std::string needed = {};   ///< what has to be there
+    std::string remedy = {};   ///< what the user can do
   };
   explicit InputError(const Parts& parts);
 

@@ -20,10 +20,8 @@ using Message = std::array<char, 256>;
 [[noreturn]] void refuse(const std::string& crs, const std::string& found,
                          const std::string& remedy) {
   throw InputError({.file = "coordinate reference system",
-                    .place = {},
                     .element = fmt::format("\"{}\"", crs),
                     .found = found,
-                    .needed = {},
                     .remedy = remedy});
 }
 

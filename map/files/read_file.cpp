@@ -13,12 +13,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found,
                          const std::string& remedy) {
-  throw InputError({.file = file.string(),
-                    .place = {},
-                    .element = {},
-                    .found = found,
-                    .needed = {},
-                    .remedy = remedy});
+  throw InputError({.file = file.string(), .found = found, .remedy = remedy});
 }
 
 void check_regular(const std::filesystem::path& file) {

@@ -49,10 +49,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   }
   if (!stream.eof()) {
     throw InputError({.file = file.string(),
-                      .place = {},
-                      .element = {},
                       .found = "cannot be read to its end",
-                      .needed = {},
                       .remedy = "check the disk, or copy the file to another one"});
   }
   return hash.take_hex();

@@ -29,8 +29,6 @@ void check_size(const std::string& bytes, const std::string& name) {
   const bool too_long = bytes.size() > longest;
   if (!too_long && tree_bytes(bytes) <= 128'000'000 + 5 * bytes.size()) return;
   throw InputError({.file = name,
-                    .place = {},
-                    .element = {},
                     .found = too_long ? "more than 4 GB" : "next to nothing but empty elements",
                     .needed = "a map with content of its size",
                     .remedy = "check whether it is the right file"});
@@ -91,7 +89,6 @@ XmlDocument::XmlDocument(std::string bytes, std::string name)
     throw InputError(
         {.file = name_,
          .place = std::to_string(line_starts_.line_at(static_cast<std::size_t>(result.offset))),
-         .element = {},
          .found = fmt::format("not well-formed XML ({})", result.description()),
          .needed = "a whole XML document",
          .remedy = "check whether the file was cut off or is of another kind"});
@@ -152,19 +149,31 @@ double XmlDocument::number_or(pugi::xml_node node, const char* attribute, double
 
 std::optional<double> XmlDocument::optional_number(pugi::xml_node node,
                                                    const char* attribute) const {
-  const pugi::xml_attribute found = node.attribute(attribute);
+  pugi::xml_attribute first;
+  return optional_number(node, attribute, first);
+}
+
+std::optional<double> XmlDocument::optional_number(pugi::xml_node node, const char* attribute,
+                                                   pugi::xml_attribute& next) const {
+  const pugi::xml_attribute found = node.attribute(attribute, next);
   return found ? parse_finite(found.value()) : std::nullopt;
 }
 
-int XmlDocument::integer(pugi::xml_node node, const char* attribute) const {
+std::optional<int> XmlDocument::optional_integer(pugi::xml_node node, const char* attribute) const {
   const std::string_view written = trim(node.attribute(attribute).value());
   int value = 0;
   const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), value);
-  if (error != std::errc() || end != written.data() + written.size() || written.empty()) {
-    refuse(node, fmt::format("{}=\"{}\"", attribute, written), "a whole number",
-           "correct the value");
-  }
+  if (error != std::errc() || end != written.data() + written.size() || written.empty()) return {};
   return value;
+}
+
+int XmlDocument::integer(pugi::xml_node node, const char* attribute) const {
+  const std::optional<int> value = optional_integer(node, attribute);
+  if (!value) {
+    refuse(node, fmt::format("{}=\"{}\"", attribute, trim(node.attribute(attribute).value())),
+           "a whole number", "correct the value");
+  }
+  return *value;
 }
 
 std::string XmlDocument::text(pugi::xml_node node, const char* attribute) const {

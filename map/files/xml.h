@@ -45,9 +45,12 @@ class XmlDocument {
   /// The same, `fallback` where the attribute is missing.
   double number_or(pugi::xml_node node, const char* attribute, double fallback) const;
   std::optional<double> optional_number(pugi::xml_node node, const char* attribute) const;
+  std::optional<double> optional_number(pugi::xml_node node, const char* attribute,
+                                        pugi::xml_attribute& next) const;
 
   /// @throws InputError if the attribute is missing or not a whole number.
   int integer(pugi::xml_node node, const char* attribute) const;
+  std::optional<int> optional_integer(pugi::xml_node node, const char* attribute) const;
 
   /// @throws InputError if the attribute is missing or empty.
   std::string text(pugi::xml_node node, const char* attribute) const;

@@ -58,6 +58,77 @@ bool append_reference(std::string_view name, std::string& text) {
   return known != kNamed.end();
 }
 
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
+
+bool continues(std::string_view text, std::size_t at) {
+  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+}
+
+unsigned char byte_at(std::string_view text, std::size_t at) {
+  return at < text.size() ? static_cast<unsigned char>(text[at]) : 0;
+}
+
+// Length of the well-formed UTF-8 sequence at a place, 0 if there is none (Unicode table 3-7).
+std::size_t sequence_length(std::string_view text, std::size_t at) {
+  const unsigned char first = byte_at(text, at), second = byte_at(text, at + 1);
+  if (first < 0x80) return 1;
+  if (first < 0xC2 || first > 0xF4 || !continues(text, at + 1)) return 0;
+  if (first < 0xE0) return 2;
+  if (!continues(text, at + 2)) return 0;
+  if (first == 0xE0 && second < 0xA0) return 0;
+  if (first == 0xED && second > 0x9F) return 0;  // surrogates
+  if (first < 0xF0) return 3;
+  if (first == 0xF0 && second < 0x90) return 0;
+  if (first == 0xF4 && second > 0x8F) return 0;
+  return continues(text, at + 3) ? 4 : 0;
+}
+
+enum class Markup { xml, html };
+
+std::string_view entity(char letter, Markup markup) {
+  switch (letter) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return markup == Markup::html ? "&#39;" : std::string_view();
+    default:
+      return {};
+  }
+}
+
+// What stands for a control character, empty if it stays.
+std::string_view control(char letter, Markup markup) {
+  const auto code = static_cast<unsigned char>(letter);
+  if (markup == Markup::xml) return code < 0x20 ? " " : std::string_view();
+  const bool stays = (code >= 0x20 && code != 0x7F) || letter == '\t' || letter == '\n';
+  return stays ? std::string_view() : kReplacement;
+}
+
+std::string escaped(std::string_view text, Markup markup) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = sequence_length(text, at);
+    if (length == 0) {
+      result += kReplacement;
+    } else if (const auto replaced = entity(text[at], markup); !replaced.empty()) {
+      result += replaced;
+    } else if (const auto instead = control(text[at], markup); !instead.empty()) {
+      result += instead;
+    } else {
+      result += text.substr(at, length);
+    }
+    at += length == 0 ? 1 : length;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string decode_xml(std::string_view raw) {
@@ -79,28 +150,9 @@ std::string decode_xml(std::string_view raw) {
   return text;
 }
 
-std::string xml_text(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
-}
+std::string xml_text(std::string_view text) { return escaped(text, Markup::xml); }
+
+std::string html_text(std::string_view text) { return escaped(text, Markup::html); }
 
 bool looks_like_xml(const std::string& bytes) {
   const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");

@@ -9,8 +9,13 @@ namespace roadbed::map::inline files {
 /// to anything else left as they are, and every break, "\r\n" being one, or tab a space.
 std::string decode_xml(std::string_view raw);
 
-/// Text with the characters that XML reserves written as references.
+/// Text for XML, in elements and in double quotes: & < > " are written as entities, control
+/// characters as blanks, bytes that are no UTF-8 as U+FFFD.
 std::string xml_text(std::string_view text);
+
+/// Text for HTML and for SVG inside it: the same, but ' is an entity, too, tabs and line breaks
+/// stay, and other control characters become U+FFFD.
+std::string html_text(std::string_view text);
 
 /// Whether bytes begin as XML does, blanks and a byte order mark left out.
 bool looks_like_xml(const std::string& bytes);

@@ -58,7 +58,6 @@ void XmlScanner::refuse(const std::string& reason) const {
   const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<long>(end), '\n');
   throw InputError({.file = file_,
                     .place = std::to_string(line),
-                    .element = {},
                     .found = fmt::format("not well-formed XML ({})", reason),
                     .needed = "a whole XML document",
                     .remedy = "check whether the file was cut off or is of another kind"});

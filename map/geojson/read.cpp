@@ -7,28 +7,25 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/geometry/curves/transverse_mercator.h"
 #include "roadbed/geometry/polygons/polygon_fault.h"
-#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/geojson/document.h"
 
 namespace roadbed::map::geojson {
 namespace {
 
-geometry::GeographicPoint geographic(const Eigen::Vector2d& degrees) {
-  return {degrees.y() * geometry::kRadiansPerDegree, degrees.x() * geometry::kRadiansPerDegree};
-}
+GeographicPoint geographic(const Eigen::Vector2d& degrees) { return {degrees.y(), degrees.x()}; }
 
 /// From positions of the file to metres of the source's plane.
 class Frame {
  public:
   Frame(const Document& document, const Eigen::Vector2d& first) : crs_(document.crs) {
     if (!document.in_degrees) return;
-    const geometry::GeographicPoint point = geographic(first);
-    const int zone = geometry::utm_zone(point);
+    const GeographicPoint point = geographic(first);
+    const int zone = utm_zone(point);
     const bool south = first.y() < 0.0;
-    grid_ = geometry::utm_grid(zone, south);
+    grid_ = utm_grid(zone, south);
     crs_ = fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
   }
 
@@ -38,7 +35,7 @@ class Frame {
   }
 
  private:
-  std::optional<geometry::TransverseMercator> grid_;
+  std::optional<TransverseMercator> grid_;
   std::string crs_;
 };
 
@@ -127,7 +124,6 @@ class AreaBuilder {
 [[noreturn]] void refuse_empty(const std::string& name, const RoadMapParts& parts) {
   const bool has_fault = !parts.remarks.empty();
   throw InputError({.file = name,
-                    .place = {},
                     .element = has_fault ? parts.remarks.back().element : std::string(),
                     .found = has_fault ? parts.remarks.back().message : "no polygon",
                     .needed = "at least one usable Polygon or MultiPolygon",
@@ -136,7 +132,7 @@ class AreaBuilder {
 
 }  // namespace
 
-bool is_geojson(const std::string& bytes) {
+bool is_geojson(std::string_view bytes) {
   const auto first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   return first != std::string::npos && bytes[first] == '{';
 }

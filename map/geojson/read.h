@@ -1,13 +1,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map::geojson {
 
 /// Whether bytes may be GeoJSON: a JSON object.
-bool is_geojson(const std::string& bytes);
+bool is_geojson(std::string_view bytes);
 
 /// Road-surface polygons without lanes (RFC 7946): each Polygon and MultiPolygon is an area that
 /// vehicles may be on, its properties are kept as attributes. Other geometries are counted.

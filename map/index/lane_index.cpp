@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "roadbed/geometry/index/hilbert.h"
 #include "roadbed/map/index/nearest_lanes.h"
 
 namespace roadbed::map::inline index {
@@ -36,18 +37,16 @@ std::vector<std::uint32_t> along_hilbert_curve(std::span<const Eigen::Vector2d> 
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  std::vector<std::uint64_t> keys;
+  std::vector<std::uint32_t> keys;
   keys.reserve(points.size());
   for (const Eigen::Vector2d& point : points) {
     const Eigen::Vector2d share = (point - low).cwiseQuotient((high - low).cwiseMax(1e-9));
     const auto scaled = [](double value) {  // what is not finite goes anywhere
       return static_cast<std::uint32_t>(std::min(std::max(0.0, value), 1.0) * 65535.0);
     };
-    const std::uint64_t place = lane_index::hilbert_place(scaled(share.x()), scaled(share.y()));
-    keys.push_back(place << 32 | keys.size());
+    keys.push_back(geometry::hilbert_index(scaled(share.x()), scaled(share.y())));
   }
-  std::sort(keys.begin(), keys.end());
-  return {keys.begin(), keys.end()};
+  return geometry::order_of_keys(keys);
 }
 
 }  // namespace

@@ -3,24 +3,15 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/elements/lane_match.h"
-#include "roadbed/map/elements/lane_types.h"
 #include "roadbed/map/index/lane_index_data.h"
 
 namespace roadbed::map::inline index {
-
-/// What is looked for near a point.
-struct LaneQuery {
-  double radius_m = std::numeric_limits<double>::infinity();    ///< farthest lane
-  std::size_t count = std::numeric_limits<std::size_t>::max();  ///< most lanes
-  LaneTypes types = LaneTypes::all();
-};
 
 /// Finds lanes near a point or in a box: a packed Hilbert R-tree [Kamel 1993,
 /// doi:10.1145/170088.170403] of pieces of lanes, on flat arrays, so that it is used where it lies

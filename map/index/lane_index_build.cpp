@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "roadbed/geometry/index/hilbert.h"
 #include "roadbed/map/index/lane_index_check.h"
 #include "roadbed/map/index/lane_index_data.h"
 
@@ -87,18 +87,14 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
     const float share = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
     return static_cast<std::uint32_t>(std::min(std::max(0.0F, share), 1.0F) * 65535.0F);
   };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // place along the curve, cell
-  places.reserve(boxes.size());
+  std::vector<std::uint32_t> keys;
+  keys.reserve(boxes.size());
   for (const Box& box : boxes) {
-    places.emplace_back(hilbert_place(scaled(box.low_x, box.high_x, whole.low_x, whole.high_x),
-                                      scaled(box.low_y, box.high_y, whole.low_y, whole.high_y)),
-                        static_cast<std::uint32_t>(places.size()));
+    keys.push_back(
+        geometry::hilbert_index(scaled(box.low_x, box.high_x, whole.low_x, whole.high_x),
+                                scaled(box.low_y, box.high_y, whole.low_y, whole.high_y)));
   }
-  std::sort(places.begin(), places.end());
-  std::vector<std::uint32_t> order;
-  order.reserve(places.size());
-  for (const auto& [place, cell] : places) order.push_back(cell);
-  return order;
+  return geometry::order_of_keys(keys);
 }
 
 std::vector<Node> build_nodes(const std::vector<Box>& of_cells,
@@ -279,22 +275,6 @@ std::vector<std::uint64_t> level_starts(std::uint64_t cells) {
     if (width == 1) break;
   }
   return starts;
-}
-
-std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y) {
-  std::uint32_t place = 0;
-  for (std::uint32_t side = 1U << 15; side > 0; side >>= 1) {
-    const std::uint32_t right = (x & side) != 0 ? 1 : 0, upper = (y & side) != 0 ? 1 : 0;
-    place = place << 2 | ((3 * right) ^ upper);
-    if (upper == 0) {  // turn the quadrant so that the curve goes on from its end
-      if (right == 1) {
-        x = ~x;
-        y = ~y;
-      }
-      std::swap(x, y);
-    }
-  }
-  return place;
 }
 
 Data build(const LazyList<Lane>& lanes) {

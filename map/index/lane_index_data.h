@@ -77,9 +77,6 @@ inline constexpr auto visit = [](auto& io, auto&... data) {
 /// First node of each level, leaves first, and the count of all nodes at the end.
 std::vector<std::uint64_t> level_starts(std::uint64_t cells);
 
-/// Place along a Hilbert curve of order 16 through the square [0, 65535]².
-std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y);
-
 /// Lanes without a polygon get no cells.
 Data build(const LazyList<Lane>& lanes);
 

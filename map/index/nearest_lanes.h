@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "roadbed/map/elements/lane_match.h"
-#include "roadbed/map/index/lane_index.h"
 #include "roadbed/map/index/lane_index_data.h"
 
 namespace roadbed::map::inline index::lane_index {
@@ -36,9 +35,8 @@ struct Scratch {
 
 /// Leaves in scratch.found what `LaneIndex::near` finds around one point.
 /// @param levels     of the data: level_starts().
-/// @param at_most_m  as many lanes as asked for are known to be no farther; may be infinite. What
-/// is
-///                   found is the same, but sooner.
+/// @param at_most_m  as many lanes as asked for are known to be no farther; may be infinite.
+///                   What is found is the same, but sooner.
 void find_nearest(const Data& data, const std::vector<std::uint64_t>& levels,
                   const LaneQuery& query, const Eigen::Vector2d& point, double at_most_m,
                   Scratch& scratch);

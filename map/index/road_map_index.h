@@ -22,7 +22,7 @@ struct RoadMapIndex {
   FlatArray<char> totals = {};
   /// What a user of the map has made of it and wants to find again in its compiled form: bytes that
   /// the map does not look into. Empty: nothing.
-  FlatArray<char> appendix = {};
+  FlatArray<char> routing = {};
 
   static RoadMapIndex of(const LazyList<Lane>& lanes);
 

@@ -1,11 +1,9 @@
 #include "roadbed/map/lanelet2/crs_text.h"
 
 #include <charconv>
+#include <cmath>
 #include <map>
-
 #include <string>
-
-#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
@@ -50,18 +48,18 @@ bool is_on_wgs84(const Parameters& parameters) {
                    !parameters.contains("a"));
 }
 
-std::optional<geometry::TransverseMercator> grid_of_epsg(std::string_view digits) {
+std::optional<TransverseMercator> grid_of_epsg(std::string_view digits) {
   int code = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
   if (error != std::errc() || end != digits.data() + digits.size()) return {};
   const int zone = code % 100;
   if ((code / 100 != 326 && code / 100 != 327) || zone < 1 || zone > 60) return {};
-  return geometry::utm_grid(zone, code / 100 == 327);
+  return utm_grid(zone, code / 100 == 327);
 }
 
 }  // namespace
 
-std::optional<geometry::TransverseMercator> transverse_mercator_of(std::string_view crs) {
+std::optional<TransverseMercator> transverse_mercator_of(std::string_view crs) {
   if (crs.starts_with("EPSG:") || crs.starts_with("epsg:")) return grid_of_epsg(crs.substr(5));
   const Parameters parameters = parameters_of(crs);
   if (!is_on_wgs84(parameters) ||
@@ -71,17 +69,16 @@ std::optional<geometry::TransverseMercator> transverse_mercator_of(std::string_v
   if (says(parameters, "proj", "utm")) {
     const auto zone = number(parameters, "zone", 0.0);
     if (!zone || !(*zone >= 1.0 && *zone <= 60.0)) return {};
-    return geometry::utm_grid(static_cast<int>(*zone), parameters.contains("south"));
+    return utm_grid(static_cast<int>(*zone), parameters.contains("south"));
   }
   if (!says(parameters, "proj", "tmerc")) return {};
   const auto meridian = number(parameters, "lon_0", 0.0);
   const auto latitude = number(parameters, "lat_0", 0.0);
   const auto scale = number(parameters, parameters.contains("k_0") ? "k_0" : "k", 1.0);
   const auto east_m = number(parameters, "x_0", 0.0), north_m = number(parameters, "y_0", 0.0);
-  if (!meridian || !latitude || !scale || !east_m || !north_m || !(*scale > 0.0)) return {};
-  return geometry::TransverseMercator{*meridian * geometry::kRadiansPerDegree,
-                                      *latitude * geometry::kRadiansPerDegree, *scale, *east_m,
-                                      *north_m};
+  if (!meridian || !latitude || !scale || !east_m || !north_m) return {};
+  if (!(*scale > 0.0) || !(std::abs(*latitude) <= 90.0)) return {};
+  return TransverseMercator{*meridian, *latitude, *scale, *east_m, *north_m};
 }
 
 }  // namespace roadbed::map::lanelet2

@@ -115,8 +115,6 @@ class DocumentReader {
  private:
   [[noreturn]] void refuse(const char* found) const {
     throw InputError({.file = document_.name,
-                      .place = {},
-                      .element = {},
                       .found = found,
                       .needed = "a map with content of its size",
                       .remedy = "check whether it is the right file"});

@@ -75,7 +75,7 @@ struct Document {
   IdIndex node_index, way_index, relation_index;
   std::string crs;
   Eigen::Vector2d origin_in_source{0, 0};
-  std::vector<ImportRemark> remarks;
+  std::vector<ImportDiagnostic> remarks;
   std::map<std::string, std::size_t> unused;
 
   /// Points of a way.

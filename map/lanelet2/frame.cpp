@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "roadbed/geometry/primitives/angle.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
@@ -24,9 +21,8 @@ bool is_geographic(const NodePlace& node) {
          !(is_local_place(node) && node.latitude_deg == 0.0 && node.longitude_deg == 0.0);
 }
 
-geometry::GeographicPoint radians(const NodePlace& node) {
-  return {node.latitude_deg * geometry::kRadiansPerDegree,
-          node.longitude_deg * geometry::kRadiansPerDegree};
+GeographicPoint geographic(const NodePlace& node) {
+  return {node.latitude_deg, node.longitude_deg};
 }
 
 std::string epsg_of_utm(int zone, bool south) {
@@ -34,11 +30,11 @@ std::string epsg_of_utm(int zone, bool south) {
 }
 
 // The grid as a PROJ string, its shift in whole millimetres; as an EPSG code if it has none.
-std::string text_of(const geometry::TransverseMercator& grid) {
-  const double longitude_deg = std::round(grid.central_meridian_rad / geometry::kRadiansPerDegree);
+std::string text_of(const TransverseMercator& grid) {
+  const double longitude_deg = grid.central_meridian_deg;
   const int zone = static_cast<int>((longitude_deg + 183.0) / 6.0);
   for (const bool south : {false, true}) {
-    const geometry::TransverseMercator whole = geometry::utm_grid(zone, south);
+    const TransverseMercator whole = utm_grid(zone, south);
     if (grid.false_easting_m == whole.false_easting_m &&
         grid.false_northing_m == whole.false_northing_m) {
       return epsg_of_utm(zone, south);
@@ -63,36 +59,36 @@ Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
   }
   const auto first = std::find_if(nodes.begin(), nodes.end(), is_geographic);
   if (first == nodes.end()) return;
-  const int zone = geometry::utm_zone(radians(*first));
+  const int zone = utm_zone(geographic(*first));
   const bool south = first->latitude_deg < 0.0;
-  grid_ = geometry::utm_grid(zone, south);
+  grid_ = utm_grid(zone, south);
   crs_ = epsg_of_utm(zone, south);
 }
 
 void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
   const auto has_both = [](const NodePlace& n) { return is_local_place(n) && is_geographic(n); };
   const auto first = std::find_if(nodes.begin(), nodes.end(), has_both);
-  geometry::TransverseMercator grid;
+  TransverseMercator grid;
   if (first == nodes.end()) {
     const std::optional<MgrsSquare> square = mgrs_square(mgrs_code);
     if (!square) {
       doubt_ = "its nodes have local_x and local_y only";
       return;
     }
-    grid = geometry::utm_grid(square->zone, square->south);
+    grid = utm_grid(square->zone, square->south);
     grid.false_easting_m -= square->corner_m.x();
     grid.false_northing_m -= square->corner_m.y();
   } else {
-    grid = geometry::utm_grid(geometry::utm_zone(radians(*first)), first->latitude_deg < 0.0);
+    grid = utm_grid(utm_zone(geographic(*first)), first->latitude_deg < 0.0);
     const Eigen::Vector2d shift_m =
-        grid.forward(radians(*first)) - Eigen::Vector2d(first->local_x_m, first->local_y_m);
+        grid.forward(geographic(*first)) - Eigen::Vector2d(first->local_x_m, first->local_y_m);
     grid.false_easting_m -= std::round(shift_m.x() * 1e3) / 1e3;
     grid.false_northing_m -= std::round(shift_m.y() * 1e3) / 1e3;
     double worst_m = 0.0;
     for (const NodePlace& node : nodes) {
       if (!has_both(node)) continue;
       const Eigen::Vector2d local(node.local_x_m, node.local_y_m);
-      worst_m = std::max(worst_m, (grid.forward(radians(node)) - local).norm());
+      worst_m = std::max(worst_m, (grid.forward(geographic(node)) - local).norm());
     }
     if (!(worst_m <= kAgreement_m)) {
       doubt_ =
@@ -107,11 +103,10 @@ void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view m
 std::optional<Eigen::Vector2d> Frame::place(const NodePlace& node) const {
   if (local_ && is_local_place(node)) return Eigen::Vector2d(node.local_x_m, node.local_y_m);
   if (!grid_ || !is_geographic(node)) return {};
-  const geometry::GeographicPoint point = radians(node);
-  const double from_meridian =
-      std::remainder(point.longitude_rad - grid_->central_meridian_rad, 2.0 * std::numbers::pi);
-  if (std::abs(from_meridian) > 60.0 * geometry::kRadiansPerDegree) return {};
-  return grid_->forward(point);
+  const double from_meridian_deg =
+      std::remainder(node.longitude_deg - grid_->central_meridian_deg, 360.0);
+  if (std::abs(from_meridian_deg) > 60.0) return {};
+  return grid_->forward(geographic(node));
 }
 
 std::optional<MgrsSquare> mgrs_square(std::string_view code) {
@@ -131,12 +126,9 @@ std::optional<MgrsSquare> mgrs_square(std::string_view code) {
   if (zone % 2 == 0) row = (row + 15) % 20;  // even zones begin with F
   const bool south = band < 10;
   // The row's letter repeats; the band says which of its squares is meant.
-  const double middle_latitude =
-      (-80.0 + 8.0 * static_cast<double>(band) + 4.0) * geometry::kRadiansPerDegree;
-  const double middle_m =
-      geometry::utm_grid(zone, south)
-          .forward({middle_latitude, (6.0 * zone - 183.0) * geometry::kRadiansPerDegree})
-          .y();
+  const TransverseMercator grid = utm_grid(zone, south);
+  const double middle_deg = -80.0 + 8.0 * static_cast<double>(band) + 4.0;
+  const double middle_m = grid.forward({middle_deg, grid.central_meridian_deg}).y();
   const double first_m = 1e5 * static_cast<double>(row);
   const double turns = std::round((middle_m - first_m - 5e4) / 2e6);
   return MgrsSquare{zone, south, {1e5 * static_cast<double>(column + 1), first_m + 2e6 * turns}};

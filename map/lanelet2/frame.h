@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "roadbed/geometry/curves/transverse_mercator.h"
+#include "roadbed/map/files/transverse_mercator.h"
 
 namespace roadbed::map::lanelet2 {
 
@@ -38,7 +38,7 @@ class Frame {
   void find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code);
 
   bool local_ = false;
-  std::optional<geometry::TransverseMercator> grid_;  ///< shifted so that it yields local ones
+  std::optional<TransverseMercator> grid_;  ///< shifted so that it yields local ones
   std::string crs_, doubt_;
 };
 

@@ -49,8 +49,6 @@ class LaneBuilder {
   [[noreturn]] void refuse() const {
     throw InputError(
         {.file = document_.name,
-         .place = {},
-         .element = {},
          .found = lanelets_ == 0
                       ? "no lanelet"
                       : fmt::format("none of its {} lanelets has two usable borders", lanelets_),
@@ -91,10 +89,7 @@ class LaneBuilder {
   void spend(std::size_t points) {
     if (points > points_left_) {
       throw InputError({.file = document_.name,
-                        .place = {},
-                        .element = {},
                         .found = "its lanelets repeat more points than a map of this size can hold",
-                        .needed = {},
                         .remedy = "check whether many lanelets share one long border"});
     }
     points_left_ -= points;

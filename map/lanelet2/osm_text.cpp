@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
-#include <numbers>
 #include <optional>
 #include <utility>
 
-#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::map::lanelet2 {
@@ -52,7 +50,7 @@ void append_tags(const Attributes& tags, std::string& text) {
 }  // namespace
 
 OsmText::OsmText(const RoadMap& road_map, std::string crs, const CrsOffset& offset,
-                 const geometry::TransverseMercator& grid)
+                 const TransverseMercator& grid)
     : road_map_(road_map),
       crs_(std::move(crs)),
       offset_(offset),
@@ -68,13 +66,12 @@ std::int64_t OsmText::add_node(const Eigen::Vector3d& in_map) {
   const std::int64_t id = fresh();
   const Eigen::Vector2d at = road_map_.to_source(in_map.head<2>());
   const geometry::Pose2 crs_from_source{offset_.x_m, offset_.y_m, offset_.heading_rad};
-  const geometry::GeographicPoint place = grid_.inverse(crs_from_source * at);
+  const GeographicPoint place = grid_.inverse(crs_from_source * at);
   fmt::format_to(std::back_inserter(nodes_),
                  "  <node id=\"{}\" lat=\"{:.12f}\" lon=\"{:.12f}\">\n"
                  "    <tag k=\"local_x\" v=\"{:.6f}\"/>\n    <tag k=\"local_y\" v=\"{:.6f}\"/>\n"
                  "    <tag k=\"ele\" v=\"{:.4f}\"/>\n  </node>\n",
-                 id, place.latitude_rad / geometry::kRadiansPerDegree,
-                 place.longitude_rad / geometry::kRadiansPerDegree, at.x(), at.y(),
+                 id, place.latitude_deg, place.longitude_deg, at.x(), at.y(),
                  in_map.z() + offset_.z_m);
   return id;
 }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/curves/transverse_mercator.h"
+#include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map::lanelet2 {
@@ -19,7 +19,7 @@ class OsmText {
   /// @param offset  of the map's raw coordinates in the CRS.
   /// @param grid    the CRS, from latitude and longitude.
   OsmText(const RoadMap& road_map, std::string crs, const CrsOffset& offset,
-          const geometry::TransverseMercator& grid);
+          const TransverseMercator& grid);
 
   /// What the source called a thing if it is a number that is still free, else a fresh id.
   std::int64_t keep(const std::string& source_id);
@@ -42,7 +42,7 @@ class OsmText {
   const RoadMap& road_map_;
   const std::string crs_;
   const CrsOffset offset_;
-  const geometry::TransverseMercator grid_;
+  const TransverseMercator grid_;
   std::int64_t next_;
   std::set<std::int64_t> taken_;
   std::string nodes_, ways_, relations_;

@@ -28,7 +28,7 @@ void count_unused(Document& document) {
   }
 }
 
-void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportRemark>& remarks) {
+void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportDiagnostic>& remarks) {
   const auto unknown = std::count_if(lanes.begin(), lanes.end(), [](const Lane& lane) {
     return is_drivable(lane.type) && lane.speed_limits.empty();
   });
@@ -38,8 +38,6 @@ void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportRem
 }
 
 }  // namespace
-
-bool is_lanelet2(std::string_view root_element) { return root_element == "osm"; }
 
 RoadMapParts read(const std::string& bytes, const std::string& file) {
   Document document = read_document(bytes, file);

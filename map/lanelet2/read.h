@@ -1,14 +1,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map::lanelet2 {
-
-/// Whether the root element is that of an OpenStreetMap file, which holds Lanelet2 maps.
-bool is_lanelet2(std::string_view root_element);
 
 /// Everything of a Lanelet2 map that a RoadMap holds; its lines are kept as they are, whatever the
 /// chord error asked for.

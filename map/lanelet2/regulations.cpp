@@ -62,11 +62,8 @@ class RegulationBuilder {
   void spend(std::size_t amount) {
     if (amount > budget_) {
       throw InputError({.file = document_.name,
-                        .place = {},
-                        .element = {},
                         .found = "its regulatory elements repeat more than a map of this size can "
                                  "hold",
-                        .needed = {},
                         .remedy = "check whether many of them name the same lines and lanelets"});
     }
     budget_ -= amount;

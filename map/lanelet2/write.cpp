@@ -21,12 +21,10 @@ using Line3 = std::vector<Eigen::Vector3d>;
 
 constexpr double kCentreline_m = 1e-3;  // a centreline this near to Lanelet2's own is not written
 
-geometry::TransverseMercator grid_of(const std::string& crs) {
+TransverseMercator grid_of(const std::string& crs) {
   if (const auto grid = transverse_mercator_of(crs)) return *grid;
   throw InputError(
       {.file = "Lanelet2",
-       .place = {},
-       .element = {},
        .found = crs.empty()
                     ? "the map's CRS is unknown"
                     : fmt::format("the map's CRS \"{}\" is no transverse Mercator one", crs),

@@ -67,14 +67,14 @@ class SideSampler {
       }
     };
     add(plan_view_.pieces());
-    add(road_.elevation.records());
-    add(road_.superelevation.records());
-    add(road_.lane_offset.records());
+    add(road_.elevation.cubic.records());
+    add(road_.superelevation.cubic.records());
+    add(road_.lane_offset.cubic.records());
     add(road_.shape.profiles());
     add((side_.sign > 0 ? road_.crossfall_left : road_.crossfall_right).records());
     for (const LaneRecord* lane : side_.lanes) {
-      add(lane->width.records());
-      add(lane->border.records());
+      add(lane->width.cubic.records());
+      add(lane->border.cubic.records());
       add(lane->heights);
     }
     std::sort(breaks.begin(), breaks.end());
@@ -161,27 +161,6 @@ class SideSampler {
 };
 
 }  // namespace
-
-std::size_t next_section(const RoadRecord& road, std::size_t section, int sign) {
-  return sign > 0 ? road.sections[section].next_left : road.sections[section].next_right;
-}
-
-SectionSide section_side(const RoadRecord& road, std::size_t section, int sign) {
-  const std::size_t next = next_section(road, section, sign);
-  SectionSide side{road.sections[section].s_m,
-                   next < road.sections.size() ? road.sections[next].s_m : road.length_m,
-                   sign,
-                   {}};
-  const auto& lanes = road.sections[section].lanes;
-  if (sign > 0) {
-    for (auto it = lanes.upper_bound(0); it != lanes.end(); ++it) side.lanes.push_back(&it->second);
-  } else {
-    for (auto it = std::make_reverse_iterator(lanes.lower_bound(0)); it != lanes.rend(); ++it) {
-      side.lanes.push_back(&it->second);
-    }
-  }
-  return side;
-}
 
 SideLines sample_side(const RoadRecord& road, std::size_t road_index,
                       const geometry::PlanView& plan_view, const SectionSide& side,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,19 +12,38 @@
 #include "roadbed/map/elements/attributes.h"
 #include "roadbed/map/elements/border_mark.h"
 #include "roadbed/map/elements/lane.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/opendrive/shape.h"
 
-/// What an OpenDRIVE file says, element by element, before it becomes a RoadMap. Names follow the
-/// standard (ASAM OpenDRIVE 1.4–1.8). Stations are those of the road everywhere: offsets from a
-/// lane section's start are added up when read.
+/// What an OpenDRIVE file says, element by element. Names follow the standard (ASAM OpenDRIVE
+/// 1.4–1.8). Stations are those of the road everywhere: offsets from a lane section's start are
+/// added up when read.
+///
+/// A document is first as the file lists it, faults and all: that is what the rules judge. `mend`
+/// then makes of it what a map is built from. Up to there a number that is missing or broken is
+/// NaN: comparisons with it are false, so that one fault is not found by many rules. A `node` is
+/// where an element stands in the file; it holds as long as the XmlDocument does its elements.
 namespace roadbed::map::opendrive {
 
 enum class ContactPoint { start, end };
 
+/// A cubic record of a profile (elevation, width, …), with the element that holds it.
+struct CubicElement {
+  pugi::xml_node node;
+  geometry::CubicRecord record;
+};
+
+/// The records of a profile: as listed, and from `mend` on as the function of s that they are.
+struct Profile {
+  std::vector<CubicElement> listed;
+  geometry::PiecewiseCubic cubic;
+};
+
 /// <predecessor>/<successor> of a road.
 struct RoadLink {
+  pugi::xml_node node;
   bool to_junction = false;
   std::string element_id;
   std::optional<ContactPoint> contact;
@@ -61,13 +81,16 @@ struct LaneAccess {
 };
 
 struct LaneRecord {
+  pugi::xml_node node;
+  const char* side = "";  ///< the element that it stands in: "left", "center" or "right"
+  int place = 0;          ///< among the lanes of its section, as listed
   int id = 0;
   LaneType type = LaneType::none;
   std::string direction;  ///< 1.8: "standard", "reversed", "both", or empty
   bool level = false;     ///< is kept flat where the road leans
   long line = 0;
   std::vector<int> predecessors, successors;
-  geometry::PiecewiseCubic width, border;
+  Profile width, border;
   std::vector<RoadMark> marks;
   std::vector<SpeedRecord> speeds;
   std::vector<LaneHeight> heights;
@@ -76,17 +99,28 @@ struct LaneRecord {
 
   /// What places the outer border; where a file has both, widths take precedence.
   const geometry::PiecewiseCubic& outer() const {
-    return width.empty() && !border.empty() ? border : width;
+    return goes_by_width() ? width.cubic : border.cubic;
   }
+  bool goes_by_width() const { return !width.cubic.empty() || border.cubic.empty(); }
 };
 
 /// Lanes by id: left ones positive, the centre 0, right ones negative. A single-sided section
 /// says nothing of the other side, where the section before goes on.
 struct LaneSection {
+  pugi::xml_node node;
   double s_m = 0.0;
   bool single_side = false;
   long line = 0;
-  std::map<int, LaneRecord> lanes;
+  std::multimap<int, LaneRecord> lanes;  ///< from `mend` on one of each id
+
+  /// Lanes as the file lists them. One without a whole number for an id is nowhere.
+  std::vector<std::reference_wrapper<const LaneRecord>> listed() const;
+
+  /// The (first) lane of that id, null if there is none.
+  const LaneRecord* find(int id) const {
+    const auto found = lanes.lower_bound(id);
+    return found == lanes.end() || found->first != id ? nullptr : &found->second;
+  }
 
   /// Sections before and after that say something of a side; the number of sections: none.
   std::size_t next_left = 0, next_right = 0, before_left = 0, before_right = 0;
@@ -96,6 +130,8 @@ struct LaneSection {
 using LaneRanges = std::vector<std::pair<int, int>>;
 
 struct SignalRecord {
+  pugi::xml_node node;
+  bool is_broken = false;  ///< a number of it cannot be read: no signal of the map
   std::string id, name;
   double s_m = 0.0, t_m = 0.0, z_offset_m = 0.0, heading_offset_rad = 0.0;
   double width_m = 0.0;
@@ -120,6 +156,8 @@ struct SignalRecord {
 
 /// <signalReference>: a signal of another road that speaks to lanes of this one too.
 struct SignalReference {
+  pugi::xml_node node;
+  bool is_broken = false;
   std::string signal_id;
   double s_m = 0.0, t_m = 0.0;
   char orientation = 0;
@@ -146,6 +184,8 @@ struct Repeat {
 };
 
 struct ObjectRecord {
+  pugi::xml_node node;
+  bool is_broken = false;
   std::string id, name, type, subtype;
   double s_m = 0.0, t_m = 0.0, z_offset_m = 0.0, heading_rad = 0.0;
   double length_m = 0.0, width_m = 0.0, radius_m = 0.0, height_m = 0.0;
@@ -170,7 +210,17 @@ struct Structure {
   LaneRanges lanes;
 };
 
+/// <geometry> of a plan view, as listed.
+struct GeometryRecord {
+  pugi::xml_node node;
+  double s_m = 0.0, length_m = 0.0;
+  /// None if it has no length, no curve, or a number that is broken or beyond that of any road.
+  std::optional<geometry::PlanPiece> piece;
+};
+
 struct RoadRecord {
+  pugi::xml_node node;
+  bool is_repeated = false;  ///< has the id of a road before it: no road of the map
   std::string id, name;
   std::string junction_id;  ///< empty if it is not a connecting road
   double length_m = 0.0;
@@ -178,8 +228,9 @@ struct RoadRecord {
   long line = 0;
   std::optional<RoadLink> predecessor, successor;
   std::vector<SpeedRecord> speeds;
-  std::vector<geometry::PlanPiece> plan_pieces;  ///< relative to Document::origin_in_source
-  geometry::PiecewiseCubic elevation, superelevation, lane_offset;
+  std::vector<GeometryRecord> geometry;          ///< as listed, up to `mend`
+  std::vector<geometry::PlanPiece> plan_pieces;  ///< from `mend` on, relative to origin_in_source
+  Profile elevation, superelevation, lane_offset;
   geometry::PiecewiseCubic crossfall_left, crossfall_right;
   LateralShape shape;
   std::vector<LaneSection> sections;
@@ -191,6 +242,8 @@ struct RoadRecord {
 };
 
 struct JunctionConnection {
+  pugi::xml_node node;
+  bool is_broken = false;  ///< a lane of it is no number: no connection of the map
   std::string incoming_road, connecting_road;
   bool direct = false;  ///< linkedRoad of a direct junction
   ContactPoint contact = ContactPoint::start;
@@ -209,6 +262,7 @@ struct JunctionController {
 };
 
 struct JunctionRecord {
+  pugi::xml_node node;
   std::string id, name;
   JunctionKind kind = JunctionKind::common;
   std::vector<JunctionConnection> connections;
@@ -224,15 +278,10 @@ struct Document {
   std::vector<RoadRecord> roads;
   std::vector<JunctionRecord> junctions;
   std::vector<Controller> controllers;
-  std::vector<ImportRemark> remarks;
+  std::vector<ImportDiagnostic> remarks;
   std::vector<UnusedContent> unused;
-  std::size_t lanes_left = 0;  ///< how many more may be read: a bound of memory
+  std::size_t lanes_left = 0;         ///< how many more may be read: a bound of memory
+  std::optional<InputError> refusal;  ///< the first fault that makes it unusable as a map
 };
-
-/// Whether an XML document with this root element is OpenDRIVE.
-bool is_open_drive(const std::string& root_element);
-
-/// @throws InputError if it is not an OpenDRIVE document with at least one usable road.
-Document read_document(const XmlDocument& xml);
 
 }  // namespace roadbed::map::opendrive

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/header.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
 
@@ -10,16 +10,16 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-void read_revision(const XmlDocument& xml, pugi::xml_node header, Document& document) {
+void read_revision(AttributeReader& in, pugi::xml_node header, Document& document) {
   const std::string major = header.attribute("revMajor").value();
   const std::string minor = header.attribute("revMinor").value();
   if (!major.empty() && major != "1") {
-    xml.refuse(header, fmt::format("OpenDRIVE revision {}.{}", major, minor), "revision 1.4 to 1.8",
-               "convert the file to a 1.x revision");
+    in.refuse(header, fmt::format("OpenDRIVE revision {}.{}", major, minor), "revision 1.4 to 1.8",
+              "convert the file to a 1.x revision");
   }
   document.version = major.empty() ? "of unknown revision" : major + "." + minor;
   if (major.empty() || minor.empty()) {
-    document.remarks.push_back({"import.version", true, "header", xml.line_of(header),
+    document.remarks.push_back({"import.version", true, "header", in.xml.line_of(header),
                                 "revMajor or revMinor is missing; state the revision"});
   }
 }
@@ -74,11 +74,11 @@ void read_offset(const XmlDocument& xml, pugi::xml_node header, Document& docume
 
 }  // namespace
 
-void read_header(const XmlDocument& xml, Document& document) {
-  const pugi::xml_node header = xml.root().child("header");
-  read_revision(xml, header, document);
-  read_crs(xml, header, document);
-  read_offset(xml, header, document);
+void read_header(AttributeReader& in, Document& document) {
+  const pugi::xml_node header = in.xml.root().child("header");
+  read_revision(in, header, document);
+  read_crs(in.xml, header, document);
+  read_offset(in.xml, header, document);
 }
 
 }  // namespace roadbed::map::opendrive

@@ -1,8 +1,7 @@
-#include "roadbed/map/opendrive/junctions.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <string_view>
 
-#include "roadbed/map/opendrive/roads.h"
 #include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive {
@@ -15,34 +14,37 @@ JunctionKind junction_kind(std::string_view type) {
   return JunctionKind::common;
 }
 
-JunctionConnection read_connection(const XmlDocument& xml, pugi::xml_node node) {
-  JunctionConnection connection;
-  connection.line = xml.line_of(node);
+void read_connection(AttributeReader& in, JunctionConnection& connection) {
+  const pugi::xml_node node = connection.node;
+  connection.line = in.xml.line_of(node);
   connection.incoming_road = node.attribute("incomingRoad").value();
   connection.direct = !node.attribute("connectingRoad") && node.attribute("linkedRoad");
   connection.connecting_road =
       node.attribute(connection.direct ? "linkedRoad" : "connectingRoad").value();
   const std::string_view contact = node.attribute("contactPoint").value();
   connection.contact = contact == "end" ? ContactPoint::end : ContactPoint::start;
-  connection.predecessor = read_road_link(xml, node.child("predecessor"));
-  connection.successor = read_road_link(xml, node.child("successor"));
+  connection.predecessor = read_road_link(in, node.child("predecessor"));
+  connection.successor = read_road_link(in, node.child("successor"));
   for (const auto link : node.children("laneLink")) {
-    connection.lane_links.emplace_back(xml.integer(link, "from"), xml.integer(link, "to"));
+    const auto from = in.integer(link, "from"), to = in.integer(link, "to");
+    if (from && to) connection.lane_links.emplace_back(*from, *to);
   }
-  return connection;
 }
 
 }  // namespace
 
-void read_junctions(const XmlDocument& xml, Document& document) {
-  for (const auto node : xml.root().children("junction")) {
+void read_junctions(AttributeReader& in, Document& document) {
+  for (const auto node : in.xml.root().children("junction")) {
     JunctionRecord junction;
-    junction.id = xml.text(node, "id");
+    junction.node = node;
+    junction.id = in.text(node, "id");
     junction.name = node.attribute("name").value();
     junction.kind = junction_kind(node.attribute("type").value());
-    for (const auto connection : node.children("connection")) {
-      read_or_remark("import.junction", document.remarks,
-                     [&] { junction.connections.push_back(read_connection(xml, connection)); });
+    for (const auto child : node.children("connection")) {
+      JunctionConnection& connection = junction.connections.emplace_back();
+      connection.node = child;
+      connection.is_broken = is_broken(in, "import.junction", document.remarks,
+                                       [&] { read_connection(in, connection); });
     }
     for (const auto priority : node.children("priority")) {
       junction.priorities.push_back(

@@ -49,7 +49,7 @@ bool drives_forward(const RoadRecord& road, const LaneRecord& lane) {
 class LaneBuilder {
  public:
   LaneBuilder(const Document& document, const std::map<std::string, JunctionId>& junctions,
-              double max_error_m, PointBudget& budget, std::vector<ImportRemark>& remarks)
+              double max_error_m, PointBudget& budget, std::vector<ImportDiagnostic>& remarks)
       : document_(document),
         junctions_(junctions),
         max_error_m_(max_error_m),
@@ -165,7 +165,7 @@ class LaneBuilder {
   const std::map<std::string, JunctionId>& junctions_;
   double max_error_m_;
   PointBudget& budget_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   BuiltLanes built_;
 };
 
@@ -187,7 +187,7 @@ double BuiltLanes::station_m(LaneId lane, double road_s_m) const {
 
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       PointBudget& budget, std::vector<ImportRemark>& remarks) {
+                       PointBudget& budget, std::vector<ImportDiagnostic>& remarks) {
   LaneBuilder builder(document, junctions, max_error_m, budget, remarks);
   for (std::size_t road = 0; road < document.roads.size(); ++road) {
     for (std::size_t section = 0; section < document.roads[road].sections.size(); ++section) {

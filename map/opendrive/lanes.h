@@ -51,6 +51,6 @@ std::vector<Stretch<Value>> in_driving_order(const BuiltLanes& built, LaneId lan
 /// @throws RoadFault as sample_side does.
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
-                       PointBudget& budget, std::vector<ImportRemark>& remarks);
+                       PointBudget& budget, std::vector<ImportDiagnostic>& remarks);
 
 }  // namespace roadbed::map::opendrive

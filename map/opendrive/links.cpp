@@ -22,7 +22,7 @@ struct LaneEnd {
 
 class Linker {
  public:
-  Linker(const Document& document, const BuiltLanes& built, std::vector<ImportRemark>& remarks)
+  Linker(const Document& document, const BuiltLanes& built, std::vector<ImportDiagnostic>& remarks)
       : document_(document), built_(built), remarks_(remarks), links_(built.lanes.size()) {
     for (std::size_t i = 0; i < document.roads.size(); ++i) road_index_[document.roads[i].id] = i;
   }
@@ -384,7 +384,7 @@ class Linker {
 
   const Document& document_;
   const BuiltLanes& built_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::vector<LaneLinks> links_;
   std::map<std::string, std::size_t> road_index_;
   std::set<std::pair<LaneId, LaneId>> against_;  // lanes whose link is left out
@@ -393,7 +393,7 @@ class Linker {
 }  // namespace
 
 std::vector<LaneLinks> link_lanes(const Document& document, const BuiltLanes& built,
-                                  std::vector<ImportRemark>& remarks) {
+                                  std::vector<ImportDiagnostic>& remarks) {
   return Linker(document, built, remarks).link();
 }
 

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/objects.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <string_view>
 
@@ -7,38 +7,38 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-Outline read_outline(const XmlDocument& xml, pugi::xml_node node) {
+Outline read_outline(AttributeReader& in, pugi::xml_node node) {
   Outline outline;
   outline.closed = std::string_view(node.attribute("closed").value()) != "false";
   for (const auto corner : node.children()) {
     const std::string_view kind = corner.name();
     if (kind == "cornerRoad") {
-      outline.corners.push_back({true, xml.number(corner, "s"), xml.number(corner, "t"),
-                                 xml.number_or(corner, "dz", 0.0)});
+      outline.corners.push_back(
+          {true, in.number(corner, "s"), in.number(corner, "t"), in.number_or(corner, "dz", 0.0)});
     } else if (kind == "cornerLocal") {
-      outline.corners.push_back({false, xml.number(corner, "u"), xml.number(corner, "v"),
-                                 xml.number_or(corner, "z", 0.0)});
+      outline.corners.push_back(
+          {false, in.number(corner, "u"), in.number(corner, "v"), in.number_or(corner, "z", 0.0)});
     }
   }
   return outline;
 }
 
 // <outline> of 1.4, or several in <outlines> from 1.5 on.
-void read_outlines(const XmlDocument& xml, pugi::xml_node node, ObjectRecord& object) {
+void read_outlines(AttributeReader& in, pugi::xml_node node, ObjectRecord& object) {
   for (const auto outline : node.children("outline")) {
-    object.outlines.push_back(read_outline(xml, outline));
+    object.outlines.push_back(read_outline(in, outline));
   }
   for (const auto outline : node.child("outlines").children("outline")) {
-    object.outlines.push_back(read_outline(xml, outline));
+    object.outlines.push_back(read_outline(in, outline));
   }
 }
 
-Repeat read_repeat(const XmlDocument& xml, pugi::xml_node node, const ObjectRecord& object) {
+Repeat read_repeat(AttributeReader& in, pugi::xml_node node, const ObjectRecord& object) {
   const auto value = [&](const char* name, double otherwise) {
-    return xml.number_or(node, name, otherwise);
+    return in.number_or(node, name, otherwise);
   };
-  return {xml.number(node, "s"),
-          xml.number(node, "length"),
+  return {in.number(node, "s"),
+          in.number(node, "length"),
           value("distance", 0.0),
           value("tStart", object.t_m),
           value("tEnd", value("tStart", object.t_m)),
@@ -61,15 +61,15 @@ void keep_words(pugi::xml_node node, ObjectRecord& object) {
   }
 }
 
-ObjectRecord read_object(const XmlDocument& xml, pugi::xml_node node) {
-  ObjectRecord object;
-  const auto value = [&](const char* name) { return xml.number_or(node, name, 0.0); };
-  object.line = xml.line_of(node);
+void read_object(AttributeReader& in, ObjectRecord& object) {
+  const pugi::xml_node node = object.node;
+  const auto value = [&](const char* name) { return in.number_or(node, name, 0.0); };
+  object.line = in.xml.line_of(node);
   object.id = node.attribute("id").value();
   object.name = node.attribute("name").value();
   object.type = node.attribute("type").value();
   object.subtype = node.attribute("subtype").value();
-  object.s_m = xml.number(node, "s");
+  object.s_m = in.number(node, "s");
   object.t_m = value("t");
   object.z_offset_m = value("zOffset");
   object.heading_rad = value("hdg");
@@ -78,43 +78,47 @@ ObjectRecord read_object(const XmlDocument& xml, pugi::xml_node node) {
   object.radius_m = value("radius");
   object.height_m = value("height");
   object.orientation = orientation_of(node.attribute("orientation").value());
-  object.lanes = read_lane_ranges(xml, node);
-  read_outlines(xml, node, object);
+  object.lanes = read_lane_ranges(in, node);
+  read_outlines(in, node, object);
   for (const auto repeat : node.children("repeat")) {
-    object.repeats.push_back(read_repeat(xml, repeat, object));
+    object.repeats.push_back(read_repeat(in, repeat, object));
   }
   keep_words(node, object);
-  return object;
 }
 
-Structure read_structure(const XmlDocument& xml, pugi::xml_node node) {
+Structure read_structure(AttributeReader& in, pugi::xml_node node) {
   return {node.name(),
           node.attribute("id").value(),
           node.attribute("name").value(),
           node.attribute("type").value(),
-          xml.number(node, "s"),
-          xml.number(node, "length"),
-          read_lane_ranges(xml, node)};
+          in.number(node, "s"),
+          in.number(node, "length"),
+          read_lane_ranges(in, node)};
 }
 
 }  // namespace
 
-void read_objects(const XmlDocument& xml, pugi::xml_node objects, RoadRecord& road,
-                  std::vector<ImportRemark>& remarks) {
+void read_objects(AttributeReader& in, pugi::xml_node objects, RoadRecord& road,
+                  std::vector<ImportDiagnostic>& remarks) {
   for (const auto node : objects.children("object")) {
-    read_or_remark("import.object", remarks,
-                   [&] { road.objects.push_back(read_object(xml, node)); });
+    ObjectRecord& object = road.objects.emplace_back();
+    object.node = node;
+    object.is_broken = is_broken(in, "import.object", remarks, [&] { read_object(in, object); });
   }
   for (const auto node : objects.children("objectReference")) {
-    read_or_remark("import.object", remarks, [&] {
-      road.object_references.push_back(
-          {node.attribute("id").value(), xml.number(node, "s"), xml.number_or(node, "t", 0.0)});
+    ObjectReference reference{node.attribute("id").value(), 0.0, 0.0};
+    const bool broken = is_broken(in, "import.object", remarks, [&] {
+      reference.s_m = in.number(node, "s");
+      reference.t_m = in.number_or(node, "t", 0.0);
     });
+    if (!broken) road.object_references.push_back(std::move(reference));
   }
   for (const char* kind : {"bridge", "tunnel"}) {
     for (const auto node : objects.children(kind)) {
-      read_or_remark("import.object", remarks,
-                     [&] { road.structures.push_back(read_structure(xml, node)); });
+      Structure structure;
+      const bool broken =
+          is_broken(in, "import.object", remarks, [&] { structure = read_structure(in, node); });
+      if (!broken) road.structures.push_back(std::move(structure));
     }
   }
 }

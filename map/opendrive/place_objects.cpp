@@ -47,7 +47,7 @@ Outline usual_outline(const ObjectRecord& object) {
 class ObjectPlacer {
  public:
   ObjectPlacer(const Document& document, std::span<const RoadFrame> frames, PointBudget& budget,
-               std::vector<ImportRemark>& remarks)
+               std::vector<ImportDiagnostic>& remarks)
       : document_(document), frames_(frames), budget_(budget), remarks_(remarks) {
     for (const RoadRecord& road : document.roads) {
       for (const ObjectReference& reference : road.object_references) {
@@ -210,7 +210,7 @@ class ObjectPlacer {
   const Document& document_;
   std::span<const RoadFrame> frames_;
   PointBudget& budget_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::multimap<std::string, std::string> references_;
   std::vector<MapObject> objects_;
 };
@@ -235,7 +235,7 @@ std::vector<Eigen::Vector3d> outline_in_map(const RoadFrame& frame, const Object
 }
 
 std::vector<MapObject> place_objects(const Document& document, std::span<const RoadFrame> frames,
-                                     PointBudget& budget, std::vector<ImportRemark>& remarks) {
+                                     PointBudget& budget, std::vector<ImportDiagnostic>& remarks) {
   return ObjectPlacer(document, frames, budget, remarks).place();
 }
 

@@ -12,7 +12,7 @@ namespace roadbed::map::opendrive {
 /// one without an outline gets that of its length and width, or radius. A bridge or tunnel covers
 /// its road from border to border. What cannot be placed is left out and remarked.
 std::vector<MapObject> place_objects(const Document& document, std::span<const RoadFrame> frames,
-                                     PointBudget& budget, std::vector<ImportRemark>& remarks);
+                                     PointBudget& budget, std::vector<ImportDiagnostic>& remarks);
 
 /// Corners of an object's outline in the map, in the file's order.
 std::vector<Eigen::Vector3d> outline_in_map(const RoadFrame& frame, const ObjectRecord& object,

@@ -18,7 +18,7 @@ double normalized(double angle_rad) { return std::remainder(angle_rad, 2.0 * std
 class SignalPlacer {
  public:
   SignalPlacer(const Document& document, std::span<const RoadFrame> frames, const BuiltLanes& built,
-               PointBudget& budget, std::vector<ImportRemark>& remarks)
+               PointBudget& budget, std::vector<ImportDiagnostic>& remarks)
       : document_(document), frames_(frames), built_(built), budget_(budget), remarks_(remarks) {
     for (std::size_t i = 0; i < document.roads.size(); ++i) {
       road_index_.emplace(document.roads[i].id, i);
@@ -149,7 +149,7 @@ class SignalPlacer {
   std::span<const RoadFrame> frames_;
   const BuiltLanes& built_;
   PointBudget& budget_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   std::map<std::string_view, std::size_t> road_index_;
   std::map<std::string_view, std::size_t> index_;
   std::vector<Signal> signals_;
@@ -159,7 +159,7 @@ class SignalPlacer {
 
 std::vector<Signal> place_signals(const Document& document, std::span<const RoadFrame> frames,
                                   const BuiltLanes& built, PointBudget& budget,
-                                  std::vector<ImportRemark>& remarks) {
+                                  std::vector<ImportDiagnostic>& remarks) {
   return SignalPlacer(document, frames, built, budget, remarks).place();
 }
 

@@ -12,6 +12,6 @@ namespace roadbed::map::opendrive {
 /// a signal that is not there remarked. More references than the budget holds are left out.
 std::vector<Signal> place_signals(const Document& document, std::span<const RoadFrame> frames,
                                   const BuiltLanes& built, PointBudget& budget,
-                                  std::vector<ImportRemark>& remarks);
+                                  std::vector<ImportDiagnostic>& remarks);
 
 }  // namespace roadbed::map::opendrive

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/opendrive/document.h"
 #include "roadbed/map/opendrive/lanes.h"
 #include "roadbed/map/opendrive/links.h"
 #include "roadbed/map/opendrive/place_objects.h"
 #include "roadbed/map/opendrive/place_signals.h"
+#include "roadbed/map/opendrive/read_document.h"
 #include "roadbed/map/opendrive/stop_lines.h"
 
 namespace roadbed::map::opendrive {
@@ -22,7 +22,6 @@ namespace {
                     .place = std::to_string(road.line),
                     .element = "road " + road.id,
                     .found = found,
-                    .needed = {},
                     .remedy = remedy});
 }
 
@@ -126,7 +125,8 @@ std::vector<LaneId> drivable_lanes(const RoadMapParts& parts, std::size_t road) 
 
 // <priority> of a junction: the lanes of one road give way to those of another.
 std::vector<Regulation> build_priorities(const Document& document, const RoadMapParts& parts,
-                                         PointBudget& budget, std::vector<ImportRemark>& remarks) {
+                                         PointBudget& budget,
+                                         std::vector<ImportDiagnostic>& remarks) {
   std::map<std::string_view, std::size_t> index;
   for (std::size_t i = 0; i < document.roads.size(); ++i) index.emplace(document.roads[i].id, i);
   std::vector<Regulation> regulations;
@@ -163,7 +163,12 @@ std::vector<Regulation> build_priorities(const Document& document, const RoadMap
 
 RoadMapParts read(XmlDocument xml, const LoadOptions& options) {
   Document document = read_document(xml);
+  return read(std::move(xml), std::move(document), options);
+}
+
+RoadMapParts read(XmlDocument xml, Document document, const LoadOptions& options) {
   xml.release();
+  mend(document);
   const std::vector<geometry::PlanView> views = plan_views(xml, document);
   std::vector<RoadFrame> frames;
   for (std::size_t i = 0; i < views.size(); ++i) frames.emplace_back(document.roads[i], views[i]);

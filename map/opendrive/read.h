@@ -3,6 +3,7 @@
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/load_options.h"
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/map/opendrive/document.h"
 
 namespace roadbed::map::opendrive {
 
@@ -10,5 +11,8 @@ namespace roadbed::map::opendrive {
 /// @throws InputError with the place in the file if it is unusable.
 /// @param xml  is taken, so that its elements are gone before the lanes are built.
 RoadMapParts read(XmlDocument xml, const LoadOptions& options);
+
+/// The same from the file's document, as read_document() gives it.
+RoadMapParts read(XmlDocument xml, Document document, const LoadOptions& options);
 
 }  // namespace roadbed::map::opendrive

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/roads.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
 
@@ -6,33 +6,37 @@
 #include <set>
 #include <string_view>
 
-#include "roadbed/map/opendrive/objects.h"
-#include "roadbed/map/opendrive/plan_view.h"
-#include "roadbed/map/opendrive/sections.h"
-#include "roadbed/map/opendrive/signals.h"
 #include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive {
 namespace {
 
-void read_crossfall(const XmlDocument& xml, pugi::xml_node lateral, RoadRecord& road) {
+std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
+  sort_by_station(records);
+  return records;
+}
+
+void read_crossfall(AttributeReader& in, pugi::xml_node lateral, RoadRecord& road) {
   std::vector<geometry::CubicRecord> left, right;
   for (const auto node : lateral.children("crossfall")) {
     const std::string_view side = node.attribute("side").value();
-    const geometry::CubicRecord record = read_cubic(xml, node, "s", 0.0);
+    const geometry::CubicRecord record = read_cubic(in, node, "s", 0.0);
     if (side != "right") left.push_back(record);
     if (side != "left") right.push_back(record);
   }
+  if (in.fault()) return;  // no map will ask
   road.crossfall_left = geometry::PiecewiseCubic(sorted(std::move(left)));
   road.crossfall_right = geometry::PiecewiseCubic(sorted(std::move(right)));
 }
 
 // Cubics over t, gathered by their station.
-LateralShape read_shape(const XmlDocument& xml, pugi::xml_node lateral) {
+LateralShape read_shape(AttributeReader& in, pugi::xml_node lateral) {
   std::vector<std::pair<double, geometry::CubicRecord>> records;
   for (const auto node : lateral.children("shape")) {
-    records.emplace_back(xml.number(node, "s"), read_cubic(xml, node, "t", 0.0));
+    const double s_m = in.number(node, "s");
+    records.emplace_back(s_m, read_cubic(in, node, "t", 0.0));
   }
+  if (in.fault()) return {};  // no map will ask
   std::stable_sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
     return std::pair(a.first, a.second.s_m) < std::pair(b.first, b.second.s_m);
   });
@@ -48,85 +52,105 @@ LateralShape read_shape(const XmlDocument& xml, pugi::xml_node lateral) {
   return LateralShape(std::move(profiles));
 }
 
-void read_profiles(const XmlDocument& xml, pugi::xml_node node, RoadRecord& road) {
+void read_profiles(AttributeReader& in, pugi::xml_node node, RoadRecord& road) {
   const auto lateral = node.child("lateralProfile");
-  road.elevation = read_cubics(xml, node.child("elevationProfile"), "elevation", "s", 0.0);
-  road.superelevation = read_cubics(xml, lateral, "superelevation", "s", 0.0);
-  road.lane_offset = read_cubics(xml, node.child("lanes"), "laneOffset", "s", 0.0);
-  read_crossfall(xml, lateral, road);
-  road.shape = read_shape(xml, lateral);
+  road.elevation.listed = read_cubics(in, node.child("elevationProfile"), "elevation", "s", 0.0);
+  road.superelevation.listed = read_cubics(in, lateral, "superelevation", "s", 0.0);
+  road.lane_offset.listed = read_cubics(in, node.child("lanes"), "laneOffset", "s", 0.0);
+  read_crossfall(in, lateral, road);
+  road.shape = read_shape(in, lateral);
 }
 
-void read_speeds(const XmlDocument& xml, pugi::xml_node node, RoadRecord& road,
-                 std::vector<ImportRemark>& remarks) {
+void read_speeds(AttributeReader& in, pugi::xml_node node, RoadRecord& road,
+                 std::vector<ImportDiagnostic>& remarks) {
   for (const auto type : node.children("type")) {
-    road.speeds.push_back(
-        {xml.number_or(type, "s", 0.0), read_speed(xml, type.child("speed"), remarks)});
+    const double s_m = in.number_or(type, "s", 0.0);
+    road.speeds.push_back({s_m, read_speed(in.xml, type.child("speed"), remarks)});
   }
-  std::stable_sort(road.speeds.begin(), road.speeds.end(),
-                   [](const auto& a, const auto& b) { return a.s_m < b.s_m; });
 }
 
-RoadRecord read_road(const XmlDocument& xml, pugi::xml_node node, Document& document) {
-  RoadRecord road;
-  road.line = xml.line_of(node);
-  road.id = xml.text(node, "id");
-  road.name = node.attribute("name").value();
-  road.length_m = xml.number(node, "length");
+void read_length(AttributeReader& in, RoadRecord& road) {
+  road.length_m = in.number(road.node, "length");
   if (road.length_m > kLongestRoadM) {
-    xml.refuse(node, fmt::format("length {} m", road.length_m), "at most 1e6 m",
-               "correct the length");
+    in.refuse(road.node, fmt::format("length {} m", road.length_m), "at most 1e6 m",
+              "correct the length");
   }
+}
+
+void read_road(AttributeReader& in, RoadRecord& road, Document& document) {
+  const pugi::xml_node node = road.node;
+  road.line = in.xml.line_of(node);
+  road.name = node.attribute("name").value();
+  read_length(in, road);
   const std::string_view junction = node.attribute("junction").value();
   if (junction != "-1") road.junction_id = junction;
   road.left_hand_traffic = std::string_view(node.attribute("rule").value()) == "LHT";
-  road.predecessor = read_road_link(xml, node.child("link").child("predecessor"));
-  road.successor = read_road_link(xml, node.child("link").child("successor"));
-  read_speeds(xml, node, road, document.remarks);
-  read_plan_view(xml, node, road, document);
-  read_profiles(xml, node, road);
-  road.sections = read_sections(xml, node.child("lanes"), road, document);
-  read_signals(xml, node.child("signals"), road, document.remarks);
-  read_objects(xml, node.child("objects"), road, document.remarks);
-  return road;
+  road.predecessor = read_road_link(in, node.child("link").child("predecessor"));
+  road.successor = read_road_link(in, node.child("link").child("successor"));
+  read_speeds(in, node, road, document.remarks);
+  read_plan_view(in, road, document);
+  read_profiles(in, node, road);
+  read_sections(in, node.child("lanes"), road, document);
+  read_signals(in, node.child("signals"), road, document.remarks);
+  read_objects(in, node.child("objects"), road, document.remarks);
+}
+
+// Links could mean either of two roads of one id: only the first is taken. The rules look at the
+// other, too; what it costs and what is wrong in it is not the map's.
+void read_repeated(AttributeReader& in, RoadRecord& road, Document& document) {
+  document.remarks.push_back({"import.duplicate-road", true, XmlDocument::place_of(road.node),
+                              in.xml.line_of(road.node),
+                              "has the id of a road before it and is left out, as links could "
+                              "mean either; give it another id"});
+  road.is_repeated = true;
+  const std::size_t remarks = document.remarks.size(), lanes_left = document.lanes_left;
+  in.set_aside([&] { read_road(in, road, document); });
+  document.remarks.resize(remarks);
+  document.lanes_left = lanes_left;
 }
 
 }  // namespace
 
-std::optional<RoadLink> read_road_link(const XmlDocument& xml, pugi::xml_node node) {
+std::optional<RoadLink> read_road_link(AttributeReader& in, pugi::xml_node node) {
   if (!node) return {};
   RoadLink link;
+  link.node = node;
   link.to_junction = std::string_view(node.attribute("elementType").value()) == "junction";
   link.element_id = node.attribute("elementId").value();
   const std::string_view contact = node.attribute("contactPoint").value();
   if (contact == "start") link.contact = ContactPoint::start;
   if (contact == "end") link.contact = ContactPoint::end;
-  if (!link.contact && !link.to_junction) link.element_s_m = xml.optional_number(node, "elementS");
+  if (!link.contact && !link.to_junction)
+    link.element_s_m = in.xml.optional_number(node, "elementS");
   link.element_forward = std::string_view(node.attribute("elementDir").value()) != "-";
   return link;
 }
 
-void read_roads(const XmlDocument& xml, Document& document) {
+bool is_usable(const RoadRecord& road) {
+  const auto has_length = [](const GeometryRecord& geometry) { return geometry.piece.has_value(); };
+  return !road.is_repeated && road.length_m > 0.0 &&
+         std::any_of(road.geometry.begin(), road.geometry.end(), has_length);
+}
+
+void read_roads(AttributeReader& in, Document& document) {
   std::set<std::string> seen;
-  for (const auto node : xml.root().children("road")) {
-    if (!seen.insert(xml.text(node, "id")).second) {
-      document.remarks.push_back({"import.duplicate-road", true, XmlDocument::place_of(node),
-                                  xml.line_of(node),
-                                  "has the id of a road before it and is left out, as links could "
-                                  "mean either; give it another id"});
+  for (const auto node : in.xml.root().children("road")) {
+    RoadRecord& road = document.roads.emplace_back();
+    road.node = node;
+    road.id = in.text(node, "id");
+    if (!seen.insert(road.id).second) {
+      read_repeated(in, road, document);
       continue;
     }
-    RoadRecord road = read_road(xml, node, document);
-    if (road.plan_pieces.empty() || !(road.length_m > 0.0)) {
+    read_road(in, road, document);
+    if (!is_usable(road)) {
       document.remarks.push_back({"import.no-geometry", true, "road " + road.id, road.line,
                                   "has no plan view of positive length and is left out"});
-      continue;
     }
-    document.roads.push_back(std::move(road));
   }
-  if (document.roads.empty()) {
-    xml.refuse(xml.root(), "no road with a geometry", "at least one road",
-               "check whether the file is complete");
+  if (std::none_of(document.roads.begin(), document.roads.end(), is_usable)) {
+    in.refuse(in.xml.root(), "no road with a geometry", "at least one road",
+              "check whether the file is complete");
   }
 }
 

@@ -1,8 +1,9 @@
-#include "roadbed/map/opendrive/sections.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <string_view>
 
@@ -12,60 +13,57 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-template <typename Record>
-void sort_by_station(std::vector<Record>& records) {
-  const auto earlier = [](const Record& a, const Record& b) { return a.s_m < b.s_m; };
-  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
-    std::stable_sort(records.begin(), records.end(), earlier);
-  }
-}
-
 class LaneReader {
  public:
-  LaneReader(const XmlDocument& xml, double section_s_m, std::vector<ImportRemark>& remarks)
-      : xml_(xml), section_s_m_(section_s_m), remarks_(remarks) {}
+  LaneReader(AttributeReader& in, double section_s_m, std::vector<ImportDiagnostic>& remarks)
+      : in_(in), section_s_m_(section_s_m), remarks_(remarks) {}
 
-  LaneRecord read(pugi::xml_node node) {
-    LaneRecord lane;
-    lane.id = xml_.integer(node, "id");
+  /// None if its id is no whole number.
+  std::optional<LaneRecord> read(pugi::xml_node node, const char* side) {
+    const std::optional<int> id = in_.integer(node, "id");
+    if (!id) return {};
+    std::optional<LaneRecord> made{std::in_place};
+    LaneRecord& lane = *made;
+    lane.node = node;
+    lane.side = side;
+    lane.id = *id;
     lane.type = lane_type(node.attribute("type").value());
     lane.direction = node.attribute("direction").value();
     lane.level = is_true(node.attribute("level").value());
-    lane.line = xml_.line_of(node);
+    lane.line = in_.xml.line_of(node);
     // What the model has no words for.
     keep_attributes(node, {"advisory", "dynamicLaneDirection", "dynamicLaneType", "roadWorks"},
                     lane.attributes);
-    widths_.clear();
     borders_.clear();
     rules_.clear();
     for (const auto child : node.children()) read_child(child, lane);
     lane.attributes.insert(lane.attributes.end(), rules_.begin(), rules_.end());
-    lane.width = geometry::PiecewiseCubic(sorted(widths_));
-    if (lane.width.empty()) lane.border = read_borders();
-    sort_by_station(lane.marks);
-    sort_by_station(lane.speeds);
-    sort_by_station(lane.heights);
-    sort_by_station(lane.accesses);
-    return lane;
+    if (lane.width.listed.empty()) {
+      read_borders(lane);
+    } else if (!borders_.empty()) {  // do not hold beside widths, nor do their faults
+      in_.set_aside([&] { read_borders(lane); });
+    }
+    return made;
   }
 
  private:
   void read_child(pugi::xml_node child, LaneRecord& lane) {
     const std::string_view name = child.name();
     if (name == "width") {
-      widths_.push_back(read_cubic(xml_, child, "sOffset", section_s_m_));
+      lane.width.listed.push_back({child, read_cubic(in_, child, "sOffset", section_s_m_)});
     } else if (name == "border") {
       borders_.push_back(child);
     } else if (name == "roadMark") {
-      lane.marks.push_back(read_mark(xml_, child, lane.id, station(child)));
+      lane.marks.push_back(read_mark(in_.xml, child, lane.id, station(child)));
     } else if (name == "link") {
       if (lane.predecessors.empty()) lane.predecessors = ids(child, "predecessor");
       if (lane.successors.empty()) lane.successors = ids(child, "successor");
     } else if (name == "speed") {
-      lane.speeds.push_back({station(child), read_speed(xml_, child, remarks_)});
+      const double s_m = station(child);
+      lane.speeds.push_back({s_m, read_speed(in_.xml, child, remarks_)});
     } else if (name == "height") {
-      lane.heights.push_back({station(child), xml_.number_or(child, "inner", 0.0),
-                              xml_.number_or(child, "outer", 0.0)});
+      lane.heights.push_back(
+          {station(child), in_.number_or(child, "inner", 0.0), in_.number_or(child, "outer", 0.0)});
     } else if (name == "access") {
       read_access(child, lane);
     } else if (name == "material") {
@@ -75,26 +73,26 @@ class LaneReader {
     }
   }
 
-  geometry::PiecewiseCubic read_borders() const {
-    std::vector<geometry::CubicRecord> records;
+  void read_borders(LaneRecord& lane) {
     for (const auto node : borders_) {
-      records.push_back(read_cubic(xml_, node, "sOffset", section_s_m_));
+      lane.border.listed.push_back({node, read_cubic(in_, node, "sOffset", section_s_m_)});
     }
-    return geometry::PiecewiseCubic(sorted(std::move(records)));
   }
 
-  double station(pugi::xml_node record) const {
-    return section_s_m_ + xml_.number_or(record, "sOffset", 0.0);
+  double station(pugi::xml_node record) {
+    return section_s_m_ + in_.number_or(record, "sOffset", 0.0);
   }
 
-  std::vector<int> ids(pugi::xml_node link, const char* name) const {
+  std::vector<int> ids(pugi::xml_node link, const char* name) {
     std::vector<int> ids;
-    for (const auto node : link.children(name)) ids.push_back(xml_.integer(node, "id"));
+    for (const auto node : link.children(name)) {
+      if (const auto id = in_.integer(node, "id")) ids.push_back(*id);
+    }
     return ids;
   }
 
   // Up to 1.7 the restriction is an attribute, from 1.8 on child elements.
-  void read_access(pugi::xml_node access, LaneRecord& lane) const {
+  void read_access(pugi::xml_node access, LaneRecord& lane) {
     const bool allow = std::string_view(access.attribute("rule").value()) == "allow";
     const double s_m = station(access);
     if (const auto word = access.attribute("restriction")) {
@@ -105,38 +103,75 @@ class LaneReader {
     }
   }
 
-  const XmlDocument& xml_;
+  AttributeReader& in_;
   double section_s_m_;
-  std::vector<ImportRemark>& remarks_;
+  std::vector<ImportDiagnostic>& remarks_;
   // Of the lane that is being read.
-  std::vector<geometry::CubicRecord> widths_;
   std::vector<pugi::xml_node> borders_;
   Attributes rules_;
 };
 
-LaneSection read_section(const XmlDocument& xml, pugi::xml_node node, Document& document) {
-  LaneSection section;
-  section.s_m = xml.number(node, "s");
-  section.line = xml.line_of(node);
+void add_lane(LaneRecord lane, const XmlDocument& xml, LaneSection& section, Document& document) {
+  if (section.find(lane.id) != nullptr) {
+    document.remarks.push_back({"import.duplicate-lane", true, XmlDocument::place_of(lane.node),
+                                xml.line_of(lane.node),
+                                "has the id of a lane before it in its section and is left out; "
+                                "give it another id"});
+  }
+  const int id = lane.id;
+  lane.place = static_cast<int>(section.lanes.size());
+  section.lanes.emplace(id, std::move(lane));
+}
+
+constexpr std::array<const char*, 3> kSides = {"left", "center", "right"};
+
+void read_section(AttributeReader& in, pugi::xml_node node, LaneSection& section,
+                  Document& document) {
+  section.node = node;
+  section.s_m = in.number(node, "s");
+  section.line = in.xml.line_of(node);
   section.single_side = is_true(node.attribute("singleSide").value());
-  LaneReader reader(xml, section.s_m, document.remarks);
-  for (const char* side : {"left", "center", "right"}) {
+  LaneReader reader(in, section.s_m, document.remarks);
+  for (const char* side : kSides) {
     for (const auto child : node.child(side).children("lane")) {
-      if (document.lanes_left-- == 0) {
-        xml.refuse(child, "more lanes than a map of this size can hold", "fewer lane sections",
-                   "check whether the file is whole");
-      }
-      LaneRecord lane = reader.read(child);
-      const int id = lane.id;
-      if (!section.lanes.emplace(id, std::move(lane)).second) {
-        document.remarks.push_back({"import.duplicate-lane", true, XmlDocument::place_of(child),
-                                    xml.line_of(child),
-                                    "has the id of a lane before it in its section and is left "
-                                    "out; give it another id"});
+      --document.lanes_left;
+      if (auto lane = reader.read(child, side)) {
+        add_lane(*std::move(lane), in.xml, section, document);
       }
     }
   }
-  return section;
+}
+
+// The first lane of a road that memory is not granted for; none if it is for all.
+pugi::xml_node first_lane_beyond(std::size_t lanes_left, pugi::xml_node lanes) {
+  for (const auto section : lanes.children("laneSection")) {
+    for (const char* side : kSides) {
+      for (const auto lane : section.child(side).children("lane")) {
+        if (lanes_left-- == 0) return lane;
+      }
+    }
+  }
+  return {};
+}
+
+// The records as a function of s; they are not needed one by one any more.
+void mend_profile(Profile& profile) {
+  std::vector<geometry::CubicRecord> records;
+  records.reserve(profile.listed.size());
+  for (const CubicElement& element : profile.listed) records.push_back(element.record);
+  profile.listed = {};
+  sort_by_station(records);
+  profile.cubic = geometry::PiecewiseCubic(std::move(records));
+}
+
+void mend_lane(LaneRecord& lane) {
+  mend_profile(lane.width);
+  if (lane.width.cubic.empty()) mend_profile(lane.border);
+  lane.border.listed = {};
+  sort_by_station(lane.marks);
+  sort_by_station(lane.speeds);
+  sort_by_station(lane.heights);
+  sort_by_station(lane.accesses);
 }
 
 bool speaks_of(const LaneSection& section, int sign) {
@@ -162,19 +197,51 @@ void connect_sections(std::vector<LaneSection>& sections) {
   }
 }
 
-std::vector<LaneSection> read_sections(const XmlDocument& xml, pugi::xml_node lanes,
-                                       const RoadRecord& road, Document& document) {
+std::vector<std::reference_wrapper<const LaneRecord>> LaneSection::listed() const {
+  std::vector<std::reference_wrapper<const LaneRecord>> list;
+  list.reserve(lanes.size());
+  for (const auto& [id, lane] : lanes) list.emplace_back(lane);
+  std::sort(list.begin(), list.end(),
+            [](const LaneRecord& a, const LaneRecord& b) { return a.place < b.place; });
+  return list;
+}
+
+void read_sections(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road,
+                   Document& document) {
+  if (const auto beyond = first_lane_beyond(document.lanes_left, lanes)) {
+    in.refuse(beyond, "more lanes than a map of this size can hold", "fewer lane sections",
+              "check whether the file is whole");
+    return;
+  }
   const auto nodes = lanes.children("laneSection");
-  std::vector<LaneSection> sections;
-  sections.reserve(static_cast<std::size_t>(std::distance(nodes.begin(), nodes.end())));
-  for (const auto node : nodes) sections.push_back(read_section(xml, node, document));
-  sort_by_station(sections);
-  connect_sections(sections);
-  if (sections.empty()) {
+  road.sections.reserve(static_cast<std::size_t>(std::distance(nodes.begin(), nodes.end())));
+  for (const auto node : nodes) read_section(in, node, road.sections.emplace_back(), document);
+  if (road.sections.empty()) {
     document.remarks.push_back({"import.no-lanes", true, "road " + road.id, road.line,
                                 "has no lane section and gives no lane"});
   }
-  return sections;
+}
+
+void mend_road(RoadRecord& road) {
+  sort_by_station(road.speeds);
+  for (const GeometryRecord& geometry : road.geometry) {
+    if (geometry.piece) road.plan_pieces.push_back(*geometry.piece);
+  }
+  road.geometry = {};
+  sort_by_station(road.plan_pieces);
+  for (Profile* profile : {&road.elevation, &road.superelevation, &road.lane_offset}) {
+    mend_profile(*profile);
+  }
+  for (LaneSection& section : road.sections) {
+    auto& lanes = section.lanes;
+    for (auto lane = lanes.begin(); lane != lanes.end();) {
+      const bool repeated = lane != lanes.begin() && std::prev(lane)->first == lane->first;
+      if (!repeated) mend_lane(lane->second);
+      lane = repeated ? lanes.erase(lane) : std::next(lane);
+    }
+  }
+  sort_by_station(road.sections);
+  connect_sections(road.sections);
 }
 
 }  // namespace roadbed::map::opendrive

@@ -81,13 +81,13 @@ SideStretch::SideStretch(const RoadRecord& road, const geometry::PlanView& plan_
 void SideStretch::enter(double from_s_m, double to_s_m) {
   const double middle_s_m = 0.5 * (from_s_m + to_s_m);
   piece_ = &plan_view_.piece_at(middle_s_m);
-  elevation_ = road_.elevation.record_at(middle_s_m);
-  roll_ = road_.superelevation.record_at(middle_s_m);
+  elevation_ = road_.elevation.cubic.record_at(middle_s_m);
+  roll_ = road_.superelevation.cubic.record_at(middle_s_m);
   fall_ = (side_.sign > 0 ? road_.crossfall_left : road_.crossfall_right).record_at(middle_s_m);
-  offset_ = road_.lane_offset.record_at(middle_s_m);
+  offset_ = road_.lane_offset.cubic.record_at(middle_s_m);
   for (std::size_t i = 0; i < outer_.size(); ++i) {
     const LaneRecord& lane = *side_.lanes[i];
-    outer_[i] = {lane.outer().record_at(middle_s_m), lane.border.empty() || !lane.width.empty()};
+    outer_[i] = {lane.outer().record_at(middle_s_m), lane.goes_by_width()};
   }
   enter_raised(middle_s_m);
 }

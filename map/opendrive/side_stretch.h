@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "roadbed/geometry/curves/plan_view.h"
-#include "roadbed/map/opendrive/cross_section.h"
 #include "roadbed/map/opendrive/document.h"
+#include "roadbed/map/opendrive/section_side.h"
 
 namespace roadbed::map::opendrive {
 

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/signals.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <string_view>
 
@@ -7,15 +7,15 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-void read_position(const XmlDocument& xml, pugi::xml_node node, SignalRecord& signal) {
+void read_position(AttributeReader& in, pugi::xml_node node, SignalRecord& signal) {
   if (const auto place = node.child("positionInertial")) {
-    signal.inertial = {xml.number(place, "x"), xml.number(place, "y"), xml.number(place, "z"),
-                       xml.number_or(place, "hdg", 0.0)};
+    signal.inertial = {in.number(place, "x"), in.number(place, "y"), in.number(place, "z"),
+                       in.number_or(place, "hdg", 0.0)};
   }
   if (const auto place = node.child("positionRoad")) {
-    signal.on_road = {place.attribute("roadId").value(), xml.number(place, "s"),
-                      xml.number(place, "t"), xml.number_or(place, "zOffset", 0.0),
-                      xml.number_or(place, "hOffset", 0.0)};
+    signal.on_road = {place.attribute("roadId").value(), in.number(place, "s"),
+                      in.number(place, "t"), in.number_or(place, "zOffset", 0.0),
+                      in.number_or(place, "hOffset", 0.0)};
   }
 }
 
@@ -33,46 +33,52 @@ void keep_words(pugi::xml_node node, SignalRecord& signal) {
   }
 }
 
-SignalRecord read_signal(const XmlDocument& xml, pugi::xml_node node) {
-  SignalRecord signal;
+void read_signal(AttributeReader& in, SignalRecord& signal) {
+  const pugi::xml_node node = signal.node;
   signal.id = node.attribute("id").value();
   signal.name = node.attribute("name").value();
-  signal.s_m = xml.number(node, "s");
-  signal.t_m = xml.number_or(node, "t", 0.0);
-  signal.z_offset_m = xml.number_or(node, "zOffset", 0.0);
-  signal.heading_offset_rad = xml.number_or(node, "hOffset", 0.0);
-  signal.width_m = xml.optional_number(node, "width").value_or(0.0);
+  signal.s_m = in.number(node, "s");
+  signal.t_m = in.number_or(node, "t", 0.0);
+  signal.z_offset_m = in.number_or(node, "zOffset", 0.0);
+  signal.heading_offset_rad = in.number_or(node, "hOffset", 0.0);
+  signal.width_m = in.xml.optional_number(node, "width").value_or(0.0);
   signal.country = node.attribute("country").value();
   signal.type = node.attribute("type").value();
   signal.subtype = node.attribute("subtype").value();
   signal.unit = node.attribute("unit").value();
   signal.text = node.attribute("text").value();
-  signal.value = xml.optional_number(node, "value");
+  signal.value = in.xml.optional_number(node, "value");
   signal.dynamic = std::string_view(node.attribute("dynamic").value()) == "yes";
   signal.orientation = orientation_of(node.attribute("orientation").value());
-  signal.lanes = read_lane_ranges(xml, node);
-  read_position(xml, node, signal);
+  signal.lanes = read_lane_ranges(in, node);
+  read_position(in, node, signal);
   keep_words(node, signal);
-  return signal;
 }
 
-SignalReference read_reference(const XmlDocument& xml, pugi::xml_node node) {
-  return {node.attribute("id").value(),  xml.number(node, "s"),
-          xml.number_or(node, "t", 0.0), orientation_of(node.attribute("orientation").value()),
-          read_lane_ranges(xml, node),   xml.line_of(node)};
+void read_reference(AttributeReader& in, SignalReference& reference) {
+  const pugi::xml_node node = reference.node;
+  reference.signal_id = node.attribute("id").value();
+  reference.s_m = in.number(node, "s");
+  reference.t_m = in.number_or(node, "t", 0.0);
+  reference.orientation = orientation_of(node.attribute("orientation").value());
+  reference.lanes = read_lane_ranges(in, node);
+  reference.line = in.xml.line_of(node);
 }
 
 }  // namespace
 
-void read_signals(const XmlDocument& xml, pugi::xml_node signals, RoadRecord& road,
-                  std::vector<ImportRemark>& remarks) {
+void read_signals(AttributeReader& in, pugi::xml_node signals, RoadRecord& road,
+                  std::vector<ImportDiagnostic>& remarks) {
   for (const auto node : signals.children("signal")) {
-    read_or_remark("import.signal", remarks,
-                   [&] { road.signals.push_back(read_signal(xml, node)); });
+    SignalRecord& signal = road.signals.emplace_back();
+    signal.node = node;
+    signal.is_broken = is_broken(in, "import.signal", remarks, [&] { read_signal(in, signal); });
   }
   for (const auto node : signals.children("signalReference")) {
-    read_or_remark("import.signal", remarks,
-                   [&] { road.signal_references.push_back(read_reference(xml, node)); });
+    SignalReference& reference = road.signal_references.emplace_back();
+    reference.node = node;
+    reference.is_broken =
+        is_broken(in, "import.signal", remarks, [&] { read_reference(in, reference); });
   }
 }
 

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/unused.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <algorithm>
 #include <array>

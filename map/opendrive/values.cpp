@@ -6,45 +6,87 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace roadbed::map::opendrive {
+namespace {
 
-geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
-                                 const char* s_attribute, double s_add_m) {
+constexpr double kBroken = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+template <typename Read>
+void AttributeReader::keep_fault_of(const Read& read) {
+  if (fault_) return;  // throwing costs more than reading, and a file may be nothing but faults
+  try {
+    read();
+  } catch (const InputError& error) {
+    fault_ = error;
+  }
+}
+
+double AttributeReader::number(pugi::xml_node node, const char* attribute) {
+  pugi::xml_attribute first;
+  return number(node, attribute, first);
+}
+
+double AttributeReader::number(pugi::xml_node node, const char* attribute,
+                               pugi::xml_attribute& next) {
+  if (const auto value = xml.optional_number(node, attribute, next)) return *value;
+  keep_fault_of([&] { static_cast<void>(xml.number(node, attribute)); });
+  return kBroken;
+}
+
+double AttributeReader::number_or(pugi::xml_node node, const char* attribute, double fallback) {
+  pugi::xml_attribute found = node.attribute(attribute);
+  return found ? number(node, attribute, found) : fallback;
+}
+
+std::optional<int> AttributeReader::integer(pugi::xml_node node, const char* attribute) {
+  const std::optional<int> value = xml.optional_integer(node, attribute);
+  if (!value) keep_fault_of([&] { static_cast<void>(xml.integer(node, attribute)); });
+  return value;
+}
+
+std::string AttributeReader::text(pugi::xml_node node, const char* attribute) {
+  std::string value = node.attribute(attribute).value();
+  if (value.empty()) keep_fault_of([&] { static_cast<void>(xml.text(node, attribute)); });
+  return value;
+}
+
+void AttributeReader::refuse(pugi::xml_node node, const std::string& found,
+                             const std::string& needed, const std::string& remedy) {
+  keep_fault_of([&] { xml.refuse(node, found, needed, remedy); });
+}
+
+geometry::CubicRecord read_cubic(AttributeReader& in, pugi::xml_node node, const char* s_attribute,
+                                 double s_add_m) {
   pugi::xml_attribute next;
-  const geometry::CubicRecord record{s_add_m + xml.number(node, s_attribute, next),
-                                     xml.number(node, "a", next), xml.number(node, "b", next),
-                                     xml.number(node, "c", next), xml.number(node, "d", next)};
+  const geometry::CubicRecord record{s_add_m + in.number(node, s_attribute, next),
+                                     in.number(node, "a", next), in.number(node, "b", next),
+                                     in.number(node, "c", next), in.number(node, "d", next)};
   constexpr double largest = 1e200;  // so that sums of them stay finite
   for (const double value : {record.s_m, record.a, record.b, record.c, record.d}) {
     if (std::abs(value) > largest) {
-      xml.refuse(node, fmt::format("a coefficient of {:.3g}", value), "a value of a road",
-                 "correct the value");
+      in.refuse(node, fmt::format("a coefficient of {:.3g}", value), "a value of a road",
+                "correct the value");
     }
   }
   return record;
 }
 
-std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
-  const auto earlier = [](const auto& a, const auto& b) { return a.s_m < b.s_m; };
-  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
-    std::stable_sort(records.begin(), records.end(), earlier);
+std::vector<CubicElement> read_cubics(AttributeReader& in, pugi::xml_node parent, const char* name,
+                                      const char* s_attribute, double s_add_m) {
+  std::vector<CubicElement> records;
+  for (const auto node : parent.children(name)) {
+    records.push_back({node, read_cubic(in, node, s_attribute, s_add_m)});
   }
   return records;
 }
 
-geometry::PiecewiseCubic read_cubics(const XmlDocument& xml, pugi::xml_node parent,
-                                     const char* name, const char* s_attribute, double s_add_m) {
-  std::vector<geometry::CubicRecord> records;
-  for (const auto node : parent.children(name)) {
-    records.push_back(read_cubic(xml, node, s_attribute, s_add_m));
-  }
-  return geometry::PiecewiseCubic(sorted(std::move(records)));
-}
-
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
-                                 std::vector<ImportRemark>& remarks) {
+                                 std::vector<ImportDiagnostic>& remarks) {
   const std::string_view written = speed.attribute("max").value();
   if (written.empty() || written == "no limit" || written == "undefined") return {};
   const std::string_view unit = speed.attribute("unit").value();
@@ -70,11 +112,11 @@ char orientation_of(std::string_view word) {
   return word == "+" || word == "-" ? word.front() : '\0';
 }
 
-std::vector<std::pair<int, int>> read_lane_ranges(const XmlDocument& xml, pugi::xml_node node) {
-  std::vector<std::pair<int, int>> ranges;
+LaneRanges read_lane_ranges(AttributeReader& in, pugi::xml_node node) {
+  LaneRanges ranges;
   for (const auto validity : node.children("validity")) {
-    ranges.emplace_back(
-        std::minmax({xml.integer(validity, "fromLane"), xml.integer(validity, "toLane")}));
+    const auto from = in.integer(validity, "fromLane"), to = in.integer(validity, "toLane");
+    if (from && to) ranges.emplace_back(std::minmax({*from, *to}));
   }
   return ranges;
 }
@@ -86,7 +128,7 @@ void keep_attributes(pugi::xml_node node, std::initializer_list<const char*> nam
   }
 }
 
-ImportRemark left_out(const char* rule, const InputError& error) {
+ImportDiagnostic left_out(const char* rule, const InputError& error) {
   const InputError::Parts& parts = error.parts();
   return {rule, true, parts.element, std::strtol(parts.place.c_str(), nullptr, 10),
           fmt::format("{}, needs {}; it is left out, {}", parts.found, parts.needed, parts.remedy)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -12,24 +13,77 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/map/opendrive/document.h"
 
 namespace roadbed::map::opendrive {
 
+/// Reads attributes of elements, and goes on where they are broken: the first fault is kept, by
+/// which the file is then no map.
+class AttributeReader {
+ public:
+  explicit AttributeReader(const XmlDocument& document) : xml(document) {}
+
+  /// A finite number; NaN, and a fault, where it is missing or broken.
+  double number(pugi::xml_node node, const char* attribute);
+
+  /// The same, looked for from `next` on, as XmlDocument does.
+  double number(pugi::xml_node node, const char* attribute, pugi::xml_attribute& next);
+
+  /// The same, `fallback` where the attribute is missing.
+  double number_or(pugi::xml_node node, const char* attribute, double fallback);
+
+  /// None, and a fault, where it is missing or no whole number.
+  std::optional<int> integer(pugi::xml_node node, const char* attribute);
+
+  /// Empty, and a fault, where it is missing or empty.
+  std::string text(pugi::xml_node node, const char* attribute);
+
+  /// A fault at the element.
+  void refuse(pugi::xml_node node, const std::string& found, const std::string& needed,
+              const std::string& remedy);
+
+  /// Does what `read` does; its faults are not the file's.
+  /// @returns the first of them.
+  template <typename Read>
+  std::optional<InputError> set_aside(const Read& read) {
+    std::optional<InputError> before = std::exchange(fault_, std::nullopt);
+    read();
+    return std::exchange(fault_, std::move(before));
+  }
+
+  const std::optional<InputError>& fault() const { return fault_; }
+
+  const XmlDocument& xml;
+
+ private:
+  template <typename Read>
+  void keep_fault_of(const Read& read);
+
+  std::optional<InputError> fault_;
+};
+
 /// Attributes a, b, c, d with the station `s_attribute`, to which `s_add_m` is added.
-geometry::CubicRecord read_cubic(const XmlDocument& xml, pugi::xml_node node,
-                                 const char* s_attribute, double s_add_m);
+geometry::CubicRecord read_cubic(AttributeReader& in, pugi::xml_node node, const char* s_attribute,
+                                 double s_add_m);
 
-/// All children of that name, in order of station.
-geometry::PiecewiseCubic read_cubics(const XmlDocument& xml, pugi::xml_node parent,
-                                     const char* name, const char* s_attribute, double s_add_m);
+/// All children of that name, as listed.
+std::vector<CubicElement> read_cubics(AttributeReader& in, pugi::xml_node parent, const char* name,
+                                      const char* s_attribute, double s_add_m);
 
-std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records);
+/// In order of station; records of one station stay as they are listed.
+template <typename Record>
+void sort_by_station(std::vector<Record>& records) {
+  const auto earlier = [](const Record& a, const Record& b) { return a.s_m < b.s_m; };
+  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
+    std::stable_sort(records.begin(), records.end(), earlier);
+  }
+}
 
 /// max with its unit (m/s if there is none); none for "no limit", "undefined" or where there is no
 /// max. A value or unit that nobody can read is remarked and counts as none: a missing speed must
 /// not make a road unusable.
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
-                                 std::vector<ImportRemark>& remarks);
+                                 std::vector<ImportDiagnostic>& remarks);
 
 /// Who may use a lane of that type where the file does not say.
 Participants participants_of(LaneType type);
@@ -41,23 +95,23 @@ bool is_true(std::string_view word);
 char orientation_of(std::string_view word);
 
 /// <validity> children.
-std::vector<std::pair<int, int>> read_lane_ranges(const XmlDocument& xml, pugi::xml_node node);
+LaneRanges read_lane_ranges(AttributeReader& in, pugi::xml_node node);
 
 /// Adds those attributes that the element has, as they stand.
 void keep_attributes(pugi::xml_node node, std::initializer_list<const char*> names,
                      Attributes& attributes);
 
 /// A remark that an element could not be read and is left out.
-ImportRemark left_out(const char* rule, const InputError& error);
+ImportDiagnostic left_out(const char* rule, const InputError& error);
 
-/// Does what `read` does; an InputError becomes a remark, and the element is left out.
+/// Does what `read` does; a fault in it becomes a remark.
+/// @returns whether there is one, so that the element is left out.
 template <typename Read>
-void read_or_remark(const char* rule, std::vector<ImportRemark>& remarks, const Read& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    remarks.push_back(left_out(rule, error));
-  }
+bool is_broken(AttributeReader& in, const char* rule, std::vector<ImportDiagnostic>& remarks,
+               const Read& read) {
+  const std::optional<InputError> fault = in.set_aside(read);
+  if (fault) remarks.push_back(left_out(rule, *fault));
+  return fault.has_value();
 }
 
 /// All attributes of an element in one line: "id 5, type limitline".

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "roadbed/map/opendrive/sections.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 namespace roadbed::map::opendrive {
 namespace {

@@ -102,10 +102,7 @@ std::shared_ptr<const ChunkedFile> ChunkedFile::open(const std::filesystem::path
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     throw InputError({.file = file.string(),
-                      .place = {},
-                      .element = {},
                       .found = std::string("cannot be opened: ") + std::strerror(errno),
-                      .needed = {},
                       .remedy = "check the path and its rights"});
   }
   return std::shared_ptr<const ChunkedFile>(
@@ -197,7 +194,7 @@ void ChunkedFile::fetch(std::uint64_t chunk) const {
   checked_[chunk].store(true, std::memory_order_release);
 }
 
-void ChunkedFile::let_go() const {
+void ChunkedFile::evict_all() const {
   const std::lock_guard lock(mutex_);
   for (std::uint64_t chunk = 0; chunk < hashes_.size(); ++chunk) {
     checked_[chunk].store(false, std::memory_order_relaxed);
@@ -209,14 +206,13 @@ void ChunkedFile::let_go() const {
 void ChunkedFile::check_all() const {
   for (std::uint64_t chunk = 0; chunk < hashes_.size(); ++chunk) {
     if (!checked_[chunk].load(std::memory_order_acquire)) fetch(chunk);
-    let_go_of_many();
+    evict_over_budget();
   }
-  let_go();
+  evict_all();
 }
 
 void ChunkedFile::refuse(const std::string& element, const std::string& found) const {
   throw InputError({.file = name_,
-                    .place = {},
                     .element = element,
                     .found = found,
                     .needed = "a whole compiled map of this version",
@@ -244,44 +240,44 @@ ChunkedFileWriter::ChunkedFileWriter(ByteSink& sink, std::span<const Part> parts
 }
 
 void ChunkedFileWriter::begin_next() {
-  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + pending_.size();
-  pending_.append(sections_.at(begun_++).offset - written, '\0');
+  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + buffer_.size();
+  buffer_.append(sections_.at(begun_++).offset - written, '\0');
 }
 
 void ChunkedFileWriter::append(std::string_view bytes) {
-  if (!pending_.empty()) {
-    const std::size_t missing = ChunkedFile::kChunkSize - pending_.size() % ChunkedFile::kChunkSize;
-    pending_ += bytes.substr(0, missing);
+  if (!buffer_.empty()) {
+    const std::size_t missing = ChunkedFile::kChunkSize - buffer_.size() % ChunkedFile::kChunkSize;
+    buffer_ += bytes.substr(0, missing);
     bytes.remove_prefix(std::min(missing, bytes.size()));
-    hand_on();
+    flush();
   }
   for (; bytes.size() >= ChunkedFile::kChunkSize; bytes.remove_prefix(ChunkedFile::kChunkSize)) {
-    hand_on_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
+    write_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
   }
-  pending_ += bytes;
+  buffer_ += bytes;
 }
 
-void ChunkedFileWriter::hand_on() {
-  std::string_view bytes = pending_;
+void ChunkedFileWriter::flush() {
+  std::string_view bytes = buffer_;
   for (; bytes.size() >= ChunkedFile::kChunkSize; bytes.remove_prefix(ChunkedFile::kChunkSize)) {
-    hand_on_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
+    write_chunk(bytes.substr(0, ChunkedFile::kChunkSize));
   }
-  if (bytes.size() < pending_.size()) pending_.erase(0, pending_.size() - bytes.size());
+  if (bytes.size() < buffer_.size()) buffer_.erase(0, buffer_.size() - bytes.size());
 }
 
-void ChunkedFileWriter::hand_on_chunk(std::string_view bytes) {
+void ChunkedFileWriter::write_chunk(std::string_view bytes) {
   sink_.write(body_offset_ + hashes_.size() * ChunkedFile::kChunkSize, bytes);
   hashes_.push_back(XXH3_64bits(bytes.data(), bytes.size()));
 }
 
 void ChunkedFileWriter::finish() {
-  hand_on();
-  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + pending_.size();
+  flush();
+  const std::uint64_t written = hashes_.size() * ChunkedFile::kChunkSize + buffer_.size();
   if (begun_ != sections_.size() || written != body_size_) {
     throw std::logic_error(fmt::format("ChunkedFileWriter: {} sections of {} with {} bytes of {}",
                                        begun_, sections_.size(), written, body_size_));
   }
-  if (!pending_.empty()) hand_on_chunk(pending_);
+  if (!buffer_.empty()) write_chunk(buffer_);
   Header header;
   std::copy(ChunkedFile::kMagic.begin(), ChunkedFile::kMagic.end(), header.magic.begin());
   header.sections = sections_.size();

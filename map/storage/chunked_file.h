@@ -46,12 +46,13 @@ class ChunkedFile {
   /// @throws InputError if there is no such section.
   const Section& section(std::string_view name) const;
 
-  /// Where a section's bytes will be once need() has been called for them; aligned to 64 bytes.
+  /// Where a section's bytes will be once ensure_loaded() has been called for them; aligned to 64
+  /// bytes.
   const std::byte* data(const Section& section) const { return body_ + section.offset; }
 
   /// Fetches and checks the chunks that hold some bytes of a section.
   /// @throws InputError if the bytes are not in the section, or cannot be read, or are damaged.
-  void need(const Section& section, std::uint64_t from, std::uint64_t size) const {
+  void ensure_loaded(const Section& section, std::uint64_t from, std::uint64_t size) const {
     if (size > section.size || from > section.size - size) refuse_range(section);
     if (size == 0) return;
     const std::uint64_t first = (section.offset + from) / kChunkSize;
@@ -61,7 +62,7 @@ class ChunkedFile {
     }
   }
 
-  /// Checks every chunk, a few in memory at once, and lets go of all; see let_go().
+  /// Checks every chunk, a few in memory at once, and lets go of all; see evict_all().
   void check_all() const;
 
   std::size_t chunks() const { return hashes_.size(); }
@@ -71,11 +72,11 @@ class ChunkedFile {
 
   /// Lets go of all chunks, which are fetched again when needed: for who goes through a file that
   /// memory does not hold. Whatever data() pointed to is gone; nobody may be reading meanwhile.
-  void let_go() const;
+  void evict_all() const;
 
   /// The same where more are in memory than stand in the way of nobody.
-  void let_go_of_many() const {
-    if (chunks_in_memory() > kMany) let_go();
+  void evict_over_budget() const {
+    if (chunks_in_memory() > kMany) evict_all();
   }
   const std::string& name() const { return name_; }
 
@@ -134,22 +135,22 @@ class ChunkedFileWriter {
   void append(std::string_view bytes);
 
   /// The same in two steps: put bytes behind those that are there, then let them go on.
-  std::string& pending() { return pending_; }
-  void hand_on();
+  std::string& pending() { return buffer_; }
+  void flush();
 
   /// Ends the file, with what stands before its sections.
   /// @throws std::logic_error if the sections have other sizes than said.
   void finish();
 
  private:
-  void hand_on_chunk(std::string_view bytes);
+  void write_chunk(std::string_view bytes);
 
   ByteSink& sink_;
   std::vector<ChunkedFile::Section> sections_;
   std::size_t begun_ = 0;
   std::uint64_t body_size_ = 0, body_offset_ = 0;
   std::vector<std::uint64_t> hashes_;  // of the chunks that were handed on
-  std::string pending_;                // what comes after them
+  std::string buffer_;                 // what comes after them
 };
 
 }  // namespace roadbed::map::storage

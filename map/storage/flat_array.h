@@ -43,7 +43,7 @@ class FlatArray {
   /// @throws InputError if they are not there, cannot be read or are damaged.
   const T* span(std::uint64_t first, std::uint64_t count) const {
     if (count > size_ || first > size_ - count) refuse();
-    if (file_) file_->need(section_, first * sizeof(T), count * sizeof(T));
+    if (file_) file_->ensure_loaded(section_, first * sizeof(T), count * sizeof(T));
     return data_ + first;
   }
 
@@ -65,7 +65,7 @@ class FlatArray {
 
  private:
   [[noreturn]] void refuse() const {
-    if (file_) file_->need(section_, section_.size, 1);  // says which section, and throws
+    if (file_) file_->ensure_loaded(section_, section_.size, 1);  // says which section, and throws
     throw std::logic_error("FlatArray: a place beyond the end");
   }
 

@@ -16,9 +16,9 @@ constexpr std::array<RuleInfo, 2> kImportRules = {{
 
 }  // namespace
 
-std::vector<Finding> import_remarks(const RoadMap& road_map) {
+std::vector<Finding> import_diagnostics(const RoadMap& road_map) {
   std::vector<Finding> findings;
-  for (const ImportRemark& remark : road_map.remarks()) {
+  for (const ImportDiagnostic& remark : road_map.remarks()) {
     findings.push_back({.rule = remark.rule,
                         .asam_rule = {},
                         .severity = remark.is_fault ? Severity::warning : Severity::info,

@@ -28,7 +28,7 @@ std::span<const MapRule> furniture_rules();   ///< signals, stop lines, objects
 std::vector<MapRule> map_rules();
 
 /// What the reader of the file has seen, under the reader's own rule names.
-std::vector<Finding> import_remarks(const RoadMap& road_map);
+std::vector<Finding> import_diagnostics(const RoadMap& road_map);
 /// What readers remark.
 std::span<const RuleInfo> import_rules();
 

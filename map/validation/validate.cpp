@@ -14,7 +14,7 @@ std::vector<Finding> validate(const RoadMap& road_map, const ValidateOptions& op
     rule.check(road_map, options, report);
     report.finish();
   }
-  for (Finding& remark : import_remarks(road_map)) findings.push_back(std::move(remark));
+  for (Finding& remark : import_diagnostics(road_map)) findings.push_back(std::move(remark));
   std::ranges::stable_sort(findings, {}, &Finding::rule);
   return findings;
 }

@@ -1,7 +1,6 @@
 #include "roadbed/planning/audit/audit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 
@@ -9,28 +8,6 @@
 #include "roadbed/planning/audit/part_audit.h"
 
 namespace roadbed::planning::inline audit {
-
-std::string_view name(UnknownPolicy policy) {
-  constexpr std::array<std::string_view, 3> names{"free", "occupied", "report"};
-  return names[static_cast<std::size_t>(policy)];
-}
-
-std::string_view name(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> names{"clear", "conflict", "unknown", "undecided"};
-  return names[static_cast<std::size_t>(verdict)];
-}
-
-Verdict judge(const AuditReport& report) {
-  if (!report.conflicts.empty()) return Verdict::conflict;
-  if (!report.unknown.empty()) return Verdict::unknown;
-  return report.undecided.empty() ? Verdict::clear : Verdict::undecided;
-}
-
-AuditReport judged(AuditReport report, const geometry::Trajectory& drive) {
-  if (!report.is_measured_enough()) report.unknown = {{drive.start_s(), drive.end_s()}};
-  report.verdict = judge(report);
-  return report;
-}
 
 map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
@@ -62,12 +39,13 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
 AuditReport audit_clearance(const map::ClearanceField& field,
                             const geometry::Trajectory& drive_in_source,
                             const geometry::BodyPart& part, const AuditOptions& options,
-                            std::span<const MovingObstacle> moving_in_source) {
+                            std::span<const ObstacleInSource> moving_in_source) {
   std::optional<geometry::Trajectory> changed;
-  if (!moving_in_source.empty()) changed = with_rows_at_changes(drive_in_source, moving_in_source);
+  if (!moving_in_source.empty())
+    changed = with_samples_at_changes(drive_in_source, moving_in_source);
   const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
   const auto whole = std::make_unique<PartAudit>(field, drive, part, options, moving_in_source);
-  PartAudit::go_along({&whole, 1});
+  PartAudit::sweep({&whole, 1});
   return judged(whole->report(), drive_in_source);
 }
 

@@ -12,8 +12,8 @@ using Corners = BodyOutline::Corners;
 double point_to_edge_m(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                        const Eigen::Vector2d& b) {
   const Eigen::Vector2d along = b - a;
-  const double share = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - share * along).norm();
+  const double fraction = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - fraction * along).norm();
 }
 
 // Whether an edge of `a` has all of `b` strictly on its outer side; both are counter-clockwise.

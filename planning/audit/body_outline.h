@@ -1,7 +1,7 @@
 #pragma once
 
-// Private to planning/audit: part of the check of certificates, which shares nothing with the audit, so
-// that a fault there is not a fault here.
+// Private to planning/audit: part of the check of certificates, which shares nothing with the
+// audit, so that a fault there is not a fault here.
 
 #include <Eigen/Core>
 #include <array>

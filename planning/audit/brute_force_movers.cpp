@@ -10,16 +10,16 @@ constexpr double kMoment_s = 1e-9;  // times nearer to each other are the same
 
 }  // namespace
 
-BruteForceMovers::BruteForceMovers(std::span<const MovingObstacle> obstacles) {
-  for (const MovingObstacle& from : obstacles) {
-    Mover mover{.id = from.obstacle.id,
-                .from_s = from.from_s,
-                .to_s = from.to_s,
-                .half_length_m = 0.5 * from.obstacle.length_m,
-                .half_width_m = 0.5 * from.obstacle.width_m,
-                .rows = {}};
-    for (const auto& point : from.obstacle.motion.points()) {
-      mover.rows.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
+BruteForceMovers::BruteForceMovers(std::span<const ObstacleInSource> obstacles) {
+  for (const ObstacleInSource& from : obstacles) {
+    Mover mover{.id = from.id,
+                .from_s = from.validity.from_s,
+                .to_s = from.validity.to_s,
+                .half_length_m = 0.5 * from.length_m,
+                .half_width_m = 0.5 * from.width_m,
+                .samples = {}};
+    for (const auto& point : from.motion.points()) {
+      mover.samples.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
     }
     movers_.push_back(std::move(mover));
   }
@@ -27,24 +27,25 @@ BruteForceMovers::BruteForceMovers(std::span<const MovingObstacle> obstacles) {
 
 // The one that a time lies in, else the first or the last.
 std::size_t BruteForceMovers::Mover::segment_at(double t_s) const {
-  const auto first = rows.begin() + 1, last = rows.end() - (rows.size() > 1 ? 1 : 0);
-  const auto after =
-      std::upper_bound(first, last, t_s, [](double t, const Row& row) { return t < row.t_s; });
+  const auto first = samples.begin() + 1, last = samples.end() - (samples.size() > 1 ? 1 : 0);
+  const auto after = std::upper_bound(
+      first, last, t_s, [](double t, const Sample& sample) { return t < sample.t_s; });
   return static_cast<std::size_t>(after - first);
 }
 
 BodyOutline::Corners BruteForceMovers::Mover::at(double t_s) const {
-  Row row = rows.front();
-  if (rows.size() > 1 && t_s >= row.t_s) {
+  Sample sample = samples.front();
+  if (samples.size() > 1 && t_s >= sample.t_s) {
     const std::size_t i = segment_at(t_s);
-    const Row &a = rows[i], &b = rows[i + 1];
-    const double share = std::min(1.0, (t_s - a.t_s) / (b.t_s - a.t_s));
-    row = {t_s, a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
-           a.heading_rad + share * (b.heading_rad - a.heading_rad)};
+    const Sample &a = samples[i], &b = samples[i + 1];
+    const double fraction = std::min(1.0, (t_s - a.t_s) / (b.t_s - a.t_s));
+    sample = {t_s, a.x_m + fraction * (b.x_m - a.x_m), a.y_m + fraction * (b.y_m - a.y_m),
+              a.heading_rad + fraction * (b.heading_rad - a.heading_rad)};
   }
-  const double c = std::cos(row.heading_rad), s = std::sin(row.heading_rad);
+  const double c = std::cos(sample.heading_rad), s = std::sin(sample.heading_rad);
   const auto corner = [&](double ahead_m, double left_m) {
-    return Eigen::Vector2d(row.x_m + c * ahead_m - s * left_m, row.y_m + s * ahead_m + c * left_m);
+    return Eigen::Vector2d(sample.x_m + c * ahead_m - s * left_m,
+                           sample.y_m + s * ahead_m + c * left_m);
   };
   return {corner(-half_length_m, -half_width_m), corner(half_length_m, -half_width_m),
           corner(half_length_m, half_width_m), corner(-half_length_m, half_width_m)};
@@ -53,8 +54,8 @@ BodyOutline::Corners BruteForceMovers::Mover::at(double t_s) const {
 // How far a point of it moves at most between two times.
 double BruteForceMovers::Mover::way_m(double start_s, double end_s) const {
   double sum_m = 0.0;
-  for (std::size_t i = segment_at(start_s); i + 1 < rows.size() && rows[i].t_s < end_s; ++i) {
-    const Row &a = rows[i], &b = rows[i + 1];
+  for (std::size_t i = segment_at(start_s); i + 1 < samples.size() && samples[i].t_s < end_s; ++i) {
+    const Sample &a = samples[i], &b = samples[i + 1];
     const double common_s = std::min(end_s, b.t_s) - std::max(start_s, a.t_s);
     if (common_s <= 0.0) continue;
     sum_m += common_s / (b.t_s - a.t_s) *

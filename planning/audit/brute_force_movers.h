@@ -1,7 +1,7 @@
 #pragma once
 
-// Private to planning/audit: obstacles that move, for the check of certificates. It shares nothing with
-// the audit, so that a fault there is not a fault here.
+// Private to planning/audit: obstacles that move, for the check of certificates. It shares nothing
+// with the audit, so that a fault there is not a fault here.
 
 #include <optional>
 #include <span>
@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "roadbed/planning/audit/brute_force_obstacles.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
 
-/// Rectangles that move, linear between their rows, at rest before the first and after the last.
+/// Rectangles that move, linear between their samples, at rest before the first and after the last.
 class BruteForceMovers {
  public:
-  explicit BruteForceMovers(std::span<const MovingObstacle> obstacles);
+  explicit BruteForceMovers(std::span<const ObstacleInSource> obstacles);
 
   bool empty() const { return movers_.empty(); }
 
@@ -34,13 +34,13 @@ class BruteForceMovers {
   bool keep_away(const BodyOutline::Place& body, const Time& time, double least_m) const;
 
  private:
-  struct Row {
+  struct Sample {
     double t_s, x_m, y_m, heading_rad;
   };
   struct Mover {
     std::string id;
     double from_s, to_s, half_length_m, half_width_m;
-    std::vector<Row> rows;
+    std::vector<Sample> samples;
 
     std::size_t segment_at(double t_s) const;
     BodyOutline::Corners at(double t_s) const;

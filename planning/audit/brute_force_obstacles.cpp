@@ -301,7 +301,7 @@ double BruteForceObstacles::unknown_m(double x_m, double y_m, double heading_rad
   return unknown_.distance_m(body_.at(x_m, y_m, heading_rad), limit_m);
 }
 
-double BruteForceObstacles::measured_share(Column x, Column y) const {
+double BruteForceObstacles::measured_fraction(Column x, Column y) const {
   const auto tile = measured_.find(tile_key(floor_div(x, kTileSide), floor_div(y, kTileSide)));
   if (tile == measured_.end() || tile->second.empty()) return 0.0;
   const double measured = static_cast<double>(tile->second[place_in_tile(x, y)]);
@@ -310,12 +310,12 @@ double BruteForceObstacles::measured_share(Column x, Column y) const {
 
 std::optional<map::Box2> BruteForceObstacles::measured_column(const Eigen::Vector2d& point) const {
   const Window at = window(point, point);
-  if (measured_share(at.from_x, at.from_y) == 0.0) return std::nullopt;
+  if (measured_fraction(at.from_x, at.from_y) == 0.0) return std::nullopt;
   return columns_box({at.from_x, at.from_y, at.from_x + 1, at.from_y + 1});
 }
 
 // Most columns lie wholly in the rectangle or beside it.
-double BruteForceObstacles::measured_share(double x_m, double y_m, double heading_rad) const {
+double BruteForceObstacles::measured_fraction(double x_m, double y_m, double heading_rad) const {
   const BodyOutline::Corners body = body_.box_at(x_m, y_m, heading_rad);
   const map::Box2 around = BodyOutline::Place{body, 0.0}.around();
   const Window columns = window(around.min_in_source, around.max_in_source);
@@ -331,10 +331,10 @@ double BruteForceObstacles::measured_share(double x_m, double y_m, double headin
           std::max(std::abs(off.dot(ahead)) - 0.5 * length.norm(),
                    std::abs(ahead.x() * off.y() - ahead.y() * off.x()) - 0.5 * width.norm());
       if (over_m >= half_m) continue;
-      const double share = measured_share(x, y);
-      if (share == 0.0) continue;
-      measured_m2 += share * (over_m <= -half_m ? resolution_m_ * resolution_m_
-                                                : common_area_m2(body, column));
+      const double fraction = measured_fraction(x, y);
+      if (fraction == 0.0) continue;
+      measured_m2 += fraction * (over_m <= -half_m ? resolution_m_ * resolution_m_
+                                                   : common_area_m2(body, column));
     }
   }
   return std::min(1.0, measured_m2 / (length.norm() * width.norm()));

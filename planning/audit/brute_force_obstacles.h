@@ -51,8 +51,8 @@ class BruteForceObstacles {
   /// The box of the column of a point, if anything of it was measured.
   std::optional<map::Box2> measured_column(const Eigen::Vector2d& point) const;
 
-  /// Share of the space over the box around the body that was measured, 0 … 1.
-  double measured_share(double x_m, double y_m, double heading_rad) const;
+  /// Fraction of the space over the box around the body that was measured, 0 … 1.
+  double measured_fraction(double x_m, double y_m, double heading_rad) const;
 
  private:
   using Column = std::int64_t;
@@ -69,7 +69,7 @@ class BruteForceObstacles {
   float measured_height(const map::OccupancyCell& cell, Column x, Column y);
   void add_unknown(const std::pair<Column, Column>& at, const std::vector<float>& tile);
   bool is_unknown_height(float measured) const;
-  double measured_share(Column x, Column y) const;
+  double measured_fraction(Column x, Column y) const;
   map::Box2 columns_box(const Window& columns) const;
 
   const std::vector<map::OccupancyCell>& cells_;

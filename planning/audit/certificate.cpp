@@ -153,7 +153,7 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
                          const geometry::Trajectory& drive_in_source,
                          const geometry::BodyPart& part, const AuditOptions& options,
                          const AuditReport& report,
-                         std::span<const MovingObstacle> moving_in_source) {
+                         std::span<const ObstacleInSource> moving_in_source) {
   const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
   const auto cover = [&](ObstacleKind kind, double goal_m, const std::vector<Stretch>& left_out) {
     const BodyProbe probe(field, drive_in_source, body, {kind});
@@ -168,7 +168,7 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
                                .from_unknown = {},
                                .from_moving = {},
                                .observed = report.observed,
-                               .measured_share = 1.0 - report.unknown_share,
+                               .measured_fraction = 1.0 - report.unknown_fraction,
                                .conflicts = report.conflicts,
                                .unknown = report.unknown,
                                .undecided = report.undecided};
@@ -192,7 +192,7 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
     add_to(certificate.unknown, from_unknown.left);
   }
   if (!moving_in_source.empty()) {
-    const geometry::Trajectory drive = with_rows_at_changes(drive_in_source, moving_in_source);
+    const geometry::Trajectory drive = with_samples_at_changes(drive_in_source, moving_in_source);
     const MovingProbe probe(drive, body, moving_in_source, field.horizon_m());
     const Cover from_moving = Prover(probe, goal_m, left_out).run();
     certificate.from_moving = in_time(probe, from_moving.proven);

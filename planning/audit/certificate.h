@@ -6,14 +6,16 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/audit_report.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
 
-/// A part of one segment of a drive, from row `segment` to the next, and what holds in all of it.
+/// A part of one segment of a drive, from sample `segment` to the next, and what holds in all of
+/// it.
 struct ProvenSpan {
   std::size_t segment = 0;
-  double from = 0.0, to = 1.0;  ///< shares of the segment's time
+  double from = 0.0, to = 1.0;  ///< fractions of the segment's time
   double at_least_m = 0.0;      ///< no time of the span is nearer to what the proof is about
 };
 
@@ -41,7 +43,7 @@ struct AuditCertificate {
   std::vector<ProvenSpan> from_unknown;      ///< empty where unknown space counts as free
   std::vector<ProvenTime> from_moving = {};  ///< the same; empty where nothing moves
   std::vector<ObservedTime> observed = {};   ///< where anything was looked at, in order of time
-  double measured_share = 1.0;  ///< of the space that the part sweeps over: AuditReport
+  double measured_fraction = 1.0;  ///< of the space that the part sweeps over: AuditReport
   std::vector<Conflict> conflicts;
   std::vector<Stretch> unknown;
   std::vector<Stretch> undecided;
@@ -54,14 +56,14 @@ AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand
                          const geometry::Trajectory& drive_in_source,
                          const geometry::BodyPart& part, const AuditOptions& options,
                          const AuditReport& report,
-                         std::span<const MovingObstacle> moving_in_source = {});
+                         std::span<const ObstacleInSource> moving_in_source = {});
 
 /// The same for a vehicle's rectangle.
 inline AuditCertificate certify(const map::ClearanceField& field, const map::HeightBand& band,
                                 const geometry::Trajectory& drive_in_source,
                                 const geometry::VehicleShape& vehicle, const AuditOptions& options,
                                 const AuditReport& report,
-                                std::span<const MovingObstacle> moving_in_source = {}) {
+                                std::span<const ObstacleInSource> moving_in_source = {}) {
   return certify(field, band, drive_in_source, geometry::body_of(vehicle), options, report,
                  moving_in_source);
 }

@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kSlack_m = 1e-6;
 constexpr double kSameTime_s = 1e-9;
-constexpr double kSameShare = 2e-3;  // columns over a ground are measured in thousandths
+constexpr double kSameFraction = 2e-3;  // columns over a ground are measured in thousandths
 constexpr std::size_t kMostFaults = 10;
 
-struct DriveRow {
+struct DriveSample {
   double t_s, x_m, y_m, heading_rad;
 };
 
@@ -54,15 +54,15 @@ class Check {
  public:
   Check(const AuditCertificate& certificate, const std::vector<map::OccupancyCell>& cells,
         double resolution_m, const geometry::Trajectory& drive,
-        std::span<const MovingObstacle> moving)
+        std::span<const ObstacleInSource> moving)
       : certificate_(certificate),
         movers_(moving),
         body_(certificate.part, certificate.inflate_m),
         part_(certificate.part, 0.0) {
     for (const auto& point : drive.points()) {
-      rows_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
+      samples_.push_back({point.t_s, point.x_m, point.y_m, point.heading_rad});
     }
-    if (rows_.size() == 1) rows_.push_back(rows_.front());
+    if (samples_.size() == 1) samples_.push_back(samples_.front());
     reach_m_ = body_.reach_m();
     obstacles_.emplace(cells, resolution_m, certificate.band, body_);
   }
@@ -88,7 +88,7 @@ class Check {
     }
     if (!movers_.empty()) check_moving(unproven);
     check_observed(unknown);
-    check_measured_share();
+    check_measured_fraction();
     check_certified();
     return std::move(faults_);
   }
@@ -98,23 +98,24 @@ class Check {
     if (faults_.size() < kMostFaults) faults_.push_back(std::move(text));
   }
 
-  DriveRow at(std::size_t segment, double share) const {
-    const DriveRow &a = rows_[segment], &b = rows_[segment + 1];
-    const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  DriveSample at(std::size_t segment, double fraction) const {
+    const DriveSample &a = samples_[segment], &b = samples_[segment + 1];
+    const auto mix = [fraction](double from, double to) { return from + fraction * (to - from); };
     return {mix(a.t_s, b.t_s), mix(a.x_m, b.x_m), mix(a.y_m, b.y_m),
             mix(a.heading_rad, b.heading_rad)};
   }
 
   std::size_t segment_at(double t_s) const {
-    const auto after = std::upper_bound(rows_.begin() + 1, rows_.end() - 1, t_s,
-                                        [](double t, const DriveRow& row) { return t < row.t_s; });
-    return static_cast<std::size_t>(after - rows_.begin()) - 1;
+    const auto after =
+        std::upper_bound(samples_.begin() + 1, samples_.end() - 1, t_s,
+                         [](double t, const DriveSample& sample) { return t < sample.t_s; });
+    return static_cast<std::size_t>(after - samples_.begin()) - 1;
   }
 
-  DriveRow at_time(double t_s) const {
+  DriveSample at_time(double t_s) const {
     const std::size_t segment = segment_at(t_s);
-    const double whole_s = rows_[segment + 1].t_s - rows_[segment].t_s;
-    return at(segment, whole_s > 0.0 ? (t_s - rows_[segment].t_s) / whole_s : 0.0);
+    const double whole_s = samples_[segment + 1].t_s - samples_[segment].t_s;
+    return at(segment, whole_s > 0.0 ? (t_s - samples_[segment].t_s) / whole_s : 0.0);
   }
 
   double limit_of(const Conflict& conflict) const {
@@ -122,7 +123,7 @@ class Check {
   }
 
   bool is_in_drive(double t_s) const {
-    return rows_.front().t_s - kSameTime_s <= t_s && t_s <= rows_.back().t_s + kSameTime_s;
+    return samples_.front().t_s - kSameTime_s <= t_s && t_s <= samples_.back().t_s + kSameTime_s;
   }
 
   void check_time(const Stretch& stretch) {
@@ -132,7 +133,7 @@ class Check {
 
   // No point of the body moves further from where it is at the span's middle.
   double motion_m(const ProvenSpan& span) const {
-    const DriveRow &a = rows_[span.segment], &b = rows_[span.segment + 1];
+    const DriveSample &a = samples_[span.segment], &b = samples_[span.segment + 1];
     const double whole_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) +
                            reach_m_ * std::abs(b.heading_rad - a.heading_rad);
     return 0.5 * (span.to - span.from) * whole_m;
@@ -158,17 +159,17 @@ class Check {
     }
     check_time({conflict.from_s, conflict.to_s});
     if (!conflict.obstacle.empty()) return check_moving_conflict(conflict, what);
-    const DriveRow row = at_time(t_s);
+    const DriveSample sample = at_time(t_s);
     const double limit_m = limit_of(conflict);
-    double distance_m = obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
+    double distance_m = obstacles_->occupied_m(sample.x_m, sample.y_m, sample.heading_rad, limit_m);
     bool is_witness = obstacles_->is_occupied(conflict.witness);
     if (certificate_.unknown_policy == UnknownPolicy::occupied) {
-      distance_m =
-          std::min(distance_m, obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m));
+      distance_m = std::min(
+          distance_m, obstacles_->unknown_m(sample.x_m, sample.y_m, sample.heading_rad, limit_m));
       is_witness = is_witness || obstacles_->is_unknown(conflict.witness);
     }
     const double witness_m =
-        obstacles_->to_box_m(row.x_m, row.y_m, row.heading_rad, conflict.witness);
+        obstacles_->to_box_m(sample.x_m, sample.y_m, sample.heading_rad, conflict.witness);
     if (!is_witness || std::abs(witness_m - distance_m) > kSlack_m) {
       fault(what + ": the witness is not the nearest obstacle");
     }
@@ -182,9 +183,9 @@ class Check {
   }
 
   void check_moving_conflict(const Conflict& conflict, const std::string& what) {
-    const DriveRow row = at_time(conflict.at.t_s);
-    const auto distance_m =
-        movers_.distance_m(conflict.obstacle, row.t_s, body_.at(row.x_m, row.y_m, row.heading_rad));
+    const DriveSample sample = at_time(conflict.at.t_s);
+    const auto distance_m = movers_.distance_m(
+        conflict.obstacle, sample.t_s, body_.at(sample.x_m, sample.y_m, sample.heading_rad));
     if (!distance_m) return fault(what + ": there is no obstacle " + conflict.obstacle);
     if (std::abs(*distance_m - conflict.least_clearance_m) > kSlack_m) {
       fault(what + fmt::format(": the clearance is {:.6f} m, not {:.6f} m", *distance_m,
@@ -196,7 +197,7 @@ class Check {
   }
 
   void check_moving(const Times& unproven) {
-    double reached_s = rows_.front().t_s;
+    double reached_s = samples_.front().t_s;
     for (const ProvenTime& span : certificate_.from_moving) {
       if (!is_in_drive(span.from_s) || !is_in_drive(span.to_s) || span.to_s < span.from_s ||
           span.from_s < reached_s - kSameTime_s) {
@@ -206,8 +207,8 @@ class Check {
       reached_s = span.to_s;
       check_moving_distance(span);
     }
-    check_moving_gap(reached_s, rows_.back().t_s, unproven);
-    if (certificate_.from_moving.empty() && rows_.front().t_s == rows_.back().t_s &&
+    check_moving_gap(reached_s, samples_.back().t_s, unproven);
+    if (certificate_.from_moving.empty() && samples_.front().t_s == samples_.back().t_s &&
         !unproven.hold(reached_s, reached_s)) {
       fault("from_moving: nothing is said of the drive");
     }
@@ -220,13 +221,13 @@ class Check {
 
   void check_moving_distance(const ProvenTime& span) {
     const double middle_s = 0.5 * (span.from_s + span.to_s);
-    const DriveRow row = at_time(middle_s);
+    const DriveSample sample = at_time(middle_s);
     const double motion_m = std::max(way_m(span.from_s, middle_s), way_m(middle_s, span.to_s));
     const double needed_m = span.at_least_m + motion_m;
     const bool has_all =
         is_promised(span.at_least_m) &&
-        movers_.keep_away(body_.at(row.x_m, row.y_m, row.heading_rad),
-                          {span.from_s, span.to_s, rows_.front().t_s, rows_.back().t_s},
+        movers_.keep_away(body_.at(sample.x_m, sample.y_m, sample.heading_rad),
+                          {span.from_s, span.to_s, samples_.front().t_s, samples_.back().t_s},
                           needed_m - kSlack_m);
     if (has_all) return;
     fault(
@@ -238,8 +239,9 @@ class Check {
   // How far a point of the body moves at most between two times.
   double way_m(double from_s, double to_s) const {
     double sum_m = 0.0;
-    for (std::size_t i = segment_at(from_s); i + 1 < rows_.size() && rows_[i].t_s < to_s; ++i) {
-      const DriveRow &a = rows_[i], &b = rows_[i + 1];
+    for (std::size_t i = segment_at(from_s); i + 1 < samples_.size() && samples_[i].t_s < to_s;
+         ++i) {
+      const DriveSample &a = samples_[i], &b = samples_[i + 1];
       const double common_s = std::min(to_s, b.t_s) - std::max(from_s, a.t_s);
       if (common_s <= 0.0 || b.t_s <= a.t_s) continue;
       sum_m += common_s / (b.t_s - a.t_s) *
@@ -256,30 +258,30 @@ class Check {
   void check_cover(std::string_view list, const std::vector<ProvenSpan>& spans,
                    const Times& unproven) {
     std::size_t segment = 0;
-    double share = 0.0;
-    const auto check_gap = [&](std::size_t to_segment, double to_share) {
-      const double from_s = at(segment, share).t_s, to_s = at(to_segment, to_share).t_s;
+    double fraction = 0.0;
+    const auto check_gap = [&](std::size_t to_segment, double to_fraction) {
+      const double from_s = at(segment, fraction).t_s, to_s = at(to_segment, to_fraction).t_s;
       if (!unproven.hold(from_s, to_s)) {
         fault(fmt::format("{}: nothing is said of {:.6f} s to {:.6f} s", list, from_s, to_s));
       }
     };
     for (const ProvenSpan& span : spans) {
-      if (span.segment + 1 >= rows_.size() || span.segment < segment ||
-          (span.segment == segment && span.from < share)) {
+      if (span.segment + 1 >= samples_.size() || span.segment < segment ||
+          (span.segment == segment && span.from < fraction)) {
         return fault(fmt::format("{}: the spans are out of order, or outside the drive", list));
       }
-      if (span.segment != segment || span.from != share) check_gap(span.segment, span.from);
+      if (span.segment != segment || span.from != fraction) check_gap(span.segment, span.from);
       segment = span.segment;
-      share = span.to;
-      if (share == 1.0 && segment + 2 < rows_.size()) ++segment, share = 0.0;
+      fraction = span.to;
+      if (fraction == 1.0 && segment + 2 < samples_.size()) ++segment, fraction = 0.0;
     }
-    const bool is_whole = segment + 2 == rows_.size() && share == 1.0;
-    if (!is_whole) check_gap(rows_.size() - 2, 1.0);
+    const bool is_whole = segment + 2 == samples_.size() && fraction == 1.0;
+    if (!is_whole) check_gap(samples_.size() - 2, 1.0);
   }
 
   // Near a measured column from the start to the end of what is said, one after the other.
   void check_observed(const Times& unknown) {
-    double reached_s = rows_.front().t_s;
+    double reached_s = samples_.front().t_s;
     for (const ObservedTime& time : certificate_.observed) {
       if (!is_in_drive(time.from_s) || !is_in_drive(time.to_s) || time.to_s < time.from_s ||
           time.from_s < reached_s - kSameTime_s) {
@@ -289,7 +291,7 @@ class Check {
       check_column(time);
       reached_s = time.to_s;
     }
-    check_observed_gap(reached_s, rows_.back().t_s, unknown);
+    check_observed_gap(reached_s, samples_.back().t_s, unknown);
     if (certificate_.observed.empty() && !unknown.hold(reached_s, reached_s)) {
       fault("observed: nothing is said of the drive");
     }
@@ -303,10 +305,10 @@ class Check {
   }
 
   void check_column(const ObservedTime& time) {
-    const DriveRow row = at_time(time.from_s);
+    const DriveSample sample = at_time(time.from_s);
     const auto column = obstacles_->measured_column(time.column_in_source);
     const double far_m =
-        column ? part_.at(row.x_m, row.y_m, row.heading_rad)
+        column ? part_.at(sample.x_m, sample.y_m, sample.heading_rad)
                          .distance_m({{column->min_in_source,
                                        {column->max_in_source.x(), column->min_in_source.y()},
                                        column->max_in_source,
@@ -320,52 +322,52 @@ class Check {
   }
 
   // At poses half a metre of motion apart, or the more on a long drive.
-  std::vector<DriveRow> poses_apart() const {
+  std::vector<DriveSample> poses_apart() const {
     constexpr double apart_m = 0.5, most_poses = 20'000.0;
     std::vector<double> way_until_m{0.0};
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < samples_.size(); ++i) {
       way_until_m.push_back(way_until_m.back() + motion_m({i, 0.0, 1.0}) * 2.0);
     }
     const double step_m = std::max(apart_m, way_until_m.back() / most_poses);
-    std::vector<DriveRow> poses;
+    std::vector<DriveSample> poses;
     std::size_t segment = 0;
     for (double at_m = 0.0; at_m <= way_until_m.back(); at_m += step_m) {
-      while (segment + 2 < rows_.size() && way_until_m[segment + 1] < at_m) ++segment;
+      while (segment + 2 < samples_.size() && way_until_m[segment + 1] < at_m) ++segment;
       const double whole_m = way_until_m[segment + 1] - way_until_m[segment];
       poses.push_back(at(segment, whole_m > 0.0 ? (at_m - way_until_m[segment]) / whole_m : 0.0));
     }
     return poses;
   }
 
-  void check_measured_share() {
+  void check_measured_fraction() {
     double sum = 0.0;
-    const std::vector<DriveRow> poses = poses_apart();
-    for (const DriveRow& pose : poses) {
-      sum += obstacles_->measured_share(pose.x_m, pose.y_m, pose.heading_rad);
+    const std::vector<DriveSample> poses = poses_apart();
+    for (const DriveSample& pose : poses) {
+      sum += obstacles_->measured_fraction(pose.x_m, pose.y_m, pose.heading_rad);
     }
-    const double share = sum / static_cast<double>(poses.size());
-    if (std::abs(share - certificate_.measured_share) <= kSameShare) return;
+    const double fraction = sum / static_cast<double>(poses.size());
+    if (std::abs(fraction - certificate_.measured_fraction) <= kSameFraction) return;
     fault(
         fmt::format("measured_share: {:.4f} of the space that the part takes was measured, not "
                     "{:.4f}",
-                    share, certificate_.measured_share));
+                    fraction, certificate_.measured_fraction));
   }
 
   void mark_columns() {
-    for (const DriveRow& pose : poses_apart()) obstacles_->mark(pose.x_m, pose.y_m, 0.0);
+    for (const DriveSample& pose : poses_apart()) obstacles_->mark(pose.x_m, pose.y_m, 0.0);
     for (const ObservedTime& time : certificate_.observed) {
       obstacles_->mark(time.column_in_source.x(), time.column_in_source.y(), -reach_m_);
     }
     if (certificate_.unknown_policy == UnknownPolicy::occupied) {
       for (const Conflict& conflict : certificate_.conflicts) {
-        const DriveRow row = at_time(conflict.at.t_s);
-        obstacles_->mark(row.x_m, row.y_m, limit_of(conflict));
+        const DriveSample sample = at_time(conflict.at.t_s);
+        obstacles_->mark(sample.x_m, sample.y_m, limit_of(conflict));
       }
     }
     for (const ProvenSpan& span : certificate_.from_unknown) {
-      if (span.segment + 1 >= rows_.size()) continue;
-      const DriveRow row = at(span.segment, 0.5 * (span.from + span.to));
-      obstacles_->mark(row.x_m, row.y_m, span.at_least_m + motion_m(span) + kSlack_m);
+      if (span.segment + 1 >= samples_.size()) continue;
+      const DriveSample sample = at(span.segment, 0.5 * (span.from + span.to));
+      obstacles_->mark(sample.x_m, sample.y_m, span.at_least_m + motion_m(span) + kSlack_m);
     }
     obstacles_->measure();
   }
@@ -373,18 +375,18 @@ class Check {
   void check_distances(std::string_view list, const std::vector<ProvenSpan>& spans,
                        bool is_unknown) {
     for (const ProvenSpan& span : spans) {
-      if (span.segment + 1 >= rows_.size()) continue;
-      const DriveRow row = at(span.segment, 0.5 * (span.from + span.to));
+      if (span.segment + 1 >= samples_.size()) continue;
+      const DriveSample sample = at(span.segment, 0.5 * (span.from + span.to));
       const double needed_m = span.at_least_m + motion_m(span);
       const double limit_m = needed_m + kSlack_m;
       const double distance_m =
-          is_unknown ? obstacles_->unknown_m(row.x_m, row.y_m, row.heading_rad, limit_m)
-                     : obstacles_->occupied_m(row.x_m, row.y_m, row.heading_rad, limit_m);
+          is_unknown ? obstacles_->unknown_m(sample.x_m, sample.y_m, sample.heading_rad, limit_m)
+                     : obstacles_->occupied_m(sample.x_m, sample.y_m, sample.heading_rad, limit_m);
       if (is_promised(span.at_least_m) && distance_m >= needed_m - kSlack_m) continue;
       fault(
           fmt::format("{}: at {:.6f} s the distance is {:.6f} m, and the body may move {:.6f} m: "
                       "that is no {:.6f} m",
-                      list, row.t_s, distance_m, motion_m(span), span.at_least_m));
+                      list, sample.t_s, distance_m, motion_m(span), span.at_least_m));
     }
   }
 
@@ -411,7 +413,7 @@ class Check {
   const AuditCertificate& certificate_;
   BruteForceMovers movers_;
   BodyOutline body_, part_;  // with the margin, and without it
-  std::vector<DriveRow> rows_;
+  std::vector<DriveSample> samples_;
   double reach_m_ = 0.0;
   bool is_all_observed_ = true;
   std::optional<BruteForceObstacles> obstacles_;
@@ -424,7 +426,7 @@ std::vector<std::string> check_certificate(const AuditCertificate& certificate,
                                            const std::vector<map::OccupancyCell>& cells,
                                            double resolution_m,
                                            const geometry::Trajectory& drive_in_source,
-                                           std::span<const MovingObstacle> moving_in_source) {
+                                           std::span<const ObstacleInSource> moving_in_source) {
   return Check(certificate, cells, resolution_m, drive_in_source, moving_in_source).run();
 }
 
@@ -439,11 +441,12 @@ double checked_distance_m(const AuditCertificate& certificate,
     most_m = std::max(most_m, conflict.least_clearance_m);
   }
   double motion_m = 0.0;
-  const auto& rows = drive_in_source.points();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    motion_m = std::max(motion_m,
-                        std::hypot(rows[i].x_m - rows[i - 1].x_m, rows[i].y_m - rows[i - 1].y_m) +
-                            reach_m * std::abs(rows[i].heading_rad - rows[i - 1].heading_rad));
+  const auto& samples = drive_in_source.points();
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    motion_m = std::max(
+        motion_m,
+        std::hypot(samples[i].x_m - samples[i - 1].x_m, samples[i].y_m - samples[i - 1].y_m) +
+            reach_m * std::abs(samples[i].heading_rad - samples[i - 1].heading_rad));
   }
   constexpr double beyond_m = 2.0;  // how far distances are measured over what is asked for
   return most_m + motion_m + reach_m + beyond_m;

@@ -26,7 +26,7 @@ std::vector<std::string> check_certificate(const AuditCertificate& certificate,
                                            const std::vector<map::OccupancyCell>& cells,
                                            double resolution_m,
                                            const geometry::Trajectory& drive_in_source,
-                                           std::span<const MovingObstacle> moving_in_source = {});
+                                           std::span<const ObstacleInSource> moving_in_source = {});
 
 /// How far from the way of the vehicle's axle cells matter to the check.
 double checked_distance_m(const AuditCertificate& certificate,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/planning/obstacles/static_obstacles.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
@@ -18,24 +18,22 @@ geometry::Ring ring_of(const geometry::Rectangle& rectangle) {
 }
 
 geometry::Ring ring_of(const map::Box2& box) {
-  const Eigen::Vector2d &least = box.min_in_source, &most = box.max_in_source;
-  return {least, {most.x(), least.y()}, most, {least.x(), most.y()}};
+  return geometry::box_ring(box.min_in_source, box.max_in_source);
 }
 
 }  // namespace
 
-const MovingObstacle* find_mover(std::span<const MovingObstacle> moving, const std::string& id) {
+const ObstacleInSource* find_mover(std::span<const ObstacleInSource> moving,
+                                   const std::string& id) {
   if (id.empty()) return nullptr;
-  const auto found = std::ranges::find(
-      moving, id,
-      [](const MovingObstacle& mover) -> const std::string& { return mover.obstacle.id; });
+  const auto found = std::ranges::find(moving, id, &ObstacleInSource::id);
   return found == moving.end() ? nullptr : &*found;
 }
 
 DeepestOverlapSearch::DeepestOverlapSearch(const map::ClearanceField& field, const Probe& probe,
                                            const geometry::BodyPart& part,
                                            std::vector<map::ObstacleKind> kinds,
-                                           std::span<const MovingObstacle> moving,
+                                           std::span<const ObstacleInSource> moving,
                                            std::size_t conflicts)
     : field_(field),
       probe_(probe),
@@ -56,11 +54,11 @@ std::vector<double> DeepestOverlapSearch::moments_s(const Conflict& conflict) co
             : std::min(most_moments_, std::ceil((to_m - from_m) / kMomentsApart_m) + 1.0);
   std::vector<double> moments{conflict.at.t_s};
   for (double i = 0.0; i < count; ++i) {
-    const double share = count > 1.0 ? i / (count - 1.0) : 0.5;
+    const double fraction = count > 1.0 ? i / (count - 1.0) : 0.5;
     if (moves) {
-      moments.push_back(conflict.from_s + share * (conflict.to_s - conflict.from_s));
+      moments.push_back(conflict.from_s + fraction * (conflict.to_s - conflict.from_s));
     } else {
-      const auto [segment, of_segment] = probe_.place_moved(from_m + share * (to_m - from_m));
+      const auto [segment, of_segment] = probe_.place_moved(from_m + fraction * (to_m - from_m));
       moments.push_back(probe_.time_at(segment, of_segment));
     }
   }
@@ -80,14 +78,14 @@ geometry::Overlap DeepestOverlapSearch::with_cells(const geometry::TrajectoryPoi
   return all;
 }
 
-geometry::Overlap DeepestOverlapSearch::with(const MovingObstacle& mover,
+geometry::Overlap DeepestOverlapSearch::with(const ObstacleInSource& mover,
                                              const geometry::TrajectoryPoint& state) const {
   return geometry::convex_overlap(part_.outline_at(state.pose()),
-                                  ring_of(body_of(mover.obstacle, state.t_s)));
+                                  ring_of(rectangle_at(mover, state.t_s)));
 }
 
 DeepestOverlap DeepestOverlapSearch::of(const Conflict& conflict) const {
-  const MovingObstacle* mover = find_mover(moving_, conflict.obstacle);
+  const ObstacleInSource* mover = find_mover(moving_, conflict.obstacle);
   DeepestOverlap deepest{.overlap = {}, .at_s = conflict.at.t_s};
   for (const double t_s : moments_s(conflict)) {
     const geometry::TrajectoryPoint state = probe_.state_at_time(t_s);

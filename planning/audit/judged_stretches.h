@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/audit_report.h"
 
 namespace roadbed::planning::inline audit {
 

@@ -17,7 +17,7 @@ LeastClearance LeastClearanceSearch::found() const {
   return found;
 }
 
-void LeastClearanceSearch::glance(std::size_t segment) {
+void LeastClearanceSearch::seed(std::size_t segment) {
   const Span whole{segment, 0.0, 1.0};
   const double bound_m = probe_.lower_bound_m(whole, first_bound_m_);
   if (bound_m >= first_bound_m_) return;

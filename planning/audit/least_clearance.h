@@ -29,9 +29,9 @@ class LeastClearanceSearch {
  public:
   LeastClearanceSearch(const Probe& probe, double tolerance_m);
 
-  /// Looks at a segment from far: the search begins where such a look found the least room, as a
-  /// low distance to begin with puts most others aside at once.
-  void glance(std::size_t segment);
+  /// Seeds the search with a segment: it begins where the least room is found so, as a low distance
+  /// to begin with puts most others aside at once.
+  void seed(std::size_t segment);
 
   /// Segments from one on up to another, without that one.
   void search(std::size_t from, std::size_t to);

@@ -51,8 +51,8 @@ Value along(const std::vector<double>& station_m, const std::vector<Value>& valu
   std::size_t i = 1;
   while (i + 1 < station_m.size() && station_m[i] <= s_m) ++i;
   const double from_m = station_m[i - 1], length_m = station_m[i] - from_m;
-  const double share = length_m > 0.0 ? std::clamp((s_m - from_m) / length_m, 0.0, 1.0) : 0.0;
-  return values[i - 1] + share * (values[i] - values[i - 1]);
+  const double fraction = length_m > 0.0 ? std::clamp((s_m - from_m) / length_m, 0.0, 1.0) : 0.0;
+  return values[i - 1] + fraction * (values[i] - values[i - 1]);
 }
 
 /// What a lane's surface is at a point, as a plane, and where the lane goes there.
@@ -151,11 +151,11 @@ std::string told(const GroundPlace& place, const std::string& what) {
 
 std::string map_ground_fault(const std::vector<GroundPlace>& places, const map::RoadMap& road_map,
                              const geometry::Trajectory& drive_in_source) {
-  const auto& rows = drive_in_source.points();
-  const auto is_at = [](const GroundPlace& place, const geometry::TrajectoryPoint& row) {
-    return (place.in_source - row.pose().position()).norm() <= kSamePlane_m;
+  const auto& samples = drive_in_source.points();
+  const auto is_at = [](const GroundPlace& place, const geometry::TrajectoryPoint& sample) {
+    return (place.in_source - sample.pose().position()).norm() <= kSamePlane_m;
   };
-  if (!is_at(places.front(), rows.front()) || !is_at(places.back(), rows.back())) {
+  if (!is_at(places.front(), samples.front()) || !is_at(places.back(), samples.back())) {
     return "ground: it does not go from the drive's start to its end";
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -165,7 +165,7 @@ std::string map_ground_fault(const std::vector<GroundPlace>& places, const map::
     if (found == surfaces.end()) {
       return told(places[i], fmt::format("z {:.3f} m is of no lane of the map", places[i].z_m));
     }
-    if (i == 0 && !is_one_road(surfaces, rows.front().heading_rad)) {
+    if (i == 0 && !is_one_road(surfaces, samples.front().heading_rad)) {
       return told(places[i], "roads lie above one another where the drive begins");
     }
     if (i > 0 && step_to_m(places[i - 1], places[i]) > kOneRoad_m + kSamePlane_m) {

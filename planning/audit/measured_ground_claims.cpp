@@ -158,11 +158,11 @@ std::string gap_below(const std::vector<GroundPlace>& places, const geometry::Tr
   for (const GroundPlace& place : places) points.push_back(place.in_source);
   const geometry::PointIndex index(points);
   std::optional<Vector2d> last;
-  for (const geometry::TrajectoryPoint& row : drive.points()) {
-    const Vector2d axle = row.pose().position();
+  for (const geometry::TrajectoryPoint& sample : drive.points()) {
+    const Vector2d axle = sample.pose().position();
     if (last && (axle - *last).norm() < kPointsApart_m) continue;
     last = axle;
-    const Vector2d ahead(std::cos(row.heading_rad), std::sin(row.heading_rad));
+    const Vector2d ahead(std::cos(sample.heading_rad), std::sin(sample.heading_rad));
     for (double x_m = body.rear_m; x_m <= body.front_m; x_m += kPointsApart_m) {
       const Vector2d point = axle + x_m * ahead;
       if ((points[index.nearest(point)->index] - point).norm() <= kHitsAround_m) continue;
@@ -182,13 +182,13 @@ std::string measured_ground_fault(const std::vector<GroundPlace>& places,
   constexpr double least_within_m = 0.05;
   if (std::string gap = gap_below(places, drive_in_source, body); !gap.empty()) return gap;
   std::vector<Vector2d> positions;
-  for (const auto& row : drive_in_source.points()) positions.push_back(row.pose().position());
+  for (const auto& sample : drive_in_source.points()) positions.push_back(sample.pose().position());
   const geometry::PointIndex index(positions);
   const LowestHits hits(places, cells, cell_m);
   for (const GroundPlace& place : places) {
-    const auto& row = drive_in_source.points()[index.nearest(place.in_source)->index];
+    const auto& sample = drive_in_source.points()[index.nearest(place.in_source)->index];
     const std::string fault =
-        fault_at(place, hits, std::max(cell_m, least_within_m), row.heading_rad);
+        fault_at(place, hits, std::max(cell_m, least_within_m), sample.heading_rad);
     if (fault.empty()) continue;
     return fmt::format("ground: at ({:.1f}, {:.1f}), z {:.3f} m, {}", place.in_source.x(),
                        place.in_source.y(), place.z_m, fault);

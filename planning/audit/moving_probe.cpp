@@ -5,14 +5,9 @@
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/planning/obstacles/prediction.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
-
-geometry::Rectangle rectangle_at(const Obstacle& obstacle, double t_s) {
-  return body_around(obstacle.motion.at(t_s).pose(), obstacle.length_m, obstacle.width_m);
-}
 
 map::Box2 box_around(const geometry::Rectangle& rectangle) {
   const auto corners = rectangle.corners();
@@ -24,13 +19,14 @@ map::Box2 box_around(const geometry::Rectangle& rectangle) {
   return box;
 }
 
-// No point of the obstacle moves farther between two of its rows.
+// No point of the obstacle moves farther between two of its samples.
 std::vector<double> ways_m(const geometry::Trajectory& motion, double radius_m) {
   std::vector<double> ways{0.0};
-  const auto& rows = motion.points();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const double way_m = std::hypot(rows[i].x_m - rows[i - 1].x_m, rows[i].y_m - rows[i - 1].y_m);
-    const double turn_rad = std::abs(rows[i].heading_rad - rows[i - 1].heading_rad);
+  const auto& samples = motion.points();
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double way_m =
+        std::hypot(samples[i].x_m - samples[i - 1].x_m, samples[i].y_m - samples[i - 1].y_m);
+    const double turn_rad = std::abs(samples[i].heading_rad - samples[i - 1].heading_rad);
     ways.push_back(ways.back() + way_m + radius_m * turn_rad);
   }
   return ways;
@@ -38,32 +34,32 @@ std::vector<double> ways_m(const geometry::Trajectory& motion, double radius_m) 
 
 }  // namespace
 
-geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
-                                          std::span<const MovingObstacle> obstacles) {
+geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
+                                             std::span<const ObstacleInSource> obstacles) {
   if (drive.empty()) return drive;
-  std::vector<geometry::TrajectoryPoint> rows = drive.points();
-  for (const MovingObstacle& obstacle : obstacles) {
-    for (const double t_s : {obstacle.from_s, obstacle.to_s}) {
+  std::vector<geometry::TrajectoryPoint> samples = drive.points();
+  for (const ObstacleInSource& obstacle : obstacles) {
+    for (const double t_s : {obstacle.validity.from_s, obstacle.validity.to_s}) {
       if (!(drive.start_s() < t_s && t_s < drive.end_s())) continue;
-      rows.push_back(drive.at(t_s));
-      rows.back().t_s = t_s;
+      samples.push_back(drive.at(t_s));
+      samples.back().t_s = t_s;
     }
   }
-  std::ranges::sort(rows, {}, &geometry::TrajectoryPoint::t_s);
+  std::ranges::sort(samples, {}, &geometry::TrajectoryPoint::t_s);
   const auto is_at_once = [](const auto& a, const auto& b) { return a.t_s == b.t_s; };
-  rows.erase(std::unique(rows.begin(), rows.end(), is_at_once), rows.end());
-  return geometry::Trajectory(std::move(rows));
+  samples.erase(std::unique(samples.begin(), samples.end(), is_at_once), samples.end());
+  return geometry::Trajectory(std::move(samples));
 }
 
 MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
-                         std::span<const MovingObstacle> obstacles, double horizon_m)
+                         std::span<const ObstacleInSource> obstacles, double horizon_m)
     : Probe(drive, part.reach_m()),
       part_(part),
       horizon_m_(horizon_m),
       body_radius_m_(part.circumradius_m()) {
-  for (const MovingObstacle& from : obstacles) {
-    const double radius_m = 0.5 * std::hypot(from.obstacle.length_m, from.obstacle.width_m);
-    movers_.push_back({&from, radius_m, ways_m(from.obstacle.motion, radius_m)});
+  for (const ObstacleInSource& from : obstacles) {
+    const double radius_m = 0.5 * std::hypot(from.length_m, from.width_m);
+    movers_.push_back({&from, radius_m, ways_m(from.motion, radius_m)});
   }
   for (std::size_t segment = 0; segment < segments(); ++segment) {
     near_.push_back(near_segment(segment));
@@ -72,20 +68,21 @@ MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::Body
 
 bool MovingProbe::is_there(const Mover& mover, std::size_t segment) const {
   const double start_s = state_at(segment, 0.0).t_s, end_s = state_at(segment, 1.0).t_s;
-  const double from_s = mover.from->from_s, to_s = mover.from->to_s;
-  const bool before_end = from_s < end_s || (segment + 1 == segments() && from_s <= end_s);
-  const bool after_start = to_s > start_s || (segment == 0 && to_s >= start_s);
+  const TimeSpan& there = mover.from->validity;
+  const bool before_end =
+      there.from_s < end_s || (segment + 1 == segments() && there.from_s <= end_s);
+  const bool after_start = there.to_s > start_s || (segment == 0 && there.to_s >= start_s);
   return before_end && after_start;
 }
 
 double MovingProbe::way_until_m(const Mover& mover, double t_s) {
-  const auto& rows = mover.from->obstacle.motion.points();
-  if (t_s <= rows.front().t_s) return 0.0;
-  if (t_s >= rows.back().t_s) return mover.way_m.back();
-  const auto after = std::ranges::upper_bound(rows, t_s, {}, &geometry::TrajectoryPoint::t_s);
-  const auto i = static_cast<std::size_t>(after - rows.begin());
-  const double share = (t_s - rows[i - 1].t_s) / (rows[i].t_s - rows[i - 1].t_s);
-  return mover.way_m[i - 1] + share * (mover.way_m[i] - mover.way_m[i - 1]);
+  const auto& samples = mover.from->motion.points();
+  if (t_s <= samples.front().t_s) return 0.0;
+  if (t_s >= samples.back().t_s) return mover.way_m.back();
+  const auto after = std::ranges::upper_bound(samples, t_s, {}, &geometry::TrajectoryPoint::t_s);
+  const auto i = static_cast<std::size_t>(after - samples.begin());
+  const double fraction = (t_s - samples[i - 1].t_s) / (samples[i].t_s - samples[i - 1].t_s);
+  return mover.way_m[i - 1] + fraction * (mover.way_m[i] - mover.way_m[i - 1]);
 }
 
 std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
@@ -97,7 +94,7 @@ std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
   for (std::size_t i = 0; i < movers_.size(); ++i) {
     const Mover& mover = movers_[i];
     if (!is_there(mover, segment)) continue;
-    const auto place = mover.from->obstacle.motion.at(middle.t_s).pose().position();
+    const auto place = mover.from->motion.at(middle.t_s).pose().position();
     const double moved_m =
         Probe::motion_bound_m(whole) + way_until_m(mover, end_s) - way_until_m(mover, start_s);
     const double away_m = (place - centre).norm() - body_radius_m_ - mover.radius_m - moved_m;
@@ -124,7 +121,7 @@ double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
   const Eigen::Vector2d centre = part_.core_at(state.pose()).centre;
   double least_m = horizon_m_;
   for (const std::size_t i : near_[span.segment]) {
-    const auto place = movers_[i].from->obstacle.motion.at(state.t_s).pose().position();
+    const auto place = movers_[i].from->motion.at(state.t_s).pose().position();
     least_m = std::min(least_m, (place - centre).norm() - body_radius_m_ - movers_[i].radius_m);
   }
   return std::max(0.0, least_m);
@@ -134,9 +131,9 @@ std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_
   const geometry::TrajectoryPoint state = middle_of(span);
   const geometry::Rectangle body = part_.core_at(state.pose());
   double least_m = std::min(within_m, horizon_m_);
-  const MovingObstacle* nearest = nullptr;
+  const ObstacleInSource* nearest = nullptr;
   for (const std::size_t i : near_[span.segment]) {
-    const geometry::Rectangle thing = rectangle_at(movers_[i].from->obstacle, state.t_s);
+    const geometry::Rectangle thing = rectangle_at(*movers_[i].from, state.t_s);
     if ((thing.centre - body.centre).norm() - body_radius_m_ - movers_[i].radius_m > least_m) {
       continue;
     }
@@ -146,8 +143,7 @@ std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_
     nearest = movers_[i].from;
   }
   if (nearest == nullptr) return std::nullopt;
-  return Near{least_m, box_around(rectangle_at(nearest->obstacle, state.t_s)),
-              nearest->obstacle.id};
+  return Near{least_m, box_around(rectangle_at(*nearest, state.t_s)), nearest->id};
 }
 
 }  // namespace roadbed::planning::audit

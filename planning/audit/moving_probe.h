@@ -10,23 +10,23 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/audit/probe.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
 
-/// The same drive with a row more at each time at which an obstacle comes or goes, so that each is
-/// there all through a segment, or not at all. One that is there only at the first or the last
+/// The same drive with a sample more at each time at which an obstacle comes or goes, so that each
+/// is there all through a segment, or not at all. One that is there only at the first or the last
 /// moment of the drive counts all through its first or last segment.
-geometry::Trajectory with_rows_at_changes(const geometry::Trajectory& drive,
-                                          std::span<const MovingObstacle> obstacles);
+geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
+                                             std::span<const ObstacleInSource> obstacles);
 
 /// Distances from a part of a vehicle that drives along a trajectory to rectangles that move:
-/// linear between their rows, at rest before the first and after the last.
+/// linear between their samples, at rest before the first and after the last.
 class MovingProbe : public Probe {
  public:
-  /// @param drive  of `with_rows_at_changes`.
+  /// @param drive  of `with_samples_at_changes`.
   MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
-              std::span<const MovingObstacle> obstacles, double horizon_m);
+              std::span<const ObstacleInSource> obstacles, double horizon_m);
 
   /// Also the way of the fastest of the obstacles there.
   double motion_bound_m(const Span& span) const override;
@@ -38,9 +38,9 @@ class MovingProbe : public Probe {
 
  private:
   struct Mover {
-    const MovingObstacle* from;
+    const ObstacleInSource* from;
     double radius_m;
-    std::vector<double> way_m;  // of its farthest corner up to each row, along its motion
+    std::vector<double> way_m;  // of its farthest corner up to each sample, along its motion
   };
 
   bool is_there(const Mover& mover, std::size_t segment) const;

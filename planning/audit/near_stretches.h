@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/planning/audit/probe.h"
 
 namespace roadbed::planning::inline audit {

@@ -31,8 +31,8 @@ map::Box3 box_around(const geometry::Trajectory& drive, const Stretch& stretch,
     most = most.cwiseMax(state.pose().position());
   };
   take(drive.at(stretch.to_s));
-  for (const geometry::TrajectoryPoint& row : drive.points()) {
-    if (row.t_s > stretch.from_s && row.t_s < stretch.to_s) take(row);
+  for (const geometry::TrajectoryPoint& sample : drive.points()) {
+    if (sample.t_s > stretch.from_s && sample.t_s < stretch.to_s) take(sample);
   }
   constexpr double any_height_m = 1e6;
   const double margin_m = part.reach_m() + kObservedWithin_m;
@@ -71,8 +71,8 @@ ObservedSearch::ObservedSearch(const map::ClearanceField& field, const Probe& pr
 void ObservedSearch::search(std::size_t to) {
   const double end_m = probe_.moved_m()[to];
   while (at_m_ < end_m) {
-    const auto [segment, share] = probe_.place_moved(at_m_);
-    const geometry::Rectangle core = part_.core_at(probe_.state_at(segment, share).pose());
+    const auto [segment, fraction] = probe_.place_moved(at_m_);
+    const geometry::Rectangle core = part_.core_at(probe_.state_at(segment, fraction).pose());
     const double look_m = kObservedWithin_m + beyond_m_;
     const auto found = field_.nearest_measured(core, look_m + part_.radius_m);
     const double distance_m = found ? std::max(0.0, found->distance_m - part_.radius_m) : look_m;
@@ -87,8 +87,8 @@ void ObservedSearch::search(std::size_t to) {
 }
 
 double ObservedSearch::time_moved_s(double moved_m) const {
-  const auto [segment, share] = probe_.place_moved(moved_m);
-  return probe_.time_at(segment, share);
+  const auto [segment, fraction] = probe_.place_moved(moved_m);
+  return probe_.time_at(segment, fraction);
 }
 
 void ObservedSearch::observe(double until_m, const map::Box2& column) {

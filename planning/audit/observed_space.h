@@ -9,7 +9,7 @@
 
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/planning/audit/probe.h"
 
 namespace roadbed::planning::inline audit {

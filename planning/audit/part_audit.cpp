@@ -12,7 +12,6 @@
 #include "roadbed/planning/audit/judged_stretches.h"
 #include "roadbed/planning/audit/moving_probe.h"
 #include "roadbed/planning/obstacles/body_side.h"
-#include "roadbed/planning/obstacles/static_obstacles.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
@@ -23,7 +22,7 @@ using map::ObstacleKind;
 constexpr std::size_t kMostSegments = 1024;
 constexpr double kStretch_m = 100.0;
 
-std::size_t glances_apart(std::size_t segments) { return 1 + segments / 64; }
+std::size_t seeds_apart(std::size_t segments) { return 1 + segments / 64; }
 
 // @returns the part, inflated.
 geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Trajectory& drive,
@@ -54,13 +53,13 @@ std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
   return {ObstacleKind::occupied};
 }
 
-// A row is the start of its segment; the last one the end of the last.
-Span at_row(const Probe& probe, std::size_t row) {
-  if (row < probe.segments()) return {row, 0.0, 0.0};
+// A sample is the start of its segment; the last one the end of the last.
+Span at_sample(const Probe& probe, std::size_t sample) {
+  if (sample < probe.segments()) return {sample, 0.0, 0.0};
   return {probe.segments() - 1, 1.0, 1.0};
 }
 
-std::size_t rows_apart(const geometry::Trajectory& drive) {
+std::size_t samples_apart(const geometry::Trajectory& drive) {
   constexpr std::size_t most_samples = 5000;
   return 1 + drive.points().size() / most_samples;
 }
@@ -73,9 +72,9 @@ std::size_t stretch_end(const std::vector<double>& moved_m, std::size_t from) {
   return static_cast<std::size_t>(end - moved_m.begin());
 }
 
-double clearance_at(const Probe& probe, std::size_t row) {
+double clearance_at(const Probe& probe, std::size_t sample) {
   constexpr double exact_below_m = 5.0;
-  const Span at = at_row(probe, row);
+  const Span at = at_sample(probe, sample);
   const double bound_m = probe.lower_bound_m(at, exact_below_m);
   if (bound_m >= exact_below_m) return bound_m;
   const auto nearest = probe.nearest(at, exact_below_m);
@@ -97,8 +96,8 @@ std::vector<Stretch> unknown_times(const NearStretches& found) {
 }
 
 geometry::Rectangle thing_at(double t_s, const map::Box2& witness, const std::string& id,
-                             std::span<const MovingObstacle> moving) {
-  if (const MovingObstacle* mover = find_mover(moving, id)) return body_of(mover->obstacle, t_s);
+                             std::span<const ObstacleInSource> moving) {
+  if (const ObstacleInSource* mover = find_mover(moving, id)) return rectangle_at(*mover, t_s);
   const Eigen::Vector2d half = 0.5 * (witness.max_in_source - witness.min_in_source);
   return {.centre = 0.5 * (witness.min_in_source + witness.max_in_source),
           .half_length_m = half.x(),
@@ -106,7 +105,7 @@ geometry::Rectangle thing_at(double t_s, const map::Box2& witness, const std::st
 }
 
 std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witness,
-                    const std::string& id, std::span<const MovingObstacle> moving,
+                    const std::string& id, std::span<const ObstacleInSource> moving,
                     const geometry::BodyPart& body) {
   if (body.is_circle()) return body.name;
   return std::string(side_towards(thing_at(at.t_s, witness, id, moving), body.core_at(at.pose())));
@@ -116,7 +115,7 @@ std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witnes
 
 PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                      const geometry::BodyPart& part, const AuditOptions& options,
-                     std::span<const MovingObstacle> moving_in_source)
+                     std::span<const ObstacleInSource> moving_in_source)
     : field_(field),
       options_(options),
       moving_(moving_in_source),
@@ -131,11 +130,11 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
   unknown_.emplace(*unknown_probe_, options.clearance_m, options.tolerance_m);
 }
 
-void PartAudit::go_along(std::span<const std::unique_ptr<PartAudit>> parts) {
+void PartAudit::sweep(std::span<const std::unique_ptr<PartAudit>> parts) {
   if (parts.empty()) return;
   const std::size_t segments = parts.front()->probe_.segments();
-  for (std::size_t segment = 0; segment < segments; segment += glances_apart(segments)) {
-    for (const auto& part : parts) part->least_.glance(segment);
+  for (std::size_t segment = 0; segment < segments; segment += seeds_apart(segments)) {
+    for (const auto& part : parts) part->least_.seed(segment);
   }
   const std::vector<double>& moved_m = parts.front()->probe_.moved_m();
   for (std::size_t from = 0; from < segments;) {
@@ -150,25 +149,27 @@ void PartAudit::advance(std::size_t from, std::size_t to) {
   if (unknown_) unknown_->search(to);
   observed_.search(to);
   take_samples(to);
-  take_unknown_shares(to);
+  take_unknown_fractions(to);
 }
 
 void PartAudit::take_samples(std::size_t to) {
-  const auto& rows = drive_.points();
-  const std::size_t end = to == probe_.segments() ? rows.size() : to, apart = rows_apart(drive_);
-  for (std::size_t row = apart * report_.profile.size(); row < end; row += apart) {
-    report_.profile.push_back({rows[row].t_s, clearance_at(probe_, row)});
+  const auto& samples = drive_.points();
+  const std::size_t end = to == probe_.segments() ? samples.size() : to,
+                    apart = samples_apart(drive_);
+  for (std::size_t sample = apart * report_.profile.size(); sample < end; sample += apart) {
+    report_.profile.push_back({samples[sample].t_s, clearance_at(probe_, sample)});
   }
 }
 
-void PartAudit::take_unknown_shares(std::size_t to) {
+void PartAudit::take_unknown_fractions(std::size_t to) {
   const std::vector<double>& moved_m = probe_.moved_m();
   const double apart_m = poses_apart_m(probe_);
   for (;; ++poses_) {
     const double at_m = apart_m * static_cast<double>(poses_);
     if (at_m > moved_m[to]) return;
-    const auto [segment, share] = probe_.place_moved(at_m);
-    unknown_sum_ += field_.unknown_share(body_.box_at(probe_.state_at(segment, share).pose()));
+    const auto [segment, fraction] = probe_.place_moved(at_m);
+    unknown_sum_ +=
+        field_.unknown_fraction(body_.box_at(probe_.state_at(segment, fraction).pose()));
   }
 }
 
@@ -184,7 +185,7 @@ bool PartAudit::is_near(const LeastClearance& least) const {
   return least.proven_m < options_.clearance_m + kLeastTold_m;
 }
 
-void PartAudit::take_near(const Probe& probe) {
+void PartAudit::collect_conflicts(const Probe& probe) {
   NearStretchSearch search(probe, options_.clearance_m, options_.tolerance_m);
   search.search(probe.segments());
   const NearStretches found = search.found();
@@ -196,12 +197,12 @@ void PartAudit::take_near(const Probe& probe) {
   add(report_.undecided, found.undecided);
 }
 
-void PartAudit::ask_about_moving() {
+void PartAudit::audit_moving() {
   const MovingProbe probe(drive_, body_, moving_, field_.horizon_m());
   LeastClearanceSearch search(probe, options_.tolerance_m);
   for (std::size_t segment = 0; segment < probe.segments();
-       segment += glances_apart(probe.segments())) {
-    search.glance(segment);
+       segment += seeds_apart(probe.segments())) {
+    search.seed(segment);
   }
   for (std::size_t from = 0; from < probe.segments(); from += kMostSegments) {
     search.search(from, std::min(from + kMostSegments, probe.segments()));
@@ -209,14 +210,14 @@ void PartAudit::ask_about_moving() {
   const LeastClearance least = search.found();
   if (least.found_m < report_.least_clearance_m) take_least(least);
   report_.proven_clearance_m = std::min(report_.proven_clearance_m, least.proven_m);
-  if (is_near(least)) take_near(probe);
+  if (is_near(least)) collect_conflicts(probe);
   for (std::size_t i = 0; i < report_.profile.size(); ++i) {
     double& clearance_m = report_.profile[i].clearance_m;
-    clearance_m = std::min(clearance_m, clearance_at(probe, i * rows_apart(drive_)));
+    clearance_m = std::min(clearance_m, clearance_at(probe, i * samples_apart(drive_)));
   }
 }
 
-void PartAudit::take_unobserved() {
+void PartAudit::collect_unobserved() {
   report_.observed = observed_.take_observed();
   for (const Stretch& stretch : observed_.unobserved()) {
     report_.unknown.push_back(stretch);
@@ -238,8 +239,8 @@ AuditReport PartAudit::report() {
   const LeastClearance least = least_.found();
   take_least(least);
   report_.proven_clearance_m = least.proven_m;
-  if (is_near(least)) take_near(probe_);
-  if (!moving_.empty()) ask_about_moving();
+  if (is_near(least)) collect_conflicts(probe_);
+  if (!moving_.empty()) audit_moving();
   report_.beyond_horizon = !report_.witness;
   if (report_.witness) {
     report_.part = part_of(drive_.at(report_.least_clearance_at_s), *report_.witness,
@@ -247,8 +248,8 @@ AuditReport PartAudit::report() {
   }
   describe_conflicts();
   if (unknown_) report_.unknown = unknown_times(unknown_->found());
-  take_unobserved();
-  report_.unknown_share = unknown_sum_ / static_cast<double>(poses_);
+  collect_unobserved();
+  report_.unknown_fraction = unknown_sum_ / static_cast<double>(poses_);
   report_.least_measured = options_.least_measured;
   report_.verdict = judge(report_);
   return std::move(report_);

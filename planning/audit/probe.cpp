@@ -17,15 +17,16 @@ Probe::Probe(const geometry::Trajectory& drive, double reach_m)
 
 std::size_t Probe::segments() const { return std::max<std::size_t>(1, drive_.points().size() - 1); }
 
-geometry::TrajectoryPoint Probe::state_at(std::size_t segment, double share) const {
-  const auto& rows = drive_.points();
-  return geometry::interpolate(rows[segment], rows[std::min(segment + 1, rows.size() - 1)], share);
+geometry::TrajectoryPoint Probe::state_at(std::size_t segment, double fraction) const {
+  const auto& samples = drive_.points();
+  return geometry::interpolate(samples[segment], samples[std::min(segment + 1, samples.size() - 1)],
+                               fraction);
 }
 
-double Probe::time_at(std::size_t segment, double share) const {
-  const auto& rows = drive_.points();
-  const double from_s = rows[segment].t_s;
-  return from_s + share * (rows[std::min(segment + 1, rows.size() - 1)].t_s - from_s);
+double Probe::time_at(std::size_t segment, double fraction) const {
+  const auto& samples = drive_.points();
+  const double from_s = samples[segment].t_s;
+  return from_s + fraction * (samples[std::min(segment + 1, samples.size() - 1)].t_s - from_s);
 }
 
 std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
@@ -40,34 +41,35 @@ std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
 Probe::Place Probe::place_moved(double moved_m) const {
   const auto after = std::upper_bound(moved_m_.begin() + 1, moved_m_.end() - 1, moved_m);
   const auto segment = static_cast<std::size_t>(after - moved_m_.begin()) - 1;
-  const double share = (moved_m - moved_m_[segment]) / (moved_m_[segment + 1] - moved_m_[segment]);
-  return {segment, std::clamp(share, 0.0, 1.0)};
+  const double fraction =
+      (moved_m - moved_m_[segment]) / (moved_m_[segment + 1] - moved_m_[segment]);
+  return {segment, std::clamp(fraction, 0.0, 1.0)};
 }
 
 double Probe::moved_at_m(double t_s) const {
-  const auto& rows = drive_.points();
-  if (rows.size() == 1) return 0.0;
-  const auto after =
-      std::upper_bound(rows.begin() + 1, rows.end() - 1, t_s,
-                       [](double t, const geometry::TrajectoryPoint& row) { return t < row.t_s; });
-  const auto segment = static_cast<std::size_t>(after - rows.begin()) - 1;
-  const double whole_s = rows[segment + 1].t_s - rows[segment].t_s;
-  const double share = std::clamp((t_s - rows[segment].t_s) / whole_s, 0.0, 1.0);
-  return moved_m_[segment] + share * (moved_m_[segment + 1] - moved_m_[segment]);
+  const auto& samples = drive_.points();
+  if (samples.size() == 1) return 0.0;
+  const auto after = std::upper_bound(
+      samples.begin() + 1, samples.end() - 1, t_s,
+      [](double t, const geometry::TrajectoryPoint& sample) { return t < sample.t_s; });
+  const auto segment = static_cast<std::size_t>(after - samples.begin()) - 1;
+  const double whole_s = samples[segment + 1].t_s - samples[segment].t_s;
+  const double fraction = std::clamp((t_s - samples[segment].t_s) / whole_s, 0.0, 1.0);
+  return moved_m_[segment] + fraction * (moved_m_[segment + 1] - moved_m_[segment]);
 }
 
-geometry::Pose2 Probe::pose_at(std::size_t segment, double share) const {
-  const auto& rows = drive_.points();
-  const geometry::TrajectoryPoint& a = rows[segment];
-  const geometry::TrajectoryPoint& b = rows[std::min(segment + 1, rows.size() - 1)];
-  return {a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m),
-          a.heading_rad + share * (b.heading_rad - a.heading_rad)};
+geometry::Pose2 Probe::pose_at(std::size_t segment, double fraction) const {
+  const auto& samples = drive_.points();
+  const geometry::TrajectoryPoint& a = samples[segment];
+  const geometry::TrajectoryPoint& b = samples[std::min(segment + 1, samples.size() - 1)];
+  return {a.x_m + fraction * (b.x_m - a.x_m), a.y_m + fraction * (b.y_m - a.y_m),
+          a.heading_rad + fraction * (b.heading_rad - a.heading_rad)};
 }
 
 double Probe::segment_motion_m(std::size_t segment) const {
-  const auto& rows = drive_.points();
-  const geometry::TrajectoryPoint& a = rows[segment];
-  const geometry::TrajectoryPoint& b = rows[std::min(segment + 1, rows.size() - 1)];
+  const auto& samples = drive_.points();
+  const geometry::TrajectoryPoint& a = samples[segment];
+  const geometry::TrajectoryPoint& b = samples[std::min(segment + 1, samples.size() - 1)];
   const double dx_m = b.x_m - a.x_m, dy_m = b.y_m - a.y_m;
   const double way_m = std::sqrt(dx_m * dx_m + dy_m * dy_m);
   return way_m + reach_m_ * std::abs(b.heading_rad - a.heading_rad);

@@ -11,8 +11,8 @@
 
 namespace roadbed::planning::inline audit {
 
-/// A part of one segment of a drive, between two of its rows: `from`, `to` in 0 … 1. Or several
-/// whole segments, one after the other, whose middle is a row.
+/// A part of one segment of a drive, between two of its samples: `from`, `to` in 0 … 1. Or several
+/// whole segments, one after the other, whose middle is a sample.
 struct Span {
   std::size_t segment = 0;
   double from = 0.0, to = 1.0;
@@ -34,37 +34,37 @@ struct Span {
 /// a span, and how much that may change within it.
 class Probe {
  public:
-  /// O(rows).
+  /// O(samples).
   Probe(const geometry::Trajectory& drive, double reach_m);
   virtual ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
 
-  std::size_t segments() const;  ///< at least one: a single row is a segment without motion
-  geometry::TrajectoryPoint state_at(std::size_t segment, double share) const;
+  std::size_t segments() const;  ///< at least one: a single sample is a segment without motion
+  geometry::TrajectoryPoint state_at(std::size_t segment, double fraction) const;
   geometry::TrajectoryPoint middle_of(const Span& span) const {
     return state_at(span.middle_segment(), span.middle());
   }
-  double time_at(std::size_t segment, double share) const;
+  double time_at(std::size_t segment, double fraction) const;
   geometry::TrajectoryPoint state_at_time(double t_s) const { return drive_.at(t_s); }
 
-  /// Of each row, and its last one once more if that is the only one: no point of the body moves
+  /// Of each sample, and its last one once more if that is the only one: no point of the body moves
   /// farther up to there [m], but for rounding.
   const std::vector<double>& moved_m() const { return moved_m_; }
 
   struct Place {
     std::size_t segment;
-    double share;
+    double fraction;
   };
-  /// Where the body has moved so far, by `moved_m`. O(log rows).
+  /// Where the body has moved so far, by `moved_m`. O(log samples).
   Place place_moved(double moved_m) const;
 
-  /// The inverse. O(log rows).
+  /// The inverse. O(log samples).
   double moved_at_m(double t_s) const;
 
   /// The first segment after `segment` that is not settled with it: where the distance is nowhere
   /// in `segment` within `spare_m` of what counts, it needs that much of motion to come there.
-  /// O(log rows).
+  /// O(log samples).
   std::size_t next_after(std::size_t segment, double spare_m) const;
 
   /// The distance changes by no more than this between the span's middle and any other time of it.
@@ -98,7 +98,7 @@ class Probe {
   const geometry::Trajectory& drive() const { return drive_; }
   static constexpr double kRounding_m = 1e-8;  // of coordinates up to 10,000 km
 
-  geometry::Pose2 pose_at(std::size_t segment, double share) const;
+  geometry::Pose2 pose_at(std::size_t segment, double fraction) const;
   geometry::Pose2 middle_pose_of(const Span& span) const {
     return pose_at(span.middle_segment(), span.middle());
   }

@@ -10,7 +10,7 @@ namespace roadbed::planning::inline audit {
 struct SweepOptions {
   double speed_mps = 10.0;
   double offset_m = 0.0;  ///< of the rear axle from the line, positive to the left
-  double step_m = 0.5;    ///< of the line between rows; the last step is shortened
+  double step_m = 0.5;    ///< of the line between samples; the last step is shortened
 };
 
 /// A drive along a line from station 0 to `length_m`, at constant speed of the station: the rear

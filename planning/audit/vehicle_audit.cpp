@@ -61,16 +61,16 @@ AuditReport with_name(AuditReport report, const BodyPart& part) {
 AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditReport>& reports) {
   if (parts.size() == 1) return reports.front();
   AuditReport whole = with_name(reports.front(), parts.front());
-  double unknown_m3 = whole.unknown_share * volume_m3(parts.front());
+  double unknown_m3 = whole.unknown_fraction * volume_m3(parts.front());
   double all_m3 = volume_m3(parts.front());
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const AuditReport report = with_name(reports[i], parts[i]);
     take_least(whole, report);
     add(whole, report);
-    unknown_m3 += report.unknown_share * volume_m3(parts[i]);
+    unknown_m3 += report.unknown_fraction * volume_m3(parts[i]);
     all_m3 += volume_m3(parts[i]);
   }
-  whole.unknown_share = unknown_m3 / all_m3;
+  whole.unknown_fraction = unknown_m3 / all_m3;
   std::ranges::stable_sort(whole.conflicts, {}, &Conflict::from_s);
   whole.unknown = joined(std::move(whole.unknown));
   whole.undecided = joined(std::move(whole.undecided));
@@ -92,42 +92,48 @@ std::size_t first_alike(const std::vector<map::HeightBand>& bands, std::size_t i
 VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
                                          const GroundUnder& ground, std::vector<BodyPart> parts,
                                          const map::FieldRegion& region)
-    : occupancy_(occupancy), surface_(ground.surface), parts_(std::move(parts)) {
+    : occupancy_(&occupancy), surface_(ground.surface), parts_(std::move(parts)) {
   for (const BodyPart& part : parts_) {
     bands_.push_back(ground.band(part.from_height_m, part.to_height_m));
   }
   std::size_t apart = 0;  // bands
   for (std::size_t i = 0; i < bands_.size(); ++i) apart += first_alike(bands_, i) == i;
-  map::FieldRegion share = region;
-  share.most_cells /= std::max<std::size_t>(1, apart);
+  map::FieldRegion of_each = region;
+  of_each.most_cells /= std::max<std::size_t>(1, apart);
   for (std::size_t i = 0; i < bands_.size(); ++i) {
     const std::size_t alike = first_alike(bands_, i);
     fields_.push_back(
         alike < i ? fields_[alike]
-                  : std::make_shared<const map::ClearanceField>(occupancy, bands_[i], share));
+                  : std::make_shared<const map::ClearanceField>(occupancy, bands_[i], of_each));
   }
 }
 
+VehicleSurroundings::VehicleSurroundings(std::shared_ptr<const map::ClearanceField> field,
+                                         std::vector<BodyPart> parts)
+    : parts_(std::move(parts)), bands_(parts_.size()), fields_(parts_.size(), std::move(field)) {}
+
 void VehicleSurroundings::explain(const geometry::Trajectory& drive_in_source, std::size_t part,
                                   std::vector<UnobservedStretch>& stretches) const {
+  if (occupancy_ == nullptr) return;
   for (UnobservedStretch& stretch : stretches) {
-    stretch.reason = why_unobserved(occupancy_, drive_in_source, {stretch.from_s, stretch.to_s},
+    stretch.reason = why_unobserved(*occupancy_, drive_in_source, {stretch.from_s, stretch.to_s},
                                     parts_[part], bands_[part]);
   }
 }
 
 VehicleAudit audit_vehicle(const VehicleSurroundings& around,
                            const geometry::Trajectory& drive_in_source, const AuditOptions& options,
-                           std::span<const MovingObstacle> moving_in_source) {
+                           std::span<const ObstacleInSource> moving_in_source) {
   std::optional<geometry::Trajectory> changed;
-  if (!moving_in_source.empty()) changed = with_rows_at_changes(drive_in_source, moving_in_source);
+  if (!moving_in_source.empty())
+    changed = with_samples_at_changes(drive_in_source, moving_in_source);
   const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
   std::vector<std::unique_ptr<PartAudit>> audits;
   for (std::size_t i = 0; i < around.parts().size(); ++i) {
     audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive, around.parts()[i],
                                                  options, moving_in_source));
   }
-  PartAudit::go_along(audits);
+  PartAudit::sweep(audits);
   VehicleAudit result;
   for (std::size_t i = 0; i < audits.size(); ++i) {
     result.of_parts.push_back(audits[i]->report());
@@ -141,7 +147,7 @@ std::vector<AuditCertificate> certify_vehicle(const VehicleSurroundings& around,
                                               const geometry::Trajectory& drive_in_source,
                                               const AuditOptions& options,
                                               const VehicleAudit& audit,
-                                              std::span<const MovingObstacle> moving_in_source) {
+                                              std::span<const ObstacleInSource> moving_in_source) {
   std::vector<AuditCertificate> certificates;
   for (std::size_t i = 0; i < around.parts().size(); ++i) {
     certificates.push_back(certify(around.field_of(i), around.band_of(i), drive_in_source,

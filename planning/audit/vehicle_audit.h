@@ -6,26 +6,12 @@
 
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/map/occupancy/ground/ground.h"
-#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
+#include "roadbed/planning/audit/ground_under.h"
 
 namespace roadbed::planning::inline audit {
-
-/// What heights of a vehicle are above: a level, or a ground that follows the drive.
-struct GroundUnder {
-  double level_m = 0.0;
-  std::shared_ptr<const map::Ground> surface = nullptr;
-  double margin_m = 0.0;  ///< the ground may be this much lower or higher
-
-  /// Holds the heights above the ground wherever within the margin that is.
-  map::HeightBand band(double from_height_m, double to_height_m) const {
-    const double from_m = from_height_m - margin_m, to_m = to_height_m + margin_m;
-    if (surface) return {from_m, to_m, surface.get()};
-    return {level_m + from_m, level_m + to_m};
-  }
-};
 
 /// The parts of a vehicle, each with the occupied space of its own heights above the ground.
 class VehicleSurroundings {
@@ -37,16 +23,20 @@ class VehicleSurroundings {
   VehicleSurroundings(const map::OccupancySource& occupancy, const GroundUnder& ground,
                       std::vector<geometry::BodyPart> parts, const map::FieldRegion& region);
 
+  /// The same field for all parts.
+  VehicleSurroundings(std::shared_ptr<const map::ClearanceField> field,
+                      std::vector<geometry::BodyPart> parts);
+
   const std::vector<geometry::BodyPart>& parts() const { return parts_; }
   const map::ClearanceField& field_of(std::size_t part) const { return *fields_[part]; }
   const map::HeightBand& band_of(std::size_t part) const { return bands_[part]; }
 
-  /// Says of each stretch of a part why it is unobserved.
+  /// Says of each stretch of a part why it is unobserved, where the occupancy is known.
   void explain(const geometry::Trajectory& drive_in_source, std::size_t part,
                std::vector<UnobservedStretch>& stretches) const;
 
  private:
-  const map::OccupancySource& occupancy_;
+  const map::OccupancySource* occupancy_ = nullptr;
   std::shared_ptr<const map::Ground> surface_;  // of the bands
   std::vector<geometry::BodyPart> parts_;
   std::vector<map::HeightBand> bands_;                              // of each part
@@ -62,13 +52,13 @@ struct VehicleAudit {
 /// Audits each part by itself: a vehicle keeps clear if all its parts do.
 VehicleAudit audit_vehicle(const VehicleSurroundings& around,
                            const geometry::Trajectory& drive_in_source, const AuditOptions& options,
-                           std::span<const MovingObstacle> moving_in_source = {});
+                           std::span<const ObstacleInSource> moving_in_source = {});
 
 /// A certificate for each part.
 /// @pre `audit` is what `audit_vehicle` says of the same.
 std::vector<AuditCertificate> certify_vehicle(
     const VehicleSurroundings& around, const geometry::Trajectory& drive_in_source,
     const AuditOptions& options, const VehicleAudit& audit,
-    std::span<const MovingObstacle> moving_in_source = {});
+    std::span<const ObstacleInSource> moving_in_source = {});
 
 }  // namespace roadbed::planning::audit

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
-#include "roadbed/planning/behaviour/follower.h"
+#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
@@ -18,12 +18,12 @@ namespace {
 
 constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
 constexpr double kBeyondHalt_m = 1.0;
-constexpr double kBeforeHalt_m = 0.4;  // of the room before a line, that hard braking may use
+constexpr double kBeforeHalt_m = 0.4;  // of the distance before a line, that hard braking may use
 constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
-constexpr double kPassOffset_m = 0.5;  // off the reference line this far is passing
-constexpr double kChange_s = 3.0;      // to change lanes in, to overtake
-constexpr double kPassRoom_m = 0.25;   // more or less than asked for
+constexpr double kPassOffset_m = 0.5;      // off the reference line this far is passing
+constexpr double kChange_s = 3.0;          // to change lanes in, to overtake
+constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0, kFallsBehind_mps = 3.0;  // overtaking given up
 
 /// Distance ahead that matters: to brake comfortably, and the gap to keep.
@@ -33,7 +33,7 @@ double look_ahead_m(double speed_mps, const DecisionOptions& options) {
 }
 
 /// In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
-std::vector<Room> rooms(double clearance_m) {
+std::vector<SafetyMargins> margin_levels(double clearance_m) {
   return {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
 }
 
@@ -47,7 +47,7 @@ class CruisePilot : public Pilot {
         replanner_(vehicle_, task_, task_.line,
                    {.tracking_error_m = setup.pilot.max_tracking_error_m,
                     .heading_error_rad = setup.pilot.max_heading_error_rad,
-                    .rooms = rooms(setup.driving.clearance_m),
+                    .margin_levels = margin_levels(setup.driving.clearance_m),
                     .keeps_candidates = setup.pilot.keeps_candidates}),
         right_of_way_(vehicle_, setup.driving, task_),
         overtaking_(vehicle_, task_, ceiling_) {
@@ -100,7 +100,7 @@ class CruisePilot : public Pilot {
   }
 
   /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
-  /// lane of those who come the other way while somebody drives ahead.
+  /// lane of oncoming traffic while somebody drives ahead.
   void plan_path(const PilotView& view, const Overtaking::Decision& passing) {
     const double speed = view.measured.speed_mps;
     const std::vector<Obstacle> ahead = obstacles_to_plan_for(view);
@@ -117,9 +117,9 @@ class CruisePilot : public Pilot {
       LateralReplanner::Question beside = question;
       beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
       beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
-      beside.asks_for_way_on = false;
+      beside.checks_completion = false;
       const LateralReplanner::Proposal proposal = replanner_.propose(
-          beside, {*passing.pass_at_m - kPassRoom_m, *passing.pass_at_m + kPassRoom_m});
+          beside, {*passing.pass_at_m - kPassTolerance_m, *passing.pass_at_m + kPassTolerance_m});
       if (proposal.plan.chosen) return replanner_.take(proposal);
     }
     LateralReplanner::Offsets offsets;

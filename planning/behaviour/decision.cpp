@@ -64,12 +64,12 @@ double stopping_way_m(const Lead& lead) {
 /// a lead that brakes it is one in the road's frame, where the lead will stand.
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   const double lead_mps = std::max(0.0, q.lead->speed_mps);
-  const double room = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
+  const double free_m = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
   const double closing_m =
       std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
   const double stop_m = q.lead->gap_m - options.standstill_gap_m + stopping_way_m(*q.lead);
   const auto approach = [&](double driven_m, double closed_m) {
-    SpeedTarget target = stopping_speed(room - closed_m, options.deceleration_mps2);
+    SpeedTarget target = stopping_speed(free_m - closed_m, options.deceleration_mps2);
     target.speed_mps += lead_mps;
     const SpeedTarget stop = stopping_speed(stop_m - driven_m, options.deceleration_mps2);
     return stop.speed_mps < target.speed_mps ? stop : target;

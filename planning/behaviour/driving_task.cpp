@@ -4,8 +4,8 @@ namespace roadbed::planning::inline behaviour {
 
 std::vector<Obstacle> DrivingTask::obstacles_at(double t_s) const {
   std::vector<Obstacle> there;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (is_there(i, t_s)) there.push_back(obstacles[i]);
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.is_there(t_s)) there.push_back(obstacle);
   }
   return there;
 }

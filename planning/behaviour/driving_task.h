@@ -26,7 +26,6 @@ struct DrivingTask {
   Route route;
   ReferenceLine line;
   std::vector<Obstacle> obstacles;          ///< motions last for the duration of the drive
-  std::vector<TimeSpan> presence = {};      ///< one per obstacle; empty: always there
   std::optional<TimedGoal> goal = {};       ///< none: to stand at the end of the route
   std::vector<LightCycle> lights = {};      ///< what the traffic lights show
   std::vector<StopPoint> stop_points = {};  ///< on the route, by station
@@ -34,10 +33,6 @@ struct DrivingTask {
   std::vector<ReferenceLine> other_lines = {};
   std::vector<std::vector<StopPoint>> other_stop_points = {};  ///< on each other line
   double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
-
-  bool is_there(std::size_t obstacle, double t_s) const {
-    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
-  }
 
   /// Obstacles that are there at a time.
   std::vector<Obstacle> obstacles_at(double t_s) const;

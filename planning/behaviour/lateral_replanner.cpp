@@ -1,13 +1,13 @@
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/planning/lateral/plan_cycle.h"
+#include "roadbed/planning/plan.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -21,12 +21,12 @@ constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
 
 /// 1 up to `from`, 0 from `from` + kReturn_m on.
 double fade(double s_m, double from_m) {
-  const double share = std::clamp((s_m - from_m) / kReturn_m, 0.0, 1.0);
-  return 1.0 - share * share * (3.0 - 2.0 * share);
+  const double fraction = std::clamp((s_m - from_m) / kReturn_m, 0.0, 1.0);
+  return 1.0 - fraction * fraction * (3.0 - 2.0 * fraction);
 }
 
 /// The line as planning sees it: past `end_m`, where the vehicle never comes, it goes on straight
-/// with the room that it has there, so that no bend or dead end behind the goal matters.
+/// with the width that it has there, so that no bend or dead end behind the goal matters.
 LineView straight_past(const ReferenceLine& line, double end_m) {
   const auto at = [&line, end_m](double s_m) {
     ReferencePoint point = line.at(std::min(s_m, end_m));
@@ -83,12 +83,19 @@ PlanInput LateralReplanner::input_for(const Question& question) const {
   return input;
 }
 
-std::vector<Room> LateralReplanner::rooms(bool may_leave_lanes) const {
-  std::vector<Room> rooms = bounds_.rooms;
-  if (!may_leave_lanes) {
-    std::erase_if(rooms, [](const Room& room) { return room.border_margin_m < 0.0; });
+// A bend or a gap that is too sharp at the planned speed may be driven while braking. After the
+// first attempt to squeeze past a coarse grid will do.
+std::vector<LateralReplanner::FallbackLevel> LateralReplanner::fallback_levels(
+    const Question& question, bool may_leave_lanes) const {
+  const bool may_brake = bounds_.squeezes_past && question.speed.speed_mps > 2.0 * kCrawl_mps;
+  std::vector<FallbackLevel> levels;
+  for (const SafetyMargins& margins : bounds_.margin_levels) {
+    if (!may_leave_lanes && margins.border_margin_m < 0.0) continue;
+    const bool is_fine = may_leave_lanes && (levels.empty() || !bounds_.squeezes_past);
+    levels.push_back({margins, is_fine ? kFineGrid_m : kCoarseGrid_m, false});
+    if (may_brake) levels.push_back({margins, kCoarseGrid_m, true});
   }
-  return rooms;
+  return levels;
 }
 
 PlanOptions LateralReplanner::options_for(const Question& question, const Offsets& offsets,
@@ -100,82 +107,61 @@ PlanOptions LateralReplanner::options_for(const Question& question, const Offset
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
   options.keep_candidates = bounds_.keeps_candidates;
-  if (!question.asks_for_way_on) options.way_on_horizon_s = 0.0;
+  if (!question.checks_completion) options.completion_horizon_s = 0.0;
   return options;
 }
 
-LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
-                                                     const Offsets& offsets,
-                                                     bool may_leave_lanes) const {
-  if (bounds_.squeezes_past) return squeeze(question, offsets, may_leave_lanes);
-  const PlanOptions options =
-      options_for(question, offsets, may_leave_lanes ? kFineGrid_m : kCoarseGrid_m);
-  const std::vector<Room> in_turn = rooms(may_leave_lanes);
-  const PlanInput input = input_for(question);
-  PlanCycle cycle(input, vehicle_, options);
-  std::vector<Plan> plans = plan_in_rooms(cycle, in_turn);
-  const double border_m = in_turn[plans.size() - 1].border_margin_m;
-  return {std::move(plans.back()), std::max(0.0, -border_m), options.max_l_m};
-}
-
-/// What was evaluated from one start on, at the planned speed and while braking, on a fine grid and
-/// on coarse ones: each is made when it is asked for.
+/// What was evaluated from one start on, by the speed and the grid of a fallback level: each is
+/// made when it is asked for.
 struct LateralReplanner::Cycles {
-  std::vector<Obstacle> obstacles;
-  std::vector<PlanInput> inputs;  ///< the first at the planned speed
-  std::unique_ptr<PlanCycle> fine;
-  std::array<std::unique_ptr<PlanCycle>, 2> coarse;
+  std::vector<Obstacle> obstacles;  ///< those of the inputs, if they outlive the question
+  std::vector<PlanInput> inputs;    ///< at the planned speed, and while braking
+  std::map<std::pair<bool, double>, std::unique_ptr<PlanningCycle>> by_level;
 };
 
 std::shared_ptr<LateralReplanner::Cycles> LateralReplanner::cycles_for(
     const Question& question) const {
   auto cycles = std::make_shared<Cycles>();
-  cycles->obstacles = question.obstacles;
+  if (shares_cycles()) cycles->obstacles = question.obstacles;
   cycles->inputs.reserve(2);
-  cycles->inputs.push_back(input_for({.t_s = question.t_s,
-                                      .measured = question.measured,
-                                      .speed = question.speed,
-                                      .ends = question.ends,
-                                      .obstacles = cycles->obstacles}));
-  if (question.speed.speed_mps > 2.0 * kCrawl_mps) {
-    cycles->inputs.push_back(cycles->inputs.front());
-    cycles->inputs.back().speed = {.speed_mps = question.speed.speed_mps,
-                                   .acceleration_mps2 = -kBraking_mps2,
-                                   .target_mps = kCrawl_mps};
-  }
+  cycles->inputs.push_back(
+      input_for({.t_s = question.t_s,
+                 .measured = question.measured,
+                 .speed = question.speed,
+                 .ends = question.ends,
+                 .obstacles = shares_cycles() ? cycles->obstacles : question.obstacles}));
+  cycles->inputs.push_back(cycles->inputs.front());
+  cycles->inputs.back().speed = {.speed_mps = question.speed.speed_mps,
+                                 .acceleration_mps2 = -kBraking_mps2,
+                                 .target_mps = kCrawl_mps};
   return cycles;
 }
 
-/// With less and less room, at the planned speed and while braking: a bend or a gap that is too
-/// sharp at the one may be driven at the other. After the first look a coarse grid will do. Tries
-/// with other ends look at the same grids, unless candidates are kept: those are of one try.
-LateralReplanner::Proposal LateralReplanner::squeeze(const Question& question,
+// Questions with other offsets look at the same grids, unless candidates are kept: those are of one
+// question.
+LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
                                                      const Offsets& offsets,
                                                      bool may_leave_lanes) const {
-  const bool shares = !bounds_.keeps_candidates;
-  if (!shares || !cycles_) cycles_ = cycles_for(question);
-  Cycles& cycles = *cycles_;
-  const std::vector<Room> in_turn = rooms(may_leave_lanes);
-  const std::size_t speeds = cycles.inputs.size();
-  const auto plan = [&](std::size_t i, double l_step_m, std::unique_ptr<PlanCycle>& cycle) {
+  const std::shared_ptr<Cycles> cycles =
+      shares_cycles() && cycles_ ? cycles_ : cycles_for(question);
+  if (shares_cycles()) cycles_ = cycles;
+  Proposal last;
+  for (const FallbackLevel& level : fallback_levels(question, may_leave_lanes)) {
+    std::unique_ptr<PlanningCycle>& cycle = cycles->by_level[{level.brakes, level.l_step_m}];
     if (!cycle) {
-      const Offsets on_grid = shares ? Offsets{} : offsets;
-      cycle = std::make_unique<PlanCycle>(cycles.inputs[i % speeds], vehicle_,
-                                          options_for(question, on_grid, l_step_m));
+      cycle = std::make_unique<PlanningCycle>(
+          cycles->inputs[level.brakes ? 1 : 0], vehicle_,
+          options_for(question, shares_cycles() ? Offsets{} : offsets, level.l_step_m));
     }
-    const Room& room = in_turn[i / speeds];
-    return Proposal{cycle->plan(room, {offsets.least_m, offsets.most_m}),
-                    std::max(0.0, -room.border_margin_m), question.ends.most_m};
-  };
-  Proposal last = may_leave_lanes ? plan(0, kFineGrid_m, cycles.fine)
-                                  : plan(0, kCoarseGrid_m, cycles.coarse.front());
-  for (std::size_t i = 1; i < in_turn.size() * speeds && !last.plan.chosen; ++i) {
-    last = plan(i, kCoarseGrid_m, cycles.coarse[i % speeds]);
+    last = {cycle->plan(level.margins, {offsets.least_m, offsets.most_m}),
+            std::max(0.0, -level.margins.border_margin_m), question.ends.most_m};
+    const bool waits = !bounds_.squeezes_past && last.plan.meets_something();
+    if (last.plan.chosen || waits) break;
   }
   return last;
 }
 
-/// Past the plan's end its offset is held as long as the corridor has room for it.
+/// Past the plan's end its offset is held as long as the corridor is wide enough for it.
 double LateralReplanner::held_until_m(const Plan& plan) const {
   const double offset = plan.chosen->end_d_m;
   double s_m = plan.start.s_m + plan.chosen->end_l_m;
@@ -215,7 +201,7 @@ void LateralReplanner::take(const Proposal& proposal) {
   }
 }
 
-bool LateralReplanner::something_is_in_the_way() const { return is_in_the_way(plan_); }
+bool LateralReplanner::something_is_in_the_way() const { return plan_.meets_something(); }
 
 PlannedPath LateralReplanner::expected_path() const {
   return PlannedPath(reference_, [path = *path_, end_m = path_end_s_m_](double s_m) {

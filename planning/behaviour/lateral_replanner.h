@@ -6,7 +6,7 @@
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/behaviour/vehicle_state.h"
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -18,8 +18,9 @@ class LateralReplanner {
     double tracking_error_m;
     double heading_error_rad;
     /// What is tried in turn until something is feasible.
-    std::vector<Room> rooms;
-    /// Whether an obstacle in the way is a reason to ask for less room, or to wait.
+    std::vector<SafetyMargins> margin_levels;
+    /// Whether an obstacle in the way is a reason to relax the margins, and to try at a braking
+    /// speed, or to wait.
     bool squeezes_past = false;
     bool keeps_candidates = false;  ///< in the plan; every one is judged then
   };
@@ -40,7 +41,8 @@ class LateralReplanner {
     SpeedPlan speed;  ///< the longitudinal plan so far
     Ends ends = {};
     const std::vector<Obstacle>& obstacles;
-    bool asks_for_way_on = true;  ///< what is begun among who moves has to be ended (way_on.h)
+    bool checks_completion =
+        true;  ///< a maneuver among moving traffic has to be completable (maneuver_completion.h)
   };
 
   /// End offsets that candidates may have.
@@ -62,7 +64,9 @@ class LateralReplanner {
   }
 
   /// Until the next call of locate() every question but its offsets is the same one.
-  /// @param may_leave_lanes  rooms in which the body sticks out of the corridor are tried too;
+  /// The cheapest candidate at the first fallback level that has a feasible one, else what was
+  /// found at the last.
+  /// @param may_leave_lanes  margins with which the body sticks out of the corridor are tried too;
   ///                         if not, it is one of several tries, on a coarser grid.
   Proposal propose(const Question& question, const Offsets& offsets,
                    bool may_leave_lanes = true) const;
@@ -94,14 +98,20 @@ class LateralReplanner {
   PlannedPath expected_path() const;
 
  private:
-  LateralState start_state(const VehicleState& measured);
+  /// One of the attempts to find a feasible candidate, from what is asked for on to less and less.
+  struct FallbackLevel {
+    SafetyMargins margins;
+    double l_step_m;
+    bool brakes;  ///< instead of the planned speed
+  };
   struct Cycles;
 
+  LateralState start_state(const VehicleState& measured);
+  std::vector<FallbackLevel> fallback_levels(const Question& question, bool may_leave_lanes) const;
   std::shared_ptr<Cycles> cycles_for(const Question& question) const;
+  bool shares_cycles() const { return bounds_.squeezes_past && !bounds_.keeps_candidates; }
   PlanInput input_for(const Question& question) const;
   PlanOptions options_for(const Question& question, const Offsets& offsets, double l_step_m) const;
-  Proposal squeeze(const Question& question, const Offsets& offsets, bool may_leave_lanes) const;
-  std::vector<Room> rooms(bool may_leave_lanes) const;
   double held_until_m(const Plan& plan) const;
 
   const geometry::VehicleShape& vehicle_;

@@ -8,9 +8,10 @@ namespace {
 using geometry::Rectangle;
 
 constexpr double kStep_m = 0.5;
-constexpr double kSeenFor_s = 0.3;    // a lead's acceleration is taken over the last moments
-constexpr double kMostStretch = 1.5;  // of a path against its line, outside of a bend
-constexpr int kHalvings = 8;          // 0.5 m to 2 mm
+constexpr double kSeenFor_s = 0.3;       // a lead's acceleration is taken over the last moments
+constexpr double kMostStretch = 1.5;     // of a path against its line, outside of a bend
+constexpr double kLeastAlongLine = 0.8;  // cosine, of who follows
+constexpr int kHalvings = 8;             // 0.5 m to 2 mm
 
 /// Distances from the body at stations of the path to one obstacle.
 class Sweep {
@@ -58,14 +59,6 @@ std::optional<double> first_touch_m(const Sweep& sweep, double s_m, double look_
 
 }  // namespace
 
-Rectangle rectangle_at(const Obstacle& obstacle, double t_s) {
-  const geometry::TrajectoryPoint at = obstacle.motion.at(t_s);
-  return {.centre = {at.x_m, at.y_m},
-          .axis = {std::cos(at.heading_rad), std::sin(at.heading_rad)},
-          .half_length_m = 0.5 * obstacle.length_m,
-          .half_width_m = 0.5 * obstacle.width_m};
-}
-
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
                               const std::vector<Obstacle>& obstacles, double t_s,
                               const geometry::VehicleShape& vehicle, double side_margin_m,
@@ -91,6 +84,18 @@ std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_a
                    (speed - speed_along(obstacles[i], t_s - kSeenFor_s, heading)) / kSeenFor_s};
   }
   return nearest;
+}
+
+bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle) {
+  const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
+  const Eigen::Vector2d place = now.pose().position();
+  const ReferencePoint foot = vehicle.line.at(vehicle.line.project(place).s_m);
+  const Eigen::Vector2d along(std::cos(foot.heading_rad), std::sin(foot.heading_rad));
+  const Eigen::Vector2d beyond = place - foot.in_map;  // along: before the line's first point
+  const double d_m = along.x() * beyond.y() - along.y() * beyond.x();
+  return foot.s_m + along.dot(beyond) < vehicle.s_m &&
+         std::abs(d_m - vehicle.d_m) < 0.5 * (vehicle.width_m + obstacle.width_m) &&
+         std::cos(now.heading_rad - foot.heading_rad) > kLeastAlongLine;
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -29,7 +29,15 @@ std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_a
                               const geometry::VehicleShape& vehicle, double side_margin_m,
                               const std::vector<bool>& ignored = {});
 
-/// Rectangle of an obstacle at a time.
-geometry::Rectangle rectangle_at(const Obstacle& obstacle, double t_s);
+/// Where the vehicle is: station and lateral offset of its rear axle.
+struct VehicleOnLine {
+  const ReferenceLine& line;
+  double s_m, d_m, width_m;
+};
+
+/// Whether an obstacle drives behind the vehicle in its lane, and so has to keep its distance: its
+/// centre is behind the rear axle, its body behind the vehicle's, and it heads along the line (up
+/// to 37 degrees). O(N) in the line's points.
+bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle);
 
 }  // namespace roadbed::planning::behaviour

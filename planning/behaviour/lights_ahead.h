@@ -11,7 +11,7 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// A light on a way: how far the rear axle may drive until the front bumper is at its line.
+/// A light on a path: how far the rear axle may drive until the front bumper is at its line.
 struct LightAhead {
   const StopPoint& place;
   const LightCycle& light;

@@ -17,7 +17,7 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// How much is dared: room to obstacles, and braking.
+/// How much risk is taken: safety margin to obstacles, and braking.
 struct RiskLevel {
   double margin_m;
   SpeedSearchOptions speed;
@@ -40,15 +40,15 @@ struct GoalLine {
   LateralReplanner replanner;
 };
 
-/// One path, the way along it, and the best drive found on it.
+/// One path, its profile, and the best drive found on it.
 struct ManeuverHypothesis {
   const GoalLine* goal_line;
   std::optional<LateralReplanner::Proposal> proposal;  ///< none: the path that is being driven
-  PathProfile way;
-  double on_road_m;  ///< how far along the way the body keeps to the road
+  PathProfile profile;
+  double on_road_m;  ///< how far along the path the body keeps to the road
   SpeedSearchAnswer answer;
   const RiskLevel* risk_level = nullptr;
-  std::shared_ptr<const StGraph> occupancy = nullptr;  ///< with that room
+  std::shared_ptr<const StGraph> occupancy = nullptr;  ///< with that safety margin
   double cost = 0.0;
   std::optional<DriveLead> lead;
 };

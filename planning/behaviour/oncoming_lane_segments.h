@@ -8,7 +8,7 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// A stretch of a reference line beside which the lane of those who come the other way may be used:
+/// A stretch of a reference line beside which the lane of oncoming traffic may be used:
 /// the marking between may be crossed there.
 struct OncomingLaneSegment {
   double from_s_m = 0.0, to_s_m = 0.0;

@@ -33,7 +33,7 @@ constexpr double kRelease_mps2 = 2.0;  // at which a faster vehicle closes up co
 struct Overtaking::Mover {
   std::size_t obstacle;
   double s_m, d_m, half_length_m, half_width_m;
-  double speed_mps;  ///< along the line; less than 0 if it comes the other way
+  double speed_mps;  ///< along the line; less than 0 if it is oncoming
 
   double rear_m() const { return s_m - half_length_m; }
   double front_m() const { return s_m + half_length_m; }
@@ -68,7 +68,7 @@ std::vector<Overtaking::Mover> Overtaking::movers_of(const View& view) const {
   std::vector<Mover> movers;
   for (std::size_t i = 0; i < view.traffic.obstacles.size(); ++i) {
     const Obstacle& obstacle = view.traffic.obstacles[i];
-    if (obstacle.is_static() || !view.traffic.is_there(i, view.t_s)) continue;
+    if (obstacle.is_static() || !obstacle.is_there(view.t_s)) continue;
     const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
     const geometry::LinePosition at = task_.line.project(now.pose().position());
     const double turned = now.heading_rad - task_.line.at(at.s_m).heading_rad;

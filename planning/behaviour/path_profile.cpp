@@ -18,7 +18,7 @@ double bend_speed_mps(double curvature_per_m, double curvature_d1_per_m2,
   const double turn = vehicle.wheelbase_m * curvature_per_m;
   const double steering_per_m =
       vehicle.wheelbase_m * std::abs(curvature_d1_per_m2) / (1.0 + turn * turn);  // of atan(L k)
-  const double rate = limits.steering_rate_share * vehicle.max_steering_rate_radps;
+  const double rate = limits.steering_rate_fraction * vehicle.max_steering_rate_radps;
   return std::min({kFastest_mps, by_acceleration, rate / std::max(1e-6, steering_per_m)});
 }
 
@@ -38,34 +38,35 @@ std::size_t PathProfile::before(double distance_m) const {
 PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double length_m,
                                 const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                                 const BendLimits& limits) {
-  PathProfile way;
+  PathProfile profile;
   std::vector<double> curvature;
   Eigen::Vector2d last(0.0, 0.0);
   for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kWayStep_m) {
     const PlannedPath::Place place = path.place_at(from_s_m + l_m);
     const Eigen::Vector2d here = place.pose.position();
-    const double ahead_m = way.ahead_m.empty() ? 0.0 : way.ahead_m.back() + (here - last).norm();
+    const double ahead_m =
+        profile.ahead_m.empty() ? 0.0 : profile.ahead_m.back() + (here - last).norm();
     last = here;
-    way.ahead_m.push_back(ahead_m);
-    way.station_m.push_back(from_s_m + l_m);
-    way.body.push_back(geometry::body_at(place.pose, vehicle));
-    way.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
+    profile.ahead_m.push_back(ahead_m);
+    profile.station_m.push_back(from_s_m + l_m);
+    profile.body.push_back(geometry::body_at(place.pose, vehicle));
+    profile.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
     curvature.push_back(place.curvature_per_m);
   }
   for (std::size_t i = 0; i < curvature.size(); ++i) {
     const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, curvature.size() - 1);
-    const double apart = std::max(1e-6, way.ahead_m[b] - way.ahead_m[a]);
-    way.most_mps.push_back(
+    const double apart = std::max(1e-6, profile.ahead_m[b] - profile.ahead_m[a]);
+    profile.most_mps.push_back(
         bend_speed_mps(curvature[i], (curvature[b] - curvature[a]) / apart, vehicle, limits));
   }
-  return way;
+  return profile;
 }
 
-double on_road_m(const PathProfile& way, const map::RoadMap& road_map) {
+double on_road_m(const PathProfile& profile, const map::RoadMap& road_map) {
   std::size_t i = 0;
-  while (i < way.body.size() && !is_on_road(way.body[i], road_map)) ++i;
-  while (i < way.body.size() && is_on_road(way.body[i], road_map)) ++i;
-  return i < way.body.size() ? way.ahead_m[i - 1] : std::numeric_limits<double>::infinity();
+  while (i < profile.body.size() && !is_on_road(profile.body[i], road_map)) ++i;
+  while (i < profile.body.size() && is_on_road(profile.body[i], road_map)) ++i;
+  return i < profile.body.size() ? profile.ahead_m[i - 1] : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -13,10 +13,10 @@ namespace roadbed::planning::inline behaviour {
 /// Speeds that a bend allows.
 struct BendLimits {
   double max_lateral_acceleration_mps2 = 3.2;
-  double steering_rate_share = 0.85;  ///< of the vehicle's
+  double steering_rate_fraction = 0.85;  ///< of the vehicle's
 };
 
-/// The way ahead along a path, sampled: what longitudinal planning needs to know of it. All lists
+/// The path ahead, sampled: what longitudinal planning needs to know of it. All lists
 /// have one entry per sample.
 struct PathProfile {
   std::vector<double> ahead_m;    ///< driven since the first sample, by the rear axle; ascends
@@ -37,9 +37,9 @@ PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double
                                 const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                                 const BendLimits& limits = {});
 
-/// How far along the way every corner of the body stays on the road surface [m]: up to the sample
-/// before the first that does not, and infinite if there is none. Where the way begins off the road
-/// only what comes after it has returned counts.
-double on_road_m(const PathProfile& way, const map::RoadMap& road_map);
+/// How far along the path every corner of the body stays on the road surface [m]: up to the sample
+/// before the first that does not, and infinite if there is none. Where the path begins off the
+/// road only what comes after it has returned counts.
+double on_road_m(const PathProfile& profile, const map::RoadMap& road_map);
 
 }  // namespace roadbed::planning::behaviour

@@ -8,13 +8,13 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// Speeds along a way, for those who ask very often: the sample before a distance is found by a
+/// Speeds along a path, for those who ask very often: the sample before a distance is found by a
 /// table of distances. As PathProfile::before().
 class PathSpeedLimits {
  public:
-  /// @param way  kept by reference.
-  explicit PathSpeedLimits(const PathProfile& way) : way_(way) {
-    const auto count = static_cast<std::size_t>(way.length_m() * kPerMetre) + 1;
+  /// @param profile  kept by reference.
+  explicit PathSpeedLimits(const PathProfile& profile) : profile_(profile) {
+    const auto count = static_cast<std::size_t>(profile.length_m() * kPerMetre) + 1;
     std::size_t sample = 0;
     for (std::size_t i = 0; i < count; ++i) {
       sample = from(sample, static_cast<double>(i) / kPerMetre);
@@ -22,8 +22,8 @@ class PathSpeedLimits {
     }
   }
 
-  double wanted_mps(double ahead_m) const { return way_.wanted_mps[before(ahead_m)]; }
-  double most_mps(double ahead_m) const { return way_.most_mps[before(ahead_m)]; }
+  double wanted_mps(double ahead_m) const { return profile_.wanted_mps[before(ahead_m)]; }
+  double most_mps(double ahead_m) const { return profile_.most_mps[before(ahead_m)]; }
 
  private:
   static constexpr double kPerMetre = 4.0;
@@ -34,11 +34,12 @@ class PathSpeedLimits {
   }
 
   std::size_t from(std::size_t sample, double ahead_m) const {
-    while (sample + 1 < way_.ahead_m.size() && way_.ahead_m[sample + 1] <= ahead_m) ++sample;
+    while (sample + 1 < profile_.ahead_m.size() && profile_.ahead_m[sample + 1] <= ahead_m)
+      ++sample;
     return sample;
   }
 
-  const PathProfile& way_;
+  const PathProfile& profile_;
   std::vector<std::size_t> samples_;
 };
 

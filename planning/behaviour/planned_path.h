@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "roadbed/geometry/primitives/pose2.h"
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline behaviour {

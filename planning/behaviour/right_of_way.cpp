@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/planning/behaviour/follower.h"
+#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/planning/behaviour/safety.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
@@ -26,16 +26,16 @@ constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
 constexpr double kStartsWithin_mps2 = 1.0;  // as the cruise control does
 constexpr double kJoining_m = 40.0;         // beyond a junction, to be as fast as others
 constexpr int kMostSteps = 150;
-constexpr double kSideRoom_m = 0.4;
+constexpr double kCrossingMargin_m = 0.4;
 constexpr double kMovingOther_mps = 0.5;
 constexpr double kLeastAlong = 0.8;   // cosine of the angle up to which somebody drives along
 constexpr double kGapsFrom_m = 15.0;  // beyond the way to stop on
 
 /// Distances driven by each step, accelerating comfortably to the ceiling.
-std::vector<double> drive_on(const PathProfile& way, double speed_mps, double until_m) {
+std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m) {
   std::vector<double> ahead{0.0};
   while (ahead.back() < until_m && ahead.size() < kMostSteps) {
-    const double most = std::max(1.0, way.wanted_mps[way.before(ahead.back())]);
+    const double most = std::max(1.0, profile.wanted_mps[profile.before(ahead.back())]);
     speed_mps = std::min(speed_mps + kStartsWithin_mps2 * StGraph::kStep_s, most);
     ahead.push_back(ahead.back() + StGraph::kStep_s * speed_mps);
   }
@@ -44,12 +44,12 @@ std::vector<double> drive_on(const PathProfile& way, double speed_mps, double un
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {
-  std::vector<bool> crossing;   ///< on the way, but across it
+  std::vector<bool> crossing;   ///< on the path, but across it
   std::vector<bool> following;  ///< behind the vehicle in its lane: they keep their distance
 };
 
-/// Obstacles that are on the way now, but cross it.
-std::vector<bool> crossing_now(const PathProfile& way, const StGraph& occupancy,
+/// Obstacles that are on the path now, but cross it.
+std::vector<bool> crossing_now(const PathProfile& profile, const StGraph& occupancy,
                                const RightOfWay::View& view) {
   std::vector<bool> crossing(view.traffic.obstacles.size(), false);
   for (const StInterval& part : occupancy.at(0)) {
@@ -57,8 +57,10 @@ std::vector<bool> crossing_now(const PathProfile& way, const StGraph& occupancy,
     if (obstacle.is_static()) continue;
     const geometry::TrajectoryPoint at = obstacle.motion.at(view.t_s);
     const Eigen::Vector2d along(std::cos(at.heading_rad), std::sin(at.heading_rad));
-    const Eigen::Vector2d& way_along = way.body[way.before(std::max(0.0, part.from_m))].axis;
-    crossing[part.obstacle] = at.speed_mps > kMovingOther_mps && along.dot(way_along) < kLeastAlong;
+    const Eigen::Vector2d& profile_along =
+        profile.body[profile.before(std::max(0.0, part.from_m))].axis;
+    crossing[part.obstacle] =
+        at.speed_mps > kMovingOther_mps && along.dot(profile_along) < kLeastAlong;
   }
   return crossing;
 }
@@ -97,7 +99,7 @@ double RightOfWay::left_m(const StopPoint& place, const View& view) const {
   return place.s_m - view.s_m - vehicle_.front_m();
 }
 
-/// Who has begun to cross looks further at those who may cross the way.
+/// Who has begun to cross looks further at those who may cross its path.
 void RightOfWay::pass_places(const View& view) {
   const std::vector<StopPoint>& places = task_.stop_points;
   while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
@@ -140,8 +142,8 @@ std::optional<double> RightOfWay::stops_before_red_mps2(const StopPoint& place,
     red_in_s += StGraph::kStep_s;
   }
   if (red_in_s > passes_in_s) return std::nullopt;
-  const double room_m = left - kStopsShort_m - view.speed_mps * kActuatorLag_s;
-  const double hard = 0.5 * view.speed_mps * view.speed_mps / std::max(0.1, room_m);
+  const double free_m = left - kStopsShort_m - view.speed_mps * kActuatorLag_s;
+  const double hard = 0.5 * view.speed_mps * view.speed_mps / std::max(0.1, free_m);
   if (hard > SafetyOptions{}.most_mps2) return std::nullopt;
   return hard;
 }
@@ -190,18 +192,18 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
   const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
                          (joins ? kJoining_m : 0.0);  // of the rear axle
-  const PathProfile way = sample_path_profile(view.path, view.s_m, std::max(1.0, until_m) + 2.0,
-                                              view.ceiling, vehicle_);
-  const std::vector<double> ahead = drive_on(way, view.speed_mps, until_m);
+  const PathProfile profile = sample_path_profile(view.path, view.s_m, std::max(1.0, until_m) + 2.0,
+                                                  view.ceiling, vehicle_);
+  const std::vector<double> ahead = drive_on(profile, view.speed_mps, until_m);
   const auto steps = static_cast<int>(ahead.size());
-  const StGraph occupancy(way, view.traffic, view.t_s, steps + gap.after, kSideRoom_m);
+  const StGraph occupancy(profile, view.traffic, view.t_s, steps + gap.after, kCrossingMargin_m);
   const VehicleOnLine vehicle{task_.line, view.s_m, view.path.lateral_at(view.s_m).d_m,
                               vehicle_.width_m};
   std::vector<bool> following;
   for (const Obstacle& obstacle : view.traffic.obstacles) {
     following.push_back(is_following(obstacle, view.t_s, vehicle));
   }
-  const Others others{crossing_now(way, occupancy, view), std::move(following)};
+  const Others others{crossing_now(profile, occupancy, view), std::move(following)};
   for (int k = 0; k < steps; ++k) {
     const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after,
                                 ahead[static_cast<std::size_t>(k)]);

@@ -43,7 +43,7 @@ struct Response {
 class Search {
  public:
   Search(const SpeedSearchQuestion& question, const SpeedSearchOptions& options)
-      : q_(question), options_(options), speeds_(question.way) {
+      : q_(question), options_(options), speeds_(question.profile) {
     substeps_ = std::max(3, static_cast<int>(std::ceil(q_.horizon_s / kSubstep_s / kMostLayers)));
     layers_ = std::max(1, static_cast<int>(std::ceil(q_.horizon_s / (kSubstep_s * substeps_))));
     for (int i = 1; i <= substeps_; ++i) {
@@ -53,8 +53,9 @@ class Search {
     drive_.resize(responses_.size());
     ends_within_horizon_ = goal_ends_within_horizon();
     for (int layer = 0; layer < layers_; ++layer) may_reach_.push_back(may_reach_goal_in(layer));
-    for (const double share : {-1.0, -0.7, -0.45, -0.25, -0.1, 0.0, 0.1, 0.25, 0.45, 0.7, 1.0}) {
-      commands_.push_back(share < 0.0 ? -share * options.least_mps2 : share * options.most_mps2);
+    for (const double fraction : {-1.0, -0.7, -0.45, -0.25, -0.1, 0.0, 0.1, 0.25, 0.45, 0.7, 1.0}) {
+      commands_.push_back(fraction < 0.0 ? -fraction * options.least_mps2
+                                         : fraction * options.most_mps2);
     }
   }
 

@@ -10,20 +10,20 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// A goal as the search sees it: times from now, distances along the way.
+/// A goal as the search sees it: times from now, distances along the path.
 struct GoalAhead {
   Window time_s, speed_mps, ahead_m;
 };
 
 struct SpeedSearchQuestion {
-  const PathProfile& way;
+  const PathProfile& profile;
   const StGraph& occupancy;
   double speed_mps = 0.0, acceleration_mps2 = 0.0;
   double last_command_mps2 = 0.0;
   double horizon_s = 5.0;
-  double end_m = 0.0;            ///< of the way that may be driven; the vehicle stops before
+  double end_m = 0.0;            ///< of the path that may be driven; the vehicle stops before
   std::vector<GoalAhead> goals;  ///< reaching one of them is enough
-  double most_wanted_mps = 1e3;  ///< beside what the way wants
+  double most_wanted_mps = 1e3;  ///< beside what the path wants
 };
 
 struct SpeedSearchOptions {
@@ -43,12 +43,12 @@ struct SpeedSearchAnswer {
   bool reaches_goal = false;     ///< within the horizon
   bool misses_goal = false;      ///< its time is over within the horizon, and it is not reached
   double free_until_s = 0.0;     ///< the last time up to which something untouched was found
-  double bend_excess_mps = 0.0;  ///< largest speed beyond what the way's bends allow
+  double bend_excess_mps = 0.0;  ///< largest speed beyond what the path's bends allow
   double cost = std::numeric_limits<double>::infinity();
   std::vector<SpeedState> plan;  ///< the cheapest found, or the one free the longest; not empty
 };
 
-/// Least-cost drive along a way among everything that moves: a search over the s–t graph, where
+/// Least-cost drive along a path among everything that moves: a search over the s–t graph, where
 /// the desired acceleration is chosen anew a few times up to the horizon and reaches the vehicle
 /// through the actuator, a = K/(T s + 1) u, exactly. Of states of one time that go on
 /// nearly alike the cheapest is kept. Cost counts the speed that is missing, commands

@@ -20,25 +20,25 @@ bool is_same_place(const TrafficBodies::Body& a, const TrafficBodies::Body& b) {
   return a.obstacle == b.obstacle && a.at.centre == b.at.centre && a.at.axis == b.at.axis;
 }
 
-/// The bodies of a way, in chunks of consecutive ones with a box around their centres.
-class BodiesOnWay {
+/// The bodies of a path, in chunks of consecutive ones with a box around their centres.
+class BodiesOnPath {
  public:
-  explicit BodiesOnWay(const PathProfile& way) : way_(way) {
-    for (std::size_t i = 0; i < way.body.size(); ++i) {
+  explicit BodiesOnPath(const PathProfile& profile) : profile_(profile) {
+    for (std::size_t i = 0; i < profile.body.size(); ++i) {
       if (i % kChunk == 0) chunks_.emplace_back();
-      chunks_.back().extend(way.body[i].centre);
-      whole_.extend(way.body[i].centre);
-      radius_m_ = std::max(radius_m_, way.body[i].radius_m());
+      chunks_.back().extend(profile.body[i].centre);
+      whole_.extend(profile.body[i].centre);
+      radius_m_ = std::max(radius_m_, profile.body[i].radius_m());
     }
   }
 
-  /// The part of the way from the first to the last sample that touches.
+  /// The part of the path from the first to the last sample that touches.
   std::optional<StInterval> part(const TrafficBodies::Body& other, double margin_m) const {
     const double reach_m = radius_m_ + other.radius_m + margin_m;
     const double far = reach_m * reach_m;
     if (whole_.squaredExteriorDistance(other.at.centre) > far) return std::nullopt;
     const auto touches = [&](std::size_t i) {
-      const Rectangle& body = way_.body[i];
+      const Rectangle& body = profile_.body[i];
       return (body.centre - other.at.centre).squaredNorm() <= far &&
              geometry::distance_m(body, other.at) <= margin_m;
     };
@@ -48,8 +48,8 @@ class BodiesOnWay {
     const auto first = first_that(touches, is_far);
     if (!first) return std::nullopt;
     const std::size_t last = last_that(touches, is_far);
-    return StInterval{.from_m = *first > 0 ? way_.ahead_m[*first - 1] : -1.0,
-                      .to_m = way_.ahead_m[std::min(last + 1, way_.ahead_m.size() - 1)],
+    return StInterval{.from_m = *first > 0 ? profile_.ahead_m[*first - 1] : -1.0,
+                      .to_m = profile_.ahead_m[std::min(last + 1, profile_.ahead_m.size() - 1)],
                       .obstacle = other.obstacle};
   }
 
@@ -58,7 +58,7 @@ class BodiesOnWay {
   std::optional<std::size_t> first_that(const Touches& touches, const IsFar& is_far) const {
     for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
       if (is_far(chunk)) continue;
-      const std::size_t end = std::min(way_.body.size(), (chunk + 1) * kChunk);
+      const std::size_t end = std::min(profile_.body.size(), (chunk + 1) * kChunk);
       for (std::size_t i = chunk * kChunk; i < end; ++i) {
         if (touches(i)) return i;
       }
@@ -71,7 +71,7 @@ class BodiesOnWay {
   std::size_t last_that(const Touches& touches, const IsFar& is_far) const {
     for (std::size_t chunk = chunks_.size(); chunk-- > 0;) {
       if (is_far(chunk)) continue;
-      for (std::size_t i = std::min(way_.body.size(), (chunk + 1) * kChunk);
+      for (std::size_t i = std::min(profile_.body.size(), (chunk + 1) * kChunk);
            i-- > chunk * kChunk;) {
         if (touches(i)) return i;
       }
@@ -79,7 +79,7 @@ class BodiesOnWay {
     return 0;
   }
 
-  const PathProfile& way_;
+  const PathProfile& profile_;
   std::vector<Eigen::AlignedBox2d> chunks_;
   Eigen::AlignedBox2d whole_;
   double radius_m_ = 0.0;
@@ -92,20 +92,20 @@ TrafficBodies::TrafficBodies(const Traffic& traffic, double start_s, int steps)
   for (std::size_t o = 0; o < traffic.obstacles.size(); ++o) {
     for (std::size_t k = 0; k < times_; ++k) {
       const double t_s = start_s + kStep_s * static_cast<double>(k);
-      if (!traffic.is_there(o, t_s)) continue;
+      if (!traffic.obstacles[o].is_there(t_s)) continue;
       const Rectangle at = rectangle_at(traffic.obstacles[o], t_s);
       all_.push_back({o, k, at, at.radius_m()});
     }
   }
 }
 
-StGraph::StGraph(const PathProfile& way, const TrafficBodies& bodies, double margin_m)
+StGraph::StGraph(const PathProfile& profile, const TrafficBodies& bodies, double margin_m)
     : moments_(bodies.times()) {
-  const BodiesOnWay on_way(way);
+  const BodiesOnPath on_profile(profile);
   const TrafficBodies::Body* before = nullptr;
   std::optional<StInterval> part;
   for (const TrafficBodies::Body& body : bodies.all()) {
-    if (before == nullptr || !is_same_place(*before, body)) part = on_way.part(body, margin_m);
+    if (before == nullptr || !is_same_place(*before, body)) part = on_profile.part(body, margin_m);
     if (part) moments_[body.step].parts.push_back(*part);
     before = &body;
   }

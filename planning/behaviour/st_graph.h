@@ -9,9 +9,9 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// Part of a way on which the body would touch an obstacle.
+/// Part of a path on which the body would touch an obstacle.
 struct StInterval {
-  double from_m = 0.0, to_m = 0.0;  ///< of the rear axle, along the way
+  double from_m = 0.0, to_m = 0.0;  ///< of the rear axle, along the path
   std::size_t obstacle = 0;         ///< index in the world, or kNoObstacle
 
   static constexpr std::size_t kNoObstacle = static_cast<std::size_t>(-1);  ///< a red light
@@ -39,17 +39,17 @@ class TrafficBodies {
   std::size_t times_;
 };
 
-/// Which parts of a way are blocked when: the s–t graph of the obstacles. Parts of one time are in
+/// Which parts of a path are blocked when: the s–t graph of the obstacles. Parts of one time are in
 /// no order; those of different obstacles may overlap.
 class StGraph {
  public:
   static constexpr double kStep_s = TrafficBodies::kStep_s;
 
   /// @param margin_m  an obstacle this near to the body counts as touched.
-  StGraph(const PathProfile& way, const TrafficBodies& bodies, double margin_m);
-  StGraph(const PathProfile& way, const Traffic& traffic, double start_s, int steps,
+  StGraph(const PathProfile& profile, const TrafficBodies& bodies, double margin_m);
+  StGraph(const PathProfile& profile, const Traffic& traffic, double start_s, int steps,
           double margin_m)
-      : StGraph(way, TrafficBodies(traffic, start_s, steps), margin_m) {}
+      : StGraph(profile, TrafficBodies(traffic, start_s, steps), margin_m) {}
 
   /// A part that no obstacle blocks, such as the place behind a line at a red light.
   void block(int step, double from_m, double to_m);

@@ -150,7 +150,8 @@ class Finder {
     return std::abs(turned) > kOncoming_rad;
   }
 
-  /// Of two that turn to opposite sides, into the same road, the one with the wider turn gives way.
+  /// Of two that turn to opposite sides, into the same road, the one with the wider turn
+  /// gives way.
   bool gives_way(LaneId lane, LaneId other) const {
     return turned_rad(lane) * turned_rad(other) < 0.0 && std::abs(turned_rad(lane)) > kTurns_rad &&
            road_map_.lane(lane).length_m() > road_map_.lane(other).length_m();

@@ -16,7 +16,7 @@ enum class StopKind {
   light,      ///< of the scenario
   stop_sign,  ///< come to rest, then as give_way
   give_way,   ///< to everybody whose way crosses
-  turn,       ///< across the lane of those who come the other way
+  turn,       ///< across the lane of oncoming traffic
 };
 
 /// A place on a reference line before which the vehicle may have to wait, and for what.
@@ -33,7 +33,7 @@ struct StopPoint {
 ///   several at one line are several places, and all have to be green;
 /// - signs "stop" and "give way" (German 206 and 205, R1-1 and R1-2 of the Vienna convention's
 ///   American counterpart), and regulations "right_of_way" by which a lane yields;
-/// - turns in a junction, where they cross the lane of somebody who comes the other way: to the
+/// - turns in a junction, where they cross the lane of oncoming traffic: to the
 ///   left where one drives on the right, to the right where one drives on the left.
 /// O(legs · rules of a lane), and the map's conflicts once if there is a turn.
 std::vector<StopPoint> stop_points(const map::RoadMap& road_map, const Route& route,

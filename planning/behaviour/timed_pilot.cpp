@@ -76,19 +76,20 @@ class TimedPilot : public Pilot {
   GoalLine goal_line_on(const ReferenceLine& line, std::vector<StopPoint> lights,
                         const PilotSetup& setup) const {
     std::erase_if(lights, [](const auto& place) { return place.kind != StopKind::light; });
-    return {.line = line,
-            .ceiling = ceiling_of(line, vehicle_, setup.driving),
-            .stretches = goal_stretches(*task_.goal, task_.road_map, line, vehicle_),
-            .lights = std::move(lights),
-            .replanner = {
-                vehicle_,
-                task_,
-                line,
-                {.tracking_error_m = setup.pilot.max_tracking_error_m,
-                 .heading_error_rad = setup.pilot.max_heading_error_rad,
-                 .rooms = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}},
-                 .squeezes_past = true,
-                 .keeps_candidates = setup.pilot.keeps_candidates}}};
+    return {
+        .line = line,
+        .ceiling = ceiling_of(line, vehicle_, setup.driving),
+        .stretches = goal_stretches(*task_.goal, task_.road_map, line, vehicle_),
+        .lights = std::move(lights),
+        .replanner = {
+            vehicle_,
+            task_,
+            line,
+            {.tracking_error_m = setup.pilot.max_tracking_error_m,
+             .heading_error_rad = setup.pilot.max_heading_error_rad,
+             .margin_levels = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}},
+             .squeezes_past = true,
+             .keeps_candidates = setup.pilot.keeps_candidates}}};
   }
 
   GoalLine& goal_line() { return goal_lines_[current_]; }
@@ -171,34 +172,35 @@ class TimedPilot : public Pilot {
                                    LateralReplanner::Proposal proposal) {
     if (!proposal.plan.chosen) {
       on.replanner.take(proposal);
-      PathProfile way = way_along(on, on.replanner.path(), view);
-      const double road_m = on_road_m(way, task_.road_map);
+      PathProfile profile = profile_along(on, on.replanner.path(), view);
+      const double road_m = on_road_m(profile, task_.road_map);
       return {.goal_line = &on,
               .proposal = {},
-              .way = std::move(way),
+              .profile = std::move(profile),
               .on_road_m = road_m,
               .answer = {},
               .lead = {}};
     }
-    PathProfile way = way_along(on, on.replanner.path_of(proposal), view);
+    PathProfile profile = profile_along(on, on.replanner.path_of(proposal), view);
     const double road_m =
-        proposal.beyond_the_edge_m > 0.0 ? on_road_m(way, task_.road_map) : kNoEnd_m;
+        proposal.beyond_the_edge_m > 0.0 ? on_road_m(profile, task_.road_map) : kNoEnd_m;
     return {.goal_line = &on,
             .proposal = std::move(proposal),
-            .way = std::move(way),
+            .profile = std::move(profile),
             .on_road_m = road_m,
             .answer = {},
             .lead = {}};
   }
 
-  PathProfile way_along(const GoalLine& on, const PlannedPath& path, const PilotView& view) const {
+  PathProfile profile_along(const GoalLine& on, const PlannedPath& path,
+                            const PilotView& view) const {
     return sample_path_profile(path, on.replanner.s_m(), look_ahead_m(view), on.ceiling, vehicle_);
   }
 
   void search(const PilotView& view, const RiskLevel& risk_level,
               ManeuverHypothesis& hypothesis) const {
     if (!hypothesis.occupancy || hypothesis.risk_level->margin_m != risk_level.margin_m) {
-      auto occupancy = std::make_shared<StGraph>(hypothesis.way, *bodies_, risk_level.margin_m);
+      auto occupancy = std::make_shared<StGraph>(hypothesis.profile, *bodies_, risk_level.margin_m);
       block_lights(view, hypothesis, *occupancy);
       hypothesis.occupancy = std::move(occupancy);
     }
@@ -219,7 +221,7 @@ class TimedPilot : public Pilot {
   std::vector<LightAhead> lights_ahead(const ManeuverHypothesis& hypothesis) const {
     std::vector<LightAhead> ahead;
     for (const StopPoint& place : hypothesis.goal_line->lights) {
-      const double line_m = ahead_of(hypothesis.way, place.s_m) - vehicle_.front_m();
+      const double line_m = ahead_of(hypothesis.profile, place.s_m) - vehicle_.front_m();
       ahead.push_back({place, task_.lights[*place.light], line_m});
     }
     return ahead;
@@ -255,7 +257,7 @@ class TimedPilot : public Pilot {
   std::vector<Obstacle> standing_at(double t_s) const {
     std::vector<Obstacle> standing;
     for (std::size_t i = 0; i < traffic_.obstacles.size(); ++i) {
-      if (!traffic_.is_there(i, t_s)) continue;
+      if (!traffic_.obstacles[i].is_there(t_s)) continue;
       const Obstacle& obstacle = traffic_.obstacles[i];
       const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
       const geometry::TrajectoryPoint later = obstacle.motion.at(t_s + kStillFor_s);
@@ -287,43 +289,44 @@ class TimedPilot : public Pilot {
 
   SpeedSearchQuestion question_of(const PilotView& view, const ManeuverHypothesis& hypothesis,
                                   const StGraph& occupancy) const {
-    const PathProfile& way = hypothesis.way;
+    const PathProfile& profile = hypothesis.profile;
     const double road_end_s_m =
         hypothesis.goal_line->line.length_m() - vehicle_.front_m() - kRoadEnd_m;
-    SpeedSearchQuestion asked{.way = way,
-                              .occupancy = occupancy,
-                              .speed_mps = view.measured.speed_mps,
-                              .acceleration_mps2 = view.measured.acceleration_mps2,
-                              .last_command_mps2 = last_command_mps2_,
-                              .horizon_s = horizon_s(view.t_s),
-                              .end_m = std::min(ahead_of(way, road_end_s_m), hypothesis.on_road_m),
-                              .goals = {}};
+    SpeedSearchQuestion asked{
+        .profile = profile,
+        .occupancy = occupancy,
+        .speed_mps = view.measured.speed_mps,
+        .acceleration_mps2 = view.measured.acceleration_mps2,
+        .last_command_mps2 = last_command_mps2_,
+        .horizon_s = horizon_s(view.t_s),
+        .end_m = std::min(ahead_of(profile, road_end_s_m), hypothesis.on_road_m),
+        .goals = {}};
     if (goal_is_past(view.t_s) || task_.goal->states.empty()) {
       asked.most_wanted_mps = 0.0;
       return asked;
     }
     if (!hypothesis.proposal) asked.most_wanted_mps = 0.0;
     for (const GoalStretch& stretch : hypothesis.goal_line->stretches)
-      asked.goals.push_back(ahead(way, stretch, view));
+      asked.goals.push_back(ahead(profile, stretch, view));
     return asked;
   }
 
-  static double ahead_of(const PathProfile& way, double s_m) {
+  static double ahead_of(const PathProfile& profile, double s_m) {
     if (!std::isfinite(s_m)) return s_m;
-    const auto& stations = way.station_m;
-    if (s_m >= stations.back()) return way.ahead_m.back() + s_m - stations.back();
+    const auto& stations = profile.station_m;
+    if (s_m >= stations.back()) return profile.ahead_m.back() + s_m - stations.back();
     if (s_m <= stations.front()) return s_m - stations.front();
     const auto after = std::upper_bound(stations.begin(), stations.end(), s_m);
     const auto i = static_cast<std::size_t>(after - stations.begin());
-    const double share = (s_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-    return way.ahead_m[i - 1] + share * (way.ahead_m[i] - way.ahead_m[i - 1]);
+    const double fraction = (s_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+    return profile.ahead_m[i - 1] + fraction * (profile.ahead_m[i] - profile.ahead_m[i - 1]);
   }
 
-  static GoalAhead ahead(const PathProfile& way, const GoalStretch& stretch,
+  static GoalAhead ahead(const PathProfile& profile, const GoalStretch& stretch,
                          const PilotView& view) {
     return {.time_s = {stretch.time_s.least - view.t_s, stretch.time_s.most - view.t_s},
             .speed_mps = stretch.speed_mps,
-            .ahead_m = {ahead_of(way, stretch.s_m.least), ahead_of(way, stretch.s_m.most)}};
+            .ahead_m = {ahead_of(profile, stretch.s_m.least), ahead_of(profile, stretch.s_m.most)}};
   }
 
   static PilotCommand command_of(const ManeuverHypothesis& best) {

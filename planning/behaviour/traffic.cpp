@@ -24,7 +24,7 @@ struct Seen {
   double t_s;
   geometry::Pose2 pose;
   double speed_mps = 0.0, acceleration_mps2 = 0.0;
-  double curvature_per_m = 0.0;  ///< of its way
+  double curvature_per_m = 0.0;  ///< of its path
 };
 
 /// Speed between two times, less than 0 for who backs up.
@@ -95,17 +95,19 @@ geometry::Trajectory foreseen_motion(const Seen& seen) {
 
 }  // namespace
 
-Traffic true_traffic(const DrivingTask& task) { return {task.obstacles, task.presence}; }
+Traffic true_traffic(const DrivingTask& task) { return {task.obstacles}; }
 
 PredictedTraffic::PredictedTraffic(const Traffic& truth, double now_s)
     : obstacles_(truth.obstacles.begin(), truth.obstacles.end()) {
-  presence_.assign(obstacles_.size(), {kNever_s, -kNever_s});
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!truth.is_there(i, now_s)) continue;
-    presence_[i] = {now_s, kNever_s};
-    if (obstacles_[i].is_static()) continue;
-    const double from_s = truth.presence.empty() ? 0.0 : truth.presence[i].from_s;
-    obstacles_[i].motion = foreseen_motion(seen_at(truth.obstacles[i].motion, from_s, now_s));
+  for (Obstacle& obstacle : obstacles_) {
+    const TimeSpan truly = obstacle.validity;
+    obstacle.validity = {kNever_s, -kNever_s};
+    if (!truly.holds(now_s)) continue;
+    obstacle.validity = {now_s, kNever_s};
+    if (obstacle.is_static()) continue;
+    // What is always there is seen since the drive begins.
+    const double from_s = std::isinf(truly.from_s) ? 0.0 : truly.from_s;
+    obstacle.motion = foreseen_motion(seen_at(obstacle.motion, from_s, now_s));
   }
 }
 

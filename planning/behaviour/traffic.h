@@ -10,11 +10,6 @@ namespace roadbed::planning::inline behaviour {
 /// Obstacles as a pilot foresees them: where each will be, and from when to when it is there.
 struct Traffic {
   std::span<const Obstacle> obstacles;
-  std::span<const TimeSpan> presence;  ///< one per obstacle; empty: always there
-
-  bool is_there(std::size_t obstacle, double t_s) const {
-    return presence.empty() || (t_s >= presence[obstacle].from_s && t_s <= presence[obstacle].to_s);
-  }
 };
 
 /// The true future, as peers of CommonRoad problems are measured.
@@ -27,12 +22,11 @@ class PredictedTraffic {
  public:
   PredictedTraffic(const Traffic& truth, double now_s);
 
-  Traffic traffic() const { return {obstacles_, presence_}; }
+  Traffic traffic() const { return {obstacles_}; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
 
  private:
   std::vector<Obstacle> obstacles_;  ///< in the truth's order
-  std::vector<TimeSpan> presence_;
 };
 
 }  // namespace roadbed::planning::behaviour

@@ -73,6 +73,13 @@ std::string_view name(Rejection rejection) {
   return kNames.at(static_cast<std::size_t>(rejection));
 }
 
+bool is_preferred(const Candidate& a, const Candidate& b) {
+  const double side_a = std::abs(a.end_d_m), side_b = std::abs(b.end_d_m);
+  if (side_a != side_b) return side_a < side_b;
+  if (a.end_l_m != b.end_l_m) return a.end_l_m > b.end_l_m;
+  return a.end_d_m > b.end_d_m;
+}
+
 Grid::Grid(const GridRange& range)
     : end_d_m_(multiples("d_e", range.d_step_m, range.min_d_m, range.max_d_m)),
       end_l_m_(multiples("l_e", range.l_step_m, range.min_l_m, range.max_l_m)) {
@@ -89,34 +96,34 @@ DrivingLimits driving_limits(const geometry::VehicleShape& vehicle,
           .wheelbase_m = vehicle.wheelbase_m};
 }
 
-double allowed_excess_m(const Course& course, double l_m) {
-  return course.start_excess_m * std::max(0.0, 1.0 - l_m / course.recovery_m);
+double allowed_excess_m(const CycleContext& context, double l_m) {
+  return context.start_excess_m * std::max(0.0, 1.0 - l_m / context.recovery_m);
 }
 
-OffsetRange offsets_on_road(const Course& course, double l_m) {
-  const Corridor corridor = course.line.corridor_at(course.start.s_m + l_m);
-  const double inward_m = course.half_width_m - allowed_excess_m(course, l_m);
+OffsetRange offsets_on_road(const CycleContext& context, double l_m) {
+  const Corridor corridor = context.line.corridor_at(context.start.s_m + l_m);
+  const double inward_m = context.half_width_m - allowed_excess_m(context, l_m);
   return {inward_m - corridor.right_m, corridor.left_m - inward_m};
 }
 
-Station station_at(const Course& course, double l_m) {
-  const double s_m = course.start.s_m + l_m;
-  const OffsetRange range = offsets_on_road(course, l_m);
+Station station_at(const CycleContext& context, double l_m) {
+  const double s_m = context.start.s_m + l_m;
+  const OffsetRange range = offsets_on_road(context, l_m);
   Station station{.l_m = l_m,
-                  .line = course.line.at(s_m),
-                  .speed = course.speed.at(l_m),
+                  .line = context.line.at(s_m),
+                  .speed = context.speed.at(l_m),
                   .previous_d_m = {},
                   .min_d_m = range.min_d_m,
                   .max_d_m = range.max_d_m};
-  if (course.previous_d_m) station.previous_d_m = course.previous_d_m(s_m);
+  if (context.previous_d_m) station.previous_d_m = context.previous_d_m(s_m);
   return station;
 }
 
-std::vector<Station> stations_over(const Course& course, double end_l_m, int count) {
+std::vector<Station> stations_over(const CycleContext& context, double end_l_m, int count) {
   std::vector<Station> stations;
   stations.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    stations.push_back(station_at(course, end_l_m * i / (count - 1)));
+    stations.push_back(station_at(context, end_l_m * i / (count - 1)));
   }
   return stations;
 }

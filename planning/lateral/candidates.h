@@ -45,29 +45,34 @@ struct Candidate {
   Rejection rejection = Rejection::none;
 };
 
+/// Whether of two candidates whose costs differ by rounding only (kEqualCost) the first is to be
+/// taken: smaller |d_e|, then longer l_e, then the left one.
+bool is_preferred(const Candidate& a, const Candidate& b);
+
 /// Where the end states lie: multiples of the steps inside the ranges.
 struct GridRange {
   double d_step_m, min_d_m, max_d_m;
   double l_step_m, min_l_m, max_l_m;
 };
 
-/// All end states (d_e, l_e) of one cycle. A row has one l_e; lanes of a row differ in d_e.
+/// All end states (d_e, l_e) of one cycle. Candidates of one length l_e are a
+/// batch; they differ in their end offset d_e.
 /// Built from integers, so that neither rounding nor an end of a range loses a candidate.
 class Grid {
  public:
   /// @throws std::invalid_argument if a range or step is not usable, or holds no multiple.
   explicit Grid(const GridRange& range);
 
-  std::size_t lanes() const { return end_d_m_.size(); }
-  std::size_t rows() const { return end_l_m_.size(); }
-  std::size_t size() const { return lanes() * rows(); }
-  const std::vector<double>& end_d_m() const { return end_d_m_; }  ///< one per lane, ascending
-  const std::vector<double>& end_l_m() const { return end_l_m_; }  ///< one per row, ascending
+  std::size_t offset_count() const { return end_d_m_.size(); }
+  std::size_t length_count() const { return end_l_m_.size(); }
+  std::size_t size() const { return offset_count() * length_count(); }
+  const std::vector<double>& end_d_m() const { return end_d_m_; }  ///< ascending
+  const std::vector<double>& end_l_m() const { return end_l_m_; }  ///< ascending
   double max_l_m() const { return end_l_m_.back(); }
 
   /// Candidates are numbered with d_e fastest.
-  double end_d_m(std::size_t index) const { return end_d_m_[index % lanes()]; }
-  double end_l_m(std::size_t index) const { return end_l_m_[index / lanes()]; }
+  double end_d_m(std::size_t index) const { return end_d_m_[index % offset_count()]; }
+  double end_l_m(std::size_t index) const { return end_l_m_[index / offset_count()]; }
 
  private:
   std::vector<double> end_d_m_, end_l_m_;
@@ -103,8 +108,8 @@ struct DrivingLimits {
 DrivingLimits driving_limits(const geometry::VehicleShape& vehicle,
                              double max_lateral_acceleration_mps2);
 
-/// A cycle's question, seen from one station.
-struct Course {
+/// What all stations of a cycle are made from.
+struct CycleContext {
   const LineView& line;
   LateralState start;
   PlannedSpeed speed;
@@ -115,18 +120,18 @@ struct Course {
 };
 
 /// How far outside the corridor a candidate may be `l_m` ahead, 0 if its start is inside.
-double allowed_excess_m(const Course& course, double l_m);
+double allowed_excess_m(const CycleContext& context, double l_m);
 
 /// Values of d that keep the rear axle's full width in the corridor, as far as the start allows.
 struct OffsetRange {
   double min_d_m, max_d_m;
 };
-OffsetRange offsets_on_road(const Course& course, double l_m);
+OffsetRange offsets_on_road(const CycleContext& context, double l_m);
 
-Station station_at(const Course& course, double l_m);
+Station station_at(const CycleContext& context, double l_m);
 
 /// `count` stations, equally spaced over [0, end_l_m].
-std::vector<Station> stations_over(const Course& course, double end_l_m, int count);
+std::vector<Station> stations_over(const CycleContext& context, double end_l_m, int count);
 
 /// The two quintics that make all candidates of one length: d = at_zero + d_e · per_unit.
 struct QuinticFamily {

@@ -36,29 +36,29 @@ struct Moment {
 };
 
 // One section of a drive, between two of its points.
-struct Leg {
+struct Segment {
   double length_m;  // straight
   double motion_m;  // no point of the body moves farther
   double duration_s;
   double from_m;  // length of the drive before it
 };
 
-std::vector<Leg> legs_of(const std::vector<TrajectoryPoint>& drive, double reach_m) {
-  std::vector<Leg> legs;
-  legs.reserve(drive.size());
+std::vector<Segment> segments_of(const std::vector<TrajectoryPoint>& drive, double reach_m) {
+  std::vector<Segment> segments;
+  segments.reserve(drive.size());
   double from_m = 0.0;
   for (std::size_t i = 0; i + 1 < drive.size(); ++i) {
     const TrajectoryPoint &a = drive[i], &b = drive[i + 1];
     const double length_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-    legs.push_back({length_m, length_m + reach_m * std::abs(b.heading_rad - a.heading_rad),
-                    b.t_s - a.t_s, from_m});
+    segments.push_back({length_m, length_m + reach_m * std::abs(b.heading_rad - a.heading_rad),
+                        b.t_s - a.t_s, from_m});
     from_m += length_m;
   }
-  return legs;
+  return segments;
 }
 
-// A rectangle that holds the body all along a leg: in the frame of the middle heading the corners
-// move from one end to the other on lines that bend by no more than reach · Δθ² / 8.
+// A rectangle that holds the body all along a segment: in the frame of the middle heading the
+// corners move from one end to the other on lines that bend by no more than reach · Δθ² / 8.
 Rectangle cover_of(const TrajectoryPoint& a, const TrajectoryPoint& b,
                    const VehicleShape& vehicle) {
   const double turn_rad = b.heading_rad - a.heading_rad;
@@ -77,10 +77,10 @@ Rectangle cover_of(const TrajectoryPoint& a, const TrajectoryPoint& b,
           0.5 * size.y() + bend_m};
 }
 
-// A place on a drive: on a leg, a share of it from its start.
+// A place on a drive: on a segment, a fraction of it from its start.
 struct Place {
-  std::size_t leg = 0;
-  double share = 0.0;
+  std::size_t segment = 0;
+  double fraction = 0.0;
 };
 
 struct Mover {
@@ -126,7 +126,7 @@ struct CollisionChecker::Impl {
                              scene.start_t_s, horizon_end_s()));
     }
     for (const PredictedObstacle& obstacle : scene.predicted) {
-      const Prediction& prediction = obstacle.prediction;
+      const Prediction& prediction = obstacle.motion;
       if (!is_counted(prediction.at(scene.start_t_s))) continue;
       const auto fastest = [&prediction](double radius_m, double from_s, double to_s) {
         return prediction.fastest_mps(radius_m, from_s, to_s);
@@ -146,10 +146,11 @@ struct CollisionChecker::Impl {
 
   template <typename Clearance>
   std::optional<Contact> contact(std::size_t with, const std::vector<TrajectoryPoint>& drive,
-                                 const std::vector<Leg>& legs, double rate_mps, double until_s,
-                                 const Clearance& clearance) const;
+                                 const std::vector<Segment>& segments, double rate_mps,
+                                 double until_s, const Clearance& clearance) const;
   bool is_clear_of_standing(std::size_t with, const Rectangle& cover, double enough_m) const;
-  Place follow(const std::vector<Leg>& legs, Place from, double rate_mps, double slack_m) const;
+  Place follow(const std::vector<Segment>& segments, Place from, double rate_mps,
+               double slack_m) const;
 
   Rectangle nearest(std::size_t with, const Moment& moment) const;
   Rectangle nearest_cell(const Moment& moment) const;
@@ -167,14 +168,14 @@ struct CollisionChecker::Impl {
 };
 
 double CollisionChecker::Impl::demanded_m(double driven_m) const {
-  const double share = std::min(1.0, driven_m / options.recovery_m);
-  return options.clearance_m * (options.start_share + (1.0 - options.start_share) * share);
+  const double fraction = std::min(1.0, driven_m / options.recovery_m);
+  return options.clearance_m * (options.start_fraction + (1.0 - options.start_fraction) * fraction);
 }
 
 void CollisionChecker::Impl::look_at(const std::vector<TrajectoryPoint>& drive, Place place,
                                      Moment& moment) const {
-  const TrajectoryPoint &a = drive[place.leg], &b = drive[place.leg + 1];
-  const auto between = [&](double from, double to) { return from + place.share * (to - from); };
+  const TrajectoryPoint &a = drive[place.segment], &b = drive[place.segment + 1];
+  const auto between = [&](double from, double to) { return from + place.fraction * (to - from); };
   moment.t_s = between(a.t_s, b.t_s);
   moment.pose = {between(a.x_m, b.x_m), between(a.y_m, b.y_m),
                  between(a.heading_rad, b.heading_rad)};
@@ -187,45 +188,47 @@ void CollisionChecker::Impl::look_at(const std::vector<TrajectoryPoint>& drive, 
 
 // As far along the drive as `slack_m` allows, if every metre of motion may cost a metre of it; a
 // demand that grows along the drive costs too.
-Place CollisionChecker::Impl::follow(const std::vector<Leg>& legs, Place from, double rate_mps,
-                                     double slack_m) const {
+Place CollisionChecker::Impl::follow(const std::vector<Segment>& segments, Place from,
+                                     double rate_mps, double slack_m) const {
   const double demand_slope =
-      options.clearance_m * (1.0 - options.start_share) / options.recovery_m;
-  for (Place place = from; place.leg < legs.size(); place = {place.leg + 1, 0.0}) {
-    const Leg& leg = legs[place.leg];
-    const double whole_m = leg.motion_m + rate_mps * leg.duration_s + demand_slope * leg.length_m;
-    const double rest_m = (1.0 - place.share) * whole_m;
-    if (rest_m > slack_m) return {place.leg, place.share + slack_m / whole_m};
+      options.clearance_m * (1.0 - options.start_fraction) / options.recovery_m;
+  for (Place place = from; place.segment < segments.size(); place = {place.segment + 1, 0.0}) {
+    const Segment& segment = segments[place.segment];
+    const double whole_m =
+        segment.motion_m + rate_mps * segment.duration_s + demand_slope * segment.length_m;
+    const double rest_m = (1.0 - place.fraction) * whole_m;
+    if (rest_m > slack_m) return {place.segment, place.fraction + slack_m / whole_m};
     slack_m -= rest_m;
   }
-  return {legs.size(), 0.0};
+  return {segments.size(), 0.0};
 }
 
 // `clearance(moment, enough)` is the distance at a moment, or any lower bound above `enough`.
 template <typename Clearance>
 std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
                                                        const std::vector<TrajectoryPoint>& drive,
-                                                       const std::vector<Leg>& legs,
+                                                       const std::vector<Segment>& segments,
                                                        double rate_mps, double until_s,
                                                        const Clearance& clearance) const {
   Moment moment;
-  std::size_t covered = 0;  // legs that were looked at as a whole
-  for (Place place; place.leg < legs.size();) {
+  std::size_t covered = 0;  // segments that were looked at as a whole
+  for (Place place; place.segment < segments.size();) {
     look_at(drive, place, moment);
     if (moment.t_s > until_s) return std::nullopt;
-    const Leg& leg = legs[place.leg];
-    const double demanded = demanded_m(leg.from_m + place.share * leg.length_m);
+    const Segment& segment = segments[place.segment];
+    const double demanded = demanded_m(segment.from_m + place.fraction * segment.length_m);
     const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
-    if (!(slack_m >= options.tolerance_m)) return Contact{place.leg, with, nearest(with, moment)};
-    const Place next = follow(legs, place, rate_mps, slack_m);
-    const bool is_slow = next.leg == place.leg && place.leg >= covered;
-    covered = std::max(covered, place.leg + 1);
-    // Beside a wall every step is short, and the whole leg mostly clear.
+    if (!(slack_m >= options.tolerance_m))
+      return Contact{place.segment, with, nearest(with, moment)};
+    const Place next = follow(segments, place, rate_mps, slack_m);
+    const bool is_slow = next.segment == place.segment && place.segment >= covered;
+    covered = std::max(covered, place.segment + 1);
+    // Beside a wall every step is short, and the whole segment mostly clear.
     const bool is_clear =
-        is_slow &&
-        is_clear_of_standing(with, cover_of(drive[place.leg], drive[place.leg + 1], vehicle),
-                             demanded_m(leg.from_m + leg.length_m));
-    place = is_clear ? Place{place.leg + 1, 0.0} : next;
+        is_slow && is_clear_of_standing(
+                       with, cover_of(drive[place.segment], drive[place.segment + 1], vehicle),
+                       demanded_m(segment.from_m + segment.length_m));
+    place = is_clear ? Place{place.segment + 1, 0.0} : next;
   }
   return std::nullopt;
 }
@@ -307,23 +310,23 @@ std::optional<Contact> CollisionChecker::first_contact(
     const std::vector<TrajectoryPoint>& drive) const {
   const Impl& impl = *impl_;
   const double for_ever = std::numeric_limits<double>::infinity();
-  const std::vector<Leg> legs = legs_of(drive, impl.vehicle.reach_m());
+  const std::vector<Segment> segments = segments_of(drive, impl.vehicle.reach_m());
   std::optional<Contact> found;
   if (!impl.standing.empty()) {
-    found = impl.contact(kStanding, drive, legs, 0.0, for_ever,
+    found = impl.contact(kStanding, drive, segments, 0.0, for_ever,
                          [&](const Moment& moment, double enough_m) {
                            return impl.from_standing_m(moment, enough_m);
                          });
   }
   if (!found && impl.scene.field != nullptr) {
-    found = impl.contact(kOccupied, drive, legs, 0.0, for_ever,
+    found = impl.contact(kOccupied, drive, segments, 0.0, for_ever,
                          [&](const Moment& moment, double enough_m) {
                            return impl.from_occupied_m(moment, enough_m);
                          });
   }
   for (std::size_t i = 0; !found && i < impl.movers.size(); ++i) {
     const Mover& mover = impl.movers[i];
-    found = impl.contact(kFirstMover + i, drive, legs, mover.rate_mps, mover.until_s,
+    found = impl.contact(kFirstMover + i, drive, segments, mover.rate_mps, mover.until_s,
                          [&](const Moment& moment, double enough_m) {
                            return impl.from_mover_m(moment, mover, enough_m);
                          });

@@ -23,7 +23,7 @@ struct CollisionOptions {
   /// Of the clearance that is demanded at the start of a drive; it grows to the whole over
   /// `recovery_m`. Where a drive begins cannot be chosen any more, and without this a vehicle that
   /// passes an obstacle at just the clearance would find every continuation forbidden.
-  double start_share = 0.5;
+  double start_fraction = 0.5;
   double recovery_m = 10.0;
   double tolerance_m = 0.02;  ///< see CollisionChecker::is_free
   double horizon_s = 5.0;     ///< moving obstacles are checked this far ahead
@@ -42,8 +42,8 @@ struct CollisionScene {
 
 /// Where a drive comes too near to something.
 struct Contact {
-  std::size_t leg = 0;                ///< of the drive: between its points `leg` and `leg` + 1
-  std::size_t with = 0;               ///< what it was; means something to the same checker only
+  std::size_t segment = 0;  ///< of the drive: between its points `segment` and `segment` + 1
+  std::size_t with = 0;     ///< what it was; means something to the same checker only
   geometry::Rectangle standing = {};  ///< the body or cell, unless it was something that moves
 };
 

@@ -107,8 +107,8 @@ double time_term(std::span<const CostPoint> points, const CostFrame& frame) {
   const double duration_s = frame.end_l_m * mean(points, [](const CostPoint& p) {
                               return p.stretch / counted_speed_mps(p.speed_mps);
                             });
-  const double share = duration_s * counted_speed_mps(frame.start_speed_mps) / frame.max_l_m;
-  return share * share;
+  const double fraction = duration_s * counted_speed_mps(frame.start_speed_mps) / frame.max_l_m;
+  return fraction * fraction;
 }
 
 CostTerms cost_terms(std::span<const CostPoint> points, const CostFrame& frame) {

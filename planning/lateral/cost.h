@@ -103,7 +103,7 @@ CostTerms cost_terms(std::span<const CostPoint> points, const CostFrame& frame);
 /// Weighted sum, paper eq. 12.
 double total_cost(const CostTerms& terms, const CostTerms& weights);
 
-/// Documented in planning/README.md, section "Cost".
+/// Documented in README.md, section "Cost".
 CostTerms default_weights();
 
 /// @throws std::invalid_argument naming the first weight that is negative or not finite.

@@ -21,9 +21,9 @@ struct PlaceOnPath {
   double stretch;
 };
 
-PlaceOnPath place_on(const PathCourse& course, double s_m) {
-  LateralState at = course.path(s_m);
-  const ReferencePoint on_line = course.line.at(s_m);
+PlaceOnPath place_on(const DrivenPath& driven, double s_m) {
+  LateralState at = driven.path(s_m);
+  const ReferencePoint on_line = driven.line.at(s_m);
   const double cos = std::cos(on_line.heading_rad), sin = std::sin(on_line.heading_rad);
   const double along = 1.0 - on_line.curvature_per_m * at.d_m;
   const auto curve = geometry::offset_curve(
@@ -33,14 +33,14 @@ PlaceOnPath place_on(const PathCourse& course, double s_m) {
   return {{.x_m = on_line.in_map.x() - at.d_m * sin,
            .y_m = on_line.in_map.y() + at.d_m * cos,
            .heading_rad = on_line.heading_rad + std::atan2(at.d_slope, along),
-           .steering_rad = std::atan(course.vehicle.wheelbase_m * curvature),
+           .steering_rad = std::atan(driven.vehicle.wheelbase_m * curvature),
            .curvature_per_m = curvature},
           std::max(kLeastStretch, std::hypot(along, at.d_slope))};
 }
 
 }  // namespace
 
-Trajectory stopping_drive(const PathCourse& course, double speed_mps, double deceleration_mps2,
+Trajectory stopping_drive(const DrivenPath& driven, double speed_mps, double deceleration_mps2,
                           double until_s) {
   const double stop_s = speed_mps / deceleration_mps2;
   const auto driven_m = [&](double t_s) {
@@ -48,11 +48,11 @@ Trajectory stopping_drive(const PathCourse& course, double speed_mps, double dec
   };
   const int steps = static_cast<int>(std::ceil(stop_s / kStopStep_s - 1e-6));
   std::vector<TrajectoryPoint> points;
-  double s_m = course.start_s_m, last_t_s = 0.0;
+  double s_m = driven.start_s_m, last_t_s = 0.0;
   for (int i = 0; i <= steps; ++i) {
     const double t_s = std::min(stop_s, kStopStep_s * i);
-    PlaceOnPath place = place_on(course, s_m);
-    place.point.t_s = course.start_t_s + t_s;
+    PlaceOnPath place = place_on(driven, s_m);
+    place.point.t_s = driven.start_t_s + t_s;
     place.point.speed_mps = std::max(0.0, speed_mps - deceleration_mps2 * t_s);
     place.point.acceleration_mps2 = t_s < stop_s ? -deceleration_mps2 : 0.0;
     points.push_back(place.point);
@@ -62,23 +62,23 @@ Trajectory stopping_drive(const PathCourse& course, double speed_mps, double dec
   }
   TrajectoryPoint standing = points.back();
   standing.speed_mps = standing.acceleration_mps2 = 0.0;
-  standing.t_s = course.start_t_s + std::max(until_s, last_t_s + kStopStep_s);
+  standing.t_s = driven.start_t_s + std::max(until_s, last_t_s + kStopStep_s);
   points.push_back(standing);
   return Trajectory(std::move(points));
 }
 
-Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed, double end_s_m,
+Trajectory passing_drive(const DrivenPath& driven, const PlannedSpeed& speed, double end_s_m,
                          double until_s) {
   std::vector<TrajectoryPoint> points;
   double driven_m = 0.0, t_s = 0.0;
-  // The row behind `until_s` ends the leg that leads past it: without it a vehicle that stands
-  // would have no leg, and touch nothing.
+  // The sample behind `until_s` ends the segment that leads past it: without it a vehicle that
+  // stands would have no segment, and touch nothing.
   bool is_over = false;
-  for (double s_m = course.start_s_m; s_m < end_s_m && !is_over; s_m += kPassStep_m) {
+  for (double s_m = driven.start_s_m; s_m < end_s_m && !is_over; s_m += kPassStep_m) {
     is_over = t_s > until_s;
-    PlaceOnPath place = place_on(course, s_m);
+    PlaceOnPath place = place_on(driven, s_m);
     const PlannedSpeed::State state = speed.at(driven_m);
-    place.point.t_s = course.start_t_s + t_s;
+    place.point.t_s = driven.start_t_s + t_s;
     place.point.speed_mps = state.speed_mps;
     place.point.acceleration_mps2 = state.acceleration_mps2;
     points.push_back(place.point);

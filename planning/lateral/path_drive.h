@@ -14,7 +14,7 @@ namespace roadbed::planning::inline lateral {
 using LateralPath = std::function<LateralState(double s_m)>;
 
 /// A path, and where and when it is driven from.
-struct PathCourse {
+struct DrivenPath {
   const LineView& line;
   const LateralPath& path;
   const geometry::VehicleShape& vehicle;
@@ -22,16 +22,16 @@ struct PathCourse {
 };
 
 /// The drive along a path at a constant deceleration; from its stop it stands for `until_s` after
-/// the start, or longer. A row every 0.05 s.
-geometry::Trajectory stopping_drive(const PathCourse& course, double speed_mps,
+/// the start, or longer. A sample every 0.05 s.
+geometry::Trajectory stopping_drive(const DrivenPath& driven, double speed_mps,
                                     double deceleration_mps2, double until_s);
 
-/// Between rows of passing_drive(), along the line.
+/// Between samples of passing_drive(), along the line.
 inline constexpr double kPassStep_m = 1.0;
 
-/// The drive along a path up to a station, at a planned speed by the length driven; its last row is
-/// the first one over `until_s` after the start. A row every kPassStep_m of the line.
-geometry::Trajectory passing_drive(const PathCourse& course, const PlannedSpeed& speed,
+/// The drive along a path up to a station, at a planned speed by the length driven; its last sample
+/// is the first one over `until_s` after the start. A sample every kPassStep_m of the line.
+geometry::Trajectory passing_drive(const DrivenPath& driven, const PlannedSpeed& speed,
                                    double end_s_m, double until_s);
 
 }  // namespace roadbed::planning::lateral

@@ -12,7 +12,7 @@ struct SpeedPlan {
   double target_mps = 0.0;  ///< the acceleration holds until this speed is near, then fades
 };
 
-/// One row of a speed profile that was planned elsewhere.
+/// One sample of a speed profile that was planned elsewhere.
 struct SpeedSample {
   double distance_m = 0.0;  ///< from now
   double speed_mps = 0.0;

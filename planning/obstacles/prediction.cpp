@@ -52,17 +52,6 @@ double fastest_mps(const Trajectory& motion, double radius_m, double from_s, dou
   return fastest;
 }
 
-geometry::Rectangle body_around(const Pose2& centre, double length_m, double width_m) {
-  return {.centre = centre.position(),
-          .axis = {std::cos(centre.heading_rad), std::sin(centre.heading_rad)},
-          .half_length_m = 0.5 * length_m,
-          .half_width_m = 0.5 * width_m};
-}
-
-geometry::Rectangle PredictedObstacle::body_at(double t_s) const {
-  return body_around(prediction.at(t_s), length_m, width_m);
-}
-
 Prediction Prediction::recorded(Trajectory motion) {
   if (motion.empty()) throw std::invalid_argument("Prediction: a recorded motion has no point");
   const auto kept = std::make_shared<const Trajectory>(std::move(motion));

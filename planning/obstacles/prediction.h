@@ -1,11 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
-#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/line_view.h"
 
 namespace roadbed::planning::inline obstacles {
@@ -59,17 +58,7 @@ class Prediction {
 };
 
 /// A rectangle that moves as predicted.
-struct PredictedObstacle {
-  std::string id;
-  double length_m = 4.5;
-  double width_m = 1.8;
-  Prediction prediction;
-
-  geometry::Rectangle body_at(double t_s) const;
-};
-
-/// A rectangle around a centre.
-geometry::Rectangle body_around(const geometry::Pose2& centre, double length_m, double width_m);
+using PredictedObstacle = ObstacleIn<Frame::map, Prediction>;
 
 /// Greatest speed of a point within `radius_m` of a trajectory's pose between two times [m/s].
 double fastest_mps(const geometry::Trajectory& motion, double radius_m, double from_s, double to_s);

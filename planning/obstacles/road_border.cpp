@@ -58,9 +58,9 @@ double RoadBorder::excess_of_point_m(const Eigen::Vector2d& point, double near_s
   const Sample &a = samples_[i], &b = samples_[i + 1];
   const Eigen::Vector2d from_a = point - a.in_map, from_b = point - b.in_map;
   const double along_a = from_a.dot(a.tangent), along_b = -from_b.dot(b.tangent);
-  const double share =
+  const double fraction =
       along_a + along_b > 0.0 ? std::clamp(along_a / (along_a + along_b), 0.0, 1.0) : 0.0;
-  const auto between = [&](double at_a, double at_b) { return at_a + share * (at_b - at_a); };
+  const auto between = [&](double at_a, double at_b) { return at_a + fraction * (at_b - at_a); };
   const double d_m =
       between(geometry::cross(a.tangent, from_a), geometry::cross(b.tangent, from_b));
   return std::max(d_m - between(a.left_m, b.left_m), -d_m - between(a.right_m, b.right_m));

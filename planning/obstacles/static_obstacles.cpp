@@ -5,8 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "roadbed/planning/obstacles/prediction.h"
-
 namespace roadbed::planning::inline obstacles {
 namespace {
 
@@ -43,13 +41,9 @@ void spread_points(const Rectangle& body, double gap_m, std::vector<Eigen::Vecto
 
 }  // namespace
 
-Rectangle body_of(const Obstacle& obstacle, double t_s) {
-  return body_around(obstacle.motion.at(t_s).pose(), obstacle.length_m, obstacle.width_m);
-}
-
 StaticObstacles::StaticObstacles(const std::vector<Obstacle>& obstacles) {
   for (const Obstacle& obstacle : obstacles) {
-    if (obstacle.is_static()) bodies_.push_back(body_of(obstacle, 0.0));
+    if (obstacle.is_static()) bodies_.push_back(rectangle_at(obstacle, 0.0));
   }
   while (points_for(bodies_, gap_m_) >
          std::max(kMostPoints, 4.0 * static_cast<double>(bodies_.size())))

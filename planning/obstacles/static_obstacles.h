@@ -9,9 +9,6 @@
 
 namespace roadbed::planning::inline obstacles {
 
-/// The rectangle of an obstacle's body where its motion has it at a time.
-geometry::Rectangle body_of(const Obstacle& obstacle, double t_s);
-
 /// The standing ones of a list of obstacles, with distances to them. A KD-tree over points spread
 /// on their bodies gives lower bounds; the rectangles give the exact distance.
 class StaticObstacles {

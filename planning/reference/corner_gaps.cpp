@@ -19,7 +19,7 @@ using geometry::VehicleShape;
 constexpr double kLongest_m = 40.0;
 constexpr int kLengths = 60, kProportions = 40;
 constexpr double kPlaceStep_m = 0.2;
-constexpr double kTurnsBack = 0.99;  // cosine of the angle between the legs
+constexpr double kTurnsBack = 0.99;  // cosine of the angle between the segments
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -107,10 +107,10 @@ struct Shape {
   double peak_curvature = 0.0, peak_rate = 0.0;
 };
 
-Shape shape_of(const CornerQuestion& question, double first_share, double room_m) {
+Shape shape_of(const CornerQuestion& question, double first_fraction, double room_m) {
   const Vector2d back = (question.before - question.at).normalized();
   const Vector2d ahead = (question.after - question.at).normalized();
-  Shape shape{.unit = {first_share, first_share, 1.0 - 2.0 * first_share}, .places = {}};
+  Shape shape{.unit = {first_fraction, first_fraction, 1.0 - 2.0 * first_fraction}, .places = {}};
   shape.places = places_on(
       QuinticBezier::corner(2.0 * back, Vector2d(0.0, 0.0), 2.0 * ahead, shape.unit), room_m);
   for (const Place& place : shape.places) {

@@ -10,7 +10,7 @@ using map::LaneId;
 
 enum class Side { left, right };
 
-// A border, and the share of its lane's length beside the point.
+// A border, and the fraction of its lane's length beside the point.
 struct Edge {
   const map::Lane* lane;
   bool same_direction;
@@ -34,14 +34,14 @@ Edge outermost(const map::RoadMap& road_map, LaneId lane, Side side) {
 }
 
 // Distance to the border along the normal: its point beside is found by walking along it.
-double distance_m(const Edge& edge, double share, Side side, const geometry::CurvePoint& point) {
+double distance_m(const Edge& edge, double fraction, Side side, const geometry::CurvePoint& point) {
   const Eigen::Vector2d along(std::cos(point.heading_rad), std::sin(point.heading_rad));
   const Eigen::Vector2d left(-along.y(), along.x());
   const bool left_border = (side == Side::left) == edge.same_direction;
   const map::LaneLine& border = left_border ? edge.lane->left : edge.lane->right;
   const double forward = edge.same_direction ? 1.0 : -1.0;
   const double length_m = edge.lane->length_m();
-  double station_m = length_m * (edge.same_direction ? share : 1.0 - share);
+  double station_m = length_m * (edge.same_direction ? fraction : 1.0 - fraction);
   Eigen::Vector2d away = map::Lane::point_at(border, station_m) - point.position;
   for (int i = 0; i < 3; ++i) {
     station_m = std::clamp(station_m - forward * away.dot(along), 0.0, length_m);
@@ -52,13 +52,13 @@ double distance_m(const Edge& edge, double share, Side side, const geometry::Cur
 
 }  // namespace
 
-Corridor room_beside(const map::RoadMap& road_map, LaneId lane, double share,
+Corridor room_beside(const map::RoadMap& road_map, LaneId lane, double fraction,
                      const geometry::CurvePoint& point, double default_speed_mps, bool reversed) {
   const auto room_m = [&](Side side) {
     const bool is_left = (side == Side::left) != reversed;
     Edge edge = outermost(road_map, lane, is_left ? Side::left : Side::right);
     edge.same_direction = edge.same_direction != reversed;
-    return distance_m(edge, share, side, point);
+    return distance_m(edge, fraction, side, point);
   };
   const auto limit_mps = road_map.lane(lane).least_speed_limit_mps();
   return {room_m(Side::left), room_m(Side::right),

@@ -11,9 +11,9 @@ namespace roadbed::planning::inline reference {
 /// To each side the road reaches over the own lane and the drivable ones beyond, as long as the
 /// marking between may be crossed, and ends past the first lane of the other direction. Distances
 /// are along the line's normal to the outermost border.
-/// @param share     of the lane's length at the point, about, in driving direction.
+/// @param fraction     of the lane's length at the point, about, in driving direction.
 /// @param reversed  the lane is driven against its direction.
-Corridor room_beside(const map::RoadMap& road_map, map::LaneId lane, double share,
+Corridor room_beside(const map::RoadMap& road_map, map::LaneId lane, double fraction,
                      const geometry::CurvePoint& point, double default_speed_mps,
                      bool reversed = false);
 

@@ -11,7 +11,9 @@ namespace roadbed::planning::inline reference {
 /// a ReferenceLine, or from any two functions, such as those of an analytic line.
 class LineView {
  public:
-  LineView(const ReferenceLine& line);  // NOLINT: a ReferenceLine may stand for its view
+  LineView(const ReferenceLine& line)  // NOLINT: a ReferenceLine may stand for its view
+      : at_([line](double s_m) { return line.at(s_m); }),
+        corridor_at_([line](double s_m) { return line.corridor_at(s_m); }) {}
   LineView(std::function<ReferencePoint(double)> at, std::function<Corridor(double)> corridor_at)
       : at_(std::move(at)), corridor_at_(std::move(corridor_at)) {}
 

@@ -50,7 +50,7 @@ std::vector<Corridor> corridor_along(const map::RoadMap& road_map, const RoutePa
       ++i;
     }
     const RoutePathPoint& beside = path.points[i];
-    corridor.push_back(room_beside(road_map, beside.lane, beside.share, point, default_speed_mps,
+    corridor.push_back(room_beside(road_map, beside.lane, beside.fraction, point, default_speed_mps,
                                    beside.reversed));
   }
   return corridor;
@@ -136,7 +136,7 @@ ReferenceLine ReferenceLine::along(const map::RoadMap& road_map, const Route& ro
                                      .extend_m = options.extend_m});
   const geometry::Polyline centreline(positions(path));
   DrawnCurve drawn = drawn_curve(centreline, path, fit_options(options));
-  auto data = std::make_shared<Data>();
+  auto data = std::make_shared<ReferenceLineData>();
   if (options.corner_vehicle) {
     widen_bends(road_map, path, centreline, options, drawn, data->notes);
   }

@@ -12,7 +12,8 @@
 
 namespace roadbed::planning::inline reference {
 
-ReferenceLine::ReferenceLine(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+ReferenceLine::ReferenceLine(std::shared_ptr<const ReferenceLineData> data)
+    : data_(std::move(data)) {}
 
 geometry::FitOptions fit_options(const ReferenceLineOptions& options) {
   const geometry::FitOptions defaults;
@@ -31,7 +32,7 @@ ReferenceLine ReferenceLine::through(const std::vector<Eigen::Vector2d>& way_poi
     driving = {*options.corner_vehicle, options.corner_speed_mps, half_width_m};
   }
   WayPointPath path = path_through(way_points_in_map, 0.5 * options.step_m, driving);
-  auto data = std::make_shared<Data>();
+  auto data = std::make_shared<ReferenceLineData>();
   data->curve = geometry::fit_curve(path.points, fit_options(options)).curve;
   data->goal_s_m = data->curve.length_m();
   for (const Eigen::Vector2d& point : path.way_points) {
@@ -70,8 +71,8 @@ Corridor ReferenceLine::corridor_at(double s_m) const {
   const auto before = static_cast<std::size_t>(index);
   const Corridor& a = corridor[before];
   const Corridor& b = corridor[std::min(before + 1, corridor.size() - 1)];
-  const double share = index - static_cast<double>(before);
-  return {std::lerp(a.left_m, b.left_m, share), std::lerp(a.right_m, b.right_m, share),
+  const double fraction = index - static_cast<double>(before);
+  return {std::lerp(a.left_m, b.left_m, fraction), std::lerp(a.right_m, b.right_m, fraction),
           a.speed_limit_mps};
 }
 

@@ -5,12 +5,14 @@
 
 #include "roadbed/geometry/curves/fit_curve.h"
 #include "roadbed/geometry/curves/smooth_curve.h"
-#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/reference/reference_point.h"
 
 namespace roadbed::planning::inline reference {
 
+struct ReferenceLineOptions;
+
 /// What a reference line is made of. The line's station 0 is `start_m` of the curve.
-struct ReferenceLine::Data {
+struct ReferenceLineData {
   geometry::SmoothCurve curve;
   double start_m = 0.0;
   double goal_s_m = 0.0;

@@ -31,7 +31,7 @@ double bend_speed_mps(const ReferencePoint& point, const geometry::VehicleShape&
   const double turn = vehicle.wheelbase_m * point.curvature_per_m;
   const double steering_per_m =
       vehicle.wheelbase_m * std::abs(point.curvature_d1_per_m2) / (1.0 + turn * turn);
-  const double by_steering = options.steering_rate_share * vehicle.max_steering_rate_radps /
+  const double by_steering = options.steering_rate_fraction * vehicle.max_steering_rate_radps /
                              std::max(steering_per_m, 1e-9);
   return std::min(by_acceleration, by_steering);
 }
@@ -53,8 +53,8 @@ SpeedTarget SpeedCeiling::at(double s_m) const {
   const double last = static_cast<double>(squared_.size() - 1);
   const double place = std::clamp(s_m / step_m_, 0.0, last);
   const auto i = std::min(static_cast<std::size_t>(place), squared_.size() - 2);
-  const double share = place - static_cast<double>(i);
-  const double squared = squared_[i] + share * (squared_[i + 1] - squared_[i]);
+  const double fraction = place - static_cast<double>(i);
+  const double squared = squared_[i] + fraction * (squared_[i + 1] - squared_[i]);
   const double slope = (squared_[i + 1] - squared_[i]) / step_m_;
   return {.speed_mps = std::sqrt(squared), .acceleration_mps2 = std::min(0.0, 0.5 * slope)};
 }

@@ -35,7 +35,7 @@ struct SpeedCeilingOptions {
   double desired_speed_mps = 130.0 / 3.6;
   double max_lateral_acceleration_mps2 = 2.5;
   double deceleration_mps2 = 1.5;
-  double steering_rate_share = 0.7;  ///< of the vehicle's, that bends may ask for
+  double steering_rate_fraction = 0.7;  ///< of the vehicle's, that bends may ask for
   double step_m = 0.5;
 };
 

@@ -22,10 +22,10 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr double kSamePoint_m = 1e-6;
 constexpr double kCornerTurn_rad = std::numbers::pi / 6.0;
 constexpr double kLongLeg_m = 10.0;
-constexpr double kStraight_rad = 0.05;  // a leg goes on while it turns by less
+constexpr double kStraight_rad = 0.05;  // a segment goes on while it turns by less
 constexpr double kTurnsBack_rad = 170.0 / 180.0 * std::numbers::pi;
 constexpr double kLongestRounding_m = 40.0;
-constexpr double kBeyondLegs_m = 12.0;  // the road goes on, for the body at the legs' ends
+constexpr double kBeyondSegments_m = 12.0;  // the road goes on, for the body at the segments' ends
 constexpr double kLeastCornerSpeed_mps = 0.1, kSpeedStep = 1.25;
 const double kMostRounding_m = geometry::kPaperGaps.total_m();
 
@@ -85,7 +85,7 @@ void refuse_too_long(const Points& points, double step_m) {
                   step_m, most_points));
 }
 
-// A corner, and how far its legs are straight; later: how much of them its curve takes.
+// A corner, and how far its segments are straight; later: how much of them its curve takes.
 struct Corner {
   std::size_t at;
   Eigen::Vector2d back, ahead;  // unit vectors away from the corner
@@ -93,7 +93,7 @@ struct Corner {
   geometry::CornerGaps gaps;
 };
 
-// Length of the straight leg from a corner, `step` +1 or −1; half of it if it ends at a corner.
+// Length of the straight segment from a corner, `step` +1 or −1; half of it if it ends at a corner.
 double leg_m(const Points& points, const std::vector<bool>& corners, std::size_t at, int step) {
   const auto next = [step](std::size_t i) { return step > 0 ? i + 1 : i - 1; };
   std::size_t i = next(at);
@@ -122,13 +122,13 @@ std::vector<Corner> corners_of(const Points& points, double most_m) {
   return corners;
 }
 
-// The road of both legs, half a width to each side.
+// The road of both segments, half a width to each side.
 Points road_of(const Eigen::Vector2d& at, const Corner& corner, double half_width_m) {
   const auto left_of = [](const Eigen::Vector2d& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   const Eigen::Vector2d n1 = half_width_m * left_of(-corner.back);
   const Eigen::Vector2d n2 = half_width_m * left_of(corner.ahead);
   const Eigen::Vector2d mitre = (n1 + n2) / (1.0 + n1.dot(n2) / (half_width_m * half_width_m));
-  const double reach_m = corner.room_m + kBeyondLegs_m;
+  const double reach_m = corner.room_m + kBeyondSegments_m;
   const Eigen::Vector2d before = at + reach_m * corner.back, after = at + reach_m * corner.ahead;
   return {before - n1, at - mitre, after - n2, after + n2, at + mitre, before + n1};
 }
@@ -195,8 +195,8 @@ Points between(const Points& points, const Corner* before, const Corner* after) 
 double to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
                     const Eigen::Vector2d& b) {
   const Eigen::Vector2d side = b - a;
-  const double share = std::clamp((point - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
-  return (a + share * side - point).norm();
+  const double fraction = std::clamp((point - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
+  return (a + fraction * side - point).norm();
 }
 
 // Goes along the way-points with the spline.

@@ -11,7 +11,7 @@
 namespace roadbed::planning::inline reference {
 
 /// What a corner is rounded for: the gentlest curve whose swept vehicle stays within `half_width_m`
-/// of the legs, and that can be steered at the speed (corner_gaps.h).
+/// of the segments, and that can be steered at the speed (corner_gaps.h).
 struct CornerDriving {
   geometry::VehicleShape vehicle;
   double speed_mps = 0.0;
@@ -33,7 +33,8 @@ struct WayPointPath {
 /// Cubic splines through the way-points, measured by arc length [paper eq. 1–5], with quintic
 /// Bézier curves in place of corners [eq. 6–11]. A corner is a way-point where the path turns by
 /// 30° or more at once: its neighbours turn by less than half of that, or are 10 m away at least.
-/// Its curve takes up to 14 m of each leg, as far as the leg is straight; two corners share a leg.
+/// Its curve takes up to 14 m of each segment, as far as the segment is straight; two corners share
+/// a segment.
 /// @param driving  if given, gaps are chosen for it, over up to 40 m; a corner that cannot be
 /// driven
 ///                 at its speed is rounded for the greatest speed at which it can.

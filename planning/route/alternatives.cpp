@@ -29,7 +29,7 @@ double cost_of(const Route& route, RouteCost measure) {
 
 }  // namespace
 
-double shared_length(const Route& route, const Route& other) {
+double shared_length_ratio(const Route& route, const Route& other) {
   double shared_m = 0.0;
   for (const RouteLeg& leg : route.legs) {
     const double leg_m = std::abs(leg.to_s_m - leg.from_s_m);
@@ -58,7 +58,7 @@ std::vector<Alternative> find_alternatives(Router& router, const RoutePlace& fro
     Alternative next{router.route_along(*way), 0.0};
     make_dearer(solver, next.route, weights);
     for (const Alternative& before : found) {
-      next.shared = std::max(next.shared, shared_length(next.route, before.route));
+      next.shared = std::max(next.shared, shared_length_ratio(next.route, before.route));
     }
     const bool fits =
         found.empty() ||

@@ -2,20 +2,21 @@
 
 #include <vector>
 
-#include "roadbed/planning/route/route.h"
 #include "roadbed/planning/route/route_place.h"
+#include "roadbed/planning/route/router.h"
 
 namespace roadbed::planning::inline route {
 
 struct AlternativeOptions {
   int count = 3;             ///< routes wanted, with the cheapest
-  double most_shared = 0.7;  ///< share of a route's length on stretches of any route before it
+  double most_shared = 0.7;  ///< fraction of a route's length on stretches of any route before it
   double most_cost = 1.5;    ///< times the cheapest route's cost
 };
 
 struct Alternative {
   Route route;
-  double shared = 0.0;  ///< the greatest share of its length that it has in common with one before
+  double shared =
+      0.0;  ///< the greatest fraction of its length that it has in common with one before
 };
 
 /// The cheapest route, then others that differ from each one before: found by making the lanes of
@@ -25,7 +26,7 @@ std::vector<Alternative> find_alternatives(Router& router, const RoutePlace& fro
                                            const RoutePlace& to,
                                            const AlternativeOptions& options = {});
 
-/// Share of a route's length that lies on stretches of another one.
-double shared_length(const Route& route, const Route& other);
+/// Fraction of a route's length that lies on stretches of another one.
+double shared_length_ratio(const Route& route, const Route& other);
 
 }  // namespace roadbed::planning::route

@@ -6,40 +6,40 @@ namespace roadbed::planning::inline route {
 namespace {
 
 constexpr double kAtEnd_m = 1e-6;
-constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth beginning in it
+constexpr double kLeastPart_m = 0.1;  // of a lane group, to be worth beginning in it
 constexpr std::size_t kMostSpans = 64;
 
-// Part of a passage that the change may use.
-ShareRange part_of(const RouteNetwork& network, const ChangeSpan& span, std::size_t passage) {
-  const double length_m = network.lanes[span.lanes[passage].from].length_m;
-  return {passage == 0 ? span.start_s_m / length_m : 0.0,
-          passage + 1 == span.lanes.size() ? span.end_s_m / length_m : 1.0};
+// Part of a lane group that the change may use.
+FractionRange part_of(const RouteNetwork& network, const ChangeSpan& span, std::size_t lane_group) {
+  const double length_m = network.lanes[span.lanes[lane_group].from].length_m;
+  return {lane_group == 0 ? span.start_s_m / length_m : 0.0,
+          lane_group + 1 == span.lanes.size() ? span.end_s_m / length_m : 1.0};
 }
 
-double part_m(const RouteNetwork& network, const ChangeSpan& span, std::size_t passage) {
-  const ShareRange part = part_of(network, span, passage);
-  return (part.to - part.from) * network.lanes[span.lanes[passage].from].length_m;
+double part_m(const RouteNetwork& network, const ChangeSpan& span, std::size_t lane_group) {
+  const FractionRange part = part_of(network, span, lane_group);
+  return (part.to - part.from) * network.lanes[span.lanes[lane_group].from].length_m;
 }
 
 LaneChain chain_of(const RouteNetwork& network, const ChangeSpan::Beside& lanes) {
   return chain_between(network, lanes.from, lanes.to);
 }
 
-// The window from one lane of a chain to the next, as shares of the lane.
-std::optional<ShareRange> window(const RouteNetwork& network, std::uint32_t lane,
-                                 std::uint32_t beside, bool at_end) {
+// The window from one lane of a chain to the next, as fractions of the lane.
+std::optional<FractionRange> window(const RouteNetwork& network, std::uint32_t lane,
+                                    std::uint32_t beside, bool at_end) {
   const auto windows = windows_to(network, lane, beside);
   if (windows.empty()) return {};
   const double length_m = network.lanes[lane].length_m;
   const map::StationRange& range = at_end ? windows.back() : windows.front();
   const bool reaches = at_end ? range.to_s_m >= length_m - kAtEnd_m : range.from_s_m <= kAtEnd_m;
   if (!reaches || !(length_m > 0.0)) return {};
-  return ShareRange{range.from_s_m / length_m, range.to_s_m / length_m};
+  return FractionRange{range.from_s_m / length_m, range.to_s_m / length_m};
 }
 
 std::optional<map::StationRange> common_window(const RouteNetwork& network, const LaneChain& chain,
                                                bool at_end) {
-  ShareRange common;
+  FractionRange common;
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const auto range = window(network, chain[i], chain[i + 1], at_end);
     if (!range) return {};
@@ -150,20 +150,20 @@ std::vector<ChangeSpan> spans_from(const RouteNetwork& network, std::uint32_t la
   return spans;
 }
 
-std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& span) {
-  const RouteNetwork& network = rules.network();
+std::optional<SpanPlan> plan_span(const RoutingCostModel& model, const ChangeSpan& span) {
+  const RouteNetwork& network = model.network();
   for (const ChangeSpan::Beside& lanes : span.lanes) {
     const LaneChain chain = chain_of(network, lanes);
     // Neighbours that go round in a ring have a shorter chain the other way.
     if (chain.size() != span.changes + 1) return {};
     if (!std::all_of(chain.begin(), chain.end(),
-                     [&](std::uint32_t lane) { return rules.may_enter(lane); })) {
+                     [&](std::uint32_t lane) { return model.may_enter(lane); })) {
       return {};
     }
   }
   SpanPlan plan;
   plan.room_m = room_m(network, span) / static_cast<double>(span.changes);
-  if (plan.room_m < rules.least_room_m()) return {};
+  if (plan.room_m < model.least_room_m()) return {};
   double length_m = 0.0;
   for (std::size_t i = 0; i < span.lanes.size(); ++i) {
     plan.begin_m.push_back(length_m);
@@ -173,39 +173,39 @@ std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& sp
   return plan;
 }
 
-double cost_of(const TravelRules& rules, const ChangeSpan& span, const SpanPlan& plan,
-               ShareRange ends) {
-  double cost = rules.change_cost(span.changes, plan.room_m);
+double cost_of(const RoutingCostModel& model, const ChangeSpan& span, const SpanPlan& plan,
+               FractionRange ends) {
+  double cost = model.change_cost(span.changes, plan.room_m);
   for (std::size_t i = 0; i < span.lanes.size(); ++i) {
-    const LaneChain chain = chain_of(rules.network(), span.lanes[i]);
+    const LaneChain chain = chain_of(model.network(), span.lanes[i]);
     const std::uint32_t left = chain[plan.made[i]];
-    const double length_m = rules.network().lanes[left].length_m;
+    const double length_m = model.network().lanes[left].length_m;
     const double from = i == 0 ? ends.from : 0.0, to = i + 1 == span.lanes.size() ? ends.to : 1.0;
-    cost += rules.travel_cost(left, from * length_m, to * length_m);
-    if (i > 0) cost += rules.turn_cost(chain[plan.made[i - 1]]);
+    cost += model.travel_cost(left, from * length_m, to * length_m);
+    if (i > 0) cost += model.turn_cost(chain[plan.made[i - 1]]);
   }
   return cost;
 }
 
-std::vector<Passage> passages_of(const RouteNetwork& network, const ChangeSpan& span,
-                                 const SpanPlan& plan, ShareRange ends) {
-  std::vector<Passage> passages;
+std::vector<LaneGroup> lane_groups_of(const RouteNetwork& network, const ChangeSpan& span,
+                                      const SpanPlan& plan, FractionRange ends) {
+  std::vector<LaneGroup> lane_groups;
   for (std::size_t i = 0; i < span.lanes.size(); ++i) {
     const LaneChain chain = chain_of(network, span.lanes[i]);
     const std::size_t entered = i == 0 ? 0 : plan.made[i - 1], left = plan.made[i];
-    Passage passage{std::span(chain).subspan(entered, left + 1 - entered),
-                    {i == 0 ? ends.from : 0.0, i + 1 == span.lanes.size() ? ends.to : 1.0},
-                    {}};
-    passage.changes.room_m = plan.room_m;
+    LaneGroup lane_group{std::span(chain).subspan(entered, left + 1 - entered),
+                         {i == 0 ? ends.from : 0.0, i + 1 == span.lanes.size() ? ends.to : 1.0},
+                         {}};
+    lane_group.changes.room_m = plan.room_m;
     const double length_m = network.lanes[span.lanes[i].from].length_m;
     const double first_m = (i == 0 ? span.start_s_m : 0.0) - plan.begin_m[i];
     for (std::size_t j = entered; j < left; ++j) {
       const double from_m = first_m + static_cast<double>(j) * plan.room_m;
-      passage.changes.ranges.push_back({from_m / length_m, (from_m + plan.room_m) / length_m});
+      lane_group.changes.ranges.push_back({from_m / length_m, (from_m + plan.room_m) / length_m});
     }
-    passages.push_back(std::move(passage));
+    lane_groups.push_back(std::move(lane_group));
   }
-  return passages;
+  return lane_groups;
 }
 
 }  // namespace roadbed::planning::route

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/route/travel_rules.h"
+#include "roadbed/planning/route/routing_cost_model.h"
 
 namespace roadbed::planning::inline route {
 
-/// Lane changes, one or more to the same side, that take more than one passage: they begin in one
-/// and end in a following one, while the lanes stay neighbours across the section ends between.
+/// Lane changes, one or more to the same side, that take more than one lane group: they begin in
+/// one and end in a following one, while the lanes stay neighbours across the section ends between.
 /// Each has an equal share of the length.
 ///
 ///     from  ────────┬──╮────┬──────
@@ -20,7 +20,7 @@ struct ChangeSpan {
     std::uint32_t from = 0, to = 0;
   };
   std::size_t changes = 1;
-  std::vector<Beside> lanes;  ///< of each passage in turn, at least two
+  std::vector<Beside> lanes;  ///< of each lane group in turn, at least two
   double start_s_m = 0.0;     ///< of the first lane that is left: where the change may begin
   double end_s_m = 0.0;       ///< of the last one: where it has to have ended
 };
@@ -28,12 +28,13 @@ struct ChangeSpan {
 /// Length that all its changes have, along the first lanes [m].
 double room_m(const RouteNetwork& network, const ChangeSpan& span);
 
-/// Whether what is behind the first passage has less room than helps, and, of several changes, none
-/// has as much in the first passage or the last one alone.
+/// Whether what is behind the first lane group has less room than helps, and, of several changes,
+/// none has as much in the first lane group or the last one alone.
 bool needs_first(const RouteNetwork& network, const ChangeSpan& span, double enough_m);
 
-/// Changes that begin in a lane behind a station and end in a following passage, for which no such
-/// that end a passage earlier have as much room as helps. Up to three of them at once, at most 64.
+/// Changes that begin in a lane behind a station and end in a following lane group, for which no
+/// such that end a lane group earlier have as much room as helps. Up to three of them at once, at
+/// most 64.
 std::vector<ChangeSpan> spans_from(const RouteNetwork& network, std::uint32_t lane, double from_s_m,
                                    double enough_m);
 
@@ -56,23 +57,23 @@ LaneChain lanes_beside(const RouteNetwork& network, std::uint32_t lane,
 /// The most changes that are laid over section ends together.
 inline constexpr std::size_t kMostTogether = 3;
 
-/// How the changes lie in the passages.
+/// How the changes lie in the lane groups.
 struct SpanPlan {
-  std::vector<std::size_t> made;  ///< changes whose middle lies before the end of each passage
-  std::vector<double> begin_m;    ///< length of the changes before each passage
+  std::vector<std::size_t> made;  ///< changes whose middle lies before the end of each lane group
+  std::vector<double> begin_m;    ///< length of the changes before each lane group
   double room_m = 0.0;            ///< that each of them has
 };
 
 /// None if there is less room than the rules ask for, or a lane may not be entered.
-std::optional<SpanPlan> plan_span(const TravelRules& rules, const ChangeSpan& span);
+std::optional<SpanPlan> plan_span(const RoutingCostModel& model, const ChangeSpan& span);
 
-/// Cost of the way from a share of the first passage to a share of the last one: a passage costs
-/// what the lane does on which it is left.
-double cost_of(const TravelRules& rules, const ChangeSpan& span, const SpanPlan& plan,
-               ShareRange ends);
+/// Cost of the way from a fraction of the first lane group to a fraction of the last one: a lane
+/// group costs what the lane does on which it is left.
+double cost_of(const RoutingCostModel& model, const ChangeSpan& span, const SpanPlan& plan,
+               FractionRange ends);
 
-/// The same way, passage by passage.
-std::vector<Passage> passages_of(const RouteNetwork& network, const ChangeSpan& span,
-                                 const SpanPlan& plan, ShareRange ends);
+/// The same way, lane group by lane group.
+std::vector<LaneGroup> lane_groups_of(const RouteNetwork& network, const ChangeSpan& span,
+                                      const SpanPlan& plan, FractionRange ends);
 
 }  // namespace roadbed::planning::route

@@ -16,8 +16,8 @@ constexpr double kLeastShare = 0.25;
 constexpr std::size_t kSmall = 3;
 
 /// Neighbours without direction, each once.
-Grouped<Node> undirected(const RouteGraph& graph) {
-  Grouped<Node> rows;
+CsrLists<Node> undirected(const RouteGraph& graph) {
+  CsrLists<Node> rows;
   std::vector<Node> row;
   for (Node node = 0; node < graph.nodes(); ++node) {
     row.clear();
@@ -31,7 +31,7 @@ Grouped<Node> undirected(const RouteGraph& graph) {
     row.erase(std::unique(row.begin(), row.end()), row.end());
     std::erase(row, node);
     rows.items.insert(rows.items.end(), row.begin(), row.end());
-    rows.end_group();
+    rows.end_list();
   }
   return rows;
 }
@@ -218,7 +218,7 @@ class Dissection {
     return cover;
   }
 
-  Grouped<Node> rows_;
+  CsrLists<Node> rows_;
   const std::vector<Eigen::Vector2d>& places_;
   std::vector<Node> part_, index_, match_, seen_;
   std::vector<Node> order_;

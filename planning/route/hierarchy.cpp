@@ -70,7 +70,7 @@ class Elimination {
       }
       ++hierarchy_.arcs;
     }
-    hierarchy_.above.end_group();
+    hierarchy_.above.end_list();
     hierarchy_.parent[rank] = row_.empty() ? rank : row_.front();
     if (row_.empty()) return;
     next_child_[rank] = first_child_[row_.front()];
@@ -93,9 +93,9 @@ void for_each_arc_up(const Hierarchy& hierarchy, const Visit& visit) {
 }
 
 // Counted first, then filled: both passes see the ranks below in ascending order.
-Grouped<RankRun> runs_below(const Hierarchy& hierarchy) {
+CsrLists<RankRun> runs_below(const Hierarchy& hierarchy) {
   const std::size_t ranks = hierarchy.parent.size();
-  Grouped<RankRun> below;
+  CsrLists<RankRun> below;
   below.first.assign(ranks + 1, 0);
   std::vector<Rank> arcs(ranks, 0), last(ranks, kNoNode - 1);
   for_each_arc_up(hierarchy, [&](Rank low, Rank high) {

@@ -30,8 +30,8 @@ struct RankRun {
 struct Hierarchy {
   std::vector<std::uint32_t> node_of_rank, rank_of_node;
   std::vector<std::uint32_t> parent;  ///< lowest rank above, its own for a root
-  Grouped<RankRun> above;             ///< of each rank, ascending; places are arcs
-  Grouped<RankRun> below;             ///< of each rank, ascending; places are second ones
+  CsrLists<RankRun> above;            ///< of each rank, ascending; places are arcs
+  CsrLists<RankRun> below;            ///< of each rank, ascending; places are second ones
   std::uint32_t arcs = 0;
   std::vector<std::uint32_t> arc_of;  ///< hierarchy's arc of each of the graph
 

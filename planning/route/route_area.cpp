@@ -53,11 +53,11 @@ std::vector<LanePart> corridor_of(const map::RoadMap& road_map, const Route& rou
     for (const ChangePart& change : parts_of_change(road_map, route, i)) {
       const map::StationRange window = driven_window(road_map, route.legs[i]);
       const double length_m = std::max(1e-3, road_map.lane(change.from.lane).length_m());
-      const auto share_at = [&](double s_m) {
+      const auto fraction_at = [&](double s_m) {
         return std::clamp((s_m - change.offset_m) / length_m, 0.0, 1.0);
       };
-      const double from = share_at(window.from_s_m);
-      const double to = share_at(window.to_s_m);
+      const double from = fraction_at(window.from_s_m);
+      const double to = fraction_at(window.to_s_m);
       for (const DrivenLane& lane : {change.from, change.to}) {
         const double lane_m = road_map.lane(lane.lane).length_m();
         parts.push_back({lane.lane, mirrored_m(road_map, lane, from * lane_m),

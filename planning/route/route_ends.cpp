@@ -6,23 +6,23 @@ namespace roadbed::planning::inline route {
 namespace {
 
 constexpr double kSectionEnd_m = 1e-6;
-constexpr double kLeastPart_m = 0.1;  // of a passage, to be worth ending in it
+constexpr double kLeastPart_m = 0.1;  // of a lane group, to be worth ending in it
 constexpr std::size_t kMostSpans = 64;
 
-double share_of(const RouteNetwork& network, const NetworkPlace& place) {
+double fraction_of(const RouteNetwork& network, const NetworkPlace& place) {
   const double length_m = network.lanes[place.lane].length_m;
   return length_m > 0.0 ? std::clamp(place.s_m / length_m, 0.0, 1.0) : 0.0;
 }
 
-// Cost of the changes of a passage and of the way along its last lane.
-std::optional<double> price(const TravelRules& rules, Passage& passage) {
-  auto changes = rules.plan_changes(passage.chain, passage.range);
+// Cost of the changes of a lane group and of the way along its last lane.
+std::optional<double> price(const RoutingCostModel& model, LaneGroup& lane_group) {
+  auto changes = model.plan_changes(lane_group.chain, lane_group.range);
   if (!changes) return {};
-  passage.changes = std::move(*changes);
-  const std::uint32_t last = passage.chain.back();
-  const double length_m = rules.network().lanes[last].length_m;
-  return rules.change_cost(passage.chain.size() - 1, passage.changes.room_m) +
-         rules.travel_cost(last, passage.range.from * length_m, passage.range.to * length_m);
+  lane_group.changes = std::move(*changes);
+  const std::uint32_t last = lane_group.chain.back();
+  const double length_m = model.network().lanes[last].length_m;
+  return model.change_cost(lane_group.chain.size() - 1, lane_group.changes.room_m) +
+         model.travel_cost(last, lane_group.range.from * length_m, lane_group.range.to * length_m);
 }
 
 // Chains that end in the lane. Neighbours need not be neighbours both ways: so from all lanes that
@@ -51,19 +51,19 @@ std::vector<std::uint32_t> predecessors_of(const RouteGraph& graph, std::uint32_
   return lanes;
 }
 
-/// Changes over several passages that end at a place, from the last passage backwards.
+/// Changes over several lane groups that end at a place, from the last lane group backwards.
 class SpansInto {
  public:
   SpansInto(const RouteGraph& graph, const RouteNetwork& network, double enough_m)
       : graph_(graph), network_(network), enough_m_(enough_m) {}
 
-  std::vector<ChangeSpan> find(std::uint32_t lane, double share) {
+  std::vector<ChangeSpan> find(std::uint32_t lane, double fraction) {
     for (const auto& chain : chains_to(graph_, network_, lane)) {
       if (chain.size() < 2 || chain.size() > kMostTogether + 1) continue;
       const NetworkLane& from = network_.lanes[chain.front()];
       const auto window = window_at_start(network_, chain);
       if (!window) continue;
-      last_m_ = std::min(window->to_s_m, share * from.length_m);
+      last_m_ = std::min(window->to_s_m, fraction * from.length_m);
       if (last_m_ < kLeastPart_m || (chain.size() > 2 && last_m_ >= enough_m_)) continue;
       side_ = from.left == chain[1] ? &NetworkLane::left : &NetworkLane::right;
       extend({chain.size() - 1, {{chain.front(), lane}}, 0.0, last_m_}, chain, last_m_);
@@ -81,7 +81,7 @@ class SpansInto {
       const double length_m = network_.lanes[before].length_m;
       if (!window || length_m - window->from_s_m < kLeastPart_m) continue;
       const double longer_m = room_m + length_m - window->from_s_m;
-      // Else changes that end in the passage before have all the room that helps.
+      // Else changes that end in the lane group before have all the room that helps.
       if (longer_m - last_m_ >= all_m) continue;
       if (found_.size() >= kMostSpans) continue;
       ChangeSpan longer = open;
@@ -100,82 +100,82 @@ class SpansInto {
   std::vector<ChangeSpan> found_;
 };
 
-std::optional<DirectWay> way_in_passage(const TravelRules& rules, const NetworkPlace& from,
-                                        const NetworkPlace& to) {
-  const RouteNetwork& network = rules.network();
-  Passage passage{chain_between(network, from.lane, to.lane),
-                  {share_of(network, from), share_of(network, to)},
-                  {}};
-  if (passage.chain.empty() || passage.range.from > passage.range.to) return {};
-  const auto cost = price(rules, passage);
+std::optional<DirectWay> way_in_lane_group(const RoutingCostModel& model, const NetworkPlace& from,
+                                           const NetworkPlace& to) {
+  const RouteNetwork& network = model.network();
+  LaneGroup lane_group{chain_between(network, from.lane, to.lane),
+                       {fraction_of(network, from), fraction_of(network, to)},
+                       {}};
+  if (lane_group.chain.empty() || lane_group.range.from > lane_group.range.to) return {};
+  const auto cost = price(model, lane_group);
   if (!cost) return {};
-  return DirectWay{{std::move(passage)}, to_ticks(*cost, rules.options().cost)};
+  return DirectWay{{std::move(lane_group)}, to_ticks(*cost, model.options().cost)};
 }
 
-void leave(const RouteGraph& graph, const TravelRules& rules, const NetworkPlace& place,
+void leave(const RouteGraph& graph, const RoutingCostModel& model, const NetworkPlace& place,
            RouteEnd& end) {
-  const RouteNetwork& network = rules.network();
-  const RouteCost measure = rules.options().cost;
-  const double share = share_of(network, place);
-  if (!rules.may_enter(place.lane)) return;
+  const RouteNetwork& network = model.network();
+  const RouteCost measure = model.options().cost;
+  const double fraction = fraction_of(network, place);
+  if (!model.may_enter(place.lane)) return;
   for (const auto& chain : chains_from(network, place.lane)) {
-    Passage passage{chain, {share, 1.0}, {}};
-    const auto cost = price(rules, passage);
+    LaneGroup lane_group{chain, {fraction, 1.0}, {}};
+    const auto cost = price(model, lane_group);
     if (!cost) continue;
     for (const std::uint32_t next : network.successors.of(chain.back())) {
-      if (!rules.may_enter(next)) continue;
+      if (!model.may_enter(next)) continue;
       end.seeds.push_back(
-          {graph.entry_of_lane[next], to_ticks(*cost + rules.turn_cost(next), measure)});
-      end.ways.emplace_back(1, passage);
+          {graph.entry_of_lane[next], to_ticks(*cost + model.turn_cost(next), measure)});
+      end.ways.emplace_back(1, lane_group);
     }
   }
-  const double enough_m = rules.enough_room_m();
+  const double enough_m = model.enough_room_m();
   for (const ChangeSpan& span : spans_from(network, place.lane, place.s_m, enough_m)) {
-    const auto plan = plan_span(rules, span);
+    const auto plan = plan_span(model, span);
     if (!plan || !needs_first(network, span, enough_m)) continue;
     end.seeds.push_back({graph.exit_of_lane[span.lanes.back().to],
-                         to_ticks(cost_of(rules, span, *plan, {share, 0.0}), measure)});
-    end.ways.push_back(passages_of(network, span, *plan, {share, 1.0}));
+                         to_ticks(cost_of(model, span, *plan, {fraction, 0.0}), measure)});
+    end.ways.push_back(lane_groups_of(network, span, *plan, {fraction, 1.0}));
   }
 }
 
-void arrive(const RouteGraph& graph, const TravelRules& rules, const NetworkPlace& place,
+void arrive(const RouteGraph& graph, const RoutingCostModel& model, const NetworkPlace& place,
             RouteEnd& end) {
-  const RouteNetwork& network = rules.network();
-  const RouteCost measure = rules.options().cost;
-  const double share = share_of(network, place);
+  const RouteNetwork& network = model.network();
+  const RouteCost measure = model.options().cost;
+  const double fraction = fraction_of(network, place);
   for (const auto& chain : chains_to(graph, network, place.lane)) {
-    Passage passage{chain, {0.0, share}, {}};
-    if (!rules.may_enter(chain.front())) continue;
-    const auto cost = price(rules, passage);
+    LaneGroup lane_group{chain, {0.0, fraction}, {}};
+    if (!model.may_enter(chain.front())) continue;
+    const auto cost = price(model, lane_group);
     if (!cost) continue;
     end.seeds.push_back({graph.entry_of_lane[chain.front()], to_ticks(*cost, measure)});
-    end.ways.emplace_back().push_back(std::move(passage));
+    end.ways.emplace_back().push_back(std::move(lane_group));
   }
-  SpansInto spans(graph, network, rules.enough_room_m());
-  for (const ChangeSpan& span : spans.find(place.lane, share)) {
-    const auto plan = plan_span(rules, span);
+  SpansInto spans(graph, network, model.enough_room_m());
+  for (const ChangeSpan& span : spans.find(place.lane, fraction)) {
+    const auto plan = plan_span(model, span);
     if (!plan) continue;
     end.seeds.push_back({graph.entry_of_lane[span.lanes.front().from],
-                         to_ticks(cost_of(rules, span, *plan, {0.0, share}), measure)});
-    end.ways.push_back(passages_of(network, span, *plan, {0.0, share}));
+                         to_ticks(cost_of(model, span, *plan, {0.0, fraction}), measure)});
+    end.ways.push_back(lane_groups_of(network, span, *plan, {0.0, fraction}));
   }
 }
 
-std::optional<DirectWay> way_between(const TravelRules& rules, const NetworkPlace& from,
+std::optional<DirectWay> way_between(const RoutingCostModel& model, const NetworkPlace& from,
                                      const NetworkPlace& to) {
-  if (!rules.may_enter(from.lane) || !rules.may_enter(to.lane)) return {};
-  std::optional<DirectWay> best = way_in_passage(rules, from, to);
-  const ShareRange ends{share_of(rules.network(), from), share_of(rules.network(), to)};
-  for (ChangeSpan& span : spans_from(rules.network(), from.lane, from.s_m, rules.enough_room_m())) {
+  if (!model.may_enter(from.lane) || !model.may_enter(to.lane)) return {};
+  std::optional<DirectWay> best = way_in_lane_group(model, from, to);
+  const FractionRange ends{fraction_of(model.network(), from), fraction_of(model.network(), to)};
+  for (ChangeSpan& span : spans_from(model.network(), from.lane, from.s_m, model.enough_room_m())) {
     const auto [last, beside] = span.lanes.back();
     if (beside != to.lane) continue;
-    span.end_s_m = std::min(span.end_s_m, ends.to * rules.network().lanes[last].length_m);
-    const auto plan = plan_span(rules, span);
-    if (!plan || !needs_first(rules.network(), span, rules.enough_room_m())) continue;
-    const Ticks cost = to_ticks(cost_of(rules, span, *plan, ends), rules.options().cost);
+    span.end_s_m = std::min(span.end_s_m, ends.to * model.network().lanes[last].length_m);
+    const auto plan = plan_span(model, span);
+    if (!plan || !needs_first(model.network(), span, model.enough_room_m())) continue;
+    const Ticks cost = to_ticks(cost_of(model, span, *plan, ends), model.options().cost);
     if (!best || cost < best->cost) {
-      best = DirectWay{passages_of(rules.network(), span, *plan, ends), cost};
+      best = DirectWay{lane_groups_of(model.network(), span, *plan, ends), cost};
     }
   }
   return best;
@@ -183,28 +183,30 @@ std::optional<DirectWay> way_between(const TravelRules& rules, const NetworkPlac
 
 }  // namespace
 
-RouteEnd leave_from(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place) {
+RouteEnd leave_from(const RouteGraph& graph, const RoutingCostModel& model,
+                    const RoutePlace& place) {
   RouteEnd end;
-  for (const NetworkPlace& way : ways_through(rules.network(), place)) {
-    leave(graph, rules, way, end);
+  for (const NetworkPlace& way : ways_through(model.network(), place)) {
+    leave(graph, model, way, end);
   }
   return end;
 }
 
-RouteEnd arrive_at(const RouteGraph& graph, const TravelRules& rules, const RoutePlace& place) {
+RouteEnd arrive_at(const RouteGraph& graph, const RoutingCostModel& model,
+                   const RoutePlace& place) {
   RouteEnd end;
-  for (const NetworkPlace& way : ways_through(rules.network(), place)) {
-    arrive(graph, rules, way, end);
+  for (const NetworkPlace& way : ways_through(model.network(), place)) {
+    arrive(graph, model, way, end);
   }
   return end;
 }
 
-std::optional<DirectWay> direct_way(const TravelRules& rules, const RoutePlace& from,
+std::optional<DirectWay> direct_way(const RoutingCostModel& model, const RoutePlace& from,
                                     const RoutePlace& to) {
   std::optional<DirectWay> best;
-  for (const NetworkPlace& start : ways_through(rules.network(), from)) {
-    for (const NetworkPlace& goal : ways_through(rules.network(), to)) {
-      auto way = way_between(rules, start, goal);
+  for (const NetworkPlace& start : ways_through(model.network(), from)) {
+    for (const NetworkPlace& goal : ways_through(model.network(), to)) {
+      auto way = way_between(model, start, goal);
       if (way && (!best || way->cost < best->cost)) best = std::move(way);
     }
   }

@@ -81,17 +81,17 @@ void add_backward_rows(RouteGraph& graph) {
     graph.in_arc[next[graph.head[arc]]++] = arc;
 }
 
-Ticks weigh_change(const RouteNetwork& network, const TravelRules& rules, std::uint32_t from,
+Ticks weigh_change(const RouteNetwork& network, const RoutingCostModel& model, std::uint32_t from,
                    std::uint32_t to) {
   const auto chain = chain_between(network, from, to);
-  const auto plan = rules.plan_changes(chain, {});
-  return plan ? to_ticks(rules.change_cost(chain.size() - 1, plan->room_m), rules.options().cost)
+  const auto plan = model.plan_changes(chain, {});
+  return plan ? to_ticks(model.change_cost(chain.size() - 1, plan->room_m), model.options().cost)
               : kNever;
 }
 
-Ticks weigh_span(const TravelRules& rules, const ChangeSpan& span) {
-  const auto plan = plan_span(rules, span);
-  return plan ? to_ticks(cost_of(rules, span, *plan, {0.0, 0.0}), rules.options().cost) : kNever;
+Ticks weigh_span(const RoutingCostModel& model, const ChangeSpan& span) {
+  const auto plan = plan_span(model, span);
+  return plan ? to_ticks(cost_of(model, span, *plan, {0.0, 0.0}), model.options().cost) : kNever;
 }
 
 }  // namespace
@@ -122,25 +122,25 @@ RouteGraph make_route_graph(const RouteNetwork& network, double enough_m) {
   return graph;
 }
 
-Ticks weigh(const RouteGraph& graph, const TravelRules& rules, std::uint32_t arc) {
+Ticks weigh(const RouteGraph& graph, const RoutingCostModel& model, std::uint32_t arc) {
   const std::uint32_t from = graph.lane_of_node[graph.tail[arc]];
   const std::uint32_t to = graph.lane_of_node[graph.head[arc]];
-  if (!rules.may_enter(from) || !rules.may_enter(to)) return kNever;
+  if (!model.may_enter(from) || !model.may_enter(to)) return kNever;
   if (!graph.is_advance(arc)) {
     const ChangeSpan* span = graph.span_of(arc);
-    return span != nullptr ? weigh_span(rules, *span)
-                           : weigh_change(rules.network(), rules, from, to);
+    return span != nullptr ? weigh_span(model, *span)
+                           : weigh_change(model.network(), model, from, to);
   }
-  const double length_m = rules.network().lanes[from].length_m;
-  return to_ticks(rules.travel_cost(from, 0.0, length_m) + rules.turn_cost(to),
-                  rules.options().cost);
+  const double length_m = model.network().lanes[from].length_m;
+  return to_ticks(model.travel_cost(from, 0.0, length_m) + model.turn_cost(to),
+                  model.options().cost);
 }
 
-std::vector<Ticks> weigh_all(const RouteGraph& graph, const TravelRules& rules) {
+std::vector<Ticks> weigh_all(const RouteGraph& graph, const RoutingCostModel& model) {
   std::vector<Ticks> weights;
   weights.reserve(graph.arcs());
   for (std::uint32_t arc = 0; arc < graph.arcs(); ++arc) {
-    weights.push_back(weigh(graph, rules, arc));
+    weights.push_back(weigh(graph, model, arc));
   }
   return weights;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/planning/route/grouped.h"
+#include "roadbed/planning/route/csr_lists.h"
 
 namespace roadbed::planning::inline route {
 
@@ -30,7 +30,7 @@ struct NetworkLane {
   Turn turn = Turn::none;
   double signal_s_m = -1.0;                       ///< station of its light; negative: there is none
   std::uint32_t left = kNoLane, right = kNoLane;  ///< neighbours of the same direction
-  std::uint32_t twin = kNoLane;                   ///< the same lane driven the other way
+  std::uint32_t contraflow_twin = kNoLane;        ///< the same lane driven against its direction
 };
 
 /// The lanes of a map as flat arrays: all that routing needs. First stand the map's lanes by their
@@ -38,14 +38,14 @@ struct NetworkLane {
 /// seen when they are.
 struct RouteNetwork {
   std::vector<NetworkLane> lanes;
-  Grouped<std::uint32_t> successors;
-  Grouped<SpeedPiece> speeds;
-  Grouped<map::StationRange> left_windows, right_windows;  ///< where a change is permitted
+  CsrLists<std::uint32_t> successors;
+  CsrLists<SpeedPiece> speeds;
+  CsrLists<map::StationRange> left_windows, right_windows;  ///< where a change is permitted
 
-  bool is_reversed(std::uint32_t lane) const { return lanes[lane].twin < lane; }
+  bool is_reversed(std::uint32_t lane) const { return lanes[lane].contraflow_twin < lane; }
   /// The lane of the map.
   map::LaneId on_map(std::uint32_t lane) const {
-    return {is_reversed(lane) ? lanes[lane].twin : lane};
+    return {is_reversed(lane) ? lanes[lane].contraflow_twin : lane};
   }
   /// A station of the map's lane as one in driving direction, or the other way round.
   double mirrored_m(std::uint32_t lane, double s_m) const {
@@ -53,7 +53,7 @@ struct RouteNetwork {
   }
   /// @pre the lane may be driven that way.
   std::uint32_t lane_of(map::LaneId on_map, bool reversed) const {
-    return reversed ? lanes[on_map.index].twin : on_map.index;
+    return reversed ? lanes[on_map.index].contraflow_twin : on_map.index;
   }
 };
 
@@ -62,9 +62,6 @@ struct NetworkOptions {
   bool against_traffic = false;  ///< links and neighbours lead both ways
 };
 
-/// O(points of the map).
-RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptions& options = {});
-
 /// Whether a route for that kind of road user may lead along the lane: its participants have to
 /// hold the kind, and vehicles keep off shoulders, stops and parking places.
 bool may_use(const map::Lane& lane, map::Participant kind);
@@ -72,5 +69,8 @@ bool may_use(const map::Lane& lane, map::Participant kind);
 /// Whether it may lead along it against its direction, too: on lanes of both directions, and for
 /// pedestrians on the sidewalks of roads.
 bool may_reverse(const map::Lane& lane, map::Participant kind);
+
+/// Which way a lane turns from its first metre to its last.
+Turn bend_of(const map::Lane& lane);
 
 }  // namespace roadbed::planning::route

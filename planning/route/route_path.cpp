@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/planning/route/driven_lane.h"
 #include "roadbed/planning/route/route_changes.h"
 
 namespace roadbed::planning::inline route {
@@ -24,8 +23,8 @@ double smooth_step(double t) {
   return x * x * x * (10.0 + x * (6.0 * x - 15.0));
 }
 
-// Where the path passes over from one lane to the next, in shares of the lanes' length: below 0 or
-// above 1 where that lies beside a stretch before or behind.
+// Where the path passes over from one lane to the next, in fractions of the lanes' length: below 0
+// or above 1 where that lies beside a stretch before or behind.
 struct Crossing {
   double middle = 0.0, half = 0.0;
 };
@@ -122,8 +121,9 @@ Eigen::Vector2d centre_at(const map::RoadMap& road_map, const DrivenLane& lane, 
 }
 
 // Of a chord, since single segments of real centrelines may point anywhere.
-Eigen::Vector2d direction_of(const map::RoadMap& road_map, const DrivenLane& lane, double share) {
-  const double s_m = share * road_map.lane(lane.lane).length_m();
+Eigen::Vector2d direction_of(const map::RoadMap& road_map, const DrivenLane& lane,
+                             double fraction) {
+  const double s_m = fraction * road_map.lane(lane.lane).length_m();
   const Eigen::Vector2d chord =
       centre_at(road_map, lane, s_m + kHalfChord_m) - centre_at(road_map, lane, s_m - kHalfChord_m);
   return chord.norm() > 0.0 ? Eigen::Vector2d(chord.normalized()) : Eigen::Vector2d(1.0, 0.0);
@@ -156,8 +156,8 @@ class Builder {
       : road_map_(road_map), options_(options) {}
 
   void lead(const Stretch& first) {
-    const double share = options_.lead_m / length_m(first.lanes.front());
-    sample(first, std::max(0.0, first.from - share), first.from);
+    const double fraction = options_.lead_m / length_m(first.lanes.front());
+    sample(first, std::max(0.0, first.from - fraction), first.from);
     path_.start_m = length_m_;
   }
 
@@ -172,8 +172,8 @@ class Builder {
     last = {{last.lanes.back()}, {}, last.to, 1.0};
     // A loop of lanes without length would never end, hence the count.
     for (std::size_t i = 0; i <= road_map_.lanes().size() && length_m_ < end_m; ++i) {
-      const double share = (end_m - length_m_) / length_m(last.lanes.back());
-      last.to = std::min(1.0, last.from + share);
+      const double fraction = (end_m - length_m_) / length_m(last.lanes.back());
+      last.to = std::min(1.0, last.from + fraction);
       if (i > 0) take_out_step(last);
       sample(last, last.from, last.to);
       if (last.to < 1.0) return;
@@ -191,22 +191,22 @@ class Builder {
     return std::max(1e-3, road_map_.lane(lane.lane).length_m());
   }
 
-  Eigen::Vector2d centre(const DrivenLane& lane, double share) const {
-    return centre_at(road_map_, lane, share * road_map_.lane(lane.lane).length_m());
+  Eigen::Vector2d centre(const DrivenLane& lane, double fraction) const {
+    return centre_at(road_map_, lane, fraction * road_map_.lane(lane.lane).length_m());
   }
 
-  Eigen::Vector2d direction(const DrivenLane& lane, double share) const {
-    return direction_of(road_map_, lane, share);
+  Eigen::Vector2d direction(const DrivenLane& lane, double fraction) const {
+    return direction_of(road_map_, lane, fraction);
   }
 
-  RoutePathPoint place(const Stretch& stretch, double share) const {
-    RoutePathPoint point{centre(stretch.lanes[0], share), {}, share};
+  RoutePathPoint place(const Stretch& stretch, double fraction) const {
+    RoutePathPoint point{centre(stretch.lanes[0], fraction), {}, fraction};
     DrivenLane lane = stretch.lanes[0];
     for (std::size_t i = 0; i < stretch.changes.size(); ++i) {
       const auto [middle, half] = stretch.changes[i];
-      const double weight = smooth_step((share - middle + half) / (2.0 * half));
+      const double weight = smooth_step((fraction - middle + half) / (2.0 * half));
       point.in_map +=
-          weight * (centre(stretch.lanes[i + 1], share) - centre(stretch.lanes[i], share));
+          weight * (centre(stretch.lanes[i + 1], fraction) - centre(stretch.lanes[i], fraction));
       if (weight > 0.5) lane = stretch.lanes[i + 1];
     }
     point.lane = lane.lane;
@@ -231,10 +231,10 @@ class Builder {
     const double range_m = (to - from) * length_m(stretch.lanes.back());
     const int count = std::max(1, static_cast<int>(std::ceil(range_m / options_.step_m)));
     for (int i = 0; i <= count; ++i) {
-      const double share = std::lerp(from, to, static_cast<double>(i) / count);
-      RoutePathPoint point = place(stretch, share);
-      point.in_map += (1.0 - smooth_step(share / step_share_)) * step_;
-      add(point, direction({point.lane, point.reversed}, share));
+      const double fraction = std::lerp(from, to, static_cast<double>(i) / count);
+      RoutePathPoint point = place(stretch, fraction);
+      point.in_map += (1.0 - smooth_step(fraction / step_share_)) * step_;
+      add(point, direction({point.lane, point.reversed}, fraction));
     }
   }
 
@@ -251,7 +251,7 @@ class Builder {
   void go_straight(double rest_m) {
     if (rest_m < options_.step_m || path_.points.empty()) return;
     RoutePathPoint point = path_.points.back();
-    const Eigen::Vector2d along = direction({point.lane, point.reversed}, point.share);
+    const Eigen::Vector2d along = direction({point.lane, point.reversed}, point.fraction);
     const int count = static_cast<int>(std::ceil(rest_m / options_.step_m));
     for (int i = 0; i < count; ++i) {
       point.in_map += rest_m / count * along;

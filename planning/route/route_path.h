@@ -19,7 +19,7 @@ struct RoutePathOptions {
 struct RoutePathPoint {
   Eigen::Vector2d in_map{0, 0};
   map::LaneId lane;
-  double share = 0.0;     ///< of the lane's length, in driving direction
+  double fraction = 0.0;  ///< of the lane's length, in driving direction
   bool reversed = false;  ///< driven against the lane's direction
 };
 

@@ -29,6 +29,17 @@ struct NetworkPlace {
 
 /// The ways in which a place may be driven through: one, or two on lanes of both directions. Where
 /// a lane cannot be driven as asked, it is driven as it can be.
-std::vector<NetworkPlace> ways_through(const RouteNetwork& network, const RoutePlace& place);
+inline std::vector<NetworkPlace> ways_through(const RouteNetwork& network,
+                                              const RoutePlace& place) {
+  const std::uint32_t lane = place.lane.index,
+                      contraflow_twin = network.lanes[lane].contraflow_twin;
+  std::vector<NetworkPlace> ways;
+  if (place.sense != Sense::against || contraflow_twin == kNoLane)
+    ways.push_back({lane, place.s_m});
+  if (place.sense != Sense::along && contraflow_twin != kNoLane) {
+    ways.push_back({contraflow_twin, network.lanes[lane].length_m - place.s_m});
+  }
+  return ways;
+}
 
 }  // namespace roadbed::planning::route

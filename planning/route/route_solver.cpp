@@ -8,22 +8,23 @@
 namespace roadbed::planning::inline route {
 
 RouteSolver::RouteSolver(std::shared_ptr<const RouteNetwork> network, const RouteOptions& options,
-                         Leniency leniency)
+                         RelaxedRules relaxed)
     : options_(options),
       network_(std::move(network)),
       graph_(
           std::make_shared<const RouteGraph>(make_route_graph(*network_, enough_room_m(options)))),
-      rules_(*network_, options_, leniency),
-      weights_(weigh_all(*graph_, rules_)),
+      model_(*network_, options_, relaxed),
+      weights_(weigh_all(*graph_, model_)),
       guide_(make_guide(*graph_, *network_, weights_)),
       search_(*graph_) {}
 
-RouteSolver::RouteSolver(const RouteSolver& other, const RouteOptions& options, Leniency leniency)
+RouteSolver::RouteSolver(const RouteSolver& other, const RouteOptions& options,
+                         RelaxedRules relaxed)
     : options_(options),
       network_(other.network_),
       graph_(other.graph_),
-      rules_(*network_, options_, leniency),
-      weights_(weigh_all(*graph_, rules_)),
+      model_(*network_, options_, relaxed),
+      weights_(weigh_all(*graph_, model_)),
       guide_(make_guide(*graph_, *network_, weights_)),
       search_(*graph_) {}
 
@@ -49,13 +50,13 @@ std::optional<Way> RouteSolver::solve_with(std::span<const Ticks> weights, const
 }
 
 RouteTask RouteSolver::task(const RoutePlace& from, const RoutePlace& to) const {
-  return {leave_from(*graph_, rules_, from), arrive_at(*graph_, rules_, to),
-          direct_way(rules_, from, to)};
+  return {leave_from(*graph_, model_, from), arrive_at(*graph_, model_, to),
+          direct_way(model_, from, to)};
 }
 
 std::optional<Way> RouteSolver::answer(RouteTask task, const GraphPath& path) const {
   if (task.direct && task.direct->cost <= path.cost) {
-    return Way{std::move(task.direct->passages), task.direct->cost};
+    return Way{std::move(task.direct->lane_groups), task.direct->cost};
   }
   if (path.cost == kNever) return {};
   return way_along(task.start, task.goal, path);
@@ -64,17 +65,17 @@ std::optional<Way> RouteSolver::answer(RouteTask task, const GraphPath& path) co
 Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
                            const GraphPath& path) const {
   Way way{{}, path.cost};
-  std::vector<Passage>& passages = way.passages;
-  const std::vector<Passage>&first = start.ways[path.from_seed], &last = goal.ways[path.to_seed];
+  std::vector<LaneGroup>& lane_groups = way.lane_groups;
+  const std::vector<LaneGroup>&first = start.ways[path.from_seed], &last = goal.ways[path.to_seed];
   const auto advances = static_cast<std::size_t>(
       std::count_if(path.arcs.begin(), path.arcs.end(),
                     [&](std::uint32_t arc) { return graph_->is_advance(arc); }));
-  passages.reserve(first.size() + 1 + advances + last.size());
-  passages.insert(passages.end(), first.begin(), first.end());
-  // From here on the last passage is one that is entered, but not left yet.
+  lane_groups.reserve(first.size() + 1 + advances + last.size());
+  lane_groups.insert(lane_groups.end(), first.begin(), first.end());
+  // From here on the last lane group is one that is entered, but not left yet.
   const auto enter = [&](std::uint32_t lane) {
-    passages.emplace_back();
-    passages.back().chain = LaneList(lane);
+    lane_groups.emplace_back();
+    lane_groups.back().chain = LaneList(lane);
   };
   const bool in_last = first.size() > 1;
   if (!in_last) enter(graph_->lane_of_node[start.seeds[path.from_seed].node]);
@@ -83,34 +84,36 @@ Way RouteSolver::way_along(const RouteEnd& start, const RouteEnd& goal,
       enter(graph_->lane_of_node[graph_->head[arc]]);
       continue;
     }
-    const bool stays = graph_->lane_of_node[graph_->head[arc]] == passages.back().chain.front();
+    const bool stays = graph_->lane_of_node[graph_->head[arc]] == lane_groups.back().chain.front();
     if (stays && graph_->span_of(arc) == nullptr) continue;
-    std::vector<Passage> changing = passages_of_change(passages.back().chain.front(), arc);
-    passages.pop_back();
-    std::move(changing.begin(), changing.end(), std::back_inserter(passages));
+    std::vector<LaneGroup> changing = lane_groups_of_change(lane_groups.back().chain.front(), arc);
+    lane_groups.pop_back();
+    std::move(changing.begin(), changing.end(), std::back_inserter(lane_groups));
   }
-  passages.pop_back();
-  passages.insert(passages.end(), last.begin(), last.end());
+  lane_groups.pop_back();
+  lane_groups.insert(lane_groups.end(), last.begin(), last.end());
   return way;
 }
 
-std::vector<Passage> RouteSolver::passages_of_change(std::uint32_t from, std::uint32_t arc) const {
+std::vector<LaneGroup> RouteSolver::lane_groups_of_change(std::uint32_t from,
+                                                          std::uint32_t arc) const {
   if (const ChangeSpan* span = graph_->span_of(arc)) {
-    const auto plan = plan_span(rules_, *span);
-    return passages_of(*network_, *span, plan.value(), {});
+    const auto plan = plan_span(model_, *span);
+    return lane_groups_of(*network_, *span, plan.value(), {});
   }
-  Passage passage{chain_between(*network_, from, graph_->lane_of_node[graph_->head[arc]]), {}, {}};
-  passage.changes = rules_.plan_changes(passage.chain, {}).value_or(ChangePlan{});
-  return {std::move(passage)};
+  LaneGroup lane_group{
+      chain_between(*network_, from, graph_->lane_of_node[graph_->head[arc]]), {}, {}};
+  lane_group.changes = model_.plan_changes(lane_group.chain, {}).value_or(ChangePlan{});
+  return {std::move(lane_group)};
 }
 
 std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, const RoutePlace& own,
                                                  bool backward) {
   std::vector<std::uint32_t> lanes;
   for (const NetworkPlace& way : ways_through(*network_, own)) {
-    if (rules_.may_enter(way.lane)) lanes.push_back(way.lane);
+    if (model_.may_enter(way.lane)) lanes.push_back(way.lane);
   }
-  for (const std::vector<Passage>& way : end.ways) {
+  for (const std::vector<LaneGroup>& way : end.ways) {
     lanes.push_back(backward ? way.front().chain.front() : way.back().chain.back());
   }
   for (const Settled& settled : search_.reach(weights_, end.seeds, kNever - 1, backward)) {
@@ -122,15 +125,15 @@ std::vector<std::uint32_t> RouteSolver::lanes_of(const RouteEnd& end, const Rout
 }
 
 std::vector<Settled> RouteSolver::nodes_within(const RoutePlace& from, Ticks limit) {
-  return search_.reach(weights_, leave_from(*graph_, rules_, from).seeds, limit);
+  return search_.reach(weights_, leave_from(*graph_, model_, from).seeds, limit);
 }
 
 std::vector<std::uint32_t> RouteSolver::lanes_from(const RoutePlace& place) {
-  return lanes_of(leave_from(*graph_, rules_, place), place, false);
+  return lanes_of(leave_from(*graph_, model_, place), place, false);
 }
 
 std::vector<std::uint32_t> RouteSolver::lanes_to(const RoutePlace& place) {
-  return lanes_of(arrive_at(*graph_, rules_, place), place, true);
+  return lanes_of(arrive_at(*graph_, model_, place), place, true);
 }
 
 }  // namespace roadbed::planning::route

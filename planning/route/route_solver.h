@@ -12,9 +12,9 @@
 
 namespace roadbed::planning::inline route {
 
-/// A cheapest way as the passages that it drives through.
+/// A cheapest way as the lane groups that it drives through.
 struct Way {
-  std::vector<Passage> passages;
+  std::vector<LaneGroup> lane_groups;
   Ticks cost = 0;
 };
 
@@ -28,14 +28,14 @@ struct RouteTask {
 class RouteSolver {
  public:
   RouteSolver(std::shared_ptr<const RouteNetwork> network, const RouteOptions& options,
-              Leniency leniency = {});
+              RelaxedRules relaxed = {});
   /// The same graph at other prices.
-  RouteSolver(const RouteSolver& other, const RouteOptions& options, Leniency leniency = {});
+  RouteSolver(const RouteSolver& other, const RouteOptions& options, RelaxedRules relaxed = {});
   RouteSolver(RouteSolver&&) = delete;
 
   const RouteNetwork& network() const { return *network_; }
   const RouteGraph& graph() const { return *graph_; }
-  const TravelRules& rules() const { return rules_; }
+  const RoutingCostModel& model() const { return model_; }
   const std::vector<Ticks>& weights() const { return weights_; }
   const Guide& guide() const { return guide_; }
   const RouteOptions& options() const { return options_; }
@@ -69,13 +69,13 @@ class RouteSolver {
 
  private:
   Way way_along(const RouteEnd& start, const RouteEnd& goal, const GraphPath& path) const;
-  std::vector<Passage> passages_of_change(std::uint32_t from, std::uint32_t arc) const;
+  std::vector<LaneGroup> lane_groups_of_change(std::uint32_t from, std::uint32_t arc) const;
   std::vector<std::uint32_t> lanes_of(const RouteEnd& end, const RoutePlace& own, bool backward);
 
   RouteOptions options_;
   std::shared_ptr<const RouteNetwork> network_;
   std::shared_ptr<const RouteGraph> graph_;
-  TravelRules rules_;
+  RoutingCostModel model_;
   std::vector<Ticks> weights_;
   Guide guide_;
   GraphSearch search_;

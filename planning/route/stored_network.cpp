@@ -8,6 +8,7 @@
 
 #include "roadbed/map/elements/byte_io.h"
 #include "roadbed/map/index/road_map_index.h"
+#include "roadbed/planning/route/build_network.h"
 
 namespace roadbed::planning::inline route {
 namespace {
@@ -44,7 +45,7 @@ constexpr auto network_lane = []<typename Io, typename Lane>(Io& io, Lane& lane)
   io(lane.signal_s_m);
   io(lane.left);
   io(lane.right);
-  io(lane.twin);
+  io(lane.contraflow_twin);
   io.check(lane.length_m >= 0.0 && std::isfinite(lane.length_m) && turn <= kLastTurn &&
            std::isfinite(lane.signal_s_m));
   if constexpr (!std::is_const_v<Lane>) {
@@ -88,10 +89,11 @@ bool has_sound_twins(const RouteNetwork& network, std::size_t on_map) {
   const std::size_t lanes = network.lanes.size();
   if (lanes < on_map) return false;
   for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-    const std::uint32_t twin = network.lanes[lane].twin;
-    if (twin == kNoLane && lane < on_map) continue;
-    if (twin >= lanes || network.lanes[twin].twin != lane) return false;
-    if ((twin < on_map) == (lane < on_map)) return false;
+    const std::uint32_t contraflow_twin = network.lanes[lane].contraflow_twin;
+    if (contraflow_twin == kNoLane && lane < on_map) continue;
+    if (contraflow_twin >= lanes || network.lanes[contraflow_twin].contraflow_twin != lane)
+      return false;
+    if ((contraflow_twin < on_map) == (lane < on_map)) return false;
   }
   return true;
 }
@@ -123,12 +125,12 @@ std::optional<RouteNetwork> read_route_network(std::string_view bytes, std::size
 }
 
 RouteNetwork route_network_of(const map::RoadMap& road_map) {
-  const map::FlatArray<char>& appendix = road_map.index().appendix;
+  const map::FlatArray<char>& routing = road_map.index().routing;
   try {
-    auto stored = read_route_network(appendix.bytes(), road_map.lanes().size());
+    auto stored = read_route_network(routing.bytes(), road_map.lanes().size());
     return stored ? *std::move(stored) : make_route_network(road_map);
   } catch (const std::invalid_argument&) {
-    appendix.refuse("the route network in it is damaged");
+    routing.refuse("the route network in it is damaged");
   }
 }
 

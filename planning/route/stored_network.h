@@ -8,8 +8,8 @@
 
 namespace roadbed::planning::inline route {
 
-/// A network as bytes: what `import` puts into a compiled map as its appendix, so that a route is
-/// found without touching lanes that it does not use. Layout: planning/README.md.
+/// A network as bytes: what `import` puts into a compiled map as its routing section, so that a
+/// route is found without touching lanes that it does not use. Layout: README.md.
 std::string write_route_network(const RouteNetwork& network);
 
 /// None if the bytes are empty or of another version.

@@ -20,6 +20,7 @@
 #include "occupancy_peers.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/clearance/distance_transform.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/audit.h"

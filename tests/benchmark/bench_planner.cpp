@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/planning/lateral/row_kernel.h"
+#include "roadbed/planning/lateral/batch_cost_kernel.h"
 #include "roadbed/tests/benchmark/peak_flops.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
 #include "roadbed/tools/files/output_file.h"
@@ -38,7 +38,7 @@ struct Timing {
 
 constexpr double kCandidates = 5396.0;
 // Of the kernel per candidate and point: 101 additions, multiplications, divisions and roots, and 3
-// maxima (planning/lateral/row_kernel.cpp).
+// maxima (planning/lateral/batch_cost_kernel.cpp).
 constexpr double kFlopsPerPoint = 104.0;
 
 planning::PlanOptions plan_options_of(const Options& options) {
@@ -106,7 +106,7 @@ Work work_of(const Options& options) {
   const double points = kCandidates * options.points;
   const double point_bytes = sizeof(planning::KernelPoint);
   return {1e-9 * kFlopsPerPoint * points,
-          1e-6 * point_bytes * points / static_cast<double>(planning::kLanesPerBlock),
+          1e-6 * point_bytes * points / static_cast<double>(planning::kSimdWidth),
           benchmark_scene::peak_gflops()};
 }
 

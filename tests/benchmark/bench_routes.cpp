@@ -19,10 +19,11 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/route/build_network.h"
 #include "roadbed/planning/route/dissection.h"
 #include "roadbed/planning/route/hierarchy_search.h"
-#include "roadbed/planning/route/route.h"
 #include "roadbed/planning/route/route_solver.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/boost_routes.h"
 #include "roadbed/tests/support/lane_grid.h"
 
@@ -186,7 +187,7 @@ void race_threads(const planning::HierarchyMetric& metric, std::size_t pairs) {
 }
 
 void race_closures(const planning::RouteNetwork& network, const planning::RouteGraph& graph,
-                   planning::TravelRules& rules, planning::HierarchyMetric& metric) {
+                   planning::RoutingCostModel& rules, planning::HierarchyMetric& metric) {
   std::mt19937 random(20261121);
   std::vector<double> close_us, open_us, touched;
   for (int i = 0; i < 200; ++i) {
@@ -212,7 +213,7 @@ void race_closures(const planning::RouteNetwork& network, const planning::RouteG
 
 void race(const planning::RouteNetwork& network, int pairs, std::size_t batch_pairs) {
   const planning::RouteOptions options;
-  planning::TravelRules rules(network, options);
+  planning::RoutingCostModel rules(network, options);
   auto start = Clock::now();
   const planning::RouteGraph graph = planning::make_route_graph(network);
   std::vector<Ticks> weights = planning::weigh_all(graph, rules);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "roadbed/planning/lateral/row.h"
+#include "roadbed/planning/lateral/candidate_batch.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
 
 namespace {
@@ -34,27 +34,27 @@ void plan_cycle(benchmark::State& state) {
 }
 BENCHMARK(plan_cycle)->Arg(31)->Arg(101)->Unit(benchmark::kMillisecond);
 
-void evaluate_row(benchmark::State& state) {
+void evaluate_batch(benchmark::State& state) {
   const benchmark_scene::PlannerScene scene(way_points());
   const planning::PlanInput input = scene.input();
-  const planning::Course course{.line = input.line,
-                                .start = input.start,
-                                .speed = planning::PlannedSpeed(input.speed),
-                                .previous_d_m = input.previous_d_m,
-                                .half_width_m = 0.8,
-                                .recovery_m = 10.0};
-  const auto stations = planning::stations_over(course, 20.0, static_cast<int>(state.range(0)));
+  const planning::CycleContext context{.line = input.line,
+                                       .start = input.start,
+                                       .speed = planning::PlannedSpeed(input.speed),
+                                       .previous_d_m = input.previous_d_m,
+                                       .half_width_m = 0.8,
+                                       .recovery_m = 10.0};
+  const auto stations = planning::stations_over(context, 20.0, static_cast<int>(state.range(0)));
   const planning::QuinticFamily family(input.start, 20.0);
   const planning::Grid grid({0.1, -3.5, 3.5, 0.2, 15.0, 30.0});
-  const planning::RowQuestion question{.end_d_m = grid.end_d_m(),
-                                       .weights = planning::default_weights(),
-                                       .frame = {20.0, 30.0, 12.0},
-                                       .limits = {0.5, 4.0}};
+  const planning::BatchConfig config{.end_d_m = grid.end_d_m(),
+                                     .weights = planning::default_weights(),
+                                     .frame = {20.0, 30.0, 12.0},
+                                     .limits = {0.5, 4.0}};
   for (auto _ : state) {
-    benchmark::DoNotOptimize(planning::evaluate_row(stations, family, question));
+    benchmark::DoNotOptimize(planning::evaluate_batch(stations, family, config));
   }
   state.SetItemsProcessed(state.iterations() * state.range(0) * 71);
 }
-BENCHMARK(evaluate_row)->Arg(31)->Arg(101)->Unit(benchmark::kMicrosecond);
+BENCHMARK(evaluate_batch)->Arg(31)->Arg(101)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

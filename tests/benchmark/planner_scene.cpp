@@ -53,7 +53,6 @@ std::vector<Eigen::Vector2d> read_way_points(const std::filesystem::path& file) 
     if (!(row >> x_m >> comma >> y_m) || comma != ',') {
       throw map::InputError({.file = file.string(),
                              .place = std::to_string(number),
-                             .element = {},
                              .found = "is not `x,y`",
                              .needed = "two numbers in metres",
                              .remedy = "correct or remove the line"});

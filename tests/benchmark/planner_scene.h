@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/plan.h"
 
 namespace roadbed::benchmark_scene {
 

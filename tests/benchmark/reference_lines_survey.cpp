@@ -15,6 +15,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/reference/line_driving.h"
 #include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/router.h"
 
 namespace roadbed::tests {
 namespace {

@@ -10,7 +10,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  if (!roadbed::map::commonroad::holds_scenario(bytes)) return -1;  // not worth keeping
+  const auto* format = roadbed::map::format_of(bytes);
+  if (format == nullptr || format->name != "CommonRoad") return -1;  // not worth keeping
   try {
     roadbed::map::commonroad::parse_scenario(bytes, "fuzz.xml");
   } catch (const roadbed::map::InputError&) {

@@ -8,7 +8,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_lines.h"
-#include "roadbed/tools/batch/result_head.h"
+#include "roadbed/tools/batch/job_result.h"
 #include "roadbed/tools/commands/commands.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

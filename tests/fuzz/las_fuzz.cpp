@@ -5,6 +5,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -4,7 +4,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/cli/place.h"
-#include "roadbed/tools/files/od_csv.h"
+#include "roadbed/tools/files/points_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed;

@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         read_route_network({reinterpret_cast<const char*>(data), size - 1}, data[size - 1]);
     if (!network) return 0;
     const RouteOptions options;
-    const TravelRules rules(*network, options);
+    const RoutingCostModel rules(*network, options);
     weigh_all(make_route_graph(*network), rules);
   } catch (const std::invalid_argument&) {
     return 0;  // refused, as it should be

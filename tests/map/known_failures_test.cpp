@@ -1,17 +1,15 @@
 // What other converters are known to do wrong, each shown to be impossible here. Links of sidewalks
-// to the end that touches are in formats/open_drive_links_test.cpp, memory in
-// formats/hostile_files_test.cpp.
+// to the end that touches are in opendrive/links_test.cpp, memory in
+// hostile_files_test.cpp.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-
-#include "roadbed/geometry/curves/transverse_mercator.h"
 #include "roadbed/map/commonroad/write.h"
+#include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/made_road.h"
 
@@ -88,11 +86,10 @@ TEST(KnownFailures, ElevationComesThroughEveryFormatWithLanes) {
 
 // A node with local_x and local_y, or without, at a place of UTM's zone 32.
 std::string node(int id, const Eigen::Vector2d& local_m, bool has_local) {
-  const geometry::GeographicPoint point =
-      geometry::utm_grid(32, false).inverse(local_m + Eigen::Vector2d(690'000, 5'330'000));
-  const double degree = std::numbers::pi / 180.0;
+  const GeographicPoint point =
+      utm_grid(32, false).inverse(local_m + Eigen::Vector2d(690'000, 5'330'000));
   return fmt::format(R"(<node id="{}" lat="{:.12f}" lon="{:.12f}">{}</node>)", id,
-                     point.latitude_rad / degree, point.longitude_rad / degree,
+                     point.latitude_deg, point.longitude_deg,
                      has_local
                          ? fmt::format(R"(<tag k="local_x" v="{}"/><tag k="local_y" v="{}"/>)",
                                        local_m.x(), local_m.y())

@@ -29,7 +29,7 @@ class Grid {
     add_windows();
     for (const auto& links : links_) {
       network_.successors.items.insert(network_.successors.items.end(), links.begin(), links.end());
-      network_.successors.end_group();
+      network_.successors.end_list();
     }
     return std::move(network_);
   }
@@ -53,7 +53,7 @@ class Grid {
     lane.turn = turn;
     network_.lanes.push_back(lane);
     network_.speeds.items.push_back({length_m, limit_mps, 0.0});
-    network_.speeds.end_group();
+    network_.speeds.end_list();
     links_.emplace_back();
     return static_cast<std::uint32_t>(network_.lanes.size()) - 1;
   }
@@ -67,11 +67,11 @@ class Grid {
     for (const NetworkLane& lane : network_.lanes) {
       if (lane.left != planning::kNoLane)
         network_.left_windows.items.push_back({0.0, lane.length_m});
-      network_.left_windows.end_group();
+      network_.left_windows.end_list();
       if (lane.right != planning::kNoLane) {
         network_.right_windows.items.push_back({0.0, lane.length_m});
       }
-      network_.right_windows.end_group();
+      network_.right_windows.end_list();
     }
   }
 

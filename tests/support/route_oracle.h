@@ -102,7 +102,7 @@ class RouteOracle {
     return time_s;
   }
 
-  // Changes beside several passages: of each passage the lanes from the one that is left on.
+  // Changes beside several lane groups: of each lane group the lanes from the one that is left on.
   using Span = std::vector<std::vector<map::LaneId>>;
 
   template <typename Visit>
@@ -150,9 +150,9 @@ class RouteOracle {
     return may ? std::optional(next->lane) : std::nullopt;
   }
 
-  // The way from a share of the first passage to one of the last, and the changes on it; none if
-  // there is too little room, or one passage fewer has enough of it; several only where neither the
-  // first nor the last passage has enough for one.
+  // The way from a share of the first lane group to one of the last, and the changes on it; none if
+  // there is too little room, or one lane group fewer has enough of it; several only where neither
+  // the first nor the last lane group has enough for one.
   std::optional<double> price_of(const Span& span, double begin, double end) const {
     std::vector<double> parts_m;
     double all_m = 0.0;
@@ -187,7 +187,7 @@ class RouteOracle {
     return cost;
   }
 
-  // Lanes that a chain of changes leads to within a share of the passage, and what it costs.
+  // Lanes that a chain of changes leads to within a share of the lane group, and what it costs.
   std::vector<std::pair<map::LaneId, double>> changes(map::LaneId from, double share) const {
     std::vector<std::pair<map::LaneId, double>> reached{{from, 0.0}};
     for (const bool leftwards : {true, false}) {

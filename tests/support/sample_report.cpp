@@ -91,7 +91,7 @@ geometry::Trajectory ego_drive() {
   return geometry::Trajectory(points);
 }
 
-planning::Obstacle parked_car() {
+planning::ObstacleInSource parked_car() {
   const Pose2 pose = beside(kParkedAt_m, -2.9);
   return {.id = "parked-1",
           .kind = "car",
@@ -101,7 +101,8 @@ planning::Obstacle parked_car() {
               {{.x_m = pose.x_m, .y_m = pose.y_m, .heading_rad = pose.heading_rad}})};
 }
 
-planning::Obstacle car_along(const char* id, double from_s_m, double d_m, double speed_mps) {
+planning::ObstacleInSource car_along(const char* id, double from_s_m, double d_m,
+                                     double speed_mps) {
   std::vector<TrajectoryPoint> points;
   for (int i = 0; i <= 80; ++i) {
     const double t_s = 0.5 * i;
@@ -116,21 +117,22 @@ planning::Obstacle car_along(const char* id, double from_s_m, double d_m, double
   return {.id = id, .length_m = 4.6, .width_m = 1.85, .motion = geometry::Trajectory(points)};
 }
 
-std::vector<tools::ReportPlan> plans_of(const geometry::Trajectory& drive) {
-  std::vector<tools::ReportPlan> plans;
-  for (int cycle = 0; cycle < 400; cycle += 1) {
-    const double t_s = 0.1 * cycle;
-    tools::ReportPlan plan{
-        .t_s = t_s, .path = {}, .note = "ends 0.2 m to the left after 24.0 m", .reason = {}};
+std::vector<tools::DriveCycle> cycles_of(const geometry::Trajectory& drive) {
+  std::vector<tools::DriveCycle> cycles;
+  for (int i = 0; i < 400; ++i) {
+    tools::DriveCycle cycle{.t_s = 0.1 * i};
     for (double ahead_s = 0.0; ahead_s <= 2.5; ahead_s += 0.25) {
-      plan.path.push_back(drive.at(t_s + ahead_s).pose().position());
+      cycle.path.push_back(drive.at(cycle.t_s + ahead_s).pose().position());
     }
-    plan.chosen = tools::ReportCandidate{0.4, 22.0, {0.1, 0.2}};
-    plan.runner_up = tools::ReportCandidate{0.5, 21.0, {0.15, 0.2}};
-    plan.grid = tools::ReportGrid{{-0.1, 0.0, 0.1}, {15.0, 30.0}, {0, 0, 1, 5, 5, 0}};
-    plans.push_back(std::move(plan));
+    cycle.chosen = planning::Candidate{.end_d_m = 0.4, .end_l_m = 22.0, .terms = {0.1, 0.2}};
+    cycle.grid = tools::CandidateGrid{
+        .end_d_m = {-0.1, 0.0, 0.1},
+        .end_l_m = {15.0, 30.0},
+        .causes = {0, 0, 1, 5, 5, 0},
+        .runner_up = planning::Candidate{.end_d_m = 0.5, .end_l_m = 21.0, .terms = {0.15, 0.2}}};
+    cycles.push_back(std::move(cycle));
   }
-  return plans;
+  return cycles;
 }
 
 tools::ReportPlot plot_of(
@@ -191,25 +193,23 @@ tools::ReportInput sample_report() {
   input.scenario = "data/scenarios/parked_car.json";
   input.verdict = {tools::Tone::good, "goal reached after 40 s, 390 m; nothing was touched"};
   input.audit = tools::ReportVerdict{tools::Tone::good, "clear, at least 0.61 m"};
-  input.lanes = {lane_between("12/0/-1", LaneType::driving, 0.0, -3.5),
-                 lane_between("12/0/1", LaneType::driving, 0.0, 3.5),
-                 lane_between("12/0/-2", LaneType::shoulder, -3.5, -5.0),
-                 lane_between("12/0/2", LaneType::sidewalk, 3.5, 5.5)};
-  input.route = {line_beside(-1.75, false, 410.0)};
-  input.reference = line_beside(-1.75, false, 410.0);
-  input.goal = beside(405.0, -1.75).position();
-  input.occupied = wall();
-  input.drive = ego_drive();
-  input.obstacles = {parked_car(), car_along("slow-2", 150.0, -1.75, 6.2),
-                     car_along("oncoming-3", 400.0, 1.75, -9.0)};
-  input.plans = plans_of(input.drive);
-  input.cost_names = {"length", "offset"};
-  input.cause_names = {"none", "off road", "", "", "", "collision"};
-  input.plots = plots_of(input.drive);
-  input.events = {{0.0, tools::Severity::info, "start at 12.0 m/s"},
-                  {9.5, tools::Severity::warning, "least clearance 0.61 m to parked-1"},
-                  {19.0, tools::Severity::info, "slows down behind slow-2"},
-                  {40.0, tools::Severity::info, "goal reached"}};
+  input.scene.lanes = {lane_between("12/0/-1", LaneType::driving, 0.0, -3.5),
+                       lane_between("12/0/1", LaneType::driving, 0.0, 3.5),
+                       lane_between("12/0/-2", LaneType::shoulder, -3.5, -5.0),
+                       lane_between("12/0/2", LaneType::sidewalk, 3.5, 5.5)};
+  input.scene.route = {line_beside(-1.75, false, 410.0)};
+  input.scene.reference = line_beside(-1.75, false, 410.0);
+  input.scene.goal = beside(405.0, -1.75).position();
+  input.scene.occupied = wall();
+  input.drive.trajectory = ego_drive();
+  input.scene.obstacles = {parked_car(), car_along("slow-2", 150.0, -1.75, 6.2),
+                           car_along("oncoming-3", 400.0, 1.75, -9.0)};
+  input.drive.cycles = cycles_of(input.drive.trajectory);
+  input.plots = plots_of(input.drive.trajectory);
+  input.drive.events = {{0.0, tools::EventLevel::info, "start at 12.0 m/s"},
+                        {9.5, tools::EventLevel::warning, "least clearance 0.61 m to parked-1"},
+                        {19.0, tools::EventLevel::info, "slows down behind slow-2"},
+                        {40.0, tools::EventLevel::info, "goal reached"}};
   input.decisions = {{0.0, 5.2, "keep lane", "nothing ahead"},
                      {5.2, 13.6, "pass", "parked-1 narrows the lane; 2.1 m to the left are free"},
                      {13.6, 16.8, "keep lane", "nothing ahead"},
@@ -219,11 +219,11 @@ tools::ReportInput sample_report() {
                   {"largest lateral acceleration", 1.72, "m/s²", "≤ 4.89", true, 7.1},
                   {"largest jerk", 9.1, "m/s³", "≤ 8.37", false, 18.3},
                   {"time-to-collision", std::nullopt, "s", "≥ 1.5", true, {}}};
-  input.command = "roadbed simulate data/scenarios/parked_car.json -o out";
-  input.version = "roadbed 0.1.0";
-  input.crs = "EPSG:25832";
-  input.sources = {{"map", "data/maps/town.xodr", "9f1c2ab0d4e5f607"},
-                   {"scenario", "data/scenarios/parked_car.json", "01234567890abcde"}};
+  input.origin.command = "roadbed simulate data/scenarios/parked_car.json -o out";
+  input.origin.version = "roadbed 0.1.0";
+  input.origin.crs = "EPSG:25832";
+  input.origin.sources = {{"map", "data/maps/town.xodr", "9f1c2ab0d4e5f607"},
+                          {"scenario", "data/scenarios/parked_car.json", "01234567890abcde"}};
   return input;
 }
 

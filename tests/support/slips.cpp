@@ -1,7 +1,6 @@
 #include "roadbed/tests/support/slips.h"
 
-#include "roadbed/map/files/xml.h"
-#include "roadbed/map/source_rules.h"
+#include "roadbed/map/formats.h"
 
 namespace roadbed::tests {
 
@@ -14,7 +13,7 @@ std::string with_slip(std::string text, const Slip& slip) {
 std::vector<map::validation::Finding> source_findings(const std::string& text,
                                                       const std::string& file,
                                                       const std::string& rule) {
-  auto findings = map::check_source(map::XmlDocument(text, file), {});
+  auto findings = map::format_of(text)->judge(text, file, {}).findings;
   std::erase_if(findings,
                 [&](const map::validation::Finding& finding) { return finding.rule != rule; });
   return findings;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::tests {
 

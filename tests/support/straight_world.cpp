@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "roadbed/planning/reference/reference_line.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::tests {

@@ -7,7 +7,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/audit/swept_drive.h"
 #include "roadbed/planning/reference/reference_line.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 
@@ -26,12 +26,7 @@ Pose2 in_source(const map::RoadMap& road_map, const Pose2& in_map) {
 
 [[noreturn]] void refuse_subject(const std::string& subject, const std::string& found,
                                  const std::string& needed, const std::string& remedy) {
-  throw map::InputError({.file = subject,
-                         .place = {},
-                         .element = {},
-                         .found = found,
-                         .needed = needed,
-                         .remedy = remedy});
+  throw map::InputError({.file = subject, .found = found, .needed = needed, .remedy = remedy});
 }
 
 bool is_drive(const fs::path& file, const fs::path& folder) {
@@ -128,7 +123,6 @@ AuditSubject AuditSubjects::route(const map::RoadMap& road_map) const {
     return in_source(road_map, {point.in_map.x(), point.in_map.y(), point.heading_rad});
   };
   return {.name = fmt::format("route of {:.1f} m{}", length_m, suffix()),
-          .file = {},
           .swept = planning::swept_along(pose_at, length_m,
                                          {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
 }
@@ -145,7 +139,6 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
     return in_source(road_map, lane.pose_at(from.s_m + s_m));
   };
   return {.name = fmt::format("lane {}{}", lane.name, suffix()),
-          .file = {},
           .swept = planning::swept_along(pose_at, length_m,
                                          {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
 }

@@ -13,8 +13,8 @@ namespace roadbed::tools::inline audit {
 
 /// A drive to audit: a file, or what was made by sweeping a line.
 struct AuditSubject {
-  std::string name;            ///< of the file, within its folder where that was given
-  std::filesystem::path file;  ///< empty: swept
+  std::string name;                 ///< of the file, within its folder where that was given
+  std::filesystem::path file = {};  ///< empty: swept
   geometry::Trajectory swept = {};
 
   /// @throws InputError if the file is unusable.

@@ -6,48 +6,25 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
-#include <memory>
 #include <optional>
-#include <utility>
 
-#include "roadbed/map/files/input_error.h"
-#include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/tools/cli/in_threads.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
 
+using planning::GroundRule;
+
 AuditedDrive audit_one(const map::OccupancySource& occupancy, const AuditSubject& subject,
-                       const AuditQuestion& question) {
+                       const planning::AuditQuestion& question) {
   AuditedDrive audited{.name = subject.name};
   try {
     audited.drive = subject.drive();
-    audited.ground = ground_under(occupancy, audited.drive, question.ground);
-    audited.report =
-        planning::audit_vehicle(surroundings(occupancy, audited.drive, audited.ground, question),
-                                audited.drive, question.options, question.moving)
-            .whole;
+    audited.audit = planning::audit_drive(occupancy, audited.drive, question);
   } catch (const std::exception& error) {
     audited.fault = error.what();
   }
   return audited;
-}
-
-// A map and a cloud whose heights are apart cannot be meant for each other.
-void check_heights(const map::OccupancySource& occupancy, const map::Ground& ground) {
-  constexpr double near_m = 5.0;
-  const std::optional<map::Box3> bounds = occupancy.bounds();
-  if (!bounds) return;
-  const double least_m = bounds->min_in_source.z(), most_m = bounds->max_in_source.z();
-  if (ground.highest_m() > least_m - near_m && ground.lowest_m() < most_m + near_m) return;
-  throw map::InputError(
-      {.file = "ground",
-       .place = {},
-       .element = {},
-       .found = fmt::format("the map's roads lie at z {:.1f} m to {:.1f} m", ground.lowest_m(),
-                            ground.highest_m()),
-       .needed = fmt::format("the occupancy's {:.1f} m to {:.1f} m", least_m, most_m),
-       .remedy = "bring both into one frame, or give --ground Z"});
 }
 
 std::optional<double> height_in(const std::string& text) {
@@ -67,7 +44,7 @@ std::string ground_rule_fault(const std::string& text) {
   return is_height ? "" : "is neither a height nor map nor measured";
 }
 
-GroundRule ground_rule(const std::string& text, const map::RoadMap* road_map) {
+planning::GroundRule ground_rule(const std::string& text, const map::RoadMap* road_map) {
   using Kind = GroundRule::Kind;
   if (const auto level_m = height_in(text)) return {.kind = Kind::level, .level_m = *level_m};
   if (text == "measured") return {.kind = Kind::measured};
@@ -75,22 +52,8 @@ GroundRule ground_rule(const std::string& text, const map::RoadMap* road_map) {
   return {.kind = Kind::map, .road_map = road_map};
 }
 
-planning::GroundUnder ground_under(const map::OccupancySource& occupancy,
-                                   const geometry::Trajectory& drive, const GroundRule& rule) {
-  if (rule.kind == GroundRule::Kind::level) return {.level_m = rule.level_m};
-  const bool is_map = rule.kind == GroundRule::Kind::map;
-  auto ground = std::make_shared<const map::Ground>(
-      is_map ? map::road_under(*rule.road_map, drive)
-             : map::measured_under(occupancy, drive, rule.body));
-  if (is_map) check_heights(occupancy, *ground);
-  planning::GroundUnder under{.level_m = ground->lowest_m()};
-  if (!is_map) under.margin_m = map::measured_ground_margin_m(occupancy.resolution_m());
-  if (!ground->is_level()) under.surface = std::move(ground);
-  return under;
-}
-
-std::string ground_note(const planning::GroundUnder& ground, const AuditQuestion& question,
-                        double cell_m) {
+std::string ground_note(const planning::GroundUnder& ground,
+                        const planning::AuditQuestion& question, double cell_m) {
   if (question.ground.kind == GroundRule::Kind::level) return {};
   const bool is_map = question.ground.kind == GroundRule::Kind::map;
   const double low_m = ground.surface ? ground.surface->lowest_m() : ground.level_m;
@@ -110,55 +73,12 @@ std::string ground_note(const planning::GroundUnder& ground, const AuditQuestion
                     cell_m, underside_m);
 }
 
-map::BodyReach reach_of(const AuditQuestion& question) {
-  map::BodyReach reach;
-  for (const geometry::BodyPart& part : question.parts) {
-    const double grown_m = part.radius_m + question.options.inflate_m;
-    reach.rear_m = std::min(reach.rear_m, part.rear_m - grown_m);
-    reach.front_m = std::max(reach.front_m, part.front_m + grown_m);
-  }
-  return reach;
-}
-
-planning::VehicleSurroundings surroundings(const map::OccupancySource& occupancy,
-                                           const geometry::Trajectory& drive,
-                                           const planning::GroundUnder& ground,
-                                           const AuditQuestion& question) {
-  map::FieldRegion region = planning::audited_region(drive, question.parts, question.options);
-  region.most_cells /= question.drives_at_once;
-  return {occupancy, ground, question.parts, region};
-}
-
-map::HeightBand AuditQuestion::heights(const planning::GroundUnder& under) const {
-  map::HeightBand all{parts.front().from_height_m, parts.front().to_height_m};
-  for (const geometry::BodyPart& part : parts) {
-    all = {std::min(all.from_m, part.from_height_m), std::max(all.to_m, part.to_height_m)};
-  }
-  return under.band(all.from_m, all.to_m);
-}
-
-geometry::VehicleShape inflated_shape(const AuditQuestion& question) {
-  geometry::VehicleShape grown = question.shape;
-  grown.length_m += 2.0 * question.options.inflate_m;
-  grown.width_m += 2.0 * question.options.inflate_m;
-  grown.rear_overhang_m += question.options.inflate_m;
-  return grown;
-}
-
-std::vector<geometry::BodyPart> inflated_parts(const AuditQuestion& question) {
-  std::vector<geometry::BodyPart> parts;
-  for (const geometry::BodyPart& part : question.parts) {
-    parts.push_back(geometry::inflated(part, question.options.inflate_m));
-  }
-  return parts;
-}
-
 std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
                                     const std::vector<AuditSubject>& subjects,
-                                    const AuditQuestion& question, int threads,
+                                    const planning::AuditQuestion& question, int threads,
                                     const std::function<void()>& done_one) {
   std::vector<AuditedDrive> audited(subjects.size());
-  AuditQuestion shared = question;
+  planning::AuditQuestion shared = question;
   shared.drives_at_once =
       std::clamp<std::size_t>(subjects.size(), 1, static_cast<std::size_t>(std::max(1, threads)));
   in_threads(subjects.size(), threads, [&](std::size_t i) {

@@ -25,6 +25,8 @@
 namespace roadbed::tools::inline audit {
 namespace {
 
+using planning::GroundRule;
+
 namespace fs = std::filesystem;
 /// A file that a certificate is about, as it was found.
 struct CheckedFile {
@@ -139,8 +141,8 @@ class CertificateCheck {
     constexpr double any_height_m = 1e6;
     const Eigen::Vector3d margin(far_m, far_m, any_height_m);
     std::vector<map::Box3> boxes;
-    for (const geometry::TrajectoryPoint& row : drive_.points()) {
-      const Eigen::Vector3d at(row.x_m, row.y_m, 0.0);
+    for (const geometry::TrajectoryPoint& sample : drive_.points()) {
+      const Eigen::Vector3d at(sample.x_m, sample.y_m, 0.0);
       boxes.push_back({at - margin, at + margin});
     }
     return tiles->cells_of_tiles(boxes);
@@ -166,12 +168,8 @@ class CertificateCheck {
         }
       }
     } catch (const std::length_error& too_long) {
-      throw map::InputError({.file = name_.string(),
-                             .place = {},
-                             .element = {},
-                             .found = too_long.what(),
-                             .needed = {},
-                             .remedy = "audit the drive in parts"});
+      throw map::InputError(
+          {.file = name_.string(), .found = too_long.what(), .remedy = "audit the drive in parts"});
     }
   }
 
@@ -187,7 +185,7 @@ class CertificateCheck {
   const Inputs& inputs_;
   CertificateFile file_;
   geometry::Trajectory drive_;
-  std::vector<planning::MovingObstacle> moving_;
+  std::vector<planning::ObstacleInSource> moving_;
   std::vector<CheckedFile> files_;
   std::vector<std::string> faults_;
 };
@@ -214,7 +212,7 @@ std::string CertificateCheck::question() const {
   std::string text;
   for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
   if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
-    const auto [low_m, high_m] = map::heights_at_rows_m(*ground, drive_);
+    const auto [low_m, high_m] = map::heights_at_samples_m(*ground, drive_);
     text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's rows ({}); ", low_m,
                         high_m, ground_text());
   }
@@ -237,7 +235,7 @@ void CertificateCheck::print(std::ostream& out) const {
   }
   if (!file_.vehicle) line("vehicle", "none named: CommonRoad's vehicle 2");
   line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % asked for",
-                               100.0 * file_.measured_share(), 100.0 * file_.least_measured));
+                               100.0 * file_.measured_fraction(), 100.0 * file_.least_measured));
   std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
   for (const planning::AuditCertificate& part : file_.parts) {
     from_occupied += part.from_occupied.size();
@@ -261,7 +259,7 @@ Json CertificateCheck::json() const {
           {"question", question()},
           {"verdict", name(file_.verdict())},
           {"certified_clearance_m", file_.certified_clearance_m()},
-          {"measured_share", file_.measured_share()},
+          {"measured_share", file_.measured_fraction()},
           {"least_measured", file_.least_measured},
           {"files", std::move(files)},
           {"faults", faults_}};

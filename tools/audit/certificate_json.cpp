@@ -16,13 +16,14 @@
 #include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/json_node.h"
 #include "roadbed/tools/files/obstacles_csv.h"
 #include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
+
+using planning::GroundRule;
 
 using planning::AuditCertificate;
 using planning::Conflict;
@@ -33,7 +34,7 @@ using planning::Stretch;
 using planning::UnknownPolicy;
 using planning::Verdict;
 constexpr std::string_view kFormat = "roadbed audit certificate 2", kBody = "body";
-constexpr Range kAny{-1e12, 1e12}, kShare{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9},
+constexpr Range kAny{-1e12, 1e12}, kFraction{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9},
     kUnderside_m{-100.0, 100.0};
 
 constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPolicy::occupied,
@@ -242,8 +243,9 @@ std::vector<ProvenSpan> read_spans(const JsonNode& node) {
   std::vector<ProvenSpan> spans;
   for (const JsonNode& element : node.elements()) {
     const std::vector<JsonNode> values = numbers(element, 4);
-    spans.push_back({static_cast<std::size_t>(values[0].number(kCount)), values[1].number(kShare),
-                     values[2].number(kShare), values[3].number(kLength_m)});
+    spans.push_back({static_cast<std::size_t>(values[0].number(kCount)),
+                     values[1].number(kFraction), values[2].number(kFraction),
+                     values[3].number(kLength_m)});
     if (!(spans.back().from < spans.back().to)) {
       element.refuse("is empty", "a start before its end", "write the certificate anew");
     }
@@ -296,7 +298,7 @@ void add_claims(Json& json, const AuditCertificate& audit, bool has_moving) {
   json["from_occupied"] = spans_json(audit.from_occupied);
   json["from_unknown"] = spans_json(audit.from_unknown);
   json["observed"] = observed_json(audit.observed);
-  json["measured_share"] = audit.measured_share;
+  json["measured_share"] = audit.measured_fraction;
   if (has_moving) json["from_moving"] = times_json(audit.from_moving);
 }
 
@@ -311,7 +313,7 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
   audit.from_occupied = read_spans(node.at("from_occupied"));
   audit.from_unknown = read_spans(node.at("from_unknown"));
   audit.observed = read_observed(node.at("observed"));
-  audit.measured_share = node.at("measured_share").number(kShare);
+  audit.measured_fraction = node.at("measured_share").number(kFraction);
   if (has_moving) audit.from_moving = read_times(node.at("from_moving"));
 }
 
@@ -324,12 +326,12 @@ CertifiedFile certified_file(const std::filesystem::path& file) {
 }
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
-                                  const std::vector<planning::MovingObstacle>& obstacles) {
+                                  const std::vector<planning::ObstacleInSource>& obstacles) {
   return {.name = file.string(), .sha256 = map::sha256_of_bytes(obstacles_text(obstacles))};
 }
 
 Verdict CertificateFile::verdict() const {
-  const bool is_measured = measured_share() >= least_measured;
+  const bool is_measured = measured_fraction() >= least_measured;
   for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
     if (std::ranges::count(parts, grave, &AuditCertificate::verdict) > 0) return grave;
     if (grave == Verdict::unknown && !is_measured) return grave;
@@ -342,12 +344,12 @@ double CertificateFile::certified_clearance_m() const {
       .certified_clearance_m;
 }
 
-double CertificateFile::measured_share() const {
+double CertificateFile::measured_fraction() const {
   double measured_m3 = 0.0, all_m3 = 0.0;
   for (const AuditCertificate& part : parts) {
     const double height_m = part.band.to_m - part.band.from_m - 2.0 * ground.under.margin_m;
     const double part_m3 = geometry::box_area_m2(part.part) * height_m;
-    measured_m3 += part.measured_share * part_m3;
+    measured_m3 += part.measured_fraction * part_m3;
     all_m3 += part_m3;
   }
   return measured_m3 / all_m3;
@@ -428,7 +430,7 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
   audit.clearance_m = node.at("clearance_m").number(kLength_m);
   audit.inflate_m = node.at("inflate_m").number(kLength_m);
   audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
-  file.least_measured = node.at("least_measured").number(kShare);
+  file.least_measured = node.at("least_measured").number(kFraction);
   file.underside_m = node.at("underside_m").number(kUnderside_m);
   file.ground = read_ground(node.at("heights_above"));
   read_claims(node, has_moving, audit);

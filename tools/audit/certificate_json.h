@@ -9,7 +9,7 @@
 
 #include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/planning/audit/certificate.h"
-#include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/planning/audit/ground_under.h"
 
 namespace roadbed::tools::inline audit {
 
@@ -24,7 +24,7 @@ CertifiedFile certified_file(const std::filesystem::path& file);
 
 /// What the heights of a vehicle were above, and where that was taken from.
 struct CertifiedGround {
-  GroundRule::Kind kind = GroundRule::Kind::level;
+  planning::GroundRule::Kind kind = planning::GroundRule::Kind::level;
   planning::GroundUnder under;
 };
 
@@ -39,7 +39,7 @@ struct CertificateFile {
   std::optional<CertifiedFile> roads = {};
   double underside_m = 0.2;     ///< above the ground, of the body and of circles without their own
   CertifiedGround ground = {};  ///< what the parts' bands are above
-  double least_measured = 0.0;  ///< asked for of `measured_share`
+  double least_measured = 0.0;  ///< asked for of `measured_fraction`
   /// One for each part of the vehicle, the body first; all of one question but for their heights.
   std::vector<planning::AuditCertificate> parts;
 
@@ -47,11 +47,11 @@ struct CertificateFile {
   /// The least of all; 0 if that of one is not certified.
   double certified_clearance_m() const;
   /// Mean over the parts, by the space that they take.
-  double measured_share() const;
+  double measured_fraction() const;
 };
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
-                                  const std::vector<planning::MovingObstacle>& obstacles);
+                                  const std::vector<planning::ObstacleInSource>& obstacles);
 
 /// The JSON of a certificate; reading it gives the same numbers, bit for bit. A span is written as
 /// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`, an observed time as `[from_s,

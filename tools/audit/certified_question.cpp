@@ -12,6 +12,8 @@
 namespace roadbed::tools::inline audit {
 namespace {
 
+using planning::GroundRule;
+
 using geometry::BodyPart;
 using map::GroundPlace;
 using planning::AuditCertificate;
@@ -59,7 +61,7 @@ std::vector<GroundPlace> level_places(const geometry::Trajectory& drive, double 
                                       const map::BodyReach& body, bool is_below_body) {
   constexpr double apart_m = 1.0;
   std::vector<GroundPlace> places;
-  const auto& rows = drive.points();
+  const auto& samples = drive.points();
   const auto take = [&](const geometry::TrajectoryPoint& state) {
     const Eigen::Vector2d axle = state.pose().position();
     const Eigen::Vector2d ahead(std::cos(state.heading_rad), std::sin(state.heading_rad));
@@ -69,20 +71,20 @@ std::vector<GroundPlace> level_places(const geometry::Trajectory& drive, double 
       places.push_back({axle + std::min(x_m, body.front_m) * ahead, level_m, {0.0, 0.0}});
     }
   };
-  take(rows.front());
-  Eigen::Vector2d last = rows.front().pose().position();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const double way_m = (rows[i].pose().position() - rows[i - 1].pose().position()).norm();
+  take(samples.front());
+  Eigen::Vector2d last = samples.front().pose().position();
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double way_m = (samples[i].pose().position() - samples[i - 1].pose().position()).norm();
     const double steps = std::ceil(way_m / apart_m);
     for (double step = 1.0; step <= steps; ++step) {
-      const auto state = geometry::interpolate(rows[i - 1], rows[i], step / steps);
-      const bool is_end = i + 1 == rows.size() && step == steps;
+      const auto state = geometry::interpolate(samples[i - 1], samples[i], step / steps);
+      const bool is_end = i + 1 == samples.size() && step == steps;
       if (!is_end && (state.pose().position() - last).norm() < apart_m) continue;
       take(state);
       last = state.pose().position();
     }
   }
-  if ((rows.back().pose().position() - last).norm() > 0.0) take(rows.back());
+  if ((samples.back().pose().position() - last).norm() > 0.0) take(samples.back());
   return places;
 }
 

@@ -5,15 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <set>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_files.h"
-#include "roadbed/tools/batch/job_hash.h"
-#include "roadbed/tools/batch/memory_size.h"
-#include "roadbed/tools/batch/stop_signal.h"
+#include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/cli/in_threads.h"
 
 namespace roadbed::tools::inline batch {
@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse_jobs_file(const fs::path& file, const std::string& found,
                                    const std::string& remedy) {
   throw map::InputError({.file = file.string(),
-                         .place = {},
-                         .element = {},
                          .found = found,
                          .needed = "a file with a job a line",
                          .remedy = remedy});
@@ -60,6 +58,15 @@ std::string too_long(const JobLines::Line& line) {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::atomic<bool> stop_is_asked = false;  // a handler of signals has no other place
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void ask(int) {
+  stop_is_asked = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace
@@ -215,5 +222,26 @@ void BatchRun::stop_others() {
   is_complete_ = false;
   has_failed_ = true;
 }
+
+StopSignal::StopSignal() {
+  stop_is_asked = false;
+  struct sigaction stop {};
+  stop.sa_handler = ask;
+  ::sigaction(SIGINT, &stop, &interrupt_);
+  ::sigaction(SIGTERM, &stop, &terminate_);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  ::sigaction(SIGPIPE, &ignore, &pipe_);
+  ::sigaction(SIGXFSZ, &ignore, &file_size_);
+}
+
+StopSignal::~StopSignal() {
+  ::sigaction(SIGINT, &interrupt_, nullptr);
+  ::sigaction(SIGTERM, &terminate_, nullptr);
+  ::sigaction(SIGPIPE, &pipe_, nullptr);
+  ::sigaction(SIGXFSZ, &file_size_, nullptr);
+}
+
+bool StopSignal::is_asked() { return stop_is_asked; }
 
 }  // namespace roadbed::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/tools/batch/appended_file.h"
 #include "roadbed/tools/batch/file_hashes.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/job_runner.h"
-#include "roadbed/tools/batch/memory_gate.h"
+#include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/batch/result_store.h"
 #include "roadbed/tools/cli/progress_bar.h"
+#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline batch {
 
@@ -101,6 +102,23 @@ class BatchRun {
   std::map<JobHash, bool> were_there_by_hash_;  // of all jobs taken
   std::size_t were_there_ = 0, missing_ = 0;
   bool is_complete_ = false, has_failed_ = false;
+};
+
+/// While it lives, the first SIGINT or SIGTERM only asks to stop; the second of either ends the
+/// process. A reader that has gone away is an error of writing, not the end of the process, and so
+/// is a file that may not grow.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  static bool is_asked();
+
+ private:
+  struct sigaction interrupt_ {
+  }, terminate_{}, pipe_{}, file_size_{};
 };
 
 }  // namespace roadbed::tools

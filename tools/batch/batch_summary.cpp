@@ -1,5 +1,4 @@
 #include "roadbed/tools/batch/batch_summary.h"
-#include "roadbed/tools/cli/build_id.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "roadbed/tools/batch/job_verdict.h"
+#include "roadbed/tools/cli/build_id.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -130,6 +130,16 @@ std::string BatchSummary::document(std::size_t most_worst) const {
     whole["kinds"][kind.empty() ? "(no job)" : kind] = kind_json(summary, most_worst);
   }
   return whole.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string with_commas(std::size_t number) {
+  std::string text = std::to_string(number);
+  constexpr std::size_t group = 3;
+  for (std::size_t place = text.size(); place > group;) {
+    place -= group;
+    text.insert(place, 1, ',');
+  }
+  return text;
 }
 
 }  // namespace roadbed::tools

@@ -64,4 +64,7 @@ class BatchSummary {
   std::map<std::string, KindSummary> kinds_;
 };
 
+/// "1,234,567".
+std::string with_commas(std::size_t number);
+
 }  // namespace roadbed::tools

@@ -24,10 +24,7 @@ int open_or_refuse(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor >= 0) return descriptor;
   throw OutputError({.file = file.string(),
-                     .place = {},
-                     .element = {},
                      .found = std::string("cannot be made: ") + std::strerror(errno),
-                     .needed = {},
                      .remedy = "choose a folder that you may write to"});
 }
 
@@ -68,10 +65,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(fold
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
   throw map::InputError({.file = folder.string(),
-                         .place = {},
-                         .element = {},
                          .found = "another run is at work in it",
-                         .needed = {},
                          .remedy = "wait for its end, or choose another folder"});
 }
 

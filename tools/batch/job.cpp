@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/map/files/sha256.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -115,6 +117,15 @@ void add_inputs(const json& value, const FilesNamed* named, std::vector<JobInput
   for (const json& element : value) add_inputs(element, named, inputs);
 }
 
+const std::string& program() {
+  static const std::string text = version() + " " + build_id();
+  return text;
+}
+
+void add_file(const std::filesystem::path& path, FileHashes& files, json& list) {
+  list.push_back({path.generic_string(), files.of(path)});
+}
+
 }  // namespace
 
 Job parse_job(std::string_view line, const JobKinds& kinds) {
@@ -154,6 +165,23 @@ std::vector<JobInput> inputs_of(const Job& job) {
     if (option.use == ArgumentInfo::Use::input) add_inputs(value, &option.named, inputs);
   }
   return inputs;
+}
+
+std::string hash_of(const Job& job, FileHashes& files) {
+  json contents = json::array();
+  for (const JobInput& input : inputs_of(job)) {
+    add_file(input.path, files, contents);
+    for (const auto& path : files.named_in(input.path, *input.named)) {
+      add_file(path, files, contents);
+    }
+  }
+  const json identity = {program(),   job.kind->name, job.inputs,
+                         job.options, job.outputs,    std::move(contents)};
+  return map::sha256_of_bytes(identity.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+std::string hash_of_bad_line(std::string_view line) {
+  return map::sha256_of_bytes(program() + " bad line " + std::string(line));
 }
 
 }  // namespace roadbed::tools

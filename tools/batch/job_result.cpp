@@ -1,10 +1,14 @@
 #include "roadbed/tools/batch/job_result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "roadbed/tools/batch/job_hash.h"
+#include "roadbed/tools/batch/job.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -13,25 +17,65 @@ using nlohmann::json;
 
 constexpr int kUsage = 2;
 
-std::string text_of(const json& value) {
+std::string json_text(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 // Members in this order, so that a reader sees first what became of the job.
 std::string line(const JobResult& result, const json& kind, const std::string& rest) {
-  return "{\"hash\":" + text_of(result.hash) + ",\"job\":" + text_of(kind) +
-         ",\"status\":" + text_of(name(result.status)) +
+  return "{\"hash\":" + json_text(result.hash) + ",\"job\":" + json_text(kind) +
+         ",\"status\":" + json_text(name(result.status)) +
          ",\"exit\":" + (result.exit ? std::to_string(*result.exit) : "null") +
-         ",\"reason\":" + text_of(result.reason) +
-         ",\"cause\":" + (result.cause ? text_of(name(*result.cause)) : "null") + rest +
+         ",\"reason\":" + json_text(result.reason) +
+         ",\"cause\":" + (result.cause ? json_text(name(*result.cause)) : "null") + rest +
          ",\"result\":" + (result.document.empty() ? "null" : result.document) +
-         ",\"files\":" + text_of(result.files) + "}";
+         ",\"files\":" + json_text(result.files) + "}";
 }
 
 std::string one_line(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
+}
+
+constexpr std::size_t kDigits = 16;  // of each part
+
+// The documents of commands are read through, but not kept.
+json parse_without_documents(std::string_view line) {
+  constexpr int kMember = 1;
+  const auto keep = [is_document = false](int depth, json::parse_event_t event,
+                                          json& value) mutable {
+    if (event == json::parse_event_t::key && depth == kMember) {
+      is_document = value == "result" || value == "options" || value == "inputs";
+    }
+    return !is_document || event == json::parse_event_t::key ||
+           (depth == 0 && event == json::parse_event_t::object_end);
+  };
+  return json::parse(line, keep, false);
+}
+
+template <typename Value, typename... Values>
+std::optional<Value> by_name(const json& text, Values... values) {
+  for (const Value value : {values...}) {
+    if (text == name(value)) return value;
+  }
+  return {};
+}
+
+std::optional<JobHash> hash_in(const json& head) {
+  const auto text = head.find("hash");
+  return text != head.end() && text->is_string() ? parse_hash(text->get<std::string>())
+                                                 : std::nullopt;
+}
+
+bool read_files(const json& head, std::vector<std::string>& files) {
+  const auto list = head.find("files");
+  if (list == head.end() || !list->is_array()) return false;
+  for (const json& file : *list) {
+    if (!file.is_string()) return false;
+    files.push_back(file.get<std::string>());
+  }
+  return true;
 }
 
 }  // namespace
@@ -51,8 +95,8 @@ bool may_pass(Cause cause) { return cause != Cause::line && cause != Cause::inpu
 
 std::string line_of(const Job& job, const JobResult& result) {
   return line(result, job.kind->name,
-              ",\"inputs\":" + text_of(job.inputs) + ",\"options\":" + text_of(job.options) +
-                  ",\"outputs\":" + text_of(job.outputs));
+              ",\"inputs\":" + json_text(job.inputs) + ",\"options\":" + json_text(job.options) +
+                  ",\"outputs\":" + json_text(job.outputs));
 }
 
 std::string line_of_bad_line(std::string_view text, const std::string& reason) {
@@ -66,6 +110,37 @@ JobResult failure(std::string hash, Cause cause, std::optional<int> exit, std::s
           .exit = exit,
           .reason = one_line(std::move(reason)),
           .cause = cause};
+}
+
+std::optional<JobHash> parse_hash(std::string_view text) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (text.size() != kHashDigits || !std::ranges::all_of(text, is_digit)) return {};
+  JobHash hash{};
+  for (std::size_t part = 0; part < hash.size(); ++part) {
+    const char* const from = text.data() + part * kDigits;
+    std::from_chars(from, from + kDigits, hash.at(part), 16);
+  }
+  return hash;
+}
+
+std::string text_of(const JobHash& hash) { return fmt::format("{:016x}", fmt::join(hash, "")); }
+
+std::optional<ResultHead> read_head(std::string_view line) {
+  const json head = parse_without_documents(line);
+  if (!head.is_object()) return {};
+  const auto hash = hash_in(head);
+  const auto status = by_name<JobStatus>(head.value("status", json()), JobStatus::done,
+                                         JobStatus::no, JobStatus::failed);
+  const json cause = head.value("cause", json());
+  ResultHead result{.hash = {}, .status = JobStatus::failed, .cause = {}, .files = {}};
+  if (!hash || !status || !read_files(head, result.files)) return {};
+  result.hash = *hash;
+  result.status = *status;
+  result.cause = by_name<Cause>(cause, Cause::line, Cause::input, Cause::changed, Cause::crash,
+                                Cause::time, Cause::memory, Cause::disk, Cause::internal);
+  const bool has_failed = result.status == JobStatus::failed;
+  if (has_failed != result.cause.has_value() || (!has_failed && !cause.is_null())) return {};
+  return result;
 }
 
 }  // namespace roadbed::tools

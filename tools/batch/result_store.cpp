@@ -42,10 +42,7 @@ fs::path next_journal(const fs::path& folder) {
 
 [[noreturn]] void refuse(const fs::path& journal) {
   throw map::InputError({.file = journal.string(),
-                         .place = {},
-                         .element = {},
                          .found = "cannot be read",
-                         .needed = {},
                          .remedy = "check its rights, or remove it: its jobs run again"});
 }
 

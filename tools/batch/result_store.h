@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "roadbed/tools/batch/appended_file.h"
-#include "roadbed/tools/batch/result_head.h"
+#include "roadbed/tools/batch/job_result.h"
+#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline batch {
 

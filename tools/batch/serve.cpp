@@ -8,12 +8,12 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/input_cache.h"
+#include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_files.h"
-#include "roadbed/tools/batch/job_hash.h"
 #include "roadbed/tools/batch/job_lines.h"
-#include "roadbed/tools/batch/memory_size.h"
-#include "roadbed/tools/batch/result_head.h"
-#include "roadbed/tools/batch/run_job.h"
+#include "roadbed/tools/batch/job_result.h"
+#include "roadbed/tools/batch/job_runner.h"
+#include "roadbed/tools/batch/memory.h"
 
 namespace roadbed::tools::inline batch {
 namespace {

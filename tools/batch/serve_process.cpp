@@ -28,10 +28,7 @@ constexpr int kCannotRun = 127;
 
 [[noreturn]] void refuse(const char* what) {
   throw OutputError({.file = "a process of its own for jobs",
-                     .place = {},
-                     .element = {},
                      .found = fmt::format("cannot be started: {}: {}", what, std::strerror(errno)),
-                     .needed = {},
                      .remedy = "run with fewer --threads, or without --isolate"});
 }
 

@@ -57,12 +57,8 @@ LaneText lane_text(std::string_view text) {
 
 [[noreturn]] void refuse_place(const std::string& text, const std::string& found,
                                const std::string& needed, const std::string& remedy) {
-  throw map::InputError({.file = "place \"" + text + "\"",
-                         .place = {},
-                         .element = {},
-                         .found = found,
-                         .needed = needed,
-                         .remedy = remedy});
+  throw map::InputError(
+      {.file = "place \"" + text + "\"", .found = found, .needed = needed, .remedy = remedy});
 }
 
 Place at_lane(const map::RoadMap& road_map, const std::string& text) {

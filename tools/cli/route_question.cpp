@@ -48,10 +48,7 @@ std::vector<map::LaneId> lanes_of_road(const map::RoadMap& road_map, const std::
     if (road.source_id == id) return road.lanes;
   }
   throw map::InputError({.file = "--avoid \"" + text + "\"",
-                         .place = {},
-                         .element = {},
                          .found = "the map has no road " + id,
-                         .needed = {},
                          .remedy = "see the roads with: roadbed locate MAP --at X,Y"});
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/route_options.h"
 #include "roadbed/tools/cli/arguments.h"
 #include "roadbed/tools/cli/place.h"
 

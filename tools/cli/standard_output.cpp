@@ -33,10 +33,7 @@ bool StandardOutput::finish() { return write_pending(); }
 std::string StandardOutput::fault() const {
   return OutputError(
              {.file = "standard output",
-              .place = {},
-              .element = {},
               .found = std::string("cannot be written: ") + std::strerror(error_),
-              .needed = {},
               .remedy =
                   "send it to a file on a disk with free space, or to a program that reads it "
                   "to its end"})

@@ -14,8 +14,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
-#include "roadbed/planning/audit/audit.h"
-#include "roadbed/planning/audit/vehicle_audit.h"
+#include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/audit/certificate_check.h"
@@ -27,7 +26,6 @@
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_json.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/drive_plausibility.h"
 #include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/vehicle_json.h"
@@ -37,11 +35,13 @@
 #include "roadbed/tools/report/from_audit.h"
 #include "roadbed/tools/report/from_map.h"
 #include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/report/report_page.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
 
+using planning::AuditQuestion;
 using planning::UnknownPolicy;
 
 class AuditCommand : public Command {
@@ -87,13 +87,13 @@ class AuditCommand : public Command {
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
       if (!output.empty()) check_writable(output, force_);
     }
-    AuditQuestion question = asked();
+    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
+    AuditQuestion question = asked(vehicle);
     std::shared_ptr<const map::RoadMap> road_map;
     if (!map_.empty()) road_map = inputs_->road_map(map_);
     question.ground = ground_rule(ground_, road_map.get());
-    question.ground.body = reach_of(question);
     const std::vector<AuditSubject> subjects = subjects_.list(road_map.get());
-    const Scene scene = make_scene(road_map.get(), streams, common);
+    const Scene scene = make_scene(road_map.get(), vehicle.shape, streams, common);
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
                                  : run_one(subjects.front(), question, scene, streams, common);
   }
@@ -103,6 +103,7 @@ class AuditCommand : public Command {
   struct Scene {
     std::shared_ptr<const map::OccupancySource> occupancy;
     const map::RoadMap* road_map;
+    geometry::VehicleShape shape;
   };
 
   // Beside --check it is what a certificate has to be about.
@@ -124,13 +125,13 @@ class AuditCommand : public Command {
         "What space counts as that was not measured: free, occupied, or report: no obstacle, but a "
         "drive over it is not clear. Where nothing was measured within 10 m of the body at its "
         "heights, a drive is not clear either way");
-    least_measured_argument_ =
-        arguments
-            .add("--least-measured", options_.least_measured,
-                 "Share of the space that the vehicle takes that has to be measured, else no drive "
-                 "is clear, whatever --unknown says")
-            .within(0.0, 1.0)
-            .with_default();
+    least_measured_argument_ = arguments
+                                   .add("--least-measured", options_.least_measured,
+                                        "Fraction of the space that the vehicle takes that has to "
+                                        "be measured, else no drive is clear, whatever --unknown "
+                                        "says")
+                                   .within(0.0, 1.0)
+                                   .with_default();
     arguments
         .add("--ground", ground_,
              "What heights are above: Z of level ground in the occupancy's frame [m]; map: the "
@@ -220,19 +221,19 @@ class AuditCommand : public Command {
     return proves_nothing ? "--save-drive, as a certificate is about a file" : "";
   }
 
-  AuditQuestion asked() const {
-    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
-    AuditQuestion question{.shape = vehicle.shape,
-                           .parts = vehicle.parts(from_height_m_),
-                           .ground = {},
-                           .options = options_};
-    if (!obstacles_.empty()) question.moving = read_moving_obstacles(obstacles_, *inputs_);
+  AuditQuestion asked(const Vehicle& vehicle) const {
+    AuditQuestion question{.parts = vehicle.parts(from_height_m_),
+                           .options = options_,
+                           .certifies = !certificate_.empty()};
+    if (!obstacles_.empty()) {
+      question.moving_in_source = read_moving_obstacles(obstacles_, *inputs_);
+    }
     return question;
   }
 
-  Scene make_scene(const map::RoadMap* road_map, const Streams& streams,
-                   const CommonOptions& common) const {
-    Scene scene{inputs_->occupancy(occupancy_), road_map};
+  Scene make_scene(const map::RoadMap* road_map, const geometry::VehicleShape& shape,
+                   const Streams& streams, const CommonOptions& common) const {
+    Scene scene{inputs_->occupancy(occupancy_), road_map, shape};
     if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
       fmt::print(streams.err,
                  "note: {} was built with --remove-seen-through {}: {} cells with points count as "
@@ -253,17 +254,14 @@ class AuditCommand : public Command {
                   const Scene& scene, const Streams& streams, const CommonOptions& common) const {
     if (!svg_.empty() || !certificate_.empty()) {
       throw map::InputError({.file = "--svg or --certificate",
-                             .place = {},
-                             .element = {},
                              .found = "is about one drive, and --trajectory is a folder",
-                             .needed = {},
                              .remedy = "give one file"});
     }
     ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits = audit_all(
         *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
     for (const AuditedDrive& audited : audits) {
-      if (!common.quiet && audited.fault.empty()) note_curvature(audited, question, streams.err);
+      if (!common.quiet && audited.fault.empty()) note_curvature(audited, scene, streams.err);
     }
     write_index(audits, question, scene);
     write_files(audits, question, scene);
@@ -276,35 +274,29 @@ class AuditCommand : public Command {
   }
 
   // Of what the vehicle could not drive; audited all the same.
-  static void note_curvature(const AuditedDrive& audited, const AuditQuestion& question,
-                             std::ostream& err) {
-    const std::string note = curvature_note(audited.drive, question.shape);
+  static void note_curvature(const AuditedDrive& audited, const Scene& scene, std::ostream& err) {
+    const std::string note = curvature_note(audited.drive, scene.shape);
     if (!note.empty()) fmt::print(err, "note: {}: {}\n", audited.name, note);
   }
 
   Exit run_one(const AuditSubject& subject, const AuditQuestion& question, const Scene& scene,
                const Streams& streams, const CommonOptions& common) const {
     AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
-    if (!common.quiet) note_curvature(audited, question, streams.err);
-    audited.ground = ground_under(*scene.occupancy, audited.drive, question.ground);
-    const planning::GroundUnder& ground = audited.ground;
-    if (!common.quiet) {
-      fmt::print(streams.err, "{}", ground_note(ground, question, scene.occupancy->resolution_m()));
-    }
-    const planning::VehicleSurroundings surrounded =
-        surroundings(*scene.occupancy, audited.drive, ground, question);
-    const planning::VehicleAudit audit =
-        planning::audit_vehicle(surrounded, audited.drive, options_, question.moving);
-    audited.report = audit.whole;
+    if (!common.quiet) note_curvature(audited, scene, streams.err);
+    audited.audit = planning::audit_drive(
+        *scene.occupancy, audited.drive, question, [&](const planning::GroundUnder& ground) {
+          if (common.quiet) return;
+          streams.err << ground_note(ground, question, scene.occupancy->resolution_m());
+        });
     if (!saved_drive_.empty()) write_output(saved_drive_, write_trajectory_csv(audited.drive));
-    write_picture(audited, question, scene, question.heights(ground));
-    write_report(audited, question, scene, question.heights(ground));
-    write_certificate(audited, question, surrounded, audit, ground);
+    write_picture(audited, question, scene);
+    write_report(audited, question, scene);
+    write_certificate(audited.audit, question);
     write_files({audited}, question, scene);
     if (json_) {
       streams.out << text_of_json(with_removal(audit_json(audited), scene));
     } else {
-      streams.out << audit_text(audited.report);
+      streams.out << audit_text(audited.audit.report);
     }
     return audited.is_clear() ? Exit::ok : Exit::failed;
   }
@@ -342,27 +334,38 @@ class AuditCommand : public Command {
                           {box.min_in_source - margin_m, box.max_in_source + margin_m});
   }
 
-  void write_picture(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
-                     const map::HeightBand& heights) const {
+  void write_picture(const AuditedDrive& audited, const AuditQuestion& question,
+                     const Scene& scene) const {
     if (svg_.empty()) return;
+    const map::HeightBand heights = question.heights(audited.audit.ground);
     write_output(svg_,
-                 audit_svg({audited.drive, inflated_parts(question), audited.report,
+                 audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
                             occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
-                            drawn_lanes(audited, question, scene), question.moving}));
+                            drawn_lanes(audited, question, scene), question.moving_in_source}));
   }
 
-  void write_report(const AuditedDrive& audited, const AuditQuestion& question, const Scene& scene,
-                    const map::HeightBand& heights) const {
+  // The vehicle's rectangle, grown by the margin on every side.
+  geometry::VehicleShape inflated(const geometry::VehicleShape& shape) const {
+    geometry::VehicleShape grown = shape;
+    grown.length_m += 2.0 * options_.inflate_m;
+    grown.width_m += 2.0 * options_.inflate_m;
+    grown.rear_overhang_m += options_.inflate_m;
+    return grown;
+  }
+
+  void write_report(const AuditedDrive& audited, const AuditQuestion& question,
+                    const Scene& scene) const {
     if (report_.empty()) return;
+    const map::HeightBand heights = question.heights(audited.audit.ground);
     const map::Box2 around = drawn(audited, question);
     const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
     AuditSurroundings page{.name = audited.name,
-                           .body = inflated_shape(question),
-                           .parts = inflated_parts(question),
+                           .body = inflated(scene.shape),
+                           .parts = question.inflated_parts(),
                            .clearance_m = options_.clearance_m,
                            .occupied = occupied_in(*scene.occupancy, heights, box),
                            .lanes = {},
-                           .moving = question.moving,
+                           .moving = question.moving_in_source,
                            .command = "roadbed audit --occupancy " + occupancy_.string(),
                            .version = name_and_version(),
                            .crs = scene.occupancy->crs(),
@@ -371,22 +374,23 @@ class AuditCommand : public Command {
     if (!subjects_.is_swept()) {
       page.sources.push_back(source("trajectory", certified_file(subjects_.file())));
     }
-    write_output(report_, drive_report_html(report_of_audit(audited.drive, audited.report, page)));
+    write_output(report_,
+                 drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)));
   }
 
   void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                    const Scene& scene) const {
     if (report_.empty()) return;
-    const std::vector<geometry::BodyPart> parts = inflated_parts(question);
+    const std::vector<geometry::BodyPart> parts = question.inflated_parts();
     std::vector<IndexedAudit> index;
     for (const AuditedDrive& audited : audits) {
       index.push_back(indexed(audited));
       if (!audited.fault.empty()) continue;
-      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.ground),
+      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.audit.ground),
                                            drawn(audited, question));
       const std::vector<geometry::Ring> lanes = drawn_lanes(audited, question, scene);
-      index.back().pictures =
-          close_ups(audited.report, {audited.drive, parts, occupied, lanes, question.moving});
+      index.back().pictures = close_ups(
+          audited.audit.report, {audited.drive, parts, occupied, lanes, question.moving_in_source});
     }
     write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()));
   }
@@ -402,21 +406,19 @@ class AuditCommand : public Command {
     });
   }
 
-  void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
-                         const planning::VehicleSurroundings& surrounded,
-                         const planning::VehicleAudit& audit,
-                         const planning::GroundUnder& ground) const {
+  void write_certificate(const planning::DriveAudit& audit, const AuditQuestion& question) const {
     if (certificate_.empty()) return;
     const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
     CertificateFile file{.program = name_and_version(),
                          .occupancy = certified_once(occupancy_),
                          .trajectory = certified_file(drive),
                          .underside_m = from_height_m_,
-                         .ground = {question.ground.kind, ground},
+                         .ground = {question.ground.kind, audit.ground},
                          .least_measured = options_.least_measured,
-                         .parts = planning::certify_vehicle(surrounded, audited.drive, options_,
-                                                            audit, question.moving)};
-    if (!obstacles_.empty()) file.obstacles = certified_obstacles(obstacles_, question.moving);
+                         .parts = audit.certificates};
+    if (!obstacles_.empty()) {
+      file.obstacles = certified_obstacles(obstacles_, question.moving_in_source);
+    }
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
     if (!map_.empty()) file.roads = certified_once(map_);
     write_output(certificate_, write_certificate_json(file));

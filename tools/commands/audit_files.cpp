@@ -23,7 +23,7 @@ std::string audit_case(const AuditedDrive& audited, const std::string& occupancy
     return text + fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n",
                               map::xml_text(audited.fault));
   }
-  const std::string report = map::xml_text(audit_text(audited.report));
+  const std::string report = map::xml_text(audit_text(audited.audit.report));
   if (audited.is_clear()) {
     return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", report);
   }
@@ -50,9 +50,9 @@ Json feature(Json geometry, Json properties) {
 Json stretch_feature(const AuditedDrive& audited, const planning::JudgedStretch& stretch) {
   Json line = Json::array();
   line.push_back(position(audited.drive.at(stretch.from_s).pose().position()));
-  for (const geometry::TrajectoryPoint& row : audited.drive.points()) {
-    if (row.t_s > stretch.from_s && row.t_s < stretch.to_s) {
-      line.push_back(position(row.pose().position()));
+  for (const geometry::TrajectoryPoint& sample : audited.drive.points()) {
+    if (sample.t_s > stretch.from_s && sample.t_s < stretch.to_s) {
+      line.push_back(position(sample.pose().position()));
     }
   }
   line.push_back(position(audited.drive.at(stretch.to_s).pose().position()));
@@ -62,11 +62,6 @@ Json stretch_feature(const AuditedDrive& audited, const planning::JudgedStretch&
                   {"verdict", planning::name(stretch.verdict)},
                   {"from_s", stretch.from_s},
                   {"to_s", stretch.to_s}});
-}
-
-geometry::Ring box_outline(const map::Box2& box) {
-  const Vector2d &a = box.min_in_source, &b = box.max_in_source;
-  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
 }
 
 // The outlines of all parts; one polygon where there is one part.
@@ -94,7 +89,9 @@ void add_conflict(Json& features, const AuditedDrive& audited, const planning::C
   features.push_back(feature(outlines(parts, conflict.at.pose()), about));
   Json witness = about;
   witness["kind"] = "witness";
-  features.push_back(feature(polygon(box_outline(conflict.witness)), std::move(witness)));
+  features.push_back(feature(
+      polygon(geometry::box_ring(conflict.witness.min_in_source, conflict.witness.max_in_source)),
+      std::move(witness)));
 }
 
 }  // namespace
@@ -111,17 +108,18 @@ std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::str
   return text + "  </testsuite>\n</testsuites>\n";
 }
 
-std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
-                           const std::string& crs) {
-  const std::vector<geometry::BodyPart> parts = inflated_parts(question);
+std::string audits_geojson(const std::vector<AuditedDrive>& audits,
+                           const planning::AuditQuestion& question, const std::string& crs) {
+  const std::vector<geometry::BodyPart> parts = question.inflated_parts();
   Json features = Json::array();
   for (const AuditedDrive& audited : audits) {
     if (!audited.fault.empty()) continue;
     const geometry::Trajectory& drive = audited.drive;
-    for (const auto& stretch : judged_stretches(audited.report, drive.start_s(), drive.end_s())) {
+    for (const auto& stretch :
+         judged_stretches(audited.audit.report, drive.start_s(), drive.end_s())) {
       features.push_back(stretch_feature(audited, stretch));
     }
-    for (const planning::Conflict& conflict : audited.report.conflicts) {
+    for (const planning::Conflict& conflict : audited.audit.report.conflicts) {
       add_conflict(features, audited, conflict, parts);
     }
   }

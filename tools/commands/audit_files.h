@@ -14,7 +14,7 @@ std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::str
 
 /// A line per stretch of one verdict, and for each conflict the vehicle's outline (with its
 /// margin) where it is nearest, and the witness. Coordinates are the source's; `crs` names them.
-std::string audits_geojson(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
-                           const std::string& crs);
+std::string audits_geojson(const std::vector<AuditedDrive>& audits,
+                           const planning::AuditQuestion& question, const std::string& crs);
 
 }  // namespace roadbed::tools

@@ -48,8 +48,6 @@ void check_overlap(const std::optional<map::Box2>& roads, const std::optional<ma
                    const std::string& occupancy) {
   if (!roads || !measured || overlap(*roads, *measured)) return;
   throw map::InputError({.file = occupancy,
-                         .place = {},
-                         .element = {},
                          .found = fmt::format("covers {}", text_of(*measured)),
                          .needed = fmt::format("the map's {}", text_of(*roads)),
                          .remedy = "bring map and occupancy into one frame"});

@@ -63,7 +63,7 @@ Json judged_json(const AuditedDrive& audited) {
   Json json = Json::array();
   const geometry::Trajectory& drive = audited.drive;
   for (const planning::JudgedStretch& stretch :
-       judged_stretches(audited.report, drive.start_s(), drive.end_s())) {
+       judged_stretches(audited.audit.report, drive.start_s(), drive.end_s())) {
     json.push_back({{"from_s", stretch.from_s},
                     {"to_s", stretch.to_s},
                     {"verdict", planning::name(stretch.verdict)}});
@@ -155,7 +155,7 @@ std::string_view gravest(const std::vector<AuditedDrive>& audits) {
 std::string table_row(const AuditedDrive& audited, std::size_t width) {
   const std::string head = fmt::format("{:<{}}  {:<9}", audited.name, width, audited.outcome());
   if (!audited.fault.empty()) return fmt::format("{}  {}\n", head, audited.fault);
-  const planning::AuditReport& report = audited.report;
+  const planning::AuditReport& report = audited.audit.report;
   std::string conflict;
   if (!report.conflicts.empty()) {
     const geometry::TrajectoryPoint from = audited.drive.at(report.conflicts.front().from_s);
@@ -165,7 +165,7 @@ std::string table_row(const AuditedDrive& audited, std::size_t width) {
   std::string row = fmt::format(
       "{}  {:>11}  {:>9.3f}  {:>7.1f} %  {}", head,
       fmt::format("{}{:.3f}", report.beyond_horizon ? "over " : "", report.least_clearance_m),
-      report.least_clearance_at_s, 100.0 * report.unknown_share, conflict);
+      report.least_clearance_at_s, 100.0 * report.unknown_fraction, conflict);
   row.erase(row.find_last_not_of(' ') + 1);
   return row + "\n";
 }
@@ -173,7 +173,7 @@ std::string table_row(const AuditedDrive& audited, std::size_t width) {
 }  // namespace
 
 Json audit_json(const AuditedDrive& audited) {
-  const planning::AuditReport& report = audited.report;
+  const planning::AuditReport& report = audited.audit.report;
   Json json;
   json["verdict"] = std::string(name(report.verdict));
   json["least_clearance_m"] = report.least_clearance_m;
@@ -183,7 +183,7 @@ Json audit_json(const AuditedDrive& audited) {
   json["witness"] = report.witness ? box_json(*report.witness) : Json();
   json["obstacle"] = id_json(report.obstacle);
   json["part"] = report.witness ? Json(report.part) : Json();
-  json["unknown_share"] = report.unknown_share;
+  json["unknown_share"] = report.unknown_fraction;
   json["least_measured"] = report.least_measured;
   json["conflicts"] = Json::array();
   for (const auto& conflict : report.conflicts) {
@@ -200,7 +200,7 @@ std::string audit_text(const planning::AuditReport& report) {
   std::string text = fmt::format("{:<17}{}\n", "verdict", name(report.verdict));
   text += fmt::format("{:<17}", "least clearance") + least_text(report);
   text += fmt::format("{:<17}{:.1f} % of the space that the vehicle takes{}\n", "not measured",
-                      100.0 * report.unknown_share, demand_text(report));
+                      100.0 * report.unknown_fraction, demand_text(report));
   for (const planning::Conflict& conflict : report.conflicts) {
     text += fmt::format("{:<17}{:.3f} s to {:.3f} s: {}\n", "conflict", conflict.from_s,
                         conflict.to_s, conflict_text(conflict));
@@ -251,11 +251,11 @@ IndexedAudit indexed(const AuditedDrive& audited) {
                      .text = audited.fault,
                      .pictures = {}};
   if (!audited.fault.empty()) return index;
-  const bool is_open = audited.report.verdict == planning::Verdict::unknown ||
-                       audited.report.verdict == planning::Verdict::undecided;
+  const bool is_open = audited.audit.report.verdict == planning::Verdict::unknown ||
+                       audited.audit.report.verdict == planning::Verdict::undecided;
   if (is_open) index.tone = Tone::open;
-  index.least = least_text(audited.report);
-  index.text = audit_text(audited.report);
+  index.least = least_text(audited.audit.report);
+  index.text = audit_text(audited.audit.report);
   return index;
 }
 

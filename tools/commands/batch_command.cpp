@@ -10,11 +10,10 @@
 
 #include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
-#include "roadbed/tools/batch/counted.h"
+#include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/folder_lock.h"
-#include "roadbed/tools/batch/memory_size.h"
+#include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/batch/serve.h"
-#include "roadbed/tools/batch/stop_signal.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/output_file.h"
 

@@ -21,6 +21,8 @@ std::unique_ptr<Command> make_plan_command();
 std::unique_ptr<Command> make_control_command();
 std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_occupancy_command();
+std::unique_ptr<Command> make_occupancy_build_command();
+std::unique_ptr<Command> make_occupancy_info_command();
 std::unique_ptr<Command> make_audit_command();
 std::unique_ptr<Command> make_figures_command();
 std::unique_ptr<Command> make_report_command();

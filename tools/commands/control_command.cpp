@@ -130,8 +130,6 @@ class ControlCommand : public Command {
   control::CruiseDesign design_or_refuse() {
     if (delay_steps_ < 0 || delay_steps_ > 50) {
       throw map::InputError({.file = "control design",
-                             .place = {},
-                             .element = {},
                              .found = fmt::format("a delay of {} sampling times", delay_steps_),
                              .needed = "0 to 50",
                              .remedy = "change --delay"});
@@ -140,12 +138,8 @@ class ControlCommand : public Command {
     try {
       return control::design_cruise(options_);
     } catch (const std::invalid_argument& error) {  // the numbers are the user's
-      throw map::InputError({.file = "control design",
-                             .place = {},
-                             .element = {},
-                             .found = error.what(),
-                             .needed = {},
-                             .remedy = "change the options"});
+      throw map::InputError(
+          {.file = "control design", .found = error.what(), .remedy = "change the options"});
     }
   }
 

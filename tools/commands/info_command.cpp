@@ -192,7 +192,8 @@ class InfoCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions&) override {
     const map::RoadMap road_map = map::load_map(input_);
     Json info = info_json(road_map);
-    if (road_map.format().starts_with("CommonRoad")) {
+    const map::Format* format = map::format_of(road_map);
+    if (format != nullptr && format->name == "CommonRoad") {
       info["scenario"] = scenario_counts(map::read_file(input_), input_.string());
     }
     if (verify_) info["verified"] = verified_json(map::verify_compiled_map(input_));

@@ -15,15 +15,14 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/batch/buffered_output.h"
-#include "roadbed/tools/batch/counted.h"
+#include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
-#include "roadbed/tools/batch/run_job.h"
+#include "roadbed/tools/batch/job_runner.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/od_csv.h"
 #include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/points_csv.h"
 
 namespace roadbed::tools::inline commands {
 namespace {

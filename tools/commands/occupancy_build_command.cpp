@@ -11,12 +11,14 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/clouds/cloud_filter.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/clouds/sensor_poses.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tile_builder.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
+#include "roadbed/map/occupancy/octree/tree_origin.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/commands/occupancy_parts.h"
 #include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
@@ -64,11 +66,12 @@ class OccupancyBuildCommand : public Command {
         .positive();
     arguments
         .add("--remove-seen-through", remove_seen_through_,
-             "Take away what moved: a cell with points counts as free if at least so many clouds, "
-             "and more clouds than have a point in it, have a ray across it and no point in it. "
-             "No matter in which order, so that what was there only at first or last goes as well. "
-             "Thin things, edges, and surfaces that rays graze go too, the sooner the fewer clouds "
-             "are asked for: audits over such a file say so")
+             "Remove dynamic objects: a cell with points counts as free if at least so "
+             "many clouds, and more clouds than have a point in it, have a ray across it "
+             "and no point in it. No matter in which order, so that what was there only "
+             "at first or last goes as well. Thin things, edges, and surfaces that rays "
+             "graze go too, the sooner the fewer clouds are asked for: audits over such a "
+             "file say so")
         .within(1, 255)
         .excludes(
             arguments.flag("--no-sticky", no_sticky_,
@@ -127,7 +130,8 @@ class OccupancyBuildCommand : public Command {
     double resolution_m;
   };
 
-  static void print_removed(std::ostream& err, const std::optional<map::SeenThrough>& removed) {
+  static void print_removed(std::ostream& err,
+                            const std::optional<map::SeeThroughRemoval>& removed) {
     if (!removed) return;
     fmt::print(err, "{} cells with points count as free: {} clouds or more saw through them\n",
                removed->cells, removed->clouds);
@@ -175,7 +179,6 @@ class OccupancyBuildCommand : public Command {
       return cloud;
     }
     throw map::InputError({.file = clouds_[i].string(),
-                           .place = {},
                            .element = "--tiles",
                            .found = "is an octree",
                            .needed = "point clouds",
@@ -209,7 +212,6 @@ class OccupancyBuildCommand : public Command {
   // Each point would have to be put aside by itself.
   [[noreturn]] static void refuse_log_odds(const map::PointCloud& cloud) {
     throw map::InputError({.file = cloud.name,
-                           .place = {},
                            .element = "--no-sticky with --tiles",
                            .found = "each point is a scan with a sensor position of its own",
                            .needed = "one position for the cloud",
@@ -218,7 +220,6 @@ class OccupancyBuildCommand : public Command {
 
   [[noreturn]] void refuse_crs(const map::PointCloud& cloud, const std::string& crs) const {
     throw map::InputError({.file = cloud.name,
-                           .place = {},
                            .element = "CRS",
                            .found = fmt::format("\"{}\"", cloud.crs),
                            .needed = fmt::format("\"{}\" as {} has", crs, clouds_[0].string()),
@@ -264,8 +265,6 @@ class OccupancyBuildCommand : public Command {
     std::vector<Eigen::Isometry3d> poses = map::read_sensor_poses(poses_file_);
     if (poses.size() == clouds_.size()) return poses;
     throw map::InputError({.file = poses_file_.string(),
-                           .place = {},
-                           .element = {},
                            .found = fmt::format("holds {} poses", poses.size()),
                            .needed = fmt::format("one for each of {} clouds", clouds_.size()),
                            .remedy = "give as many clouds as poses, in the same order"});
@@ -274,15 +273,12 @@ class OccupancyBuildCommand : public Command {
   map::OccupancyMap convert(const std::string& bytes, const std::filesystem::path& file) const {
     if (clouds_.size() > 1) {
       throw map::InputError({.file = file.string(),
-                             .place = {},
-                             .element = {},
                              .found = "is an octree beside other files",
                              .needed = "one octree alone, or point clouds",
                              .remedy = "give the clouds that the octree was built from"});
     }
     if (remove_seen_through_ > 0) {
       throw map::InputError({.file = file.string(),
-                             .place = {},
                              .element = "--remove-seen-through",
                              .found = "is an octree, which does not say how often a cell was hit",
                              .needed = "point clouds",
@@ -308,7 +304,6 @@ class OccupancyBuildCommand : public Command {
   static void check_is_one_scan(const map::PointCloud& cloud) {
     if (cloud.scans.empty()) return;
     throw map::InputError({.file = cloud.name,
-                           .place = {},
                            .element = "sensor",
                            .found = "has a position for each point",
                            .needed = "one for the whole cloud, to filter it",

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/commands/occupancy_parts.h"
 
 namespace roadbed::tools::inline commands {
 namespace {

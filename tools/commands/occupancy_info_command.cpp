@@ -6,10 +6,10 @@
 #include <string>
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/commands/occupancy_parts.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
@@ -46,7 +46,7 @@ struct Space {
   }
 };
 
-Json seen_through_json(const std::optional<map::SeenThrough>& removed) {
+Json seen_through_json(const std::optional<map::SeeThroughRemoval>& removed) {
   if (!removed) return {};
   return {{"clouds", removed->clouds}, {"removed_cells", removed->cells}};
 }

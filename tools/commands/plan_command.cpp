@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "roadbed/planning/behaviour/planned_path.h"
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"

@@ -9,7 +9,8 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/reach.h"
+#include "roadbed/planning/route/isochrone.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/route_output.h"
@@ -80,7 +81,7 @@ class ReachCommand : public Command {
       fmt::print(streams.err, "roadbed: nothing can be reached: {}\n", fault);
       return Exit::failed;
     }
-    const auto reached = planning::reach(router, from.for_route(), limit.value);
+    const auto reached = planning::isochrone(router, from.for_route(), limit.value);
     const char* unit = limit.measure == planning::RouteCost::time ? "s" : "m";
     if (!output_.empty()) write(road_map, reached, unit);
     print(streams, road_map, reached, unit);

@@ -11,7 +11,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/reference/line_driving.h"
 #include "roadbed/planning/reference/reference_line.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/way_point_line.h"

@@ -15,7 +15,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -43,8 +43,6 @@ void collect(const nlohmann::json& value, const std::string& name, Metrics& metr
 
 [[noreturn]] void refuse_run(const fs::path& file, const std::string& found) {
   throw map::InputError({.file = file.string(),
-                         .place = {},
-                         .element = {},
                          .found = found,
                          .needed = "the metrics.json of a drive, or its folder",
                          .remedy = "drive with `roadbed simulate`"});

@@ -7,14 +7,15 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/route/hierarchy_search.h"
-#include "roadbed/planning/route/route_obstacle.h"
+#include "roadbed/planning/route/no_route_explanation.h"
 #include "roadbed/planning/route/route_solver.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/route_output.h"
 #include "roadbed/tools/files/csv.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/od_csv.h"
+#include "roadbed/tools/files/points_csv.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -85,14 +86,14 @@ class Batch {
     in_threads(rows.size(), options_.threads, make,
                [&](planning::HierarchySearch& search, std::size_t i) {
                  if (!rows[i].fault.empty()) return;
-                 const auto end = arrive_at(solver_.graph(), solver_.rules(), *rows[i].to_place);
+                 const auto end = arrive_at(solver_.graph(), solver_.model(), *rows[i].to_place);
                  goals[i] = search.climb(end.seeds, true);
                });
     std::vector<Cell> cells(rows.size() * rows.size());
     in_threads(rows.size(), options_.threads, make,
                [&](planning::HierarchySearch& search, std::size_t i) {
                  if (!rows[i].fault.empty()) return;
-                 const auto end = leave_from(solver_.graph(), solver_.rules(), *rows[i].from_place);
+                 const auto end = leave_from(solver_.graph(), solver_.model(), *rows[i].from_place);
                  const planning::ClimbedSpace start = search.climb(end.seeds, false);
                  for (std::size_t j = 0; j < rows.size(); ++j) {
                    if (!rows[j].fault.empty()) continue;
@@ -107,7 +108,7 @@ class Batch {
   /// What each thread has for itself.
   struct Own {
     planning::HierarchySearch search;
-    std::optional<planning::ObstacleFinder> obstacles;
+    std::optional<planning::NoRouteExplainer> obstacles;
   };
 
   Cell answer(Own& own, const Row& row) const {
@@ -147,8 +148,8 @@ class Batch {
     if (!options_.json) return cell;
     if (!own.obstacles) own.obstacles.emplace(road_map_, solver_);
     planning::RouteAnswer answer;
-    answer.obstacle = own.obstacles->find(from, to);
-    answer.reason = describe(road_map_, from, to, *answer.obstacle);
+    answer.explanation = own.obstacles->find(from, to);
+    answer.reason = describe(road_map_, from, to, *answer.explanation);
     cell.json = with_row(no_route_json(road_map_, answer), row);
     return cell;
   }
@@ -161,7 +162,7 @@ class Batch {
   Cell matrix_cell(const Row& from, const Row& to, const planning::ClimbedSpace& start,
                    const planning::ClimbedSpace& goal) const {
     planning::Ticks ticks = cost_between(start, goal);
-    const auto direct = direct_way(solver_.rules(), *from.from_place, *to.to_place);
+    const auto direct = direct_way(solver_.model(), *from.from_place, *to.to_place);
     if (direct) ticks = std::min(ticks, direct->cost);
     const planning::RouteCost measure = solver_.options().cost;
     const double cost = static_cast<double>(ticks) / planning::ticks_per_unit(measure);

@@ -24,7 +24,7 @@ struct BatchAnswer {
 /// Routes between the pairs of a CSV file: a header line that names the columns `from` and `to`
 /// (others are ignored), then a row per pair, places as on the command line, in quotes where they
 /// hold commas. Rows that cannot be used get an answer, too: what is wrong with them. By the
-/// hierarchy where there are many, see planning/README.md.
+/// hierarchy where there are many, see planning/route/README.md.
 /// @throws InputError if the file is missing, has no such header or no row at all.
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const RouteBatchOptions& options);

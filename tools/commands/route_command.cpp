@@ -7,8 +7,8 @@
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/route/alternatives.h"
-#include "roadbed/planning/route/route.h"
 #include "roadbed/planning/route/route_area.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/route_batch.h"

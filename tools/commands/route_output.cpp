@@ -1,11 +1,12 @@
 #include "roadbed/tools/commands/route_output.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/files/json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "roadbed/map/drawing/svg_canvas.h"
+#include "roadbed/map/drawing/svg.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/index/road_map_index.h"
 #include "roadbed/planning/route/guidance.h"
@@ -174,20 +175,21 @@ Json route_json(const map::RoadMap& road_map, const planning::Route& route) {
 
 Json no_route_json(const map::RoadMap& road_map, const planning::RouteAnswer& answer) {
   Json json = {{"found", false}, {"reason", answer.reason}, {"failed_part", answer.failed_part}};
-  if (!answer.obstacle) return json;
-  const planning::RouteObstacle& obstacle = *answer.obstacle;
+  if (!answer.explanation) return json;
+  const planning::NoRouteExplanation& explanation = *answer.explanation;
   const auto lane_name = [&](const std::optional<map::LaneId>& lane) {
     return lane ? Json(road_map.lane(*lane).name) : Json();
   };
-  json["lanes_from_start"] = obstacle.lanes_from_start;
-  json["lanes_to_goal"] = obstacle.lanes_to_goal;
-  json["gap_m"] = obstacle.gap_from ? Json(obstacle.gap_m) : Json();
-  json["gap_from_lane"] = lane_name(obstacle.gap_from);
-  json["gap_to_lane"] = lane_name(obstacle.gap_to);
+  json["lanes_from_start"] = explanation.lanes_from_start;
+  json["lanes_to_goal"] = explanation.lanes_to_goal;
+  json["gap_m"] = explanation.gap_from ? Json(explanation.gap_m) : Json();
+  json["gap_from_lane"] = lane_name(explanation.gap_from);
+  json["gap_to_lane"] = lane_name(explanation.gap_to);
   json["barriers"] = Json::array();
-  for (const auto barrier : obstacle.barriers) json["barriers"].push_back(planning::name(barrier));
-  json["blocked_from_lane"] = lane_name(obstacle.blocked_from);
-  json["blocked_to_lane"] = lane_name(obstacle.blocked_to);
+  for (const auto barrier : explanation.blocking_rules)
+    json["barriers"].push_back(planning::name(barrier));
+  json["blocked_from_lane"] = lane_name(explanation.blocked_from);
+  json["blocked_to_lane"] = lane_name(explanation.blocked_to);
   return json;
 }
 
@@ -307,8 +309,6 @@ void check_suffix(const std::filesystem::path& output, const std::vector<std::st
   const std::string suffix = output.extension().string();
   if (std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end()) return;
   throw map::InputError({.file = output.string(),
-                         .place = {},
-                         .element = {},
                          .found = fmt::format("the suffix \"{}\" names no format", suffix),
                          .needed = fmt::format("{}", fmt::join(suffixes, ", ")),
                          .remedy = "rename the output"});

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "roadbed/geometry/polygons/polygon.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 
 namespace roadbed::tools::inline commands {

@@ -4,12 +4,14 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/formats.h"
 
 namespace roadbed::tools::inline commands {
 
 nlohmann::ordered_json scenario_counts(const std::string& bytes, const std::string& name) {
   namespace commonroad = map::commonroad;
-  if (!commonroad::holds_scenario(bytes)) return nullptr;
+  const map::Format* format = map::format_of(bytes);
+  if (format == nullptr || format->name != "CommonRoad") return nullptr;
   const commonroad::Scenario scenario = commonroad::parse_scenario(bytes, name);
   const auto count = [&](commonroad::ObstacleRole role) {
     return std::count_if(scenario.obstacles.begin(), scenario.obstacles.end(),

@@ -65,8 +65,6 @@ std::vector<Row> rows_of(const fs::path& folder) {
   const auto twice = std::ranges::adjacent_find(rows, {}, stem);
   if (twice != rows.end()) {
     throw map::InputError({.file = folder.string(),
-                           .place = {},
-                           .element = {},
                            .found = "two scenarios of the name " + twice->file.stem().string(),
                            .needed = "names that differ, not only in their suffix",
                            .remedy = "rename one"});
@@ -221,8 +219,6 @@ class SimulateCommand : public Command {
     std::vector<Row> rows = rows_of(scenario_file_);
     if (rows.empty()) {
       throw map::InputError({.file = scenario_file_.string(),
-                             .place = {},
-                             .element = {},
                              .found = "no scenario",
                              .needed = "files that end in .json or .xml",
                              .remedy = "give another folder"});

@@ -118,7 +118,6 @@ WayPointLine::Table WayPointLine::table(double step_m, double max_move_m) const 
                    step_m);
   } catch (const std::invalid_argument& unusable) {
     throw map::InputError({.file = file_.string(),
-                           .place = {},
                            .element = "way-points",
                            .found = fmt::format("make no line: {}", unusable.what()),
                            .needed =

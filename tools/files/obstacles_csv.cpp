@@ -68,51 +68,47 @@ class ObstacleTable {
                              rows.back().t_s, rows[rows.size() - 2].t_s, id),
                  "increasing times of each id");
     }
-    planning::Obstacle& box = boxes_[known->second];
+    planning::ObstacleInSource& box = boxes_[known->second];
     box.length_m = std::max(box.length_m, number_in(row, places, kLength));
     box.width_m = std::max(box.width_m, number_in(row, places, kWidth));
   }
 
-  std::vector<planning::MovingObstacle> take() {
-    std::vector<planning::MovingObstacle> obstacles;
+  std::vector<planning::ObstacleInSource> take() {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      boxes_[i].motion = geometry::Trajectory(std::move(rows_[i]));
-      planning::MovingObstacle obstacle{.obstacle = std::move(boxes_[i])};
-      if (!obstacle.obstacle.is_static()) {
-        obstacle.from_s = obstacle.obstacle.motion.start_s();
-        obstacle.to_s = obstacle.obstacle.motion.end_s();
+      planning::ObstacleInSource& obstacle = boxes_[i];
+      obstacle.motion = geometry::Trajectory(std::move(rows_[i]));
+      if (!obstacle.is_static()) {
+        obstacle.validity = {obstacle.motion.start_s(), obstacle.motion.end_s()};
       }
-      obstacles.push_back(std::move(obstacle));
     }
-    return obstacles;
+    return std::move(boxes_);
   }
 
  private:
   std::map<std::string, std::size_t> number_of_;
-  std::vector<planning::Obstacle> boxes_;
+  std::vector<planning::ObstacleInSource> boxes_;
   std::vector<std::vector<geometry::TrajectoryPoint>> rows_;
 };
 
 }  // namespace
 
-std::vector<planning::MovingObstacle> parse_obstacles_csv(std::string_view bytes,
-                                                          const std::string& name) {
+std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view bytes,
+                                                            const std::string& name) {
   CsvReader table(bytes, name);
   const Places places = places_of_columns(table);
   ObstacleTable gathered;
   while (table.next_row()) gathered.add(table, places);
-  std::vector<planning::MovingObstacle> obstacles = gathered.take();
+  std::vector<planning::ObstacleInSource> obstacles = gathered.take();
   if (obstacles.empty()) table.refuse("row", "there is none", "at least one below the header");
   return obstacles;
 }
 
-std::string obstacles_text(const std::vector<planning::MovingObstacle>& obstacles) {
+std::string obstacles_text(const std::vector<planning::ObstacleInSource>& obstacles) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  for (const planning::MovingObstacle& moving : obstacles) {
-    const planning::Obstacle& box = moving.obstacle;
-    fmt::format_to(out, "{},{},{},{},{}\n", box.id, box.length_m, box.width_m, moving.from_s,
-                   moving.to_s);
+  for (const planning::ObstacleInSource& box : obstacles) {
+    fmt::format_to(out, "{},{},{},{},{}\n", box.id, box.length_m, box.width_m, box.validity.from_s,
+                   box.validity.to_s);
     for (const auto& row : box.motion.points()) {
       fmt::format_to(out, "{},{},{},{}\n", row.t_s, row.x_m, row.y_m, row.heading_rad);
     }

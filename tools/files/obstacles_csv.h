@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::tools::inline files {
 
@@ -14,10 +14,10 @@ namespace roadbed::tools::inline files {
 /// linearly, the shorter way round. It is there from its first to its last row; one of a single row
 /// stands for ever. Where its size changes the largest counts. Obstacles come by their first row.
 /// @throws InputError naming line and column.
-std::vector<planning::MovingObstacle> parse_obstacles_csv(std::string_view bytes,
-                                                          const std::string& name);
+std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view bytes,
+                                                            const std::string& name);
 
 /// All that is known of obstacles, so that equal texts mean equal obstacles.
-std::string obstacles_text(const std::vector<planning::MovingObstacle>& obstacles);
+std::string obstacles_text(const std::vector<planning::ObstacleInSource>& obstacles);
 
 }  // namespace roadbed::tools

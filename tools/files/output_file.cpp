@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -9,18 +10,14 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace roadbed::tools::inline files {
 namespace {
 
 [[noreturn]] void refuse_output(const std::filesystem::path& file, const std::string& found,
                                 const std::string& remedy) {
-  throw OutputError({.file = file.string(),
-                     .place = {},
-                     .element = {},
-                     .found = found,
-                     .needed = {},
-                     .remedy = remedy});
+  throw OutputError({.file = file.string(), .found = found, .remedy = remedy});
 }
 
 [[noreturn]] void refuse_write(const std::filesystem::path& file) {
@@ -57,6 +54,24 @@ void sync_folder(const std::filesystem::path& folder) {
     return;  // the file itself is synced; some systems refuse_output to open folders
   ::fsync(descriptor);
   ::close(descriptor);
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+  throw OutputError({.file = file.string(),
+                     .found = std::string("cannot be written: ") + std::strerror(errno),
+                     .remedy = "free some space and run again: what is done stays done"});
+}
+
+// Returns how much of the bytes was written.
+std::size_t write_all(int descriptor, std::string_view bytes) {
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t more = ::write(descriptor, bytes.data() + written, bytes.size() - written);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) break;
+    written += static_cast<std::size_t>(more);
+  }
+  return written;
 }
 
 }  // namespace
@@ -141,6 +156,54 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
   OutputFile output(file);
   output.write(0, bytes);
   output.commit();
+}
+
+void BufferedOutput::add(std::string_view bytes) {
+  constexpr std::size_t piece = std::size_t{1} << 20;
+  buffer_ += bytes;
+  if (buffer_.size() >= piece) flush();
+}
+
+void BufferedOutput::commit() {
+  flush();
+  file_.commit();
+}
+
+void BufferedOutput::flush() {
+  file_.write(written_, buffer_);
+  written_ += buffer_.size();
+  buffer_.clear();
+}
+
+AppendedFile::AppendedFile(std::filesystem::path file) : file_(std::move(file)) {}
+
+AppendedFile::~AppendedFile() {
+  if (descriptor_ < 0) return;
+  ::fsync(descriptor_);
+  ::close(descriptor_);
+}
+
+void AppendedFile::open() {
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  struct stat status {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) refuse(file_);
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+std::uint64_t AppendedFile::append(std::string_view line) {
+  if (descriptor_ < 0) open();
+  const std::string bytes = std::string(line) + '\n';
+  const std::size_t written = write_all(descriptor_, bytes);
+  if (written < bytes.size()) {
+    const int cause = errno;
+    // What is left of it if this fails too is no whole line, and passed over by readers.
+    if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) size_ += written;
+    errno = cause;
+    refuse(file_);
+  }
+  const std::uint64_t begin = size_;
+  size_ += bytes.size();
+  return begin;
 }
 
 }  // namespace roadbed::tools

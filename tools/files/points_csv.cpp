@@ -1,5 +1,7 @@
 #include "roadbed/tools/files/points_csv.h"
 
+#include <fmt/format.h>
+
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/csv.h"
 
@@ -29,6 +31,26 @@ std::vector<Eigen::Vector2d> parse_points_csv(std::string_view bytes, const std:
 
 std::vector<Eigen::Vector2d> read_points_csv(const std::filesystem::path& file) {
   return parse_points_csv(map::read_file(file), file.string());
+}
+
+std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name) {
+  CsvReader table(bytes, name);
+  const std::size_t from = table.column("from", "from,to"), to = table.column("to", "from,to");
+  std::vector<OdRow> rows;
+  while (table.next_row()) {
+    const std::vector<std::string>& fields = table.fields();
+    OdRow& row = rows.emplace_back();
+    row.line = table.line();
+    if (fields.size() == table.width()) {
+      row.from = fields[from];
+      row.to = fields[to];
+    } else {
+      row.fault = fmt::format("{} fields, the header has {}; put places with commas in quotes",
+                              fields.size(), table.width());
+    }
+  }
+  if (rows.empty()) table.refuse("row", "there is none", "a pair a row below the header");
+  return rows;
 }
 
 }  // namespace roadbed::tools

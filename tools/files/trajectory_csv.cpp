@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/csv.h"
-#include "roadbed/tools/files/drive_plausibility.h"
 
 namespace roadbed::tools::inline files {
 namespace {
@@ -72,6 +74,103 @@ void check_plausible(const std::vector<TrajectoryPoint>& points,
                          .remedy = fault->remedy});
 }
 
+using Eigen::Vector2d;
+
+double step_m(const TrajectoryPoint& from, const TrajectoryPoint& to) {
+  const double dx_m = to.x_m - from.x_m, dy_m = to.y_m - from.y_m;
+  return std::sqrt(dx_m * dx_m + dy_m * dy_m);
+}
+
+// The shorter way round.
+double turn_rad(const TrajectoryPoint& from, const TrajectoryPoint& to) {
+  const double turned_rad = std::abs(to.heading_rad - from.heading_rad);
+  if (turned_rad <= std::numbers::pi) return turned_rad;
+  return std::abs(std::remainder(turned_rad, 2.0 * std::numbers::pi));
+}
+
+std::optional<ImplausibleRow> impossible_step(const std::vector<TrajectoryPoint>& rows) {
+  constexpr double fastest_mps = 150.0, noise_m = 1.0, fastest_radps = 5.0, noise_rad = 0.5;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double took_s = rows[i].t_s - rows[i - 1].t_s, way_m = step_m(rows[i - 1], rows[i]);
+    const double turned_rad = turn_rad(rows[i - 1], rows[i]);
+    if (way_m > fastest_mps * took_s + noise_m) {
+      return ImplausibleRow{i, "columns x_m, y_m",
+                            fmt::format("{:.6g} m in {:.3g} s from the row before", way_m, took_s),
+                            fmt::format("steps that a vehicle makes, under {} m/s", fastest_mps),
+                            "remove the outlier, or cut the drive there"};
+    }
+    if (turned_rad > fastest_radps * took_s + noise_rad) {
+      return ImplausibleRow{
+          i, "column heading_rad",
+          fmt::format("turns by {:.3g} rad in {:.3g} s from the row before", turned_rad, took_s),
+          fmt::format("the heading of the body in radians, which turns by less than {} rad/s",
+                      fastest_radps),
+          "give radians, and the body's heading where it backs up too"};
+    }
+  }
+  return std::nullopt;
+}
+
+/// How far headings are off the path driven, in the mean over pieces of a metre, forwards or
+/// backwards.
+class HeadingError {
+ public:
+  explicit HeadingError(double rad_per_unit) : rad_per_unit_(rad_per_unit) {}
+
+  void add(const TrajectoryPoint& from, const TrajectoryPoint& to) {
+    const Vector2d axis = axis_of(from) + axis_of(to);
+    const double way_rad = std::atan2(to.y_m - from.y_m, to.x_m - from.x_m);
+    sum_rad_ +=
+        std::abs(std::remainder(std::atan2(axis.y(), axis.x()) - way_rad, std::numbers::pi));
+    count_ += 1.0;
+  }
+  double mean_rad() const { return count_ > 0.0 ? sum_rad_ / count_ : 0.0; }
+
+ private:
+  Vector2d axis_of(const TrajectoryPoint& row) const {
+    const double heading_rad = rad_per_unit_ * row.heading_rad;
+    return {std::cos(heading_rad), std::sin(heading_rad)};
+  }
+
+  double rad_per_unit_, sum_rad_ = 0.0, count_ = 0.0;
+};
+
+// The first row at least a metre from another, none if there is none.
+std::optional<std::size_t> metre_after(const std::vector<TrajectoryPoint>& rows, std::size_t from) {
+  constexpr double piece_m = 1.0;
+  for (std::size_t i = from + 1; i < rows.size(); ++i) {
+    if (step_m(rows[from], rows[i]) >= piece_m) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<ImplausibleRow> headings_in_degrees(const std::vector<TrajectoryPoint>& rows) {
+  // Headings of over a turn are seldom radians: less of an error speaks against them.
+  constexpr double fits_rad = 0.1, off_rad = 0.12, off_beyond_a_turn_rad = 0.04, times_worse = 3.0;
+  HeadingError as_radians(1.0), as_degrees(geometry::kRadiansPerDegree);
+  std::size_t largest = 0, from = 0;
+  for (auto to = metre_after(rows, from); to; to = metre_after(rows, from)) {
+    as_radians.add(rows[from], rows[*to]);
+    as_degrees.add(rows[from], rows[*to]);
+    from = *to;
+  }
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (std::abs(rows[i].heading_rad) > std::abs(rows[largest].heading_rad)) largest = i;
+  }
+  const double fit_rad = as_degrees.mean_rad(), error_rad = as_radians.mean_rad();
+  const bool is_over_a_turn = std::abs(rows[largest].heading_rad) > 2.0 * std::numbers::pi;
+  const double least_rad = is_over_a_turn ? off_beyond_a_turn_rad : off_rad;
+  if (fit_rad > fits_rad || error_rad < least_rad || error_rad < times_worse * fit_rad) {
+    return std::nullopt;
+  }
+  return ImplausibleRow{
+      largest, "column heading_rad",
+      fmt::format("{:g} looks like degrees: as such the headings fit the way driven, as radians "
+                  "they are {:.2f} rad off",
+                  rows[largest].heading_rad, error_rad),
+      "radians", "divide the headings by 57.29577951308232"};
+}
+
 }  // namespace
 
 geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::string& name) {
@@ -114,6 +213,39 @@ std::string write_trajectory_csv(const geometry::Trajectory& drive) {
   }
   fmt::format_to(out, "\n");
   return fmt::to_string(text);
+}
+
+// Degrees turn by impossible steps as well, and are the better word for it.
+std::optional<ImplausibleRow> implausible_row(const std::vector<TrajectoryPoint>& rows) {
+  if (auto degrees = headings_in_degrees(rows)) return degrees;
+  return impossible_step(rows);
+}
+
+std::string curvature_note(const geometry::Trajectory& drive, const geometry::VehicleShape& shape) {
+  constexpr double beyond = 1.02, least_turn_rad = 0.05;
+  const double most_per_m = std::tan(shape.max_steering_rad) / shape.wheelbase_m;
+  const auto& rows = drive.points();
+  double worst_per_m = 0.0, at_s = 0.0;
+  std::size_t from = 0;
+  double way_m = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    way_m += step_m(rows[i - 1], rows[i]);
+    const double turned_rad = std::abs(rows[i].heading_rad - rows[from].heading_rad);
+    const bool is_on_the_spot = turned_rad > most_per_m * beyond && way_m < 1.0;
+    if (way_m < 1.0 && !is_on_the_spot) continue;
+    const double per_m = turned_rad / std::max(way_m, 1e-3);
+    if (turned_rad > least_turn_rad && per_m > worst_per_m) {
+      worst_per_m = per_m;
+      at_s = rows[from].t_s;
+    }
+    from = i;
+    way_m = 0.0;
+  }
+  if (worst_per_m <= beyond * most_per_m) return {};
+  return fmt::format(
+      "at {:.3f} s the drive bends by {:.3g} 1/m, and the vehicle by {:.3g} 1/m at "
+      "most",
+      at_s, worst_per_m, most_per_m);
 }
 
 }  // namespace roadbed::tools

@@ -11,7 +11,7 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline files {
 namespace {
@@ -191,7 +191,6 @@ std::vector<BodyPart> Vehicle::parts(double from_height_m) const {
     if (is_height_of_part(part.from_height_m, part.to_height_m)) continue;
     throw map::InputError(
         {.file = "vehicle",
-         .place = {},
          .element = part.name,
          .found = fmt::format("ends {} m above the ground", part.to_height_m),
          .needed = fmt::format("{} m more at least than where it begins, {} m, by --from-height "

@@ -7,7 +7,7 @@
 
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline files {
 

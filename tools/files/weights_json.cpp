@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline files {
 namespace {

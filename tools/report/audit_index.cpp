@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/tools/report/escape.h"
+#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/tools/report/page_parts.h"
 
 namespace roadbed::tools::inline report {
@@ -30,18 +30,18 @@ std::string_view css_of(Tone tone) {
 std::string row(const IndexedAudit& audit, std::size_t number) {
   return fmt::format(
       "<tr><td><a href=\"#drive-{}\">{}</a></td><td class=\"{}\">{}</td><td>{}</td></tr>\n", number,
-      escape_markup(audit.name), css_of(audit.tone), escape_markup(audit.outcome),
-      escape_markup(audit.least));
+      map::html_text(audit.name), css_of(audit.tone), map::html_text(audit.outcome),
+      map::html_text(audit.least));
 }
 
 std::string article(const IndexedAudit& audit, std::size_t number) {
   std::string html =
       fmt::format("<article class=\"card\" id=\"drive-{}\"><h2>{}</h2>\n<pre>{}</pre>\n", number,
-                  escape_markup(audit.name), escape_markup(audit.text));
+                  map::html_text(audit.name), map::html_text(audit.text));
   if (!audit.pictures.empty()) html += "<div class=\"pictures\">\n";
   for (const ReportPicture& picture : audit.pictures) {
     html += fmt::format("<figure>{}<figcaption>{:.2f} s <span>{}</span></figcaption></figure>\n",
-                        picture.svg, picture.t_s, escape_markup(picture.text));
+                        picture.svg, picture.t_s, map::html_text(picture.text));
   }
   if (!audit.pictures.empty()) html += "</div>\n";
   return html + "</article>\n";
@@ -79,7 +79,7 @@ std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std:
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{0}</title>\n"
       "<style>\n{1}{2}</style>\n</head>\n<body>\n<header><div class=\"name\"><h1>{0}</h1>"
       "<p class=\"scenario\">against {3}: {4}</p></div></header>\n<main>\n",
-      title, kPageCss, kIndexCss, escape_markup(occupancy), escape_markup(counts_text(audits)));
+      title, kPageCss, kIndexCss, map::html_text(occupancy), map::html_text(counts_text(audits)));
   html +=
       "<section class=\"card\"><table class=\"index\"><thead><tr><th>drive</th><th>verdict</th>"
       "<th>least clearance</th></tr></thead><tbody>\n";
@@ -87,7 +87,7 @@ std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std:
   html += "</tbody></table></section>\n";
   for (std::size_t i = 0; i < audits.size(); ++i) html += article(audits[i], i + 1);
   return html + fmt::format("</main>\n<footer><p>Made by {}</p></footer>\n</body>\n</html>\n",
-                            escape_markup(version));
+                            map::html_text(version));
 }
 
 }  // namespace roadbed::tools

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "roadbed/map/drawing/svg.h"
 #include "roadbed/tools/report/close_up.h"
-#include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -41,31 +41,19 @@ constexpr std::string_view kAuditStyle = R"(<style>
 </style>
 )";
 
-/// The part of the plane that is shown.
-struct AuditView {
-  PictureFrame frame;
-  double height_px;
+Ring ring_of(const map::Box2& box) {
+  return geometry::box_ring(box.min_in_source, box.max_in_source);
+}
 
-  bool shows(const map::Box2& box) const {
-    const Vector2d a = frame.to_px(box.min_in_source), b = frame.to_px(box.max_in_source);
-    return b.x() >= 0.0 && a.x() <= kAuditWidth_px && a.y() >= 0.0 && b.y() <= height_px;
-  }
-};
-
-std::string body_svg(const AuditPicture& picture, const PictureFrame& frame, double t_s) {
+std::string body_svg(const AuditPicture& picture, const map::PictureFrame& frame, double t_s) {
   std::string data;
   for (const geometry::BodyPart& part : picture.parts) {
-    data += svg_ring(frame, part.outline_at(picture.drive.at(t_s).pose()));
+    data += map::svg_ring(frame, part.outline_at(picture.drive.at(t_s).pose()));
   }
   return data;
 }
 
-Ring box_ring(const map::Box2& box) {
-  const Vector2d &a = box.min_in_source, &b = box.max_in_source;
-  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
-}
-
-AuditView look_at(const AuditPicture& picture) {
+map::PictureFrame look_at(const AuditPicture& picture) {
   PictureBox box;
   for (const auto& point : picture.drive.points()) {
     for (const geometry::BodyPart& part : picture.parts) {
@@ -79,35 +67,38 @@ AuditView look_at(const AuditPicture& picture) {
   const double inner_px = std::clamp(scale * size.y(), kLeastAuditHeight_px, kMostAuditHeight_px);
   scale = std::min(scale, inner_px / size.y());
   const Vector2d middle_px(0.5 * kAuditWidth_px, kHeader_px + 0.5 * inner_px);
-  return {{box.center(), middle_px, scale}, kHeader_px + inner_px};
+  return {.centre_in_plane = box.center(),
+          .centre_px = middle_px,
+          .px_per_m = scale,
+          .size_px = {kAuditWidth_px, kHeader_px + inner_px}};
 }
 
 // Cells above one another, or in the same pixel, are drawn once.
-std::string occupied_around_audit_svg(const AuditPicture& picture, const AuditView& view) {
-  const double step_m = 0.5 / view.frame.px_per_m;
+std::string occupied_around_audit_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
+  const double step_m = 0.5 / frame.px_per_m;
   std::set<std::tuple<std::int64_t, std::int64_t, std::int64_t>> drawn;
   std::string data;
   for (const map::Box2& box : picture.occupied) {
-    if (!view.shows(box)) continue;
+    if (!frame.shows({box.min_in_source, box.max_in_source})) continue;
     const auto step = [&](double at_m) {
       return static_cast<std::int64_t>(std::llround(at_m / step_m));
     };
     const double side_m = box.max_in_source.x() - box.min_in_source.x();
     const auto place =
         std::tuple(step(box.min_in_source.x()), step(box.min_in_source.y()), step(side_m));
-    if (drawn.insert(place).second) data += svg_ring(view.frame, box_ring(box));
+    if (drawn.insert(place).second) data += map::svg_ring(frame, ring_of(box));
   }
-  return svg_path("occupied", data);
+  return map::svg_path("occupied", data);
 }
 
-std::string audited_lanes_svg(const AuditPicture& picture, const AuditView& view) {
+std::string audited_lanes_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   std::string data;
   for (const Ring& lane : picture.lanes) {
     PictureBox box;
     for (const Vector2d& point : lane) box.extend(point);
-    if (!lane.empty() && view.shows({box.min(), box.max()})) data += svg_ring(view.frame, lane);
+    if (frame.shows(box)) data += map::svg_ring(frame, lane);
   }
-  return svg_path("lane", data);
+  return map::svg_path("lane", data);
 }
 
 std::string_view look_at_time(const planning::AuditReport& report, double t_s) {
@@ -138,17 +129,17 @@ std::vector<double> audited_footprint_times(const AuditPicture& picture) {
   return times;
 }
 
-std::string drive_svg(const AuditPicture& picture, const AuditView& view) {
+std::string drive_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   std::string body, unknown, conflict;
   for (const double t_s : audited_footprint_times(picture)) {
     const std::string_view look = look_at_time(picture.report, t_s);
     std::string& data = look == "conflict" ? conflict : look == "unknown" ? unknown : body;
-    data += body_svg(picture, view.frame, t_s);
+    data += body_svg(picture, frame, t_s);
   }
   Ring axle;
   for (const auto& point : picture.drive.points()) axle.push_back(point.pose().position());
-  return svg_path("body", body) + svg_path("unknown", unknown) + svg_path("conflict", conflict) +
-         svg_path("axle", svg_line(view.frame, axle));
+  return map::svg_path("body", body) + map::svg_path("unknown", unknown) +
+         map::svg_path("conflict", conflict) + map::svg_path("axle", map::svg_line(frame, axle));
 }
 
 std::string label_of(const planning::Conflict& conflict) {
@@ -158,46 +149,35 @@ std::string label_of(const planning::Conflict& conflict) {
              : fmt::format("{:.2f} m at {:.2f} s", conflict.least_clearance_m, conflict.at.t_s);
 }
 
-std::string conflicts_svg(const AuditPicture& picture, const AuditView& view) {
+std::string conflicts_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   std::string worst, witness, labels;
   for (const planning::Conflict& conflict : picture.report.conflicts) {
-    worst += body_svg(picture, view.frame, conflict.at.t_s);
-    witness += svg_ring(view.frame, box_ring(conflict.witness));
-    labels += svg_text("over", view.frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
-                       label_of(conflict));
+    worst += body_svg(picture, frame, conflict.at.t_s);
+    witness += map::svg_ring(frame, ring_of(conflict.witness));
+    labels += map::svg_text("over", frame.to_px(conflict.witness.max_in_source) + Vector2d(5, -5),
+                            label_of(conflict));
   }
   if (picture.report.conflicts.empty() && picture.report.witness) {
-    worst += body_svg(picture, view.frame, picture.report.least_clearance_at_s);
-    witness += svg_ring(view.frame, box_ring(*picture.report.witness));
+    worst += body_svg(picture, frame, picture.report.least_clearance_at_s);
+    witness += map::svg_ring(frame, ring_of(*picture.report.witness));
   }
-  return svg_path("witness", witness) + svg_path("worst", worst) + labels;
+  return map::svg_path("witness", witness) + map::svg_path("worst", worst) + labels;
 }
 
-// The longest of 1, 2, 5 × 10ⁿ metres that takes at most 160 pixels.
-double audit_scale_bar_m(double px_per_m) {
-  double best_m = 0.01;
-  for (double power_m = 0.01; power_m < 1e6; power_m *= 10.0) {
-    for (const double length_m : {power_m, 2.0 * power_m, 5.0 * power_m}) {
-      if (length_m * px_per_m <= 160.0) best_m = length_m;
-    }
-  }
-  return best_m;
-}
-
-std::string header_svg(const AuditPicture& picture, const AuditView& view) {
+std::string header_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   const planning::AuditReport& report = picture.report;
   const std::string text = fmt::format(
       "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", name(report.verdict),
       report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
-      100.0 * report.unknown_share);
-  const double bar_m = audit_scale_bar_m(view.frame.px_per_m);
-  const double end_px = kAuditWidth_px - kMargin_px,
-               start_px = end_px - bar_m * view.frame.px_per_m;
+      100.0 * report.unknown_fraction);
+  const double bar_m = map::round_length_m(160.0 / frame.px_per_m);
+  const double end_px = kAuditWidth_px - kMargin_px, start_px = end_px - bar_m * frame.px_per_m;
   return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kAuditWidth_px,
                      kHeader_px) +
-         svg_text("", {kMargin_px, 22.0}, text) +
-         svg_text("mid", {0.5 * (start_px + end_px), 17.0}, fmt::format("{:g} m", bar_m)) +
-         svg_path("rule", fmt::format("M{} 20v5H{}v-5", svg_number(start_px), svg_number(end_px)));
+         map::svg_text("", {kMargin_px, 22.0}, text) +
+         map::svg_text("mid", {0.5 * (start_px + end_px), 17.0}, fmt::format("{:g} m", bar_m)) +
+         map::svg_path("rule", fmt::format("M{} 20v5H{}v-5", map::svg_number(start_px),
+                                           map::svg_number(end_px)));
 }
 
 constexpr double kShownClearance_m = 5.0;
@@ -215,24 +195,24 @@ std::string clearance_svg(const AuditPicture& picture, double top_px) {
   };
   std::string grid, labels, curve;
   for (int metres = 0; metres <= 5; ++metres) {
-    grid += fmt::format("M{} {}h{}", svg_number(left_px), svg_number(y_px(metres)),
-                        svg_number(wide_px));
-    labels += svg_text("small", {kMargin_px, y_px(metres) + 4.0}, fmt::format("{} m", metres));
+    grid += fmt::format("M{} {}h{}", map::svg_number(left_px), map::svg_number(y_px(metres)),
+                        map::svg_number(wide_px));
+    labels += map::svg_text("small", {kMargin_px, y_px(metres) + 4.0}, fmt::format("{} m", metres));
   }
-  curve = fmt::format("M{} {}", svg_number(left_px), svg_number(base_px));
+  curve = fmt::format("M{} {}", map::svg_number(left_px), map::svg_number(base_px));
   for (const planning::AuditReport::Sample& sample : report.profile) {
-    curve +=
-        fmt::format("L{} {}", svg_number(x_px(sample.t_s)), svg_number(y_px(sample.clearance_m)));
+    curve += fmt::format("L{} {}", map::svg_number(x_px(sample.t_s)),
+                         map::svg_number(y_px(sample.clearance_m)));
   }
-  curve += fmt::format("V{}Z", svg_number(base_px));
+  curve += fmt::format("V{}Z", map::svg_number(base_px));
   for (const double t_s : {start_s, picture.drive.end_s()}) {
-    labels += svg_text("small mid", {x_px(t_s), base_px + 17.0}, fmt::format("{:.1f} s", t_s));
+    labels += map::svg_text("small mid", {x_px(t_s), base_px + 17.0}, fmt::format("{:.1f} s", t_s));
   }
   const double least_px = x_px(report.least_clearance_at_s);
-  return svg_path("grid", grid) + svg_path("plot", curve) +
+  return map::svg_path("grid", grid) + map::svg_path("plot", curve) +
          fmt::format("<circle class=\"least\" cx=\"{}\" cy=\"{}\" r=\"4\"/>\n",
-                     svg_number(least_px), svg_number(y_px(report.least_clearance_m))) +
-         labels + svg_text("", {left_px, top_px + 18.0}, "Clearance along the drive");
+                     map::svg_number(least_px), map::svg_number(y_px(report.least_clearance_m))) +
+         labels + map::svg_text("", {left_px, top_px + 18.0}, "Clearance along the drive");
 }
 
 std::string close_up_of(const AuditPicture& picture, double top_px) {
@@ -241,29 +221,29 @@ std::string close_up_of(const AuditPicture& picture, double top_px) {
                 {picture.drive, picture.parts, picture.occupied, picture.lanes, picture.moving});
   if (pictures.empty()) return {};
   return fmt::format("<g transform=\"translate({} {}) scale(.78)\">{}</g>\n",
-                     svg_number(kPlotWidth_px + 2.0 * kMargin_px), svg_number(top_px + 6.0),
-                     pictures.front().svg);
+                     map::svg_number(kPlotWidth_px + 2.0 * kMargin_px),
+                     map::svg_number(top_px + 6.0), pictures.front().svg);
 }
 
 std::string panel_svg(const AuditPicture& picture, double top_px) {
   return fmt::format("<rect class=\"head\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     svg_number(top_px), kAuditWidth_px, kPanelHeight_px) +
+                     map::svg_number(top_px), kAuditWidth_px, kPanelHeight_px) +
          clearance_svg(picture, top_px) + close_up_of(picture, top_px);
 }
 
 }  // namespace
 
 std::string audit_svg(const AuditPicture& picture) {
-  const AuditView view = look_at(picture);
-  const std::string height = svg_number(view.height_px + kPanelHeight_px);
+  const map::PictureFrame frame = look_at(picture);
+  const std::string height = map::svg_number(frame.size_px.y() + kPanelHeight_px);
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
              "viewBox=\"0 0 {0} {1}\" role=\"img\">\n<title>Audit of a drive</title>\n{2}"
              "<rect class=\"ground\" width=\"{0}\" height=\"{1}\"/>\n",
              kAuditWidth_px, height, kAuditStyle) +
-         audited_lanes_svg(picture, view) + occupied_around_audit_svg(picture, view) +
-         drive_svg(picture, view) + conflicts_svg(picture, view) + header_svg(picture, view) +
-         panel_svg(picture, view.height_px) + "</svg>\n";
+         audited_lanes_svg(picture, frame) + occupied_around_audit_svg(picture, frame) +
+         drive_svg(picture, frame) + conflicts_svg(picture, frame) + header_svg(picture, frame) +
+         panel_svg(picture, frame.size_px.y()) + "</svg>\n";
 }
 
 }  // namespace roadbed::tools

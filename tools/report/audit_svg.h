@@ -8,7 +8,7 @@
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::tools::inline report {
 
@@ -19,7 +19,7 @@ struct AuditPicture {
   const planning::AuditReport& report;
   std::vector<map::Box2> occupied;    ///< of the height band; what is out of sight is left out
   std::vector<geometry::Ring> lanes;  ///< drivable lanes of a map; may be empty
-  std::vector<planning::MovingObstacle> moving = {};
+  std::vector<planning::ObstacleInSource> moving = {};
 };
 
 /// The drive's footprints among the occupied cells, conflicts with their witnesses in red, times

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "roadbed/map/drawing/svg.h"
+#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/tools/files/csv.h"
-#include "roadbed/tools/report/escape.h"
-#include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -20,7 +20,7 @@ using Eigen::Vector2d;
 constexpr double kChartWidth_px = 760.0, kLeft_px = 76.0, kRight_px = 20.0;
 constexpr double kTop_px = 40.0, kBottom_px = 56.0, kLegendRow_px = 20.0;
 constexpr double kChartHeight_px = 340.0;
-constexpr double kLeastPlanHeight_px = 120.0, kMostPlanHeight_px = 560.0;
+constexpr double kLeastPlanViewHeight_px = 120.0, kMostPlanViewHeight_px = 560.0;
 constexpr double kTickDistance_px = 85.0;
 
 constexpr std::string_view kChartStyle = R"(<style>
@@ -70,7 +70,7 @@ ChartView view_of(const Chart& chart) {
   view.box = Eigen::AlignedBox2d(view.box.min() - margin, view.box.max() + margin);
   if (chart.is_plan) {
     const double asked_px = view.width_px * view.box.sizes().y() / view.box.sizes().x();
-    view.height_px = std::clamp(asked_px, kLeastPlanHeight_px, kMostPlanHeight_px);
+    view.height_px = std::clamp(asked_px, kLeastPlanViewHeight_px, kMostPlanViewHeight_px);
     // What is not used of one side widens the other, so that the scale stays the same.
     Vector2d wider = view.box.sizes();
     wider.x() = std::max(wider.x(), wider.y() * view.width_px / view.height_px);
@@ -103,16 +103,16 @@ std::string ticks_svg(const ChartView& view, Eigen::Index axis) {
     const Vector2d px = view.to_px(at);
     const std::string label = fmt::format("{:.6g}", i == 0.0 ? 0.0 : i * step);
     if (axis == 0) {
-      grid += fmt::format("M{} {}v{}", svg_number(px.x()), svg_number(view.top_px),
-                          svg_number(view.height_px));
-      labels += svg_text("mid", {px.x(), view.top_px + view.height_px + 18.0}, label);
+      grid += fmt::format("M{} {}v{}", map::svg_number(px.x()), map::svg_number(view.top_px),
+                          map::svg_number(view.height_px));
+      labels += map::svg_text("mid", {px.x(), view.top_px + view.height_px + 18.0}, label);
     } else {
-      grid += fmt::format("M{} {}h{}", svg_number(kLeft_px), svg_number(px.y()),
-                          svg_number(view.width_px));
-      labels += svg_text("end", {kLeft_px - 7.0, px.y() + 4.0}, label);
+      grid += fmt::format("M{} {}h{}", map::svg_number(kLeft_px), map::svg_number(px.y()),
+                          map::svg_number(view.width_px));
+      labels += map::svg_text("end", {kLeft_px - 7.0, px.y() + 4.0}, label);
     }
   }
-  return svg_path("grid", grid) + labels;
+  return map::svg_path("grid", grid) + labels;
 }
 
 std::string stroke(const Series& series) {
@@ -123,7 +123,7 @@ std::string stroke(const Series& series) {
 }
 
 std::string mark_svg(const Series& series, const Vector2d& px) {
-  const std::string x = svg_number(px.x()), y = svg_number(px.y());
+  const std::string x = map::svg_number(px.x()), y = map::svg_number(px.y());
   switch (series.mark) {
     case Mark::dots:
       return fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3.2\" fill=\"{}\"/>", x, y,
@@ -132,7 +132,7 @@ std::string mark_svg(const Series& series, const Vector2d& px) {
       return fmt::format(
           "<rect x=\"{}\" y=\"{}\" width=\"7\" height=\"7\" fill=\"none\" "
           "stroke=\"{}\" stroke-width=\"1.5\"/>",
-          svg_number(px.x() - 3.5), svg_number(px.y() - 3.5), series.colour);
+          map::svg_number(px.x() - 3.5), map::svg_number(px.y() - 3.5), series.colour);
     default:
       return fmt::format(
           "<circle cx=\"{}\" cy=\"{}\" r=\"3.6\" fill=\"none\" stroke=\"{}\" "
@@ -163,9 +163,9 @@ std::string chart_legend_svg(const Chart& chart) {
     const double y_px = kTop_px + kLegendRow_px * static_cast<double>(i / 2);
     const Vector2d from(x_px, y_px - 4.0);
     svg += is_line(entries[i]) ? fmt::format("<path {} d=\"M{} {}h26\"/>", stroke(entries[i]),
-                                             svg_number(from.x()), svg_number(from.y()))
+                                             map::svg_number(from.x()), map::svg_number(from.y()))
                                : mark_svg(entries[i], {from.x() + 13.0, from.y()});
-    svg += svg_text("", {x_px + 34.0, y_px}, entries[i].name);
+    svg += map::svg_text("", {x_px + 34.0, y_px}, entries[i].name);
   }
   return svg;
 }
@@ -173,10 +173,10 @@ std::string chart_legend_svg(const Chart& chart) {
 std::string labels_svg(const Chart& chart, const ChartView& view) {
   const double low_px = view.top_px + view.height_px + 42.0;
   const double middle_px = view.top_px + 0.5 * view.height_px;
-  return svg_text("title", {kLeft_px, 20.0}, chart.title) +
-         svg_text("mid", {kLeft_px + 0.5 * view.width_px, low_px}, chart.x_label) +
+  return map::svg_text("title", {kLeft_px, 20.0}, chart.title) +
+         map::svg_text("mid", {kLeft_px + 0.5 * view.width_px, low_px}, chart.x_label) +
          fmt::format("<text class=\"mid\" transform=\"translate(20 {}) rotate(-90)\">{}</text>\n",
-                     svg_number(middle_px), escape_markup(chart.y_label));
+                     map::svg_number(middle_px), map::html_text(chart.y_label));
 }
 
 }  // namespace
@@ -187,11 +187,11 @@ std::string chart_svg(const Chart& chart) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\">\n{2}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      svg_number(kChartWidth_px), svg_number(height_px), kChartStyle);
+      map::svg_number(kChartWidth_px), map::svg_number(height_px), kChartStyle);
   svg += ticks_svg(view, 0) + ticks_svg(view, 1);
   svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     svg_number(kLeft_px), svg_number(view.top_px), svg_number(view.width_px),
-                     svg_number(view.height_px));
+                     map::svg_number(kLeft_px), map::svg_number(view.top_px),
+                     map::svg_number(view.width_px), map::svg_number(view.height_px));
   for (const Series& series : chart.series) svg += series_svg(view, series);
   return svg + chart_legend_svg(chart) + labels_svg(chart, view) + "</svg>\n";
 }

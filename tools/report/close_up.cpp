@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/planning/obstacles/prediction.h"
-#include "roadbed/tools/report/svg.h"
+#include "roadbed/map/drawing/svg.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -45,25 +45,18 @@ std::vector<Meeting> meetings(const planning::AuditReport& report,
   return all;
 }
 
-Ring body_outline(const map::Box2& box) {
-  const Vector2d &a = box.min_in_source, &b = box.max_in_source;
-  return {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
-}
-
-Ring body_outline(const planning::MovingObstacle& moving, double t_s) {
-  const auto corners = planning::body_around(moving.obstacle.motion.at(t_s).pose(),
-                                             moving.obstacle.length_m, moving.obstacle.width_m)
-                           .corners();
+Ring body_outline(const planning::ObstacleInSource& moving, double t_s) {
+  const auto corners = planning::rectangle_at(moving, t_s).corners();
   return {corners.begin(), corners.end()};
 }
 
 Ring thing_touched(const Meeting& meeting, const CloseUpScene& scene) {
-  for (const planning::MovingObstacle& moving : scene.moving) {
-    if (!meeting.obstacle.empty() && moving.obstacle.id == meeting.obstacle) {
+  for (const planning::ObstacleInSource& moving : scene.moving) {
+    if (!meeting.obstacle.empty() && moving.id == meeting.obstacle) {
       return body_outline(moving, meeting.at.t_s);
     }
   }
-  return body_outline(meeting.witness);
+  return geometry::box_ring(meeting.witness.min_in_source, meeting.witness.max_in_source);
 }
 
 // A part's name comes first where there are several.
@@ -101,41 +94,39 @@ std::pair<Vector2d, Vector2d> nearest_points(const Ring& a, const Ring& b) {
   return nearest;
 }
 
-bool is_seen(const PictureFrame& frame, const Ring& ring) {
+Eigen::AlignedBox2d box_around(const Ring& ring) {
   Eigen::AlignedBox2d box;
-  for (const Vector2d& point : ring) box.extend(frame.to_px(point));
-  return box.intersects(
-      Eigen::AlignedBox2d(Vector2d(0.0, 0.0), Vector2d(kPictureWidth_px, kPictureHeight_px)));
+  for (const Vector2d& point : ring) box.extend(point);
+  return box;
 }
 
-std::string rings_svg(std::string_view look, const PictureFrame& frame,
+std::string rings_svg(std::string_view look, const map::PictureFrame& frame,
                       const std::vector<Ring>& rings) {
   std::string data;
   for (const Ring& ring : rings) {
-    if (!ring.empty() && is_seen(frame, ring)) data += svg_ring(frame, ring);
+    if (frame.shows(box_around(ring))) data += map::svg_ring(frame, ring);
   }
-  return svg_path(look, data);
+  return map::svg_path(look, data);
 }
 
-std::string occupied_close_up_svg(const PictureFrame& frame, const std::vector<map::Box2>& boxes) {
+std::vector<Ring> rings_of(const std::vector<map::Box2>& boxes) {
   std::vector<Ring> rings;
   for (const map::Box2& box : boxes) {
-    Ring ring = body_outline(box);
-    if (is_seen(frame, ring)) rings.push_back(std::move(ring));
+    rings.push_back(geometry::box_ring(box.min_in_source, box.max_in_source));
   }
-  return rings_svg("up-occupied", frame, rings);
+  return rings;
 }
 
 // A line with a head at both ends, or a ring where the two overlap.
-std::string arrow_svg(const PictureFrame& frame, const Vector2d& from, const Vector2d& to) {
+std::string arrow_svg(const map::PictureFrame& frame, const Vector2d& from, const Vector2d& to) {
   const Vector2d a = frame.to_px(from), b = frame.to_px(to);
   const double length_px = (b - a).norm();
   constexpr double shortest_px = 1.0, head_px = 7.0;
   if (length_px < shortest_px) return {};
   const Vector2d along = (b - a) / length_px, across(-along.y(), along.x());
   const auto line = [](const Vector2d& p, const Vector2d& q) {
-    return fmt::format("M{} {}L{} {}", svg_number(p.x()), svg_number(p.y()), svg_number(q.x()),
-                       svg_number(q.y()));
+    return fmt::format("M{} {}L{} {}", map::svg_number(p.x()), map::svg_number(p.y()),
+                       map::svg_number(q.x()), map::svg_number(q.y()));
   };
   const double head = std::min(head_px, 0.45 * length_px);
   std::string data = line(a, b);
@@ -143,15 +134,16 @@ std::string arrow_svg(const PictureFrame& frame, const Vector2d& from, const Vec
     data += line(a, a + head * (along + side * across));
     data += line(b, b - head * (along - side * across));
   }
-  return svg_path("up-arrow", data);
+  return map::svg_path("up-arrow", data);
 }
 
 std::string scale_svg() {
   const double end_px = kPictureWidth_px - 12.0, start_px = end_px - kScale_px_per_m;
   const double y_px = kPictureHeight_px - 12.0;
-  return svg_path("up-rule", fmt::format("M{0} {2}v4H{1}v-4", svg_number(start_px),
-                                         svg_number(end_px), svg_number(y_px - 4.0))) +
-         svg_text("up-mid", {0.5 * (start_px + end_px), y_px - 7.0}, "1 m");
+  return map::svg_path("up-rule",
+                       fmt::format("M{0} {2}v4H{1}v-4", map::svg_number(start_px),
+                                   map::svg_number(end_px), map::svg_number(y_px - 4.0))) +
+         map::svg_text("up-mid", {0.5 * (start_px + end_px), y_px - 7.0}, "1 m");
 }
 
 std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
@@ -159,9 +151,10 @@ std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
   const BodyPart& part = part_of(meeting, scene);
   const Ring near_part = part.outline_at(pose), thing = thing_touched(meeting, scene);
   const auto [on_part, on_thing] = nearest_points(near_part, thing);
-  const PictureFrame frame{.centre_in_source = 0.5 * (on_part + on_thing),
-                           .centre_px = {0.5 * kPictureWidth_px, 0.5 * kPictureHeight_px},
-                           .px_per_m = kScale_px_per_m};
+  const map::PictureFrame frame{.centre_in_plane = 0.5 * (on_part + on_thing),
+                                .centre_px = {0.5 * kPictureWidth_px, 0.5 * kPictureHeight_px},
+                                .px_per_m = kScale_px_per_m,
+                                .size_px = {kPictureWidth_px, kPictureHeight_px}};
   std::vector<Ring> others;
   for (const BodyPart& other : scene.parts) {
     if (&other != &part) others.push_back(other.outline_at(pose));
@@ -171,13 +164,14 @@ std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
       "height=\"{1}\" role=\"img\"><title>{2:.2f} s: {3:.3f} m</title>\n"
       "<rect class=\"up-ground\" width=\"{0}\" height=\"{1}\"/>\n",
       kPictureWidth_px, kPictureHeight_px, meeting.at.t_s, meeting.clearance_m);
-  svg += rings_svg("up-lane", frame, scene.lanes) + occupied_close_up_svg(frame, scene.occupied);
+  svg += rings_svg("up-lane", frame, scene.lanes) +
+         rings_svg("up-occupied", frame, rings_of(scene.occupied));
   svg += rings_svg("up-other", frame, others) + rings_svg("up-part", frame, {near_part});
   svg += rings_svg("up-witness", frame, {thing});
   if (meeting.clearance_m > 0.0) svg += arrow_svg(frame, on_part, on_thing);
-  svg += svg_text("up-label", {12.0, 22.0},
-                  meeting.clearance_m > 0.0 ? fmt::format("{:.3f} m", meeting.clearance_m)
-                                            : std::string("overlap"));
+  svg += map::svg_text("up-label", {12.0, 22.0},
+                       meeting.clearance_m > 0.0 ? fmt::format("{:.3f} m", meeting.clearance_m)
+                                                 : std::string("overlap"));
   return svg + scale_svg() + "</svg>";
 }
 

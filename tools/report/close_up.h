@@ -8,7 +8,7 @@
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools::inline report {
@@ -19,7 +19,7 @@ struct CloseUpScene {
   const std::vector<geometry::BodyPart>& parts;  ///< of the vehicle as audited, with the margin
   const std::vector<map::Box2>& occupied;        ///< of the heights of the vehicle
   const std::vector<geometry::Ring>& lanes;      ///< of a map; may be empty
-  const std::vector<planning::MovingObstacle>& moving;
+  const std::vector<planning::ObstacleInSource>& moving;
 };
 
 /// A picture for each conflict, at its least clearance: the vehicle with the part that is nearest,

@@ -7,8 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "roadbed/tools/report/comfort_bounds.h"
-
 namespace roadbed::tools::inline report {
 namespace {
 
@@ -129,9 +127,83 @@ void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {
       drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen.has_value(); });
   checks.push_back(noted("largest cross-track error", cross_track.value, "m", cross_track.at_s));
   checks.push_back(noted("largest heading error", heading.value, "rad", heading.at_s));
-  checks.push_back(noted("cruise control saturated", 100.0 * drive.saturated_share, "%", {}));
+  checks.push_back(noted("cruise control saturated", 100.0 * drive.saturated_ratio, "%", {}));
   checks.push_back(noted(fmt::format("cycles without a plan, of {}", drive.cycles.size()),
                          static_cast<double>(blind), "", {}));
+}
+
+constexpr double kFarthestShown_m = 5.0;
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+
+// One value per row, from its state and what else is known of it.
+template <typename Value>
+ReportSeries series_of(const Drive& drive, std::string name, Value value) {
+  ReportSeries series{.name = std::move(name), .values = {}};
+  for (std::size_t i = 0; i < drive.samples.size(); ++i) {
+    series.values.push_back(value(drive.trajectory.points()[i], drive.samples[i]));
+  }
+  return series;
+}
+
+ReportPlot plot_of(const Drive& drive, std::string title, std::string unit,
+                   std::vector<ReportSeries> series) {
+  ReportPlot plot{.title = std::move(title),
+                  .unit = std::move(unit),
+                  .t_s = {},
+                  .series = std::move(series),
+                  .lower = {},
+                  .upper = {}};
+  for (const DriveSample& sample : drive.samples) plot.t_s.push_back(sample.t_s);
+  return plot;
+}
+
+double if_near(double distance_m) { return distance_m <= kFarthestShown_m ? distance_m : kGap; }
+
+// The audit's lower bound at a time, linear between its samples.
+double audited_m(const std::vector<planning::AuditReport::Sample>& profile, double t_s) {
+  const auto after =
+      std::ranges::lower_bound(profile, t_s, {}, &planning::AuditReport::Sample::t_s);
+  if (after == profile.end()) return kGap;
+  if (after == profile.begin()) return after->t_s > t_s ? kGap : after->clearance_m;
+  const auto before = after - 1;
+  const double share = (t_s - before->t_s) / (after->t_s - before->t_s);
+  return before->clearance_m + share * (after->clearance_m - before->clearance_m);
+}
+
+ReportPlot speed_plot(const Drive& drive) {
+  return plot_of(
+      drive, "Speed", "m/s",
+      {series_of(drive, "speed", [](const Row& p, const DriveSample&) { return p.speed_mps; }),
+       series_of(drive, "set", [](const Row&, const DriveSample& s) { return s.set_speed_mps; }),
+       series_of(drive, "limit",
+                 [](const Row&, const DriveSample& s) { return s.speed_limit_mps; })});
+}
+
+ReportPlot acceleration_plot(const Drive& drive) {
+  ReportPlot plot =
+      plot_of(drive, "Acceleration", "m/s²",
+              {series_of(drive, "along",
+                         [](const Row& p, const DriveSample&) { return p.acceleration_mps2; }),
+               series_of(drive, "asked for",
+                         [](const Row&, const DriveSample& s) { return s.command_mps2; }),
+               series_of(drive, "across", [](const Row& p, const DriveSample&) {
+                 return p.speed_mps * p.speed_mps * p.curvature_per_m;
+               })});
+  plot.lower = kLeastAcceleration_mps2;
+  plot.upper = kMostAcceleration_mps2;
+  return plot;
+}
+
+ReportPlot clearance_plot(const Drive& drive, const std::optional<planning::AuditReport>& audit) {
+  std::vector<ReportSeries> series = {
+      series_of(drive, "to obstacles",
+                [](const Row&, const DriveSample& s) { return if_near(s.clearance_m); })};
+  if (audit) {
+    series.push_back(series_of(drive, "to occupied space", [&](const Row& p, const DriveSample&) {
+      return if_near(audited_m(audit->profile, p.t_s));
+    }));
+  }
+  return plot_of(drive, "Clearance up to 5 m", "m", std::move(series));
 }
 
 }  // namespace
@@ -143,11 +215,28 @@ std::vector<ReportCheck> drive_checks(const Drive& drive,
   checks.push_back(clearance_check(drive));
   if (audit) {
     checks.push_back(audit_check(*audit));
-    checks.push_back(noted("swept area never measured", 100.0 * audit->unknown_share, "%", {}));
+    checks.push_back(noted("swept area never measured", 100.0 * audit->unknown_fraction, "%", {}));
   }
   append_motion_checks(drive, checks);
   append_notes(drive, checks);
   return checks;
+}
+
+std::vector<ReportPlot> drive_plots(const Drive& drive,
+                                    const std::optional<planning::AuditReport>& audit) {
+  return {
+      speed_plot(drive),
+      acceleration_plot(drive),
+      plot_of(drive, "Curvature", "1/m",
+              {series_of(drive, "driven",
+                         [](const Row& p, const DriveSample&) { return p.curvature_per_m; })}),
+      plot_of(drive, "Lateral error", "m",
+              {series_of(drive, "front axle",
+                         [](const Row&, const DriveSample& s) { return s.cross_track_m; })}),
+      plot_of(drive, "Heading error", "rad",
+              {series_of(drive, "heading",
+                         [](const Row&, const DriveSample& s) { return s.heading_error_rad; })}),
+      clearance_plot(drive, audit)};
 }
 
 }  // namespace roadbed::tools

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/from_drive.h"
-#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/report_page.h"
 #include "roadbed/tools/report/scene_svg.h"
 #include "roadbed/tools/simulation/closed_loop.h"
 #include "roadbed/tools/simulation/common_road_world.h"
@@ -35,7 +36,9 @@ std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice
 std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const World& world,
                                               const Drive& drive) {
   if (!world.field) return std::nullopt;
-  return planning::audit_clearance(*world.field, drive.trajectory, scenario.vehicle);
+  return planning::audit_drive(world.field, drive.trajectory,
+                               {.parts = {geometry::body_of(scenario.vehicle)}})
+      .report;
 }
 
 // As one would type it beside the inputs.
@@ -83,8 +86,6 @@ Driven drive_and_describe(const Scenario& scenario, World& world, const DriveCho
 void refuse_other_xml(const fs::path& file) {
   if (file.extension() != ".xml" || !fs::exists(file)) return;
   throw map::InputError({.file = file.string(),
-                         .place = {},
-                         .element = {},
                          .found = "no <commonRoad> element",
                          .needed = "a CommonRoad scenario",
                          .remedy = "give another file; roadbed's own scenarios end in .json"});

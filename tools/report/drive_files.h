@@ -9,7 +9,7 @@
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/simulation/drive.h"
-#include "roadbed/tools/simulation/scenario_changes.h"
+#include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline report {
 

@@ -17,21 +17,16 @@ using planning::Verdict;
 
 constexpr double kShownBelow_m = 5.0;  // more room is a gap in the plot
 
-Tone page_tone(Verdict verdict) {
-  if (verdict == Verdict::clear) return Tone::good;
-  return verdict == Verdict::conflict ? Tone::bad : Tone::open;
-}
-
 std::string thing_of(const std::string& obstacle) {
   return obstacle.empty() ? "occupied space" : "obstacle " + obstacle;
 }
 
 ReportVerdict verdict_of(const AuditReport& report) {
   if (report.beyond_horizon) {
-    return {page_tone(report.verdict), fmt::format("{}: nothing within {:.0f} m",
-                                                   name(report.verdict), report.least_clearance_m)};
+    return {tone_of(report.verdict), fmt::format("{}: nothing within {:.0f} m",
+                                                 name(report.verdict), report.least_clearance_m)};
   }
-  return {page_tone(report.verdict),
+  return {tone_of(report.verdict),
           fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}", name(report.verdict),
                       report.least_clearance_m, report.least_clearance_at_s, report.part,
                       thing_of(report.obstacle))};
@@ -72,33 +67,29 @@ std::string nearness_text(const planning::Conflict& conflict) {
                        : fmt::format("{:.2f} m from", conflict.least_clearance_m);
 }
 
-std::vector<ReportEvent> events_of_audit(const AuditReport& report) {
-  std::vector<ReportEvent> events;
+std::vector<DriveEvent> events_of_audit(const AuditReport& report) {
+  std::vector<DriveEvent> events;
   for (const planning::Conflict& conflict : report.conflicts) {
     const std::string with = fmt::format("{}, {}", thing_of(conflict.obstacle), conflict.part);
-    events.push_back({conflict.from_s, Severity::fault, "conflict begins: " + with});
+    events.push_back({conflict.from_s, EventLevel::fault, "conflict begins: " + with});
     events.push_back(
-        {conflict.at.t_s, Severity::fault, fmt::format("{} {}", nearness_text(conflict), with)});
+        {conflict.at.t_s, EventLevel::fault, fmt::format("{} {}", nearness_text(conflict), with)});
   }
   for (const planning::UnobservedStretch& stretch : report.unobserved) {
     events.push_back(
-        {stretch.from_s, Severity::fault,
+        {stretch.from_s, EventLevel::fault,
          fmt::format("nothing was measured near the {}: {}", stretch.part, stretch.reason)});
   }
   for (const planning::Stretch& stretch : report.unknown) {
-    events.push_back({stretch.from_s, Severity::warning, "near space that was not measured"});
+    events.push_back({stretch.from_s, EventLevel::warning, "near space that was not measured"});
   }
-  std::ranges::stable_sort(events, {}, &ReportEvent::t_s);
+  std::ranges::stable_sort(events, {}, &DriveEvent::t_s);
   return events;
 }
 
 std::vector<geometry::Ring> rings_of(const std::vector<ReportLane>& lanes) {
   std::vector<geometry::Ring> rings;
-  for (const ReportLane& lane : lanes) {
-    geometry::Ring ring = lane.right;
-    ring.insert(ring.end(), lane.left.rbegin(), lane.left.rend());
-    rings.push_back(std::move(ring));
-  }
+  for (const ReportLane& lane : lanes) rings.push_back(lane.outline());
   return rings;
 }
 
@@ -130,7 +121,7 @@ std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m
            .passed = true,
            .at_s = {}},
           {.name = "swept area never measured",
-           .value = 100.0 * report.unknown_share,
+           .value = 100.0 * report.unknown_fraction,
            .unit = "%",
            .bound = fmt::format("≤ {:g}", 100.0 * (1.0 - report.least_measured)),
            .passed = report.is_measured_enough(),
@@ -152,20 +143,18 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   input.title = "Audit of " + around.name;
   input.scenario = around.name;
   input.verdict = verdict_of(report);
-  input.lanes = around.lanes;
-  input.occupied = around.occupied;
-  input.vehicle = around.body;
+  input.scene.lanes = around.lanes;
+  input.scene.occupied = around.occupied;
+  input.scene.vehicle = around.body;
   if (around.parts.size() > 1) {
     for (const geometry::BodyPart& part : around.parts) {
-      input.parts_in_vehicle.push_back(part.outline_at({0.0, 0.0, 0.0}));
+      input.scene.parts_in_vehicle.push_back(part.outline_at({0.0, 0.0, 0.0}));
     }
   }
-  input.drive = drive;
-  for (const planning::MovingObstacle& moving : around.moving) {
-    input.obstacles.push_back(moving.obstacle);
-  }
+  input.drive.trajectory = drive;
+  input.scene.obstacles = around.moving;
   input.plots = {clearance_by_row(report, around.clearance_m), speed_by_row(drive)};
-  input.events = events_of_audit(report);
+  input.drive.events = events_of_audit(report);
   for (const auto& stretch : judged_stretches(report, drive.start_s(), drive.end_s())) {
     input.decisions.push_back({stretch.from_s, stretch.to_s, std::string(name(stretch.verdict)),
                                reason_of(stretch.verdict)});
@@ -173,10 +162,7 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   input.checks = checks_of(report, around.clearance_m);
   input.pictures = close_ups(
       report, {drive, around.parts, around.occupied, rings_of(around.lanes), around.moving});
-  input.command = around.command;
-  input.version = around.version;
-  input.crs = around.crs;
-  input.sources = around.sources;
+  input.origin = {around.command, around.version, around.crs, around.sources};
   return input;
 }
 

@@ -6,7 +6,7 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/audit/audit.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools::inline report {
@@ -19,7 +19,7 @@ struct AuditSurroundings {
   double clearance_m = 0.0;               ///< asked for
   std::vector<map::Box2> occupied;
   std::vector<ReportLane> lanes;
-  std::vector<planning::MovingObstacle> moving;
+  std::vector<planning::ObstacleInSource> moving;
   std::string command, version, crs;
   std::vector<ReportSource> sources;
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/plan.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools::inline report {
@@ -47,7 +47,7 @@ Overtaking overtake(const planning::ReferenceLine& line, double speed_mps, doubl
         .t_s = t_s, .pose = {at.in_map.x(), at.in_map.y(), at.heading_rad}, .speed_mps = other_mps};
     const std::vector<planning::PredictedObstacle> predicted = {
         {.id = "car",
-         .prediction = planning::Prediction::along_line(line, {other_s_m, 0.0}, seen, 6.0)}};
+         .motion = planning::Prediction::along_line(line, {other_s_m, 0.0}, seen, 6.0)}};
     PlanInput input{.line = line,
                     .start = state,
                     .start_t_s = t_s,

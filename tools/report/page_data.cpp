@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/page_data.h"
+#include "roadbed/tools/report/page_parts.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/geometry/primitives/simplify.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/report/lane_look.h"
-#include "roadbed/tools/report/thin_line.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -89,10 +88,10 @@ Json coded_motion(const geometry::Trajectory& motion, const Eigen::Vector2d& ori
 // A round place near what is shown, so that numbers stay small.
 Eigen::Vector2d choose_origin(const ReportInput& input) {
   Eigen::Vector2d near(0, 0);
-  if (!input.drive.empty()) {
-    near = input.drive.points().front().pose().position();
-  } else if (!input.lanes.empty() && !input.lanes.front().centre.empty()) {
-    near = input.lanes.front().centre.front();
+  if (!input.drive.trajectory.empty()) {
+    near = input.drive.trajectory.points().front().pose().position();
+  } else if (!input.scene.lanes.empty() && !input.scene.lanes.front().centre.empty()) {
+    near = input.scene.lanes.front().centre.front();
   }
   return near.array().round().matrix();
 }
@@ -107,10 +106,11 @@ Json list_of(const Items& items, Function coded) {
 Json coded_lanes(const ReportInput& input, const Eigen::Vector2d& origin) {
   Json lanes = Json::array();
   const auto line = [&](const LineInSource& full) {
-    return coded_line(thin_line(full, kLaneTolerance_m), origin);
+    return coded_line(geometry::simplify(full, kLaneTolerance_m, geometry::distance_from_start_m),
+                      origin);
   };
-  for (const ReportLane& lane : input.lanes) {
-    const std::string_view look = lane_look(lane);
+  for (const ReportLane& lane : input.scene.lanes) {
+    const std::string_view look = lane.look();
     if (look.empty()) continue;
     lanes.push_back({{"name", lane.name},
                      {"look", look},
@@ -121,7 +121,7 @@ Json coded_lanes(const ReportInput& input, const Eigen::Vector2d& origin) {
   return lanes;
 }
 
-Json coded_obstacle(const planning::Obstacle& obstacle, const Eigen::Vector2d& origin) {
+Json coded_obstacle(const planning::ObstacleInSource& obstacle, const Eigen::Vector2d& origin) {
   return {{"id", obstacle.id},
           {"kind", obstacle.kind},
           {"length", obstacle.length_m},
@@ -145,22 +145,22 @@ Json coded_plot(const ReportPlot& plot) {
            })}};
 }
 
-std::string_view severity_name(Severity severity) {
-  switch (severity) {
-    case Severity::info:
+std::string_view name_of(EventLevel level) {
+  switch (level) {
+    case EventLevel::info:
       return "info";
-    case Severity::warning:
+    case EventLevel::warning:
       return "warning";
-    case Severity::fault:
+    case EventLevel::fault:
       return "fault";
   }
   return "info";
 }
 
 Json coded_vehicle(const ReportInput& input) {
-  const geometry::VehicleShape& vehicle = input.vehicle;
+  const geometry::VehicleShape& vehicle = input.scene.vehicle;
   Json parts = Json::array();
-  for (const LineInSource& outline : input.parts_in_vehicle) {
+  for (const LineInSource& outline : input.scene.parts_in_vehicle) {
     Json ring = Json::array();
     for (const Eigen::Vector2d& point : outline) ring.push_back({point.x(), point.y()});
     parts.push_back(std::move(ring));
@@ -172,11 +172,14 @@ Json coded_vehicle(const ReportInput& input) {
           {"parts", std::move(parts)}};
 }
 
-// Costs in thousandths.
-Json coded_candidate(const std::optional<ReportCandidate>& candidate) {
+// Weighted costs in thousandths.
+Json coded_candidate(const std::optional<planning::Candidate>& candidate) {
   if (!candidate) return nullptr;
+  static const planning::CostTerms weights = planning::default_weights();
   Json costs = Json::array();
-  for (const double cost : candidate->costs) costs.push_back(rounded(1e3 * cost));
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    costs.push_back(rounded(1e3 * (weights[i] * candidate->terms[i])));
+  }
   return {{"d", 1e-3 * static_cast<double>(rounded(1e3 * candidate->end_d_m))},
           {"l", 1e-3 * static_cast<double>(rounded(1e3 * candidate->end_l_m))},
           {"costs", std::move(costs)}};
@@ -195,7 +198,7 @@ Json coded_runs(const std::vector<std::uint8_t>& causes) {
   return runs;
 }
 
-Json coded_grid(const std::optional<ReportGrid>& grid) {
+Json coded_grid(const std::optional<CandidateGrid>& grid) {
   if (!grid || grid->end_d_m.empty() || grid->end_l_m.empty()) return nullptr;
   const auto axis = [](const std::vector<double>& ends) {
     return Json{ends.front(), ends.back(), ends.size()};
@@ -204,20 +207,40 @@ Json coded_grid(const std::optional<ReportGrid>& grid) {
       {"d", axis(grid->end_d_m)}, {"l", axis(grid->end_l_m)}, {"runs", coded_runs(grid->causes)}};
 }
 
-Json coded_start(const ReportStart& start) {
+Json coded_start(const planning::LateralState& start) {
   return {rounded(1e3 * start.s_m), rounded(1e3 * start.d_m), rounded(1e5 * start.d_slope),
           rounded(1e6 * start.d_curvature_per_m)};
 }
 
-Json coded_plan(const ReportPlan& plan, Json path) {
-  return {{"t", plan.t_s},
-          {"note", plan.note},
-          {"reason", plan.reason},
+// "ends 0.4 m to the left after 22.0 m".
+std::string note_of(const DriveCycle& cycle) {
+  if (!cycle.chosen) return cycle.plan_reason.empty() ? "none feasible" : cycle.plan_reason;
+  const double end_d_m = cycle.chosen->end_d_m;
+  const char* side = end_d_m > 0.0 ? "to the left" : "to the right";
+  return std::abs(end_d_m) < 0.05
+             ? fmt::format("ends on the reference line after {:.1f} m", cycle.chosen->end_l_m)
+             : fmt::format("ends {:.1f} m {} after {:.1f} m", std::abs(end_d_m), side,
+                           cycle.chosen->end_l_m);
+}
+
+Json coded_cycle(const DriveCycle& cycle, Json path) {
+  return {{"t", cycle.t_s},
+          {"note", note_of(cycle)},
+          {"reason", cycle.reason},
           {"path", std::move(path)},
-          {"start", coded_start(plan.start)},
-          {"chosen", coded_candidate(plan.chosen)},
-          {"runner", coded_candidate(plan.runner_up)},
-          {"grid", coded_grid(plan.grid)}};
+          {"start", coded_start(cycle.start)},
+          {"chosen", coded_candidate(cycle.chosen)},
+          {"runner", coded_candidate(cycle.grid ? cycle.grid->runner_up : std::nullopt)},
+          {"grid", coded_grid(cycle.grid)}};
+}
+
+// The names of the first `count` values of an enumeration, none for a drive without cycles.
+template <typename Enum>
+Json names_of(const Drive& drive, int count) {
+  Json names = Json::array();
+  if (drive.cycles.empty()) return names;
+  for (int i = 0; i < count; ++i) names.push_back(planning::name(static_cast<Enum>(i)));
+  return names;
 }
 
 void check_plots(const ReportInput& input) {
@@ -237,32 +260,34 @@ std::string page_data_json(const ReportInput& input) {
   check_plots(input);
   const Eigen::Vector2d origin = choose_origin(input);
   const auto line = [&](const LineInSource& full) {
-    return coded_line(thin_line(full, kPathTolerance_m), origin);
+    return coded_line(geometry::simplify(full, kPathTolerance_m, geometry::distance_from_start_m),
+                      origin);
   };
   const Json data = {
       {"origin", {origin.x(), origin.y()}},
       {"vehicle", coded_vehicle(input)},
       {"lanes", coded_lanes(input, origin)},
-      {"route", list_of(input.route, line)},
-      {"reference", line(input.reference)},
-      {"goal", input.goal ? coded_line({*input.goal}, origin) : Json(nullptr)},
-      {"occupied", list_of(input.occupied,
+      {"route", list_of(input.scene.route, line)},
+      {"reference", line(input.scene.reference)},
+      {"goal", input.scene.goal ? coded_line({*input.scene.goal}, origin) : Json(nullptr)},
+      {"occupied", list_of(input.scene.occupied,
                            [&](const map::Box2& box) {
                              return coded_line({box.min_in_source, box.max_in_source}, origin);
                            })},
-      {"drive", coded_motion(input.drive, origin, true)},
+      {"drive", coded_motion(input.drive.trajectory, origin, true)},
       {"obstacles",
-       list_of(input.obstacles,
-               [&](const planning::Obstacle& one) { return coded_obstacle(one, origin); })},
-      {"plans", list_of(input.plans,
-                        [&](const ReportPlan& plan) { return coded_plan(plan, line(plan.path)); })},
-      {"costNames", input.cost_names},
-      {"causeNames", input.cause_names},
+       list_of(input.scene.obstacles,
+               [&](const planning::ObstacleInSource& one) { return coded_obstacle(one, origin); })},
+      {"plans",
+       list_of(input.drive.cycles,
+               [&](const DriveCycle& cycle) { return coded_cycle(cycle, line(cycle.path)); })},
+      {"costNames", names_of<planning::CostTerm>(input.drive, planning::kCostTerms)},
+      {"causeNames", names_of<planning::Rejection>(input.drive, planning::kRejections)},
       {"plots", list_of(input.plots, coded_plot)},
-      {"events", list_of(input.events,
-                         [](const ReportEvent& event) {
+      {"events", list_of(input.drive.events,
+                         [](const DriveEvent& event) {
                            return Json{{"t", event.t_s},
-                                       {"severity", severity_name(event.severity)},
+                                       {"severity", name_of(event.level)},
                                        {"text", event.text}};
                          })},
       {"decisions", list_of(input.decisions,
@@ -274,6 +299,23 @@ std::string page_data_json(const ReportInput& input) {
                             })},
   };
   return data.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string escape_json_for_script(std::string_view json) {
+  std::string escaped;
+  escaped.reserve(json.size());
+  for (const char letter : json) {
+    if (letter == '<') {
+      escaped += "\\u003c";
+    } else if (letter == '>') {
+      escaped += "\\u003e";
+    } else if (letter == '&') {
+      escaped += "\\u0026";
+    } else {
+      escaped += letter;
+    }
+  }
+  return escaped;
 }
 
 }  // namespace roadbed::tools

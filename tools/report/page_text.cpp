@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/page_text.h"
+#include "roadbed/tools/report/page_parts.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/tools/report/escape.h"
+#include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -43,7 +43,7 @@ WordLook look_of(Tone tone) {
 std::string verdict_html(const ReportVerdict& verdict, std::string_view label) {
   const WordLook look = look_of(verdict.tone);
   return fmt::format("<p class=\"verdict {}\"><span class=\"sign\">{}</span><span>{}{}</span></p>",
-                     look.css_class, look.sign, label, escape_markup(verdict.text));
+                     look.css_class, look.sign, label, map::html_text(verdict.text));
 }
 
 double driven_m(const geometry::Trajectory& drive) {
@@ -81,7 +81,7 @@ bool is_bound(const ReportCheck& check) { return !check.bound.empty(); }
 bool has_failed(const ReportCheck& check) { return is_bound(check) && !check.passed; }
 
 std::string facts_html(const ReportInput& input) {
-  std::vector<Fact> facts = facts_of_drive(input.drive);
+  std::vector<Fact> facts = facts_of_drive(input.drive.trajectory);
   const auto bound = std::ranges::count_if(input.checks, is_bound);
   const auto failed = std::ranges::count_if(input.checks, has_failed);
   if (bound > 0) {
@@ -106,21 +106,21 @@ std::string result_cell(const ReportCheck& check) {
 
 std::string check_row(const ReportCheck& check) {
   const std::string value =
-      check.value ? short_number(*check.value, 3) + ' ' + escape_markup(check.unit) : "–";
+      check.value ? short_number(*check.value, 3) + ' ' + map::html_text(check.unit) : "–";
   return fmt::format(
       "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
       "<td class=\"number\">{}</td>{}</tr>\n",
-      escape_markup(check.name), value, escape_markup(check.bound),
+      map::html_text(check.name), value, map::html_text(check.bound),
       check.at_s ? moment_link(*check.at_s) : "", result_cell(check));
 }
 
-std::string_view sign_of(Severity severity) {
-  switch (severity) {
-    case Severity::info:
+std::string_view sign_of(EventLevel level) {
+  switch (level) {
+    case EventLevel::info:
       return "<span class=\"sign info\" title=\"note\">●</span>";
-    case Severity::warning:
+    case EventLevel::warning:
       return "<span class=\"sign warning\" title=\"warning\">▲</span>";
-    case Severity::fault:
+    case EventLevel::fault:
       return "<span class=\"sign fault\" title=\"fault\">✖</span>";
   }
   return {};
@@ -131,7 +131,7 @@ std::string foot_entry(std::string_view name, const std::string& html) {
 }
 
 std::string code(const std::string& text) {
-  return text.empty() ? text : "<code>" + escape_markup(text) + "</code>";
+  return text.empty() ? text : "<code>" + map::html_text(text) + "</code>";
 }
 
 // One entry per role, in the order of their first files; many files are folded away.
@@ -147,7 +147,7 @@ std::string sources_html(const std::vector<ReportSource>& sources) {
   for (const auto& [role, files] : roles) {
     const std::string list = fmt::format("{}", fmt::join(files, "<br>"));
     html += foot_entry(
-        escape_markup(role),
+        map::html_text(role),
         files.size() <= kMostShown
             ? list
             : fmt::format("<details><summary>{} files</summary>{}</details>", files.size(), list));
@@ -160,7 +160,7 @@ std::string sources_html(const std::vector<ReportSource>& sources) {
 std::string page_head(const ReportInput& input) {
   std::string html =
       fmt::format("<div class=\"name\"><h1>{}</h1><p class=\"scenario\">{}</p></div>\n",
-                  escape_markup(input.title), escape_markup(input.scenario));
+                  map::html_text(input.title), map::html_text(input.scenario));
   html += facts_html(input);
   html += "<div class=\"verdicts\">" + verdict_html(input.verdict, "");
   if (input.audit) html += verdict_html(*input.audit, "Occupancy: ");
@@ -184,29 +184,29 @@ std::string page_pictures(const ReportInput& input) {
   html += "<div class=\"pictures\">\n";
   for (const ReportPicture& picture : input.pictures) {
     html += fmt::format("<figure>{}<figcaption>{} <span>{}</span></figcaption></figure>\n",
-                        picture.svg, moment_link(picture.t_s), escape_markup(picture.text));
+                        picture.svg, moment_link(picture.t_s), map::html_text(picture.text));
   }
   return html + "</div></section></section>";
 }
 
 std::string page_events(const ReportInput& input) {
   std::string html = "<section class=\"card\"><h2>What happened</h2>\n";
-  if (input.events.empty()) return html + "<p class=\"none\">Nothing of note.</p></section>";
+  if (input.drive.events.empty()) return html + "<p class=\"none\">Nothing of note.</p></section>";
   html += "<ol class=\"events\">\n";
-  for (const ReportEvent& event : input.events) {
-    html += fmt::format("<li>{}{}<span>{}</span></li>\n", sign_of(event.severity),
-                        moment_link(event.t_s), escape_markup(event.text));
+  for (const DriveEvent& event : input.drive.events) {
+    html += fmt::format("<li>{}{}<span>{}</span></li>\n", sign_of(event.level),
+                        moment_link(event.t_s), map::html_text(event.text));
   }
   return html + "</ol></section>";
 }
 
 std::string page_foot(const ReportInput& input) {
   std::string html = "<dl>\n";
-  html += foot_entry("Made by", escape_markup(input.version));
-  html += foot_entry("Again with", code(input.command));
-  html += foot_entry("Coordinates",
-                     input.crs.empty() ? "as in the map; its CRS is unknown" : code(input.crs));
-  return html + sources_html(input.sources) + "</dl>";
+  html += foot_entry("Made by", map::html_text(input.origin.version));
+  html += foot_entry("Again with", code(input.origin.command));
+  html += foot_entry("Coordinates", input.origin.crs.empty() ? "as in the map; its CRS is unknown"
+                                                             : code(input.origin.crs));
+  return html + sources_html(input.origin.sources) + "</dl>";
 }
 
 }  // namespace roadbed::tools

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/map/drawing/svg.h"
 #include "roadbed/planning/obstacles/static_obstacles.h"
-#include "roadbed/tools/report/svg.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -61,7 +61,7 @@ text{font:12px system-ui,-apple-system,"Segoe UI","DejaVu Sans",sans-serif;fill:
 // The picture's plane: x ahead of the vehicle, y to its left, in metres from its rear axle.
 struct PlanView {
   geometry::Pose2 start_from_map;
-  PictureFrame frame;
+  map::PictureFrame frame;
   Eigen::AlignedBox2d box;
   double height_px = 0.0;
 
@@ -113,7 +113,9 @@ PlanView look_from_start(const PlanPicture& picture) {
   double scale = (kPlanWidth_px - 2.0 * kSide_px) / size.x();
   scale = std::min(scale, (kMostHeight_px - 2.0 * kSide_px) / size.y());
   view.height_px = std::max(kLeastPlanHeight_px, scale * size.y() + 2.0 * kSide_px);
-  view.frame = {view.box.center(), {0.5 * kPlanWidth_px, kTitle_px + 0.5 * view.height_px}, scale};
+  view.frame = {.centre_in_plane = view.box.center(),
+                .centre_px = {0.5 * kPlanWidth_px, kTitle_px + 0.5 * view.height_px},
+                .px_per_m = scale};
   return view;
 }
 
@@ -121,8 +123,8 @@ std::string road_svg(const PlanPicture& picture, const PlanView& view) {
   const std::vector<Vector2d> right = along(picture, view, -1), left = along(picture, view, 1);
   std::vector<Vector2d> ring = right;
   ring.insert(ring.end(), left.rbegin(), left.rend());
-  return svg_path("road", svg_ring(view.frame, ring)) +
-         svg_path("edge", svg_line(view.frame, left) + svg_line(view.frame, right));
+  return map::svg_path("road", map::svg_ring(view.frame, ring)) +
+         map::svg_path("edge", map::svg_line(view.frame, left) + map::svg_line(view.frame, right));
 }
 
 std::string occupied_beside_plan_svg(const PlanPicture& picture, const PlanView& view) {
@@ -132,11 +134,11 @@ std::string occupied_beside_plan_svg(const PlanPicture& picture, const PlanView&
     const Vector2d origin = picture.input.origin_in_source;
     const Vector2d low = box.min_in_source - origin, high = box.max_in_source - origin;
     if (!shown.contains(view.to_start(0.5 * (low + high)))) continue;
-    const std::array<Vector2d, 4> ring = {view.to_start(low), view.to_start({high.x(), low.y()}),
-                                          view.to_start(high), view.to_start({low.x(), high.y()})};
-    data += svg_ring(view.frame, ring);
+    geometry::Ring ring = geometry::box_ring(low, high);
+    for (Vector2d& corner : ring) corner = view.to_start(corner);
+    data += map::svg_ring(view.frame, ring);
   }
-  return svg_path("occupied", data);
+  return map::svg_path("occupied", data);
 }
 
 std::vector<Vector2d> candidate_line(const PlanPicture& picture, const PlanView& view,
@@ -157,11 +159,11 @@ std::string candidates_svg(const PlanPicture& picture, const PlanView& view) {
   std::array<std::string, planning::kRejections> data;
   for (const Candidate& candidate : picture.plan.candidates) {
     data[static_cast<std::size_t>(candidate.rejection)] +=
-        svg_line(view.frame, candidate_line(picture, view, candidate));
+        map::svg_line(view.frame, candidate_line(picture, view, candidate));
   }
   std::string svg;
   for (const CandidateLook& look : kCandidateLooks) {
-    svg += svg_path(look.css_class, data[static_cast<std::size_t>(look.rejection)]);
+    svg += map::svg_path(look.css_class, data[static_cast<std::size_t>(look.rejection)]);
   }
   return svg;
 }
@@ -169,7 +171,7 @@ std::string candidates_svg(const PlanPicture& picture, const PlanView& view) {
 std::string body_data(const PlanView& view, const geometry::Rectangle& body) {
   std::vector<Vector2d> ring;
   for (const Vector2d& corner : body.corners()) ring.push_back(view.to_start(corner));
-  return svg_ring(view.frame, ring);
+  return map::svg_ring(view.frame, ring);
 }
 
 bool is_shown(const PlanView& view, const geometry::Rectangle& body) {
@@ -190,14 +192,15 @@ std::string planned_obstacles_svg(const PlanPicture& picture, const PlanView& vi
   std::string standing, moving, now;
   for (const planning::Obstacle& obstacle : picture.input.obstacles) {
     for (const double t_s : shown_times(picture)) {
-      const geometry::Rectangle body = planning::body_of(obstacle, t_s);
+      const geometry::Rectangle body = planning::rectangle_at(obstacle, t_s);
       if (!is_shown(view, body)) continue;
       const bool first = t_s == picture.input.start_t_s;
       if (obstacle.is_static() && !first) continue;
       (obstacle.is_static() ? standing : first ? now : moving) += body_data(view, body);
     }
   }
-  return svg_path("moving", moving) + svg_path("now", now) + svg_path("standing", standing);
+  return map::svg_path("moving", moving) + map::svg_path("now", now) +
+         map::svg_path("standing", standing);
 }
 
 std::string chosen_svg(const PlanPicture& picture, const PlanView& view) {
@@ -207,12 +210,13 @@ std::string chosen_svg(const PlanPicture& picture, const PlanView& view) {
   for (const double t_s : shown_times(picture)) {
     const geometry::Pose2 pose = picture.plan.trajectory.at(t_s).pose();
     bodies += body_data(view, geometry::body_at(pose, picture.vehicle));
-    times +=
-        svg_text("over mid", view.frame.to_px(view.to_start(pose.position())) + Vector2d(0, -6),
-                 fmt::format("{:g} s", t_s));
+    times += map::svg_text("over mid",
+                           view.frame.to_px(view.to_start(pose.position())) + Vector2d(0, -6),
+                           fmt::format("{:g} s", t_s));
   }
-  return svg_path("ego", bodies) +
-         svg_path("chosen", svg_line(view.frame, candidate_line(picture, view, chosen))) + times;
+  return map::svg_path("ego", bodies) +
+         map::svg_path("chosen", map::svg_line(view.frame, candidate_line(picture, view, chosen))) +
+         times;
 }
 
 // Metres ahead along the lower side, metres to the left along the left side.
@@ -224,18 +228,18 @@ std::string axes_svg(const PlanView& view) {
   };
   for (int i = first(view.box.min().x(), 5.0); 5.0 * i <= view.box.max().x(); ++i) {
     const double at_px = view.frame.to_px({5.0 * i, 0.0}).x();
-    ticks += fmt::format("M{} {}v6", svg_number(at_px), svg_number(low_px));
-    labels += svg_text("mid", {at_px, low_px + 19.0}, fmt::format("{}", 5 * i));
+    ticks += fmt::format("M{} {}v6", map::svg_number(at_px), map::svg_number(low_px));
+    labels += map::svg_text("mid", {at_px, low_px + 19.0}, fmt::format("{}", 5 * i));
   }
   const int step_m = view.box.sizes().y() > 30.0 ? 5 : 2;
   for (int i = first(view.box.min().y(), step_m); step_m * i <= view.box.max().y(); ++i) {
     const double at_px = view.frame.to_px({0.0, 1.0 * step_m * i}).y();
-    ticks += fmt::format("M{} {}h-6", svg_number(left_px), svg_number(at_px));
-    labels += svg_text("end", {left_px - 9.0, at_px + 4.0}, fmt::format("{}", step_m * i));
+    ticks += fmt::format("M{} {}h-6", map::svg_number(left_px), map::svg_number(at_px));
+    labels += map::svg_text("end", {left_px - 9.0, at_px + 4.0}, fmt::format("{}", step_m * i));
   }
-  labels += svg_text("end", {kPlanWidth_px - 8.0, low_px + 19.0}, "m ahead");
-  labels += svg_text("", {6.0, kTitle_px + 10.0}, "m left");
-  return svg_path("axis", ticks) + labels;
+  labels += map::svg_text("end", {kPlanWidth_px - 8.0, low_px + 19.0}, "m ahead");
+  labels += map::svg_text("", {6.0, kTitle_px + 10.0}, "m left");
+  return map::svg_path("axis", ticks) + labels;
 }
 
 std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& view) {
@@ -249,18 +253,19 @@ std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& vi
   for (const CandidateLook& look : kCandidateLooks) {
     const std::string words =
         fmt::format("{} ({})", look.words, counts[static_cast<std::size_t>(look.rejection)]);
-    svg += svg_path(fmt::format("{} key", look.css_class),
-                    fmt::format("M{} {}h22", svg_number(x_px), svg_number(top_px - 4.0)));
-    svg += svg_text("", {x_px + 28.0, top_px}, words);
+    svg += map::svg_path(
+        fmt::format("{} key", look.css_class),
+        fmt::format("M{} {}h22", map::svg_number(x_px), map::svg_number(top_px - 4.0)));
+    svg += map::svg_text("", {x_px + 28.0, top_px}, words);
     x_px += 46.0 + 6.6 * static_cast<double>(words.size());
   }
   const std::array<std::pair<const char*, const char*>, 2> lines = {
       {{"chosen", "chosen, with the vehicle at whole seconds"}, {"line", "reference line"}}};
   x_px = kSide_px;
   for (const auto& [css_class, words] : lines) {
-    svg +=
-        svg_path(css_class, fmt::format("M{} {}h22", svg_number(x_px), svg_number(top_px + 18.0)));
-    svg += svg_text("", {x_px + 28.0, top_px + 22.0}, words);
+    svg += map::svg_path(
+        css_class, fmt::format("M{} {}h22", map::svg_number(x_px), map::svg_number(top_px + 18.0)));
+    svg += map::svg_text("", {x_px + 28.0, top_px + 22.0}, words);
     x_px += 320.0;
   }
   return svg;
@@ -274,16 +279,17 @@ std::string plan_svg(const PlanPicture& picture) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\">\n",
-      kPlanWidth_px, svg_number(height_px));
+      kPlanWidth_px, map::svg_number(height_px));
   svg += kPlanStyle;
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   svg += fmt::format("<rect class=\"ground\" y=\"{}\" width=\"100%\" height=\"{}\"/>\n", kTitle_px,
-                     svg_number(view.height_px));
+                     map::svg_number(view.height_px));
   svg += road_svg(picture, view) + occupied_beside_plan_svg(picture, view) +
          candidates_svg(picture, view);
-  svg += svg_path("line", svg_line(view.frame, along(picture, view, 0)));
+  svg += map::svg_path("line", map::svg_line(view.frame, along(picture, view, 0)));
   svg += planned_obstacles_svg(picture, view) + chosen_svg(picture, view) + axes_svg(view);
-  svg += svg_text("title", {kSide_px, 22.0}, picture.title) + candidates_legend_svg(picture, view);
+  svg += map::svg_text("title", {kSide_px, 22.0}, picture.title) +
+         candidates_legend_svg(picture, view);
   return svg + "</svg>\n";
 }
 

@@ -5,7 +5,7 @@
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/lateral/plan.h"
+#include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::tools::inline report {
 

@@ -1,50 +1,41 @@
 #include "roadbed/tools/report/report.h"
 
-#include <map>
-#include <string>
-#include <string_view>
-
-#include "roadbed/tools/report/escape.h"
-#include "roadbed/tools/report/page_data.h"
-#include "roadbed/tools/report/page_parts.h"
-#include "roadbed/tools/report/page_text.h"
-
 namespace roadbed::tools::inline report {
-namespace {
 
-using Parts = std::map<std::string_view, std::string>;
-
-// Puts each part where the template says {{name}}. What is put in is not searched again, so that
-// no text of the input can name a part.
-std::string filled(std::string_view page, const Parts& parts) {
-  std::string result;
-  for (;;) {
-    const std::size_t open = page.find("{{"), close = page.find("}}", open);
-    if (open == std::string_view::npos || close == std::string_view::npos) break;
-    result += page.substr(0, open);
-    result += parts.at(page.substr(open + 2, close - open - 2));
-    page.remove_prefix(close + 2);
-  }
-  result += page;
-  return result;
+LineInSource ReportLane::outline() const {
+  LineInSource ring = right;
+  ring.insert(ring.end(), left.rbegin(), left.rend());
+  return ring;
 }
 
-}  // namespace
+std::string_view ReportLane::look() const {
+  using map::LaneType;
+  if (map::is_drivable(type)) return in_junction ? "junction" : "drive";
+  switch (type) {
+    case LaneType::none:
+      return {};
+    case LaneType::bus:
+    case LaneType::taxi:
+      return in_junction ? "junction" : "drive";
+    case LaneType::shoulder:
+    case LaneType::stop:
+    case LaneType::parking:
+    case LaneType::border:
+      return "shoulder";
+    case LaneType::sidewalk:
+    case LaneType::curb:
+    case LaneType::median:
+      return "walk";
+    case LaneType::biking:
+      return "bike";
+    default:
+      return "other";
+  }
+}
 
-std::string drive_report_html(const ReportInput& input) {
-  return filled(kPageTemplate, {{"title", escape_markup(input.title)},
-                                {"head", page_head(input)},
-                                {"checks", page_checks(input)},
-                                {"events", page_events(input)},
-                                {"pictures", page_pictures(input)},
-                                {"foot", page_foot(input)},
-                                {"data", escape_json_for_script(page_data_json(input))},
-                                {"page_css", std::string(kPageCss)},
-                                {"page_js", std::string(kPageJs)},
-                                {"dygraphs_css", std::string(kDygraphsCss)},
-                                {"dygraphs_js", std::string(kDygraphsJs)},
-                                {"synchronizer_js", std::string(kSynchronizerJs)},
-                                {"dygraphs_licence", escape_markup(kDygraphsLicence)}});
+Tone tone_of(planning::Verdict verdict) {
+  if (verdict == planning::Verdict::clear) return Tone::good;
+  return verdict == planning::Verdict::conflict ? Tone::bad : Tone::open;
 }
 
 }  // namespace roadbed::tools

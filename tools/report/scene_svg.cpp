@@ -12,10 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/tools/report/escape.h"
-#include "roadbed/tools/report/lane_look.h"
-#include "roadbed/tools/report/speed_colour.h"
-#include "roadbed/tools/report/svg.h"
+#include "roadbed/map/drawing/svg.h"
+#include "roadbed/map/files/xml_characters.h"
 #include "roadbed/tools/report/svg_legend.h"
 
 namespace roadbed::tools::inline report {
@@ -24,9 +22,9 @@ namespace {
 using Eigen::Vector2d;
 using Box = Eigen::AlignedBox2d;
 
-constexpr double kWidth_px = 900.0, kSceneLegend_px = 46.0, kMargin_px = 56.0;
-constexpr double kLeastHeight_px = 300.0, kMostSceneHeight_px = 620.0;
-constexpr double kMostScale_px_per_m = 14.0;
+constexpr double kSceneWidth_px = 900.0, kSceneLegend_px = 46.0, kSceneMargin_px = 56.0;
+constexpr double kLeastSceneHeight_px = 300.0, kMostSceneHeight_px = 620.0;
+constexpr double kMostSceneScale_px_per_m = 14.0;
 
 constexpr std::string_view kStyle = R"(<style>
 .ground{fill:#eceee8}.strip{fill:#fff}.drive{fill:#c3c8d0;stroke:#c3c8d0;stroke-width:.6}
@@ -44,96 +42,79 @@ text{font:12px system-ui,-apple-system,"Segoe UI","DejaVu Sans",sans-serif;fill:
 </style>
 )";
 
-// The part of the plane that is shown and the size of the map's part of the picture.
-struct Layout {
-  PictureFrame frame;
-  double height_px = 0.0;
-};
-
 void extend(Box& box, std::span<const Vector2d> points) {
   for (const Vector2d& point : points) box.extend(point);
 }
 
 Box shown_box(const ReportInput& input) {
   Box box;
-  for (const auto& point : input.drive.points()) box.extend(point.pose().position());
-  if (input.goal) box.extend(*input.goal);
-  if (input.drive.empty()) {
-    for (const LineInSource& leg : input.route) extend(box, leg);
+  for (const auto& point : input.drive.trajectory.points()) box.extend(point.pose().position());
+  if (input.scene.goal) box.extend(*input.scene.goal);
+  if (input.drive.trajectory.empty()) {
+    for (const LineInSource& leg : input.scene.route) extend(box, leg);
   }
   if (box.isEmpty()) {
-    for (const ReportLane& lane : input.lanes) extend(box, lane.centre);
+    for (const ReportLane& lane : input.scene.lanes) extend(box, lane.centre);
   }
   return box.isEmpty() ? Box(Vector2d(-10, -10), Vector2d(10, 10)) : box;
 }
 
-Layout lay_out(const Box& box) {
+map::PictureFrame lay_out(const Box& box) {
   const Vector2d size = box.sizes().cwiseMax(1.0);
-  const double wide_px = kWidth_px - 2.0 * kMargin_px;
-  double scale = std::min(wide_px / size.x(), kMostScale_px_per_m);
-  const double height_px =
-      std::clamp(scale * size.y() + 2.0 * kMargin_px, kLeastHeight_px, kMostSceneHeight_px);
-  scale = std::min(scale, (height_px - 2.0 * kMargin_px) / size.y());
-  return {{box.center(), {0.5 * kWidth_px, 0.5 * height_px}, scale}, height_px};
+  const double wide_px = kSceneWidth_px - 2.0 * kSceneMargin_px;
+  double scale = std::min(wide_px / size.x(), kMostSceneScale_px_per_m);
+  const double height_px = std::clamp(scale * size.y() + 2.0 * kSceneMargin_px,
+                                      kLeastSceneHeight_px, kMostSceneHeight_px);
+  scale = std::min(scale, (height_px - 2.0 * kSceneMargin_px) / size.y());
+  return {.centre_in_plane = box.center(),
+          .centre_px = {0.5 * kSceneWidth_px, 0.5 * height_px},
+          .px_per_m = scale,
+          .size_px = {kSceneWidth_px, height_px}};
 }
 
-bool may_be_seen(const Layout& layout, const Box& box) {
-  if (box.isEmpty()) return false;
-  const Vector2d upper_left = layout.frame.to_px({box.min().x(), box.max().y()});
-  const Vector2d size_px = layout.frame.px_per_m * box.sizes();
-  return Box(upper_left, upper_left + size_px)
-      .intersects(Box(Vector2d(0, 0), Vector2d(kWidth_px, layout.height_px)));
-}
-
-bool may_be_seen(const Layout& layout, const ReportLane& lane) {
+bool may_be_seen(const map::PictureFrame& frame, const ReportLane& lane) {
   Box box;
   extend(box, lane.left);
   extend(box, lane.right);
-  return may_be_seen(layout, box);
+  return frame.shows(box);
 }
 
-LineInSource outline_of(const ReportLane& lane) {
-  LineInSource ring = lane.right;
-  ring.insert(ring.end(), lane.left.rbegin(), lane.left.rend());
-  return ring;
-}
-
-std::string lanes_svg(const ReportInput& input, const Layout& layout) {
+std::string lanes_svg(const ReportInput& input, const map::PictureFrame& frame) {
   // Drawn in this order, so that junctions lie on top of what they join.
   constexpr std::array<std::string_view, 6> kKinds = {"other",    "walk",  "bike",
                                                       "shoulder", "drive", "junction"};
   std::map<std::string_view, std::string> areas;
   std::string borders;
-  for (const ReportLane& lane : input.lanes) {
-    const std::string_view look = lane_look(lane);
-    if (look.empty() || !may_be_seen(layout, lane)) continue;
-    areas[look] += svg_ring(layout.frame, outline_of(lane));
+  for (const ReportLane& lane : input.scene.lanes) {
+    const std::string_view look = lane.look();
+    if (look.empty() || !may_be_seen(frame, lane)) continue;
+    areas[look] += map::svg_ring(frame, lane.outline());
     if (lane.in_junction) continue;
-    borders += svg_line(layout.frame, lane.left) + svg_line(layout.frame, lane.right);
+    borders += map::svg_line(frame, lane.left) + map::svg_line(frame, lane.right);
   }
   std::string svg;
-  for (const std::string_view look : kKinds) svg += svg_path(look, areas[look]);
-  if (borders.empty()) return svg;
+  for (const std::string_view look : kKinds) svg += map::svg_path(look, areas[look]);
   // Far away, borders are thinner than a pixel, or they would hide their lanes.
-  return svg + fmt::format("<path class=\"border\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
-                           std::min(0.9, 0.3 * layout.frame.px_per_m), borders);
+  return svg + map::svg_styled_path(fmt::format("class=\"border\" stroke-width=\"{:.2f}\"",
+                                                std::min(0.9, 0.3 * frame.px_per_m)),
+                                    borders);
 }
 
-std::string route_svg(const ReportInput& input, const Layout& layout) {
+std::string route_svg(const ReportInput& input, const map::PictureFrame& frame) {
   std::string data;
-  for (const LineInSource& leg : input.route) data += svg_line(layout.frame, leg);
-  if (data.empty()) return {};
-  return fmt::format("<path class=\"route\" stroke-width=\"{}\" d=\"{}\"/>\n",
-                     svg_number(std::max(6.0, 2.4 * layout.frame.px_per_m)), data);
+  for (const LineInSource& leg : input.scene.route) data += map::svg_line(frame, leg);
+  return map::svg_styled_path(fmt::format("class=\"route\" stroke-width=\"{}\"",
+                                          map::svg_number(std::max(6.0, 2.4 * frame.px_per_m))),
+                              data);
 }
 
-std::string occupied_svg(const ReportInput& input, const Layout& layout) {
+std::string occupied_svg(const ReportInput& input, const map::PictureFrame& frame) {
   std::string data;
-  for (const map::Box2& box : input.occupied) {
+  for (const map::Box2& box : input.scene.occupied) {
     const Box shown(box.min_in_source, box.max_in_source);
-    if (may_be_seen(layout, shown)) data += svg_box(layout.frame, shown);
+    if (frame.shows(shown)) data += map::svg_box(frame, shown);
   }
-  return svg_path("occupied", data);
+  return map::svg_path("occupied", data);
 }
 
 double top_speed_mps(const geometry::Trajectory& drive) {
@@ -143,13 +124,13 @@ double top_speed_mps(const geometry::Trajectory& drive) {
 }
 
 // The driven path in pieces of one colour each, on a dark casing.
-std::string driven_svg(const ReportInput& input, const Layout& layout) {
+std::string driven_svg(const ReportInput& input, const map::PictureFrame& frame) {
   constexpr int kShades = 24;
-  const auto& points = input.drive.points();
-  const double top_mps = top_speed_mps(input.drive);
+  const auto& points = input.drive.trajectory.points();
+  const double top_mps = top_speed_mps(input.drive.trajectory);
   LineInSource whole;
   for (const auto& point : points) whole.push_back(point.pose().position());
-  std::string svg = svg_path("casing", svg_line(layout.frame, whole));
+  std::string svg = map::svg_path("casing", map::svg_line(frame, whole));
   const auto shade = [&](std::size_t i) {
     return static_cast<int>(std::round(kShades * points[i].speed_mps / top_mps));
   };
@@ -158,9 +139,9 @@ std::string driven_svg(const ReportInput& input, const Layout& layout) {
     while (to + 1 < points.size() && shade(to) == shade(from)) ++to;
     const std::span<const Vector2d> piece(whole.begin() + static_cast<std::ptrdiff_t>(from),
                                           to - from + 1);
-    svg += fmt::format("<path class=\"speed\" stroke=\"{}\" d=\"{}\"/>\n",
-                       speed_colour(static_cast<double>(shade(from)) / kShades),
-                       svg_line(layout.frame, piece));
+    const std::string colour = speed_colour(static_cast<double>(shade(from)) / kShades);
+    svg += map::svg_styled_path(fmt::format("class=\"speed\" stroke=\"{}\"", colour),
+                                map::svg_line(frame, piece));
     from = to;
   }
   return svg;
@@ -191,21 +172,21 @@ Vector2d left_of(const geometry::Pose2& pose, double distance_px) {
   return {-distance_px * std::sin(pose.heading_rad), -distance_px * std::cos(pose.heading_rad)};
 }
 
-std::string vehicle_svg(const ReportInput& input, const Layout& layout) {
-  const geometry::VehicleShape& shape = input.vehicle;
+std::string vehicle_svg(const ReportInput& input, const map::PictureFrame& frame) {
+  const geometry::VehicleShape& shape = input.scene.vehicle;
   std::string bodies, labels;
-  for (const double t_s : footprint_times(input.drive)) {
-    const geometry::Pose2 pose = input.drive.at(t_s).pose();
-    bodies += svg_ring(layout.frame,
-                       body_at(pose, -shape.rear_overhang_m, shape.front_m(), shape.width_m));
-    if (t_s == input.drive.start_s()) continue;  // the pin is there
-    const Vector2d at_px = layout.frame.to_px(pose.position()) + left_of(pose, 16.0);
-    labels += svg_text("over time mid", at_px + Vector2d(0, 4), fmt::format("{:.0f} s", t_s));
+  for (const double t_s : footprint_times(input.drive.trajectory)) {
+    const geometry::Pose2 pose = input.drive.trajectory.at(t_s).pose();
+    bodies +=
+        map::svg_ring(frame, body_at(pose, -shape.rear_overhang_m, shape.front_m(), shape.width_m));
+    if (t_s == input.drive.trajectory.start_s()) continue;  // the pin is there
+    const Vector2d at_px = frame.to_px(pose.position()) + left_of(pose, 16.0);
+    labels += map::svg_text("over time mid", at_px + Vector2d(0, 4), fmt::format("{:.0f} s", t_s));
   }
-  return svg_path("ego", bodies) + labels;
+  return map::svg_path("ego", bodies) + labels;
 }
 
-LineInSource motion_within(const planning::Obstacle& obstacle, double from_s, double to_s) {
+LineInSource motion_within(const planning::ObstacleInSource& obstacle, double from_s, double to_s) {
   LineInSource line{obstacle.motion.at(from_s).pose().position()};
   for (const auto& point : obstacle.motion.points()) {
     if (point.t_s > from_s && point.t_s < to_s) line.push_back(point.pose().position());
@@ -214,7 +195,7 @@ LineInSource motion_within(const planning::Obstacle& obstacle, double from_s, do
   return line;
 }
 
-LineInSource obstacle_at(const planning::Obstacle& obstacle, double t_s) {
+LineInSource obstacle_at(const planning::ObstacleInSource& obstacle, double t_s) {
   return body_at(obstacle.motion.at(t_s).pose(), -0.5 * obstacle.length_m, 0.5 * obstacle.length_m,
                  obstacle.width_m);
 }
@@ -224,110 +205,101 @@ struct Span {
   double from_s = 0.0, to_s = -1.0;
 };
 
-Span moving_span(const planning::Obstacle& obstacle, const geometry::Trajectory& drive) {
+Span moving_span(const planning::ObstacleInSource& obstacle, const geometry::Trajectory& drive) {
   if (drive.empty() || obstacle.motion.empty() || obstacle.is_static()) return {};
   return {std::max(drive.start_s(), obstacle.motion.start_s()),
           std::min(drive.end_s(), obstacle.motion.end_s())};
 }
 
-std::string motions_svg(const ReportInput& input, const Layout& layout) {
+std::string motions_svg(const ReportInput& input, const map::PictureFrame& frame) {
   std::string data;
-  for (const planning::Obstacle& obstacle : input.obstacles) {
-    const Span span = moving_span(obstacle, input.drive);
+  for (const planning::ObstacleInSource& obstacle : input.scene.obstacles) {
+    const Span span = moving_span(obstacle, input.drive.trajectory);
     if (span.to_s <= span.from_s) continue;
-    data += svg_line(layout.frame, motion_within(obstacle, span.from_s, span.to_s));
+    data += map::svg_line(frame, motion_within(obstacle, span.from_s, span.to_s));
   }
-  return svg_path("motion", data);
+  return map::svg_path("motion", data);
 }
 
 // Bodies at the times of the vehicle's footprints.
-std::string obstacles_svg(const ReportInput& input, const Layout& layout) {
+std::string obstacles_svg(const ReportInput& input, const map::PictureFrame& frame) {
   std::string moving, standing;
-  for (const planning::Obstacle& obstacle : input.obstacles) {
+  for (const planning::ObstacleInSource& obstacle : input.scene.obstacles) {
     if (obstacle.motion.empty()) continue;
-    if (obstacle.is_static()) standing += svg_ring(layout.frame, obstacle_at(obstacle, 0.0));
-    const Span span = moving_span(obstacle, input.drive);
-    for (const double t_s : footprint_times(input.drive)) {
+    if (obstacle.is_static()) standing += map::svg_ring(frame, obstacle_at(obstacle, 0.0));
+    const Span span = moving_span(obstacle, input.drive.trajectory);
+    for (const double t_s : footprint_times(input.drive.trajectory)) {
       if (t_s < span.from_s || t_s > span.to_s) continue;
-      moving += svg_ring(layout.frame, obstacle_at(obstacle, t_s));
+      moving += map::svg_ring(frame, obstacle_at(obstacle, t_s));
     }
   }
-  return svg_path("moving", moving) + svg_path("standing", standing);
+  return map::svg_path("moving", moving) + map::svg_path("standing", standing);
 }
 
 std::string pin_svg(std::string_view css_class, const Vector2d& at_px, std::string_view text) {
   return fmt::format("<path class=\"pin {}\" d=\"M{} {}l-5.7-10.4a8 8 0 1 1 11.4 0z\"/>\n",
-                     css_class, svg_number(at_px.x()), svg_number(at_px.y())) +
-         svg_text("over", at_px + Vector2d(11, -14), text);
+                     css_class, map::svg_number(at_px.x()), map::svg_number(at_px.y())) +
+         map::svg_text("over", at_px + Vector2d(11, -14), text);
 }
 
-std::string ends_svg(const ReportInput& input, const Layout& layout) {
+std::string ends_svg(const ReportInput& input, const map::PictureFrame& frame) {
   std::string svg;
-  if (!input.drive.empty()) {
-    const Vector2d start = input.drive.points().front().pose().position();
-    svg += pin_svg("start", layout.frame.to_px(start), "start");
+  if (!input.drive.trajectory.empty()) {
+    const Vector2d start = input.drive.trajectory.points().front().pose().position();
+    svg += pin_svg("start", frame.to_px(start), "start");
   }
-  if (input.goal) svg += pin_svg("goal", layout.frame.to_px(*input.goal), "goal");
+  if (input.scene.goal) svg += pin_svg("goal", frame.to_px(*input.scene.goal), "goal");
   return svg;
 }
 
-// The longest of 1, 2, 5 × 10ⁿ metres that is at most `longest_px`.
-double scale_bar_m(double px_per_m, double longest_px) {
-  double best_m = 1e-3;
-  for (double power_m = 1e-3; power_m < 1e6; power_m *= 10.0) {
-    for (const double step : {1.0, 2.0, 5.0}) {
-      if (step * power_m * px_per_m <= longest_px) best_m = step * power_m;
-    }
-  }
-  return best_m;
+std::string scale_bar_svg(const map::PictureFrame& frame) {
+  const double length_m = map::round_length_m(130.0 / frame.px_per_m);
+  const double width_px = length_m * frame.px_per_m;
+  const double x = kSceneWidth_px - 18.0 - width_px, y = frame.size_px.y() - 16.0;
+  return fmt::format("<path class=\"line\" d=\"M{0} {1}v6h{2}v-6\"/>\n", map::svg_number(x),
+                     map::svg_number(y - 6.0), map::svg_number(width_px)) +
+         map::svg_text("over", {x + 5.0, y - 6.0}, fmt::format("{} m", length_m));
 }
 
-std::string scale_bar_svg(const Layout& layout) {
-  const double length_m = scale_bar_m(layout.frame.px_per_m, 130.0);
-  const double width_px = length_m * layout.frame.px_per_m;
-  const double x = kWidth_px - 18.0 - width_px, y = layout.height_px - 16.0;
-  return fmt::format("<path class=\"line\" d=\"M{0} {1}v6h{2}v-6\"/>\n", svg_number(x),
-                     svg_number(y - 6.0), svg_number(width_px)) +
-         svg_text("over", {x + 5.0, y - 6.0}, fmt::format("{} m", length_m));
-}
-
-std::string legend_svg(const ReportInput& input, const Layout& layout) {
-  SvgLegend legend(layout.height_px + 0.5 * kSceneLegend_px + 4.0);
-  if (!input.drive.empty()) {
-    legend.add_speeds(top_speed_mps(input.drive));
+std::string legend_svg(const ReportInput& input, const map::PictureFrame& frame) {
+  SvgLegend legend(frame.size_px.y() + 0.5 * kSceneLegend_px + 4.0);
+  if (!input.drive.trajectory.empty()) {
+    legend.add_speeds(top_speed_mps(input.drive.trajectory));
     legend.add("class=\"ego\"", "vehicle");
   }
-  if (!input.route.empty()) legend.add("fill=\"#a5d0ea\"", "route");
-  const auto moving = std::ranges::count_if(
-      input.obstacles, [](const planning::Obstacle& one) { return !one.is_static(); });
+  if (!input.scene.route.empty()) legend.add("fill=\"#a5d0ea\"", "route");
+  const auto moving =
+      std::ranges::count_if(input.scene.obstacles,
+                            [](const planning::ObstacleInSource& one) { return !one.is_static(); });
   if (moving > 0) legend.add("class=\"moving\"", "moving");
-  if (moving < std::ssize(input.obstacles)) legend.add("class=\"standing\"", "standing");
-  if (!input.occupied.empty()) legend.add("class=\"occupied\"", "occupied");
+  if (moving < std::ssize(input.scene.obstacles)) legend.add("class=\"standing\"", "standing");
+  if (!input.scene.occupied.empty()) legend.add("class=\"occupied\"", "occupied");
   return fmt::format("<rect class=\"strip\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     svg_number(layout.height_px), svg_number(kWidth_px),
-                     svg_number(kSceneLegend_px)) +
+                     map::svg_number(frame.size_px.y()), map::svg_number(kSceneWidth_px),
+                     map::svg_number(kSceneLegend_px)) +
          legend.svg();
 }
 
 }  // namespace
 
 std::string drive_scene_svg(const ReportInput& input) {
-  const Layout layout = lay_out(shown_box(input));
-  const std::string size = fmt::format("width=\"{}\" height=\"{}\"", svg_number(kWidth_px),
-                                       svg_number(layout.height_px + kSceneLegend_px));
+  const map::PictureFrame frame = lay_out(shown_box(input));
+  const std::string size =
+      fmt::format("width=\"{}\" height=\"{}\"", map::svg_number(kSceneWidth_px),
+                  map::svg_number(frame.size_px.y() + kSceneLegend_px));
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" {0} viewBox=\"0 0 {1} {2}\" role=\"img\">\n"
       "<title>{3}</title>\n{4}"
       "<clipPath id=\"card\"><rect {0} rx=\"10\"/></clipPath><g clip-path=\"url(#card)\">\n"
       "<clipPath id=\"map\"><rect width=\"{1}\" height=\"{5}\"/></clipPath>"
       "<g clip-path=\"url(#map)\"><rect class=\"ground\" width=\"{1}\" height=\"{5}\"/>\n",
-      size, svg_number(kWidth_px), svg_number(layout.height_px + kSceneLegend_px),
-      escape_markup(input.title), kStyle, svg_number(layout.height_px));
-  svg += lanes_svg(input, layout) + route_svg(input, layout) + occupied_svg(input, layout);
-  svg += motions_svg(input, layout) + driven_svg(input, layout);
-  svg += obstacles_svg(input, layout) + vehicle_svg(input, layout);
-  svg += ends_svg(input, layout) + scale_bar_svg(layout) + "</g>\n";
-  return svg + legend_svg(input, layout) + "</g></svg>\n";
+      size, map::svg_number(kSceneWidth_px), map::svg_number(frame.size_px.y() + kSceneLegend_px),
+      map::html_text(input.title), kStyle, map::svg_number(frame.size_px.y()));
+  svg += lanes_svg(input, frame) + route_svg(input, frame) + occupied_svg(input, frame);
+  svg += motions_svg(input, frame) + driven_svg(input, frame);
+  svg += obstacles_svg(input, frame) + vehicle_svg(input, frame);
+  svg += ends_svg(input, frame) + scale_bar_svg(frame) + "</g>\n";
+  return svg + legend_svg(input, frame) + "</g></svg>\n";
 }
 
 }  // namespace roadbed::tools

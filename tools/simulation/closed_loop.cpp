@@ -13,7 +13,7 @@
 #include "roadbed/control/single_track.h"
 #include "roadbed/control/stanley.h"
 #include "roadbed/planning/behaviour/pilot.h"
-#include "roadbed/tools/simulation/event_log.h"
+#include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/sensors.h"
@@ -229,7 +229,7 @@ class ClosedLoop {
   void finish() {
     record();
     if (!drive_.cycles.empty()) {
-      drive_.saturated_share =
+      drive_.saturated_ratio =
           static_cast<double>(saturated_) / static_cast<double>(drive_.cycles.size());
     }
     drive_.trajectory = geometry::Trajectory(std::move(rows_));

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <numbers>
 #include <utility>
 
@@ -13,11 +11,13 @@
 #include "roadbed/map/commonroad/scenario_reader.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/route/match_place.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
-#include "roadbed/tools/simulation/recorded_obstacle.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {
@@ -47,7 +47,6 @@ struct Source {
   [[noreturn]] void refuse(const std::string& found, const std::string& needed,
                            const std::string& remedy) const {
     throw map::InputError({.file = file,
-                           .place = {},
                            .element = "planning problem " + problem.id,
                            .found = found,
                            .needed = needed,
@@ -144,7 +143,7 @@ std::vector<LanePlace> start_places(const Source& source, const Pose2& start,
   return places;
 }
 
-/// The last place of the way that is driven if no lane is chosen on purpose.
+/// The last place of the path that is driven if no lane is chosen on purpose.
 LanePlace straight_ahead(const map::RoadMap& road_map, const LanePlace& from, double length_m) {
   constexpr int kMostLanes = 1000;
   LanePlace at = from;
@@ -287,7 +286,6 @@ void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obsta
     const long step = state.time_step.least;
     if (step != last + 1) {
       throw map::InputError({.file = file,
-                             .place = {},
                              .element = "obstacle " + obstacle.id,
                              .found = fmt::format("time step {} after {}", step, last),
                              .needed = "a state for each time step",
@@ -298,44 +296,37 @@ void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obsta
 }
 
 /// What a file's lights show: red with yellow is red, and one that is off is dark.
-std::vector<planning::LightCycle> lights_of(const map::RoadMap& road_map, long start_step,
-                                            double step_s) {
+std::vector<planning::LightCycle> lights_of(const map::commonroad::Scenario& from,
+                                            long start_step) {
   std::vector<planning::LightCycle> lights;
-  for (const map::Signal& signal : road_map.signals()) {
-    planning::LightCycle light{.signals = {signal.source_id}, .pointer = {}, .phases = {}};
-    double offset = -static_cast<double>(start_step);
-    bool is_on = signal.dynamic;
-    for (const auto& [key, value] : signal.attributes) {
-      if (key == "timeOffset") offset += std::atof(value.c_str());
-      if (key == "active") is_on = is_on && value != "false";
-      const std::size_t blank = value.find(' ');
-      if (key != "cycleElement" || blank == std::string::npos) continue;
-      const std::string colour = value.substr(0, blank);
-      const double duration_s = step_s * std::atof(value.c_str() + blank + 1);
-      is_on = is_on && colour != "inactive";
+  for (const map::commonroad::TrafficLight& light : from.lights) {
+    planning::LightCycle shown{.signals = {light.id}, .pointer = {}, .phases = {}};
+    bool is_on = light.is_active;
+    for (const map::commonroad::LightPhase& phase : light.cycle) {
+      const double duration_s = from.time_step_s * phase.duration_steps;
+      is_on = is_on && phase.colour != "inactive";
       if (!(duration_s > 0.0)) continue;
-      light.phases.push_back({colour == "green"    ? planning::LightColour::green
-                              : colour == "yellow" ? planning::LightColour::yellow
-                                                   : planning::LightColour::red,
+      shown.phases.push_back({phase.colour == "green"    ? planning::LightColour::green
+                              : phase.colour == "yellow" ? planning::LightColour::yellow
+                                                         : planning::LightColour::red,
                               duration_s});
     }
-    light.offset_s = step_s * offset;
-    if (is_on && !light.phases.empty()) lights.push_back(std::move(light));
+    shown.offset_s = from.time_step_s * (light.offset_steps - static_cast<double>(start_step));
+    if (is_on && !shown.phases.empty()) lights.push_back(std::move(shown));
   }
   return lights;
 }
 
 void add_obstacles(const map::commonroad::Scenario& from, const Source& source, World& world) {
-  const long start_step = source.problem.initial_state.time_step.least;
+  const planning::RecordingClock clock{source.problem.initial_state.time_step.least,
+                                       from.time_step_s};
   for (const map::commonroad::Obstacle& obstacle : from.obstacles) {
     const bool can_be_hit =
         obstacle.role == ObstacleRole::fixed || obstacle.role == ObstacleRole::dynamic;
     if (!can_be_hit) continue;
     refuse_gaps(source.file, obstacle);
-    RecordedObstacle recorded =
-        recorded_obstacle(obstacle, world.road_map, start_step, from.time_step_s);
-    world.obstacles.push_back(std::move(recorded.obstacle));
-    world.presence.push_back(recorded.presence);
+    world.obstacles.push_back(
+        planning::obstacle_in_map(world.road_map, planning::recorded_obstacle(obstacle, clock)));
   }
 }
 
@@ -343,7 +334,7 @@ void refuse_overlap(const Source& source, const World& world,
                     const geometry::VehicleShape& vehicle) {
   const geometry::Rectangle body = geometry::body_at(world.start, vehicle);
   for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
-    if (!world.is_there(i, 0.0)) continue;
+    if (!world.obstacles[i].is_there(0.0)) continue;
     if (geometry::distance_m(body, rectangle_at(world.obstacles[i], 0.0)) > 0.0) continue;
     source.refuse(fmt::format("obstacle {} touches the ego at the start", world.obstacles[i].id),
                   "room to start from", "move one of the two");
@@ -364,11 +355,8 @@ Scenario scenario_of(const std::filesystem::path& file, const std::string& bench
 }  // namespace
 
 bool is_common_road(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(4096, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
-  return map::commonroad::holds_scenario(head);
+  const map::Format* format = map::format_of(file);
+  return format != nullptr && format->name == "CommonRoad";
 }
 
 CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
@@ -377,7 +365,6 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   const map::commonroad::Scenario from = map::commonroad::parse_scenario(bytes, file.string());
   if (from.planning_problems.empty()) {
     throw map::InputError({.file = file.string(),
-                           .place = {},
                            .element = "commonRoad",
                            .found = "no planning problem",
                            .needed = "one to solve",
@@ -400,7 +387,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   const planning::ReferenceLineOptions line_options{
       .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
   planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route, line_options);
-  scenario.lights = lights_of(road_map, problem.initial_state.time_step.least, from.time_step_s);
+  scenario.lights = lights_of(from, problem.initial_state.time_step.least);
   std::vector<planning::StopPoint> places = stop_points(road_map, route, line, scenario.lights);
   std::vector<planning::ReferenceLine> other_lines;
   std::vector<std::vector<planning::StopPoint>> other_places;

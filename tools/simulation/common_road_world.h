@@ -4,7 +4,6 @@
 #include <string>
 
 #include "roadbed/tools/simulation/scenario.h"
-#include "roadbed/tools/simulation/scenario_changes.h"
 #include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline simulation {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,13 +9,24 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/behaviour/pilot.h"
-#include "roadbed/planning/lateral/plan.h"
-#include "roadbed/tools/simulation/candidate_grid.h"
+#include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::tools::inline simulation {
 
 // What a closed-loop drive left behind, as plain data. Coordinates are the source's raw ones [m],
 // times are seconds of the drive.
+
+/// What became of each candidate of a planning cycle, small enough to be kept for every cycle.
+struct CandidateGrid {
+  std::vector<double> end_d_m, end_l_m;  ///< ascending
+  std::vector<std::uint8_t> causes;      ///< planning::Rejection per candidate, d fastest
+  /// The cheapest feasible candidate that ends at another offset than the chosen one.
+  std::optional<planning::Candidate> runner_up;
+};
+
+/// @param row_stride  of the lengths, only every so many-th is kept.
+/// None if the plan kept no candidates.
+std::optional<CandidateGrid> candidate_grid(const planning::Plan& plan, std::size_t row_stride = 3);
 
 /// One planning cycle, every 0.1 s.
 struct DriveCycle {
@@ -70,8 +82,13 @@ struct Drive {
   std::vector<DriveEvent> events;    ///< by time
   DriveVerdict verdict;
 
-  /// Saturation of the cruise control at ±max_command, share of the control steps.
-  double saturated_share = 0.0;
+  /// Ratio of control steps in which the cruise control saturates at ±max_command.
+  double saturated_ratio = 0.0;
 };
+
+/// What is worth telling of a cycle after the one before it: nothing feasible, an emergency,
+/// another lead, …
+/// @param last  none before the first cycle.
+std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last);
 
 }  // namespace roadbed::tools

@@ -25,7 +25,7 @@ GroundTruthMonitor::GroundTruthMonitor(const World& world, const geometry::Vehic
 void GroundTruthMonitor::look(double t_s, const planning::VehicleState& truth) {
   const geometry::Rectangle body = geometry::body_at(truth.map_from_vehicle, vehicle_);
   for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
-    if (!world_.is_there(i, t_s)) continue;
+    if (!world_.obstacles[i].is_there(t_s)) continue;
     const planning::Obstacle& obstacle = world_.obstacles[i];
     const geometry::Rectangle other = rectangle_at(obstacle, t_s);
     const double bound = (other.centre - body.centre).norm() - other.radius_m() - body.radius_m();

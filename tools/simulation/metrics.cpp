@@ -4,8 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/tools/simulation/comfort.h"
-#include "roadbed/tools/simulation/safety_metrics.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {
@@ -93,15 +94,15 @@ ordered_json comfort(const Drive& drive) {
             {"is_comfortable", found.is_comfortable()}}}};
 }
 
-ordered_json encounter(const char* key, const std::optional<Encounter>& found) {
+ordered_json safety_metric(const char* key, const std::optional<SafetyMetric>& found) {
   if (!found) return {{std::string(key) + "_s", nullptr}};
   return {{std::string(key) + "_s", found->time_s}, {std::string(key) + "_at_s", found->at_s}};
 }
 
-ordered_json encounters(const Scenario& scenario, const World& world, const Drive& drive) {
-  ordered_json all =
-      encounter("least_time_to_collision", least_time_to_collision(drive, world, scenario.vehicle));
-  all.update(encounter("least_headway", least_headway(drive)));
+ordered_json safety_metrics(const Scenario& scenario, const World& world, const Drive& drive) {
+  ordered_json all = safety_metric("least_time_to_collision",
+                                   least_time_to_collision(drive, world, scenario.vehicle));
+  all.update(safety_metric("least_headway", least_headway(drive)));
   all["wrong_way_m"] = wrong_way_m(drive);
   all["progress_m"] = drive.samples.back().s_m - drive.samples.front().s_m;
   return all;
@@ -133,7 +134,7 @@ ordered_json cycles(const Drive& drive) {
            count(drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen; })},
           {"cycles_from_measurement",
            count(drive.cycles, [](const DriveCycle& cycle) { return cycle.from_measurement; })},
-          {"saturated_share", drive.saturated_share},
+          {"saturated_share", drive.saturated_ratio},
           {"behaviour", per_behaviour}};
 }
 
@@ -193,8 +194,39 @@ ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
           {"least_clearance_m", audit->least_clearance_m},
           {"least_clearance_at_s", audit->least_clearance_at_s},
           {"beyond_horizon", audit->beyond_horizon},
-          {"unknown_share", audit->unknown_share},
+          {"unknown_share", audit->unknown_fraction},
           {"conflicts", audit->conflicts.size()}};
+}
+
+using geometry::Rectangle;
+
+constexpr double kLook_s = 3.0, kLookStep_s = 0.1;
+constexpr double kLeastSpeed_mps = 1.0;
+
+Rectangle moved(Rectangle body, const Eigen::Vector2d& velocity_mps, double duration_s) {
+  body.centre += duration_s * velocity_mps;
+  return body;
+}
+
+Eigen::Vector2d velocity_of(const planning::Obstacle& obstacle, double t_s) {
+  if (obstacle.is_static()) return {0.0, 0.0};
+  const geometry::TrajectoryPoint at = obstacle.motion.at(t_s);
+  return at.speed_mps * Eigen::Vector2d(std::cos(at.heading_rad), std::sin(at.heading_rad));
+}
+
+/// First time at which two bodies touch, less than `within_s`.
+std::optional<double> time_to_touch(const Rectangle& a, const Eigen::Vector2d& velocity_a,
+                                    const Rectangle& b, const Eigen::Vector2d& velocity_b,
+                                    double within_s) {
+  const double reach = a.radius_m() + b.radius_m() + (velocity_b - velocity_a).norm() * within_s;
+  if ((a.centre - b.centre).norm() > reach) return std::nullopt;
+  const auto steps = static_cast<int>(std::lround(within_s / kLookStep_s));
+  for (int k = 0; k < steps; ++k) {
+    const double ahead_s = kLookStep_s * k;
+    if (geometry::distance_m(moved(a, velocity_a, ahead_s), moved(b, velocity_b, ahead_s)) <= 0.0)
+      return ahead_s;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -212,7 +244,7 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
       {"driven_m", driven_m(drive.trajectory)},
       {"to_goal_m", world.line.goal_s_m() - drive.samples.back().s_m},
   };
-  for (const ordered_json& part : {least_clearance(drive), encounters(scenario, world, drive),
+  for (const ordered_json& part : {least_clearance(drive), safety_metrics(scenario, world, drive),
                                    motion(drive), comfort(drive), tracking(drive), cycles(drive)}) {
     metrics.update(part);
   }
@@ -221,6 +253,45 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
   metrics["events"] = events(drive);
   metrics["audit"] = audit_summary(audit);
   return metrics;
+}
+
+std::optional<SafetyMetric> least_time_to_collision(const Drive& drive, const World& world,
+                                                    const geometry::VehicleShape& vehicle) {
+  std::optional<SafetyMetric> least;
+  double within_s = kLook_s + kLookStep_s;
+  for (const geometry::TrajectoryPoint& row : drive.trajectory.points()) {
+    const Eigen::Vector2d in_map = world.road_map.to_map({row.x_m, row.y_m});
+    const Rectangle body = geometry::body_at({in_map.x(), in_map.y(), row.heading_rad}, vehicle);
+    const Eigen::Vector2d velocity = row.speed_mps * body.axis;
+    for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+      if (!world.obstacles[i].is_there(row.t_s)) continue;
+      const auto touch = time_to_touch(body, velocity, rectangle_at(world.obstacles[i], row.t_s),
+                                       velocity_of(world.obstacles[i], row.t_s), within_s);
+      if (!touch) continue;
+      least = SafetyMetric{*touch, row.t_s};
+      within_s = *touch;
+    }
+  }
+  return least;
+}
+
+std::optional<SafetyMetric> least_headway(const Drive& drive) {
+  std::optional<SafetyMetric> least;
+  for (const DriveCycle& cycle : drive.cycles) {
+    const double speed = drive.trajectory.at(cycle.t_s).speed_mps;
+    if (!cycle.lead || speed < kLeastSpeed_mps) continue;
+    const double headway_s = cycle.lead->gap_m / speed;
+    if (!least || headway_s < least->time_s) least = SafetyMetric{headway_s, cycle.t_s};
+  }
+  return least;
+}
+
+double wrong_way_m(const Drive& drive) {
+  double back_m = 0.0;
+  for (std::size_t i = 1; i < drive.samples.size(); ++i) {
+    back_m += std::max(0.0, drive.samples[i - 1].s_m - drive.samples[i].s_m);
+  }
+  return back_m;
 }
 
 }  // namespace roadbed::tools

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -10,7 +11,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/vehicle_json.h"
 
 namespace roadbed::tools::inline simulation {
@@ -201,6 +202,23 @@ bool has_pedals(const JsonNode& options) {
   return pedals && pedals->value().get<bool>();
 }
 
+ScenarioNoise noise_in(const JsonNode& node) {
+  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
+                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
+  const auto dropouts = node.find("dropouts");
+  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
+          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
+          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
+          .position_m = node.number_or("position_m", 0.0, kDeviation),
+          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
+          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
+          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<planning::TimeSpan>{},
+          .dropout_ratio = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
+}
+
+// Every whole number up to it is a double, which JSON numbers are.
+constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
+
 std::uint64_t seed(const JsonNode& node) {
   const double number = node.number({0.0, static_cast<double>(kLargestSeed)});
   if (number != std::floor(number)) {
@@ -231,21 +249,14 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
 }
 
-}  // namespace
-
-ScenarioNoise noise_in(const JsonNode& node) {
-  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
-                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
-  const auto dropouts = node.find("dropouts");
-  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
-          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
-          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
-          .position_m = node.number_or("position_m", 0.0, kDeviation),
-          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
-          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
-          .dropouts = dropouts ? time_spans(*dropouts) : std::vector<planning::TimeSpan>{},
-          .dropout_share = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
+bool is_random(const ScenarioNoise& noise) {
+  const auto all = {noise.gap_m,        noise.relative_speed_mps, noise.acceleration_mps2,
+                    noise.position_m,   noise.heading_rad,        noise.speed_mps,
+                    noise.dropout_ratio};
+  return std::ranges::any_of(all, [](double amount) { return amount > 0.0; });
 }
+
+}  // namespace
 
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
   const nlohmann::json document = parse_json_strictly(bytes, file.string());
@@ -291,6 +302,32 @@ std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem
     return {};
   }
   return files;
+}
+
+void ScenarioChanges::apply_to(Scenario& scenario) const {
+  if (vehicle) scenario.vehicle = *vehicle;
+  if (noise) scenario.noise = *noise;
+  if (!seed) return;
+  if (!is_random(scenario.noise)) {
+    throw map::InputError({.file = scenario.file.string(),
+                           .found = "nothing is left to chance, and a seed is given",
+                           .needed = "noise, as all seeds give the same drive without it",
+                           .remedy = "leave --seed out, or give --noise"});
+  }
+  scenario.seed = *seed;
+}
+
+std::optional<std::uint64_t> parse_seed(std::string_view text) {
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, seed);
+  const bool is_seed = parsed.ec == std::errc() && parsed.ptr == end && seed <= kLargestSeed;
+  return is_seed ? std::optional(seed) : std::nullopt;
+}
+
+ScenarioNoise read_noise_json(const std::filesystem::path& file) {
+  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
+  return noise_in(JsonNode(document, file.string()));
 }
 
 }  // namespace roadbed::tools

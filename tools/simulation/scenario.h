@@ -12,8 +12,6 @@
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/planning/behaviour/driving_task.h"
 
-#include "roadbed/tools/files/json_node.h"
-
 namespace roadbed::tools::inline simulation {
 
 // A scenario file, as it is written: places are still texts and coordinates the source's raw ones.
@@ -75,7 +73,7 @@ struct ScenarioNoise {
   double heading_rad = 0.0;
   double speed_mps = 0.0;
   std::vector<planning::TimeSpan> dropouts = {};  ///< in which nothing is measured of a lead
-  double dropout_share = 0.0;  ///< of the other measurements of a lead, lost at random
+  double dropout_ratio = 0.0;  ///< of the other measurements of a lead, lost at random
 };
 
 struct Scenario {
@@ -102,15 +100,27 @@ Scenario read_scenario(const std::filesystem::path& file);
 /// The same from bytes; `file` stands for the scenario in messages and gives the folder.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
 
-/// The noise of a scenario, or of a document of its own.
-/// @throws InputError naming the first fault.
-ScenarioNoise noise_in(const JsonNode& node);
-
-/// Every whole number up to it is a double, which JSON numbers are.
-constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
-
 /// The map and the clouds that a scenario names, or those of all scenarios (.json) right in a
 /// folder. A file that is no such scenario names none, as a CommonRoad one, which holds its map.
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file);
+
+/// What a scenario is driven with otherwise than its file says.
+struct ScenarioChanges {
+  std::optional<geometry::VehicleShape> vehicle = {};
+  std::optional<ScenarioNoise> noise = {};
+  std::optional<std::uint64_t> seed = {};
+
+  /// @throws InputError if there is a seed, and nothing that is left to chance: all seeds would
+  ///         give the same drive.
+  void apply_to(Scenario& scenario) const;
+};
+
+/// A seed as the command line has it: a whole number from 0 to 2⁵³, as in scenario files; none for
+/// any other text.
+std::optional<std::uint64_t> parse_seed(std::string_view text);
+
+/// Reads noise: one JSON object with the keys of a scenario's `noise`.
+/// @throws InputError naming the key, or the byte where the text is not JSON.
+ScenarioNoise read_noise_json(const std::filesystem::path& file);
 
 }  // namespace roadbed::tools

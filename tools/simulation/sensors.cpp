@@ -23,8 +23,8 @@ bool Sensors::sees(double t_s) {
   const bool is_blind = std::ranges::any_of(
       deviations_.dropouts,
       [&](const planning::TimeSpan& span) { return t_s >= span.from_s && t_s < span.to_s; });
-  if (is_blind || deviations_.dropout_share <= 0.0) return !is_blind;
-  return std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= deviations_.dropout_share;
+  if (is_blind || deviations_.dropout_ratio <= 0.0) return !is_blind;
+  return std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= deviations_.dropout_ratio;
 }
 
 control::LeadMeasurement Sensors::measure(const planning::Lead& truth, double own_speed_mps) {

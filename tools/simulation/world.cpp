@@ -9,6 +9,7 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
@@ -22,12 +23,8 @@ using planning::Route;
 
 [[noreturn]] void refuse(const Scenario& scenario, const std::string& pointer,
                          const std::string& found, const std::string& remedy) {
-  throw map::InputError({.file = scenario.file.string(),
-                         .place = pointer,
-                         .element = {},
-                         .found = found,
-                         .needed = {},
-                         .remedy = remedy});
+  throw map::InputError(
+      {.file = scenario.file.string(), .place = pointer, .found = found, .remedy = remedy});
 }
 
 /// The place's own message, at its place in the scenario.

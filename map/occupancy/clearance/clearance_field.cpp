@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/occupancy/clearance/band_slicer.h"
 #include "roadbed/map/occupancy/clearance/grid_tiles.h"
+#include "roadbed/map/occupancy/clearance/height_band_slicer.h"
 #include "roadbed/map/occupancy/clearance/plan_grid.h"
 #include "roadbed/map/occupancy/clearance/rectangle_cover.h"
-#include "roadbed/map/occupancy/ground/ground.h"
 
 namespace roadbed::map::inline occupancy::inline clearance {
 namespace {
@@ -45,7 +44,6 @@ void check_size(const CellRange& range, std::int64_t layers, double cell_m) {
   if (is_small(range) && layers < longest) return;
   throw InputError(
       {.file = "occupancy",
-       .place = {},
        .element = "extent",
        .found = fmt::format("{} × {} cells of {} m in {} layers", range.width(), range.height(),
                             cell_m, layers),
@@ -63,7 +61,7 @@ CellRange range_of(const std::vector<Slab>& slabs) {
 
 /// One grid where that is small enough, else tiles of it.
 struct ClearanceField::Grid {
-  BandSlicer slicer;
+  HeightBandSlicer slicer;
   double horizon_m = kHorizon_m, body_radius_m = 0.0;  // the latter of a region, or of tiles
   std::optional<Box2> around = std::nullopt;
   std::shared_ptr<const PlanGrid> whole = nullptr;
@@ -195,18 +193,13 @@ struct ClearanceField::Grid {
   }
 };
 
-bool HeightBand::holds(const Eigen::Vector2d& in_source, double low_m, double height_m) const {
-  const double above_m = ground ? low_m - ground->height_m(in_source) : low_m;
-  return std::min(above_m + height_m, to_m) - std::max(above_m, from_m) > kTouch_m;
-}
-
 ClearanceField::ClearanceField(const OccupancySource& occupancy, const HeightBand& band,
                                const std::optional<FieldRegion>& region) {
   check(band);
   if (band.ground && !region) {
     throw std::invalid_argument("ClearanceField: a band over a ground needs a region");
   }
-  grid_.reset(new Grid{.slicer = BandSlicer(occupancy, band)});
+  grid_.reset(new Grid{.slicer = HeightBandSlicer(occupancy, band)});
   if (region) {
     grid_->make(*region);
   } else {
@@ -269,11 +262,11 @@ std::vector<Box2> ClearanceField::boxes_at(const geometry::Rectangle& in_source,
   return boxes;
 }
 
-double ClearanceField::unknown_share(const geometry::Rectangle& in_source) const {
+double ClearanceField::unknown_fraction(const geometry::Rectangle& in_source) const {
   const geometry::Rectangle rectangle = grid_->in_grid(in_source);
   grid_->check_inside(rectangle);
   return grid_->ask(rectangle.centre,
-                    [&](const PlanGrid& grid) { return grid.unknown_share(rectangle); });
+                    [&](const PlanGrid& grid) { return grid.unknown_fraction(rectangle); });
 }
 
 }  // namespace roadbed::map::occupancy::clearance

@@ -155,9 +155,9 @@ double PlanGrid::reach_m(const geometry::Rectangle& rectangle, double within_m,
   const Eigen::Vector2d ahead = rectangle.half_length_m * rectangle.axis;
   const Eigen::Vector2d left =
       rectangle.half_width_m * Eigen::Vector2d(-rectangle.axis.y(), rectangle.axis.x());
-  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+  for (const double fraction : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
     for (const double side : {-1.0, 1.0}) {
-      const Eigen::Vector2d point = rectangle.centre + share * ahead + side * left;
+      const Eigen::Vector2d point = rectangle.centre + fraction * ahead + side * left;
       reach_m = std::min(reach_m, upper_bound_m(point, layer));
     }
   }
@@ -272,13 +272,13 @@ double PlanGrid::unknown_cells(const RectangleCover& cover) const {
       std::copy_n(&known_layers_[extent_.seen.index(inside.from_x, y)], inside.width(),
                   &known[static_cast<std::size_t>(inside.from_x - cells.from_x)]);
     }
-    const double* shares = cover.row(y);
-    for (std::size_t i = 0; i < width; ++i) by_column[i] += shares[i] * (layers_ - known[i]);
+    const double* fractions = cover.row(y);
+    for (std::size_t i = 0; i < width; ++i) by_column[i] += fractions[i] * (layers_ - known[i]);
   }
   return std::accumulate(by_column.begin(), by_column.end(), 0.0) / layers_;
 }
 
-double PlanGrid::unknown_share(const geometry::Rectangle& rectangle) const {
+double PlanGrid::unknown_fraction(const geometry::Rectangle& rectangle) const {
   const CellRange touched = RectangleCover::cells_touched(rectangle, cell_m_);
   if (!is_any_unknown(touched)) return 0.0;
   if (!is_any_measured(touched)) return 1.0;

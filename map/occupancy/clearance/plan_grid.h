@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clearance/cell_bits.h"
-#include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/clearance/field_region.h"
 #include "roadbed/map/occupancy/clearance/rectangle_search.h"
 #include "roadbed/map/occupancy/octree/cell_range.h"
 
@@ -63,8 +63,8 @@ class PlanGrid {
   /// All cells of the kind among those that a rectangle may touch; their distances are not told.
   std::vector<NearCell> cells_at(const geometry::Rectangle& rectangle, ObstacleKind kind) const;
 
-  /// Share of a rectangle's part of the band that was never measured.
-  double unknown_share(const geometry::Rectangle& rectangle) const;
+  /// Fraction of a rectangle's part of the band that was never measured.
+  double unknown_fraction(const geometry::Rectangle& rectangle) const;
 
  private:
   struct Layer {

@@ -24,7 +24,7 @@ CellRange RectangleCover::cells_touched(const geometry::Rectangle& rectangle, do
 
 RectangleCover::RectangleCover(const geometry::Rectangle& rectangle, double cell_m)
     : range_(cells_touched(rectangle, cell_m)) {
-  shares_.resize(range_.count() + 1);
+  fractions_.resize(range_.count() + 1);
   const std::array<Eigen::Vector2d, 4> corners = rectangle.corners();
   const Eigen::Vector2d first(static_cast<double>(range_.from_x),
                               static_cast<double>(range_.from_y));
@@ -35,8 +35,8 @@ RectangleCover::RectangleCover(const geometry::Rectangle& rectangle, double cell
     double sum = 0.0;
     for (std::size_t i = range_.index(range_.from_x, y); i < range_.index(range_.to_x, y); ++i) {
       constexpr double rounding = 1e-12;  // of a cell that is not covered at all
-      sum += shares_[i];
-      shares_[i] = sum < rounding ? 0.0 : std::min(sum, 1.0);
+      sum += fractions_[i];
+      fractions_[i] = sum < rounding ? 0.0 : std::min(sum, 1.0);
     }
   }
 }
@@ -62,12 +62,13 @@ void RectangleCover::add_in_row(std::size_t row, double from_x, double to_x, dou
   const auto width = static_cast<double>(range_.width());
   const double left = std::clamp(std::min(from_x, to_x), 0.0, width - 2.0);
   const double right = std::clamp(std::max(from_x, to_x), left, width - 2.0);
-  double* cells = &shares_[row * static_cast<std::size_t>(range_.width())];
+  double* cells = &fractions_[row * static_cast<std::size_t>(range_.width())];
   const double per_cell = right > left ? rise / (right - left) : 0.0;
   for (double cell = std::floor(left);; cell += 1.0) {
     const double enters = std::max(left, cell), leaves = std::min(right, cell + 1.0);
     const double gained = right > left ? per_cell * (leaves - enters) : rise;
-    const double beside = 0.5 * (enters + leaves) - cell;  // left of the side, mean share of a cell
+    const double beside =
+        0.5 * (enters + leaves) - cell;  // left of the side, mean fraction of a cell
     const auto i = static_cast<std::size_t>(cell);
     cells[i] += gained * (1.0 - beside);
     cells[i + 1] += gained * beside;

@@ -10,12 +10,7 @@ namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
 
 [[noreturn]] void refuse(const std::string& found, const std::string& remedy) {
-  throw InputError({.file = "point cloud filter",
-                    .place = {},
-                    .element = {},
-                    .found = found,
-                    .needed = {},
-                    .remedy = remedy});
+  throw InputError({.file = "point cloud filter", .found = found, .remedy = remedy});
 }
 
 RoadbedPclFilter& open_module() {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,19 +52,7 @@ struct Box3 {
 /// Smallest box around all points. The cloud must hold one.
 Box3 bounds(const PointCloud& cloud);
 
-/// The same cloud with every coordinate times `factor`, in metres and of no known CRS.
-PointCloud scaled_to_metres(const PointCloud& cloud, double factor);
-
 /// @throws InputError if the file says that its unit is another than the metre.
 void check_is_in_metres(const PointCloud& cloud);
-
-/// Reads .pcd (ascii, binary, compressed), .ply, .las, .xyz/.csv; the format is told by content,
-/// and by suffix where content does not tell. No library sees the bytes, and no header makes the
-/// reader allocate more than a small multiple of the file.
-/// @throws InputError if the file is unusable or has no finite point.
-PointCloud read_point_cloud(const std::filesystem::path& file);
-
-/// The same from bytes; `name` stands for the file in messages, its suffix counts.
-PointCloud parse_point_cloud(std::string_view bytes, const std::string& name);
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -1,5 +1,6 @@
 // PCD 0.5 to 0.7: https://pointclouds.org/documentation/tutorials/pcd_file_format.html
 #include <fmt/format.h>
+#include <lzf.h>
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +10,6 @@
 
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 #include "roadbed/map/occupancy/clouds/float_points.h"
-#include "roadbed/map/occupancy/clouds/lzf.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
@@ -40,6 +40,18 @@ struct Header {
 
 // The fields of a vector.
 using Axes = std::array<const Field*, 3>;
+
+/// Undoes LZF; none unless the bytes are whole and give exactly `size` bytes.
+std::optional<std::string> decompress_lzf(std::string_view packed, std::size_t size) {
+  // A reference of 3 bytes copies at most 264: a size that cannot be reached is not allocated.
+  constexpr std::size_t kMostPerByte = 88;
+  if (packed.empty() || size / kMostPerByte > packed.size()) return std::nullopt;
+  std::string plain(size, '\0');
+  const unsigned written = lzf_decompress(packed.data(), static_cast<unsigned>(packed.size()),
+                                          plain.data(), static_cast<unsigned>(size));
+  if (written == 0 || written != size) return std::nullopt;  // it says 0 where it failed
+  return plain;
+}
 
 class PcdParser {
  public:

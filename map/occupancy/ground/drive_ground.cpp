@@ -24,8 +24,8 @@ double height_at(const map::LaneLine& line, double station_m) {
   if (after == line.station_m.begin()) return line.z_m.front();
   if (after == line.station_m.end()) return line.z_m.back();
   const auto i = static_cast<std::size_t>(after - line.station_m.begin());
-  const double from_m = line.station_m[i - 1], share = (station_m - from_m) / (*after - from_m);
-  return line.z_m[i - 1] + share * (line.z_m[i] - line.z_m[i - 1]);
+  const double from_m = line.station_m[i - 1], fraction = (station_m - from_m) / (*after - from_m);
+  return line.z_m[i - 1] + fraction * (line.z_m[i] - line.z_m[i - 1]);
 }
 
 /// The plane that touches a lane's surface at a place of it.

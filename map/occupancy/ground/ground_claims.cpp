@@ -25,8 +25,8 @@ std::string told_at(const Vector2d& at, const std::string& what) {
 std::vector<Vector2d> positions_along(const geometry::Trajectory& drive) {
   std::vector<Vector2d> positions;
   for (const geometry::Pose2& pose : places_along(drive)) positions.push_back(pose.position());
-  for (const geometry::TrajectoryPoint& row : drive.points()) {
-    positions.push_back(row.pose().position());
+  for (const geometry::TrajectoryPoint& sample : drive.points()) {
+    positions.push_back(sample.pose().position());
   }
   return positions;
 }
@@ -86,11 +86,11 @@ std::vector<std::string> ground_faults(const map::Ground& ground,
   return faults;
 }
 
-std::pair<double, double> heights_at_rows_m(const map::Ground& ground,
-                                            const geometry::Trajectory& drive_in_source) {
+std::pair<double, double> heights_at_samples_m(const map::Ground& ground,
+                                               const geometry::Trajectory& drive_in_source) {
   double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
-  for (const geometry::TrajectoryPoint& row : drive_in_source.points()) {
-    const double z_m = ground.height_m(row.pose().position());
+  for (const geometry::TrajectoryPoint& sample : drive_in_source.points()) {
+    const double z_m = ground.height_m(sample.pose().position());
     low_m = std::min(low_m, z_m);
     high_m = std::max(high_m, z_m);
   }

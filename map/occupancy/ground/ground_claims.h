@@ -16,8 +16,8 @@ namespace roadbed::map::inline occupancy::inline ground {
 std::vector<std::string> ground_faults(const map::Ground& ground,
                                        const geometry::Trajectory& drive_in_source, double reach_m);
 
-/// The lowest and the highest z of a ground at the rows of a drive.
-std::pair<double, double> heights_at_rows_m(const map::Ground& ground,
-                                            const geometry::Trajectory& drive_in_source);
+/// The lowest and the highest z of a ground at the samples of a drive.
+std::pair<double, double> heights_at_samples_m(const map::Ground& ground,
+                                               const geometry::Trajectory& drive_in_source);
 
 }  // namespace roadbed::map::occupancy::ground

@@ -10,7 +10,6 @@ namespace roadbed::map::inline occupancy::inline ground {
 
 void refuse_ground(const Eigen::Vector2d& at, const std::string& found, const std::string& needed) {
   throw map::InputError({.file = "ground",
-                         .place = {},
                          .element = fmt::format("at ({:.1f}, {:.1f})", at.x(), at.y()),
                          .found = found,
                          .needed = needed,

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/occupancy/ground/column_minima.h"
 #include "roadbed/map/occupancy/ground/drive_places.h"
 #include "roadbed/map/occupancy/ground/ground_plane.h"
-#include "roadbed/map/occupancy/ground/lowest_cells.h"
 
 namespace roadbed::map::inline occupancy::inline ground {
 namespace {
@@ -104,7 +104,7 @@ GroundPlace level_at_median(const std::vector<Eigen::Vector3d>& points, const Ve
 /// Follows the measured surface from place to place, and refuses one that may be an obstacle's.
 class MeasuredFollower {
  public:
-  explicit MeasuredFollower(const LowestCells& cells)
+  explicit MeasuredFollower(const ColumnMinima& cells)
       : cells_(cells),
         within_m_(measured_ground_margin_m(cells.cell_m())),
         step_m_(std::max(0.5 * cells.cell_m(), 0.03)) {}
@@ -191,7 +191,7 @@ class MeasuredFollower {
     refuse_ground(at, found, "one surface all around, with nothing below it and no step");
   }
 
-  const LowestCells& cells_;
+  const ColumnMinima& cells_;
   double within_m_, step_m_;
   std::vector<GroundPlace> places_;
 };
@@ -203,7 +203,7 @@ map::Ground measured_under(const map::OccupancySource& occupancy,
   const std::vector<geometry::Pose2> stations = stations_along(drive_in_source, body);
   std::vector<Vector2d> points;
   for (const geometry::Pose2& station : stations) points.push_back(station.position());
-  const LowestCells cells(occupancy, points, kAround_m);
+  const ColumnMinima cells(occupancy, points, kAround_m);
   MeasuredFollower follower(cells);
   for (const geometry::Pose2& station : stations) follower.follow(station);
   std::vector<GroundPlace> places = std::move(follower).places();

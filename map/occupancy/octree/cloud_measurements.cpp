@@ -58,7 +58,7 @@ std::optional<CellKey> key_at(const Eigen::Vector3d& in_tree, double resolution_
 }
 
 CloudMeasurements::CloudMeasurements(const Eigen::Vector3d& origin_in_source,
-                                     const OccupancyOptions& options, ScanSum sum,
+                                     const OccupancyOptions& options, ScanAccumulator sum,
                                      std::size_t points)
     : origin_in_source_(origin_in_source),
       options_(options),
@@ -165,11 +165,9 @@ CellKey CloudMeasurements::checked_key(const PointCloud& cloud, const char* what
   if (key) return *key;
   throw InputError(
       {.file = cloud.name,
-       .place = {},
        .element = fmt::format("{} ({}, {}, {})", what, in_source.x(), in_source.y(), in_source.z()),
        .found = fmt::format("lies more than {} cells of {} m from the middle", kHalfRange,
                             options_.resolution_m),
-       .needed = {},
        .remedy = "take a coarser resolution, or cut the cloud"});
 }
 
@@ -177,10 +175,8 @@ void CloudMeasurements::check_room(const PointCloud& cloud) const {
   const std::size_t blocks = blocks_.kept_bytes() + sum_.kept_bytes(blocks_.block_count());
   if (blocks + carved_.kept_bytes() <= most_bytes_) return;
   throw InputError({.file = cloud.name,
-                    .place = {},
                     .element = cloud.has_sensor() ? "rays" : "points",
                     .found = "cross more cells than can be kept",
-                    .needed = {},
                     .remedy = "take a coarser resolution or a shorter carving range"});
 }
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
-#include "roadbed/map/occupancy/octree/carved_cells.h"
 #include "roadbed/map/occupancy/octree/cell_blocks.h"
-#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/free_space_rays.h"
+#include "roadbed/map/occupancy/octree/occupancy_options.h"
 #include "roadbed/map/occupancy/octree/octree_bytes.h"
-#include "roadbed/map/occupancy/octree/scan_sum.h"
+#include "roadbed/map/occupancy/octree/scan_accumulator.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
@@ -27,7 +27,7 @@ class CloudMeasurements {
   /// @param sum     of the same options; or of none, to keep what was measured as it is.
   /// @param points  of all clouds that will come: what they may take of memory depends on it.
   CloudMeasurements(const Eigen::Vector3d& origin_in_source, const OccupancyOptions& options,
-                    ScanSum sum, std::size_t points);
+                    ScanAccumulator sum, std::size_t points);
 
   /// @throws InputError if a point or the sensor lies out of range, or what was measured lies in
   ///         too many places to be kept.
@@ -65,8 +65,8 @@ class CloudMeasurements {
   OccupancyOptions options_;
   std::size_t most_bytes_;
   CellBlocks blocks_;
-  ScanSum sum_;
-  CarvedCells carved_;  // by the scan that is being added
+  ScanAccumulator sum_;
+  FreeSpaceRays carved_;  // by the scan that is being added
   std::vector<CellKey> keys_;
 };
 

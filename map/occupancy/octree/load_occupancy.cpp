@@ -1,4 +1,5 @@
 #include "roadbed/map/occupancy/octree/load_occupancy.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 
 #include <string>
 #include <vector>
@@ -20,8 +21,6 @@ OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
       return OccupancyMap::parse(bytes, file.string());
     } else {
       throw InputError({.file = file.string(),
-                        .place = {},
-                        .element = {},
                         .found = "is an octree beside other files",
                         .needed = "one octree alone, or point clouds",
                         .remedy = "give the clouds that the octree was built from"});

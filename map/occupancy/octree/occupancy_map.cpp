@@ -15,7 +15,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/octree_file.h"
-#include "roadbed/map/occupancy/octree/tile_builder.h"
+#include "roadbed/map/occupancy/octree/tree_origin.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
@@ -23,7 +23,7 @@ struct OccupancyMap::Tree {
   octomap::OcTree octree;
   Eigen::Vector3d origin_in_source{0, 0, 0};
   std::string crs;
-  std::optional<SeenThrough> seen_through;
+  std::optional<SeeThroughRemoval> seen_through;
   std::once_flag bounded;  // of the bounds, for which all leaves are looked at
   std::optional<Box3> bounds;
 
@@ -91,7 +91,6 @@ std::string common_crs(std::span<const PointCloud> clouds) {
     if (cloud.crs != clouds.front().crs) {
       throw InputError(
           {.file = cloud.name,
-           .place = {},
            .element = "CRS",
            .found = fmt::format("\"{}\"", cloud.crs),
            .needed = fmt::format("\"{}\" as {} has", clouds.front().crs, clouds.front().name),
@@ -115,15 +114,15 @@ Measured measure(std::span<const PointCloud> clouds, const OccupancyOptions& opt
   std::string crs = common_crs(clouds);
   const Eigen::Vector3d origin = choose_origin(clouds, options.resolution_m);
   Measured measured{origin, std::move(crs),
-                    CloudMeasurements(origin, options, ScanSum(options), points)};
+                    CloudMeasurements(origin, options, ScanAccumulator(options), points)};
   for (const PointCloud& cloud : clouds) measured.cells.add(cloud);
   return measured;
 }
 
-std::optional<SeenThrough> seen_through_of(const OccupancyOptions& options,
-                                           const CloudMeasurements& cells) {
+std::optional<SeeThroughRemoval> seen_through_of(const OccupancyOptions& options,
+                                                 const CloudMeasurements& cells) {
   if (options.remove_seen_through == 0) return std::nullopt;
-  return SeenThrough{options.remove_seen_through, cells.removed()};
+  return SeeThroughRemoval{options.remove_seen_through, cells.removed()};
 }
 
 }  // namespace
@@ -191,7 +190,7 @@ OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name
 double OccupancyMap::resolution_m() const { return tree_->octree.getResolution(); }
 const Eigen::Vector3d& OccupancyMap::origin_in_source() const { return tree_->origin_in_source; }
 const std::string& OccupancyMap::crs() const { return tree_->crs; }
-std::optional<SeenThrough> OccupancyMap::seen_through() const { return tree_->seen_through; }
+std::optional<SeeThroughRemoval> OccupancyMap::seen_through() const { return tree_->seen_through; }
 std::size_t OccupancyMap::node_count() const { return tree_->octree.size(); }
 
 CellState OccupancyMap::at(const Eigen::Vector3d& in_source) const {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,23 +10,10 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/octree/occupancy_options.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
-
-struct OccupancyOptions {
-  double resolution_m = 0.1;
-  /// Rays carve free space this far from the sensor; hits beyond count all the same.
-  double carve_range_m = std::numeric_limits<double>::infinity();
-  /// A cell with a hit is occupied. Off: as in OctoMap, each cloud changes the log-odds of a cell
-  /// once, so that later rays carve it away, and hits beyond the carving range do not count.
-  bool sticky_hits = true;
-  /// To take away what moved: a cell with hits is free if so many clouds, and more than have a
-  /// point in it, saw through it, which is to have a ray across it and no point in it. Clouds are
-  /// counted up to 255. In no order; it takes away what is thin, or that rays graze, as well. 0:
-  /// never.
-  int remove_seen_through = 0;
-};
 
 /// Obstacle occupancy, kept as an OctoMap. A measured hit is sticky: rays never carve it away,
 /// unless the options say otherwise.
@@ -44,7 +30,7 @@ class OccupancyMap final : public OccupancySource {
   struct File {
     std::string bytes;
     std::size_t nodes;
-    std::optional<SeenThrough> seen_through = {};
+    std::optional<SeeThroughRemoval> seen_through = {};
   };
 
   /// The bytes of `build(…).to_bt()`, without making the tree: half the time and a quarter of the
@@ -66,7 +52,7 @@ class OccupancyMap final : public OccupancySource {
   double resolution_m() const override;
   const Eigen::Vector3d& origin_in_source() const override;
   const std::string& crs() const override;
-  std::optional<SeenThrough> seen_through() const override;
+  std::optional<SeeThroughRemoval> seen_through() const override;
   std::size_t node_count() const;
 
   std::optional<Box3> bounds() const override;

@@ -20,12 +20,13 @@ struct OccupancyCell {
   CellState state;
 };
 
-/// Hits that were taken away since clouds saw through their cells.
-struct SeenThrough {
+/// What a removal of dynamic objects took away: hits whose cells later or earlier clouds saw
+/// through.
+struct SeeThroughRemoval {
   int clouds = 0;         ///< at least so many, and more than hit it
   std::size_t cells = 0;  ///< that count as free though a point lies in them
 
-  bool operator==(const SeenThrough&) const = default;
+  bool operator==(const SeeThroughRemoval&) const = default;
 };
 
 /// Where cells of occupied and free space come from.
@@ -39,7 +40,7 @@ class OccupancySource {
   virtual const std::string& crs() const = 0;
 
   /// What was taken away of what was measured; none where every hit was kept.
-  virtual std::optional<SeenThrough> seen_through() const = 0;
+  virtual std::optional<SeeThroughRemoval> seen_through() const = 0;
 
   /// Around all leaves; none if there is none.
   virtual std::optional<Box3> bounds() const = 0;

@@ -25,7 +25,7 @@ struct OctreeHeader {
   std::size_t nodes;
   Eigen::Vector3d origin_in_source;
   std::string crs;
-  std::optional<SeenThrough> seen_through = {};
+  std::optional<SeeThroughRemoval> seen_through = {};
 };
 
 /// The header of an OctoMap file, up to its data; origin, CRS and hits that were taken away are

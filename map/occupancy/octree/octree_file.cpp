@@ -117,7 +117,7 @@ class OctreeParser {
       refuse_header("seen-through", "is not two whole numbers",
                     "# roadbed seen-through CLOUDS removed CELLS");
     }
-    file_.seen_through = SeenThrough{static_cast<int>(*clouds), *cells};
+    file_.seen_through = SeeThroughRemoval{static_cast<int>(*clouds), *cells};
   }
 
   void check_header() const {

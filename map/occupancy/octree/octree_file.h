@@ -25,8 +25,9 @@ struct OctreeFile {
   std::size_t nodes = 0;
   Eigen::Vector3d origin_in_source{0, 0, 0};  ///< of a line `# roadbed origin X Y Z CRS`
   std::string crs;
-  std::optional<SeenThrough> seen_through;  ///< of a line `# roadbed seen-through N removed M`
-  std::string_view data;                    ///< part of the bytes that were parsed
+  std::optional<SeeThroughRemoval>
+      seen_through;       ///< of a line `# roadbed seen-through N removed M`
+  std::string_view data;  ///< part of the bytes that were parsed
 };
 
 /// Whether the bytes begin as an OctoMap file does.

@@ -13,7 +13,8 @@
 #include "roadbed/map/files/sha256.h"
 #include "roadbed/map/occupancy/octree/cell_range.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
-#include "roadbed/map/occupancy/octree/cut_cloud.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/split_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
@@ -21,12 +22,12 @@ namespace {
 constexpr std::int64_t kBlockSide = 8, kMiddleBlock = 4096;  // of the blocks that keys can name
 
 /// A block in a file: its place in blocks from the origin, and what was measured.
-struct AsideBlock {
+struct SpilledBlock {
   std::array<std::int32_t, 3> at;
   std::int32_t unused = 0;
   BlockBits hit, free;
 };
-static_assert(sizeof(AsideBlock) == 16 + 2 * sizeof(BlockBits));
+static_assert(sizeof(SpilledBlock) == 16 + 2 * sizeof(BlockBits));
 
 // Every third bit of a Morton code, from one on.
 std::int64_t axis_of(std::uint64_t code, int axis) {
@@ -38,21 +39,14 @@ std::int64_t axis_of(std::uint64_t code, int axis) {
 }
 
 [[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& found) {
-  throw InputError({.file = file.string(),
-                    .place = {},
-                    .element = {},
-                    .found = found,
-                    .needed = {},
-                    .remedy = "check the disk"});
+  throw InputError({.file = file.string(), .found = found, .remedy = "check the disk"});
 }
 
 [[noreturn]] void refuse_clouds(const std::filesystem::path& folder, const char* what,
                                 const char* found) {
   throw InputError({.file = folder.string(),
-                    .place = {},
                     .element = fmt::format("{} of all clouds", what),
                     .found = found,
-                    .needed = {},
                     .remedy = "take a coarser resolution, or cut the clouds"});
 }
 
@@ -88,7 +82,6 @@ void check_is_fine(const PointCloud& cloud, double resolution_m) {
   if (farthest_m <= most_cells * resolution_m) return;
   throw InputError(
       {.file = cloud.name,
-       .place = {},
        .element = "extent",
        .found = fmt::format("reaches {} m from its middle", static_cast<double>(farthest_m)),
        .needed = fmt::format("at most {} m, that points are known to a 64th of a cell",
@@ -97,17 +90,6 @@ void check_is_fine(const PointCloud& cloud, double resolution_m) {
 }
 
 }  // namespace
-
-Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m) {
-  constexpr double near_zero_m = 4096.0;  // OctoMap computes in float
-  const double range_m = std::min(near_zero_m, (kHalfRange - 1.0) * resolution_m);
-  Eigen::Vector3d origin(0, 0, 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double from = bounds.min_in_source[axis], to = bounds.max_in_source[axis];
-    if (std::max(-from, to) > range_m) origin[axis] = std::round(0.5 * (from + to));
-  }
-  return origin;
-}
 
 std::int64_t tile_side_cells(double side_m, double resolution_m) {
   constexpr double least = 64.0, most = 32768.0;
@@ -125,12 +107,12 @@ TileBuilder::TileBuilder(Plan plan) : plan_(std::move(plan)) {
 
 TileBuilder::~TileBuilder() {
   std::error_code ignored;
-  for (const auto& [place, blocks] : blocks_aside_) {
-    std::filesystem::remove(aside_file(place), ignored);
+  for (const auto& [place, blocks] : spilled_blocks_) {
+    std::filesystem::remove(spill_file(place), ignored);
   }
 }
 
-std::filesystem::path TileBuilder::aside_file(const Place& place) const {
+std::filesystem::path TileBuilder::spill_file(const Place& place) const {
   return plan_.folder / fmt::format("tile_{}_{}.aside", place.second, place.first);
 }
 
@@ -175,9 +157,9 @@ OccupancyOptions TileBuilder::options() const {
           .remove_seen_through = plan_.remove_seen_through};
 }
 
-std::optional<SeenThrough> TileBuilder::seen_through(std::size_t removed) const {
+std::optional<SeeThroughRemoval> TileBuilder::seen_through(std::size_t removed) const {
   if (plan_.remove_seen_through == 0) return std::nullopt;
-  return SeenThrough{plan_.remove_seen_through, removed};
+  return SeeThroughRemoval{plan_.remove_seen_through, removed};
 }
 
 void TileBuilder::start(const Shift& shift) {
@@ -189,7 +171,7 @@ void TileBuilder::start(const Shift& shift) {
   const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
                               static_cast<double>(shift[2]));
   measured_ = std::make_unique<CloudMeasurements>(
-      plan_.origin_in_source + plan_.resolution_m * moved, options(), ScanSum(),
+      plan_.origin_in_source + plan_.resolution_m * moved, options(), ScanAccumulator(),
       plan_.most_points + plan_.most_bytes / 64);
 }
 
@@ -204,24 +186,24 @@ void TileBuilder::add(const PointCloud& cloud) {
   }
   check_is_fine(cloud, plan_.resolution_m);
   const double side_m = kHalfRange * plan_.resolution_m;
-  for (const PointCloud& piece : cut_cloud(cloud, plan_.origin_in_source, side_m)) {
+  for (const PointCloud& piece : split_cloud(cloud, plan_.origin_in_source, side_m)) {
     add_piece(piece, box_with_sensors(piece));
   }
 }
 
 void TileBuilder::add_piece(const PointCloud& cloud, const Box3& box) {
   const Shift shift = shift_of(box);
-  if (measured_ && shift != shift_) put_aside();
+  if (measured_ && shift != shift_) spill();
   if (!measured_) start(shift);
   measured_->add(cloud);
-  if (keeps_clouds_apart() || measured_->blocks().kept_bytes() > plan_.most_bytes) put_aside();
+  if (keeps_clouds_apart() || measured_->blocks().kept_bytes() > plan_.most_bytes) spill();
 }
 
-void TileBuilder::put_aside() {
+void TileBuilder::spill() {
   std::map<Place, std::string> bytes;
   for_each_block(measured_->blocks(), [&](std::uint64_t code, const CellBlock& block) {
     if (block.hit == BlockBits{} && block.free == BlockBits{}) return;
-    AsideBlock aside{.at = {}, .hit = block.hit, .free = block.free};
+    SpilledBlock aside{.at = {}, .hit = block.hit, .free = block.free};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t region = axis_of(code >> 9, static_cast<int>(axis));
       const std::int64_t place = axis_of(code & 511u, static_cast<int>(axis));
@@ -235,30 +217,30 @@ void TileBuilder::put_aside() {
   measured_.reset();
   for (const auto& [tile, data] : bytes) {
     // What another run left under that name is not ours.
-    std::size_t& blocks = blocks_aside_[tile];
-    std::ofstream file(aside_file(tile),
+    std::size_t& blocks = spilled_blocks_[tile];
+    std::ofstream file(spill_file(tile),
                        std::ios::binary | (blocks == 0 ? std::ios::trunc : std::ios::app));
-    blocks += data.size() / sizeof(AsideBlock);
+    blocks += data.size() / sizeof(SpilledBlock);
     file.write(data.data(), static_cast<std::streamsize>(data.size()));
-    if (!file.flush()) refuse_file(aside_file(tile), "cannot be written");
+    if (!file.flush()) refuse_file(spill_file(tile), "cannot be written");
   }
 }
 
 OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
   CellBlocks blocks;
-  ScanSum sum(options());
-  std::ifstream file(aside_file(place), std::ios::binary);
+  ScanAccumulator sum(options());
+  std::ifstream file(spill_file(place), std::ios::binary);
   std::error_code error;
-  if (std::filesystem::file_size(aside_file(place), error) !=
-      blocks_aside_.at(place) * sizeof(AsideBlock)) {
-    refuse_file(aside_file(place), "was changed by another program");
+  if (std::filesystem::file_size(spill_file(place), error) !=
+      spilled_blocks_.at(place) * sizeof(SpilledBlock)) {
+    refuse_file(spill_file(place), "was changed by another program");
   }
   const std::int64_t first_x = place.second * plan_.side_cells,
                      first_y = place.first * plan_.side_cells;
-  for (std::size_t i = 0; i < blocks_aside_.at(place); ++i) {
-    AsideBlock aside;
+  for (std::size_t i = 0; i < spilled_blocks_.at(place); ++i) {
+    SpilledBlock aside;
     if (!file.read(reinterpret_cast<char*>(&aside), sizeof aside)) {
-      refuse_file(aside_file(place), "cannot be read");
+      refuse_file(spill_file(place), "cannot be read");
     }
     const auto middle = static_cast<std::int64_t>(kHalfRange);
     const std::array<std::int64_t, 3> key{kBlockSide * aside.at[0] - first_x + middle,
@@ -296,13 +278,14 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
 }
 
 TilesIndex TileBuilder::finish(const Write& write) {
-  if (measured_) put_aside();
+  if (measured_) spill();
   TilesIndex index{.resolution_m = plan_.resolution_m,
                    .origin_in_source = plan_.origin_in_source,
                    .crs = plan_.crs,
                    .side_cells = plan_.side_cells,
                    .tiles = {}};
-  for (const auto& [place, blocks] : blocks_aside_) index.tiles.push_back(make_tile(place, write));
+  for (const auto& [place, blocks] : spilled_blocks_)
+    index.tiles.push_back(make_tile(place, write));
   index.seen_through = seen_through(removed_);
   return index;
 }

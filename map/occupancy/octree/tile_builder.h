@@ -14,16 +14,14 @@
 #include <string_view>
 #include <utility>
 
-#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/octree/occupancy_options.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
 class CloudMeasurements;
-
-/// Where the octree of clouds within such bounds has its origin: that of the source where the
-/// octree's range allows it, else the middle.
-Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m);
 
 /// Cells a side of tiles that are at least so long: a power of two, so that no node of the octree
 /// lies in two of them.
@@ -75,17 +73,17 @@ class TileBuilder {
   bool may_be_cut(const PointCloud& cloud) const;
   void add_piece(const PointCloud& cloud, const Box3& box);
   void start(const Shift& shift);
-  void put_aside();
-  std::filesystem::path aside_file(const Place& place) const;
+  void spill();
+  std::filesystem::path spill_file(const Place& place) const;
   OccupancyOptions options() const;
-  std::optional<SeenThrough> seen_through(std::size_t removed) const;
+  std::optional<SeeThroughRemoval> seen_through(std::size_t removed) const;
   bool keeps_clouds_apart() const { return !plan_.sticky_hits || plan_.remove_seen_through > 0; }
   OccupancyTile make_tile(const Place& place, const Write& write);
 
   Plan plan_;
   Shift shift_{};
   std::unique_ptr<CloudMeasurements> measured_;
-  std::map<Place, std::size_t> blocks_aside_;  // how many, by tile
+  std::map<Place, std::size_t> spilled_blocks_;  // how many, by tile
   std::size_t removed_ = 0;
 };
 

@@ -100,8 +100,6 @@ std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& ti
   const std::string bytes = read_file(file);
   if (const std::string hash = sha256_of_bytes(bytes); hash != tile.sha256) {
     throw InputError({.file = file.string(),
-                      .place = {},
-                      .element = {},
                       .found = "has the SHA-256 " + hash,
                       .needed = tile.sha256 + " as the index says",
                       .remedy = "build the tiles again"});
@@ -109,8 +107,6 @@ std::shared_ptr<const OccupancyMap> TiledOccupancy::load(const OccupancyTile& ti
   auto map = std::make_shared<const OccupancyMap>(OccupancyMap::parse(bytes, file.string()));
   if (!is_that_of(*map, index_, tile)) {
     throw InputError({.file = file.string(),
-                      .place = {},
-                      .element = {},
                       .found = "has another resolution, origin or bounds",
                       .needed = "those of the index",
                       .remedy = "build the tiles again"});

@@ -29,7 +29,7 @@ class TiledOccupancy final : public OccupancySource {
   double resolution_m() const override { return index_.resolution_m; }
   const Eigen::Vector3d& origin_in_source() const override { return index_.origin_in_source; }
   const std::string& crs() const override { return index_.crs; }
-  std::optional<SeenThrough> seen_through() const override { return index_.seen_through; }
+  std::optional<SeeThroughRemoval> seen_through() const override { return index_.seen_through; }
   std::optional<Box3> bounds() const override;
 
   /// Of all tiles, one after the other: as much memory as all leaves take.

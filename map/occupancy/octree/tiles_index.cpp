@@ -22,7 +22,6 @@ constexpr std::int64_t kSmallestSide = 64, kLargestSide = 32768;
 [[noreturn]] void refuse_index(const std::string& name, const std::string& element,
                                const std::string& found, const std::string& needed) {
   throw InputError({.file = name,
-                    .place = {},
                     .element = element,
                     .found = found,
                     .needed = needed,
@@ -107,7 +106,7 @@ class IndexReader {
     return tile;
   }
 
-  SeenThrough seen_through_of(const Json& json) const {
+  SeeThroughRemoval seen_through_of(const Json& json) const {
     const std::int64_t clouds = whole(json, "clouds"), cells = whole(json, "removed_cells");
     if (clouds < 1 || clouds > 255 || cells < 0) {
       refuse_index(name_, "seen_through", fmt::format("{} clouds, {} cells", clouds, cells),

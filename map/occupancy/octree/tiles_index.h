@@ -30,7 +30,7 @@ struct TilesIndex {
   std::string crs;
   std::int64_t side_cells = 0;  ///< of a tile, a power of two
   std::vector<OccupancyTile> tiles;
-  std::optional<SeenThrough> seen_through = {};  ///< of all tiles
+  std::optional<SeeThroughRemoval> seen_through = {};  ///< of all tiles
 
   double side_m() const { return resolution_m * static_cast<double>(side_cells); }
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/opendrive/element_readers.h"
 #include "roadbed/map/opendrive/rules/source.h"
 
 namespace roadbed::map::opendrive::rules {
@@ -13,8 +14,9 @@ namespace {
 constexpr double kGap_m = 1e-3;  // files round s to a few digits
 
 validation::Finding& add(validation::Report& report, const Source& source, const RoadSource& road,
-                         const GeometrySource& piece, std::string message) {
-  validation::Finding& finding = add_at(report, source, road, piece.node, std::move(message));
+                         const CurveSource& piece, std::string message) {
+  validation::Finding& finding =
+      add_at(report, source, road, piece.record.node, std::move(message));
   if (piece.start) finding.in_map = piece.start->pose.position();
   return finding;
 }
@@ -23,7 +25,7 @@ void missing_curves(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     if (!road.geometry.empty()) continue;
-    add_at(report, source, road, road.node,
+    add_at(report, source, road, road.record.node,
            "has no reference line; add a planView with at least one geometry");
   }
 }
@@ -32,11 +34,11 @@ void unordered_curves(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     for (std::size_t i = 1; i < road.geometry.size(); ++i) {
-      const GeometrySource &before = road.geometry[i - 1], &piece = road.geometry[i];
-      if (!(piece.s_m < before.s_m)) continue;
+      const CurveSource &before = road.geometry[i - 1], &piece = road.geometry[i];
+      if (!(piece.record.s_m < before.record.s_m)) continue;
       add(report, source, road, piece,
           fmt::format("geometry at s {} m stands behind that at s {} m; list them in order of s",
-                      piece.s_m, before.s_m));
+                      piece.record.s_m, before.record.s_m));
     }
   }
 }
@@ -45,15 +47,16 @@ void wrong_stations(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     double sum_m = 0.0;
-    for (const GeometrySource& piece : road.geometry) {
-      const double off_m = piece.s_m - sum_m;
+    for (const CurveSource& piece : road.geometry) {
+      const double off_m = piece.record.s_m - sum_m;
       if (std::abs(off_m) > kGap_m) {
         add(report, source, road, piece,
             fmt::format("geometry says s {:.4f} m, but those before it end at {:.4f} m; correct s "
                         "or a length",
-                        piece.s_m, sum_m));
+                        piece.record.s_m, sum_m));
       }
-      sum_m = piece.s_m + piece.length_m;  // one finding per slip, not for all that follow
+      sum_m = piece.record.s_m +
+              piece.record.length_m;  // one finding per slip, not for all that follow
     }
   }
 }
@@ -62,7 +65,7 @@ void wrong_stations(const Source& source, const validation::ValidateOptions&,
 template <typename Check>
 void for_each_joint(const RoadSource& road, const Check& check) {
   for (std::size_t i = 1; i < road.geometry.size(); ++i) {
-    const GeometrySource &before = road.geometry[i - 1], &after = road.geometry[i];
+    const CurveSource &before = road.geometry[i - 1], &after = road.geometry[i];
     if (before.end && after.start) check(before, after);
   }
 }
@@ -70,14 +73,14 @@ void for_each_joint(const RoadSource& road, const Check& check) {
 void curve_gaps(const Source& source, const validation::ValidateOptions& options,
                 validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for_each_joint(road, [&](const GeometrySource& before, const GeometrySource& after) {
+    for_each_joint(road, [&](const CurveSource& before, const CurveSource& after) {
       const double gap_m = (after.start->pose.position() - before.end->pose.position()).norm();
       if (gap_m <= options.max_gap_m) return;
       validation::Finding& finding = add(
           report, source, road, after,
           fmt::format("the curve at s {:.3f} m starts {:.3f} m off the end of the one before it; "
                       "correct x, y, the heading or a length",
-                      after.s_m, gap_m));
+                      after.record.s_m, gap_m));
       if (gap_m > 0.5) finding.severity = validation::Severity::error;
     });
   }
@@ -86,14 +89,14 @@ void curve_gaps(const Source& source, const validation::ValidateOptions& options
 void curve_kinks(const Source& source, const validation::ValidateOptions& options,
                  validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for_each_joint(road, [&](const GeometrySource& before, const GeometrySource& after) {
+    for_each_joint(road, [&](const CurveSource& before, const CurveSource& after) {
       const double kink_rad =
           geometry::wrap_angle(after.start->pose.heading_rad - before.end->pose.heading_rad);
       if (!(std::abs(kink_rad) > options.max_kink_rad)) return;
       add(report, source, road, after,
           fmt::format("the curve at s {:.3f} m turns by {:.3f} rad against the one before it; "
                       "correct hdg or a curvature",
-                      after.s_m, kink_rad));
+                      after.record.s_m, kink_rad));
     });
   }
 }
@@ -101,9 +104,9 @@ void curve_kinks(const Source& source, const validation::ValidateOptions& option
 void curvature_jumps(const Source& source, const validation::ValidateOptions& options,
                      validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    const GeometrySource* worst = nullptr;
+    const CurveSource* worst = nullptr;
     double worst_jump = options.max_curvature_jump_per_m;
-    for_each_joint(road, [&](const GeometrySource& before, const GeometrySource& after) {
+    for_each_joint(road, [&](const CurveSource& before, const CurveSource& after) {
       const double jump = std::abs(after.start->curvature_per_m - before.end->curvature_per_m);
       if (!(jump > worst_jump)) return;
       worst = &after;
@@ -113,23 +116,24 @@ void curvature_jumps(const Source& source, const validation::ValidateOptions& op
     add(report, source, road, *worst,
         fmt::format("curvature jumps by {:.3f} 1/m at s {:.3f} m, which no steering wheel does; "
                     "put a spiral between, or a wider arc",
-                    worst_jump, worst->s_m));
+                    worst_jump, worst->record.s_m));
   }
 }
 
 void zero_lengths(const Source& source, const validation::ValidateOptions&,
                   validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    if (road.length_m <= 0.0) {
-      add_at(report, source, road, road.node,
-             fmt::format("its length is {} m; give it a positive one or remove it", road.length_m))
+    if (road.record.length_m <= 0.0) {
+      add_at(report, source, road, road.record.node,
+             fmt::format("its length is {} m; give it a positive one or remove it",
+                         road.record.length_m))
           .severity = validation::Severity::error;
     }
-    for (const GeometrySource& piece : road.geometry) {
-      if (!(piece.length_m <= 0.0)) continue;
-      add_at(
-          report, source, road, piece.node,
-          fmt::format("geometry at s {} m has length {} m; remove it", piece.s_m, piece.length_m));
+    for (const CurveSource& piece : road.geometry) {
+      if (!(piece.record.length_m < kShortestPieceM)) continue;
+      add_at(report, source, road, piece.record.node,
+             fmt::format("geometry at s {} m has length {} m; remove it", piece.record.s_m,
+                         piece.record.length_m));
     }
   }
 }
@@ -138,12 +142,12 @@ void wrong_road_lengths(const Source& source, const validation::ValidateOptions&
                         validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     if (road.geometry.empty()) continue;
-    const double end_m = road.geometry.back().s_m + road.geometry.back().length_m;
-    if (!(std::abs(end_m - road.length_m) > options.max_gap_m)) continue;
-    add_at(report, source, road, road.node,
+    const double end_m = road.geometry.back().record.s_m + road.geometry.back().record.length_m;
+    if (!(std::abs(end_m - road.record.length_m) > options.max_gap_m)) continue;
+    add_at(report, source, road, road.record.node,
            fmt::format("its length is {:.4f} m, but its reference line ends at {:.4f} m; correct "
                        "one of them",
-                       road.length_m, end_m));
+                       road.record.length_m, end_m));
   }
 }
 
@@ -151,56 +155,57 @@ void absurd_lengths(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   constexpr double kLongest = 2e5;  // [m]
   for (const RoadSource& road : source.roads) {
-    if (!(road.length_m > kLongest)) continue;
-    add_at(report, source, road, road.node,
-           fmt::format("is {:.0f} km long; check the unit of its length", road.length_m / 1000.0));
+    if (!(road.record.length_m > kLongest)) continue;
+    add_at(report, source, road, road.record.node,
+           fmt::format("is {:.0f} km long; check the unit of its length",
+                       road.record.length_m / 1000.0));
   }
 }
 
-const geometry::ParamPoly3Curve* param_poly3(const GeometrySource& piece) {
-  return piece.piece ? std::get_if<geometry::ParamPoly3Curve>(&piece.piece->curve) : nullptr;
+const geometry::ParamPoly3Curve* param_poly3(const CurveSource& piece) {
+  return piece.start ? std::get_if<geometry::ParamPoly3Curve>(&piece.record.piece->curve) : nullptr;
 }
 
 /// A millimetre, as in ASAM's checker, and the digits of long curves.
-double tolerance_m(const GeometrySource& piece) { return 1e-3 + 1e-6 * piece.length_m; }
+double tolerance_m(const CurveSource& piece) { return 1e-3 + 1e-6 * piece.record.length_m; }
 
-bool fits(const GeometrySource& piece, geometry::ParamPoly3Curve curve, double p_end) {
+bool fits(const CurveSource& piece, geometry::ParamPoly3Curve curve, double p_end) {
   curve.p_end = p_end;
-  return std::abs(geometry::arc_length_m(curve) - piece.length_m) <= tolerance_m(piece);
+  return std::abs(geometry::arc_length_m(curve) - piece.record.length_m) <= tolerance_m(piece);
 }
 
 void wrong_param_poly3_lengths(const Source& source, const validation::ValidateOptions&,
                                validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
+    for (const CurveSource& piece : road.geometry) {
       const auto* curve = param_poly3(piece);
       if (curve == nullptr || fits(piece, *curve, curve->p_end)) continue;
       add(report, source, road, piece,
           fmt::format("paramPoly3 at s {:.3f} m is {:.4f} m long, but its length says {:.4f} m; "
                       "correct one of them",
-                      piece.s_m, geometry::arc_length_m(*curve), piece.length_m));
+                      piece.record.s_m, geometry::arc_length_m(*curve), piece.record.length_m));
     }
   }
 }
 
 /// Whether a paramPoly3 whose length does not fit would fit with the other kind of range.
-bool other_range_fits(const GeometrySource& piece, bool arc_length) {
+bool other_range_fits(const CurveSource& piece, bool arc_length) {
   const auto* curve = param_poly3(piece);
-  const std::string_view range = piece.node.child("paramPoly3").attribute("pRange").value();
+  const std::string_view range = piece.record.node.child("paramPoly3").attribute("pRange").value();
   if (curve == nullptr || (range == "arcLength") != arc_length) return false;
   return !fits(piece, *curve, curve->p_end) &&
-         fits(piece, *curve, arc_length ? 1.0 : piece.length_m);
+         fits(piece, *curve, arc_length ? 1.0 : piece.record.length_m);
 }
 
 template <bool arc_length>
 void wrong_param_poly3_ranges(const Source& source, const validation::ValidateOptions&,
                               validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
+    for (const CurveSource& piece : road.geometry) {
       if (!other_range_fits(piece, arc_length)) continue;
       add(report, source, road, piece,
           fmt::format("paramPoly3 at s {:.3f} m has its length only if p runs {}; set pRange to {}",
-                      piece.s_m, arc_length ? "from 0 to 1" : "from 0 to its length",
+                      piece.record.s_m, arc_length ? "from 0 to 1" : "from 0 to its length",
                       arc_length ? "normalized" : "arcLength"));
     }
   }
@@ -210,7 +215,7 @@ void shifted_param_poly3s(const Source& source, const validation::ValidateOption
                           validation::Report& report) {
   constexpr double kNone = 1e-6;
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
+    for (const CurveSource& piece : road.geometry) {
       const auto* curve = param_poly3(piece);
       if (curve == nullptr) continue;
       const double slope = std::abs(curve->v[1]) / std::max(std::abs(curve->u[1]), kNone);
@@ -221,7 +226,7 @@ void shifted_param_poly3s(const Source& source, const validation::ValidateOption
       add(report, source, road, piece,
           fmt::format("paramPoly3 at s {:.3f} m does not start at x, y along hdg; make aU, aV and "
                       "bV zero and bU positive",
-                      piece.s_m));
+                      piece.record.s_m));
     }
   }
 }
@@ -229,14 +234,14 @@ void shifted_param_poly3s(const Source& source, const validation::ValidateOption
 void several_shapes(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
+    for (const CurveSource& piece : road.geometry) {
       int shapes = 0;
       for (const char* name : {"line", "arc", "spiral", "poly3", "paramPoly3"}) {
-        for ([[maybe_unused]] const auto shape : piece.node.children(name)) ++shapes;
+        for ([[maybe_unused]] const auto shape : piece.record.node.children(name)) ++shapes;
       }
       if (shapes <= 1) continue;
       add(report, source, road, piece,
-          fmt::format("geometry at s {:.3f} m has {} curves; keep one", piece.s_m, shapes));
+          fmt::format("geometry at s {:.3f} m has {} curves; keep one", piece.record.s_m, shapes));
     }
   }
 }
@@ -244,11 +249,11 @@ void several_shapes(const Source& source, const validation::ValidateOptions&,
 void straight_arcs(const Source& source, const validation::ValidateOptions&,
                    validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
-      const auto arc = piece.node.child("arc");
+    for (const CurveSource& piece : road.geometry) {
+      const auto arc = piece.record.node.child("arc");
       if (!arc || source.number(arc, "curvature") != 0.0) continue;
       add(report, source, road, piece,
-          fmt::format("arc at s {:.3f} m has no curvature; make it a line", piece.s_m));
+          fmt::format("arc at s {:.3f} m has no curvature; make it a line", piece.record.s_m));
     }
   }
 }
@@ -256,14 +261,14 @@ void straight_arcs(const Source& source, const validation::ValidateOptions&,
 void constant_spirals(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const GeometrySource& piece : road.geometry) {
-      const auto spiral = piece.node.child("spiral");
+    for (const CurveSource& piece : road.geometry) {
+      const auto spiral = piece.record.node.child("spiral");
       if (!spiral || source.number(spiral, "curvStart") != source.number(spiral, "curvEnd")) {
         continue;
       }
       add(report, source, road, piece,
           fmt::format("spiral at s {:.3f} m keeps its curvature; make it an arc or a line",
-                      piece.s_m));
+                      piece.record.s_m));
     }
   }
 }

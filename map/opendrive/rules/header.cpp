@@ -91,7 +91,7 @@ void far_coordinates(const Source& source, const validation::ValidateOptions&,
              fmt::format("coordinates are up to {:.0f} km from (0, 0), where programs that use "
                          "32-bit floats lose centimetres; use <offset>",
                          place->cwiseAbs().maxCoeff() / 1000.0))
-        .line = source.xml.line_of(road.node);
+        .line = source.xml.line_of(road.record.node);
     return;
   }
 }

@@ -45,12 +45,12 @@ void duplicate_ids(const Source& source, const validation::ValidateOptions&,
   UniqueIds signals(source, "signal", validation::Severity::warning, report);
   UniqueIds objects(source, "object", validation::Severity::warning, report);
   for (const RoadSource& road : source.roads) {
-    roads.add(road.node);
-    for (const auto node : road.node.child("signals").children("signal")) signals.add(node);
-    for (const auto node : road.node.child("objects").children("object")) objects.add(node);
+    roads.add(road.record.node);
+    for (const SignalRecord& signal : road.record.signals) signals.add(signal.node);
+    for (const ObjectRecord& object : road.record.objects) objects.add(object.node);
   }
   UniqueIds junctions(source, "junction", validation::Severity::error, report);
-  for (const auto node : source.junctions) junctions.add(node);
+  for (const JunctionRecord& junction : source.document.junctions) junctions.add(junction.node);
   UniqueIds controllers(source, "controller", validation::Severity::warning, report);
   for (const auto node : source.xml.root().children("controller")) controllers.add(node);
 }
@@ -58,9 +58,9 @@ void duplicate_ids(const Source& source, const validation::ValidateOptions&,
 void duplicate_lane_ids(const Source& source, const validation::ValidateOptions&,
                         validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
+    for (const LaneSection& section : road.record.sections) {
       std::set<int> seen;
-      for (const LaneSource& lane : section.lanes) {
+      for (const LaneRecord& lane : section.listed()) {
         if (seen.insert(lane.id).second) continue;
         validation::Finding& finding =
             add_at(report, source, road, lane.node,
@@ -75,18 +75,15 @@ void duplicate_lane_ids(const Source& source, const validation::ValidateOptions&
 void dangling_road_links(const Source& source, const validation::ValidateOptions&,
                          validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const char* end : {"predecessor", "successor"}) {
-      const auto link = road.node.child("link").child(end);
-      if (!link) continue;
-      const std::string_view id = link.attribute("elementId").value();
-      const bool to_junction =
-          std::string_view(link.attribute("elementType").value()) == "junction";
-      if (to_junction ? source.junction_by_id.contains(id) : source.find_road(id) != nullptr) {
-        continue;
-      }
-      add_at(report, source, road, link,
-             fmt::format("its {} is {} {}, which is not there; remove the link or add it", end,
-                         to_junction ? "junction" : "road", id));
+    for (const auto* link : {&road.record.predecessor, &road.record.successor}) {
+      if (!*link) continue;
+      const RoadLink& to = **link;
+      const bool is_there = to.to_junction ? source.junction_by_id.contains(to.element_id)
+                                           : source.find_road(to.element_id) != nullptr;
+      if (is_there) continue;
+      add_at(report, source, road, to.node,
+             fmt::format("its {} is {} {}, which is not there; remove the link or add it",
+                         to.node.name(), to.to_junction ? "junction" : "road", to.element_id));
     }
   }
 }
@@ -94,25 +91,26 @@ void dangling_road_links(const Source& source, const validation::ValidateOptions
 void dangling_junctions_of_roads(const Source& source, const validation::ValidateOptions&,
                                  validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    if (road.junction.empty() || source.junction_by_id.contains(road.junction)) continue;
-    add_at(report, source, road, road.node,
+    if (road.record.junction_id.empty() || source.junction_by_id.contains(road.record.junction_id))
+      continue;
+    add_at(report, source, road, road.record.node,
            fmt::format("is in junction {}, which is not there; correct the attribute junction",
-                       road.junction));
+                       road.record.junction_id));
   }
 }
 
 void dangling_connections(const Source& source, const validation::ValidateOptions&,
                           validation::Report& report) {
-  for (const auto junction : source.junctions) {
-    for (const auto connection : junction.children("connection")) {
+  for (const JunctionRecord& junction : source.document.junctions) {
+    for (const JunctionConnection& connection : junction.connections) {
       for (const char* role : {"incomingRoad", "connectingRoad", "linkedRoad"}) {
-        const auto road = connection.attribute(role);
+        const auto road = connection.node.attribute(role);
         if (!road || source.find_road(road.value()) != nullptr) continue;
         report
-            .add(fmt::format("junction {}", junction.attribute("id").value()), std::nullopt,
+            .add(fmt::format("junction {}", junction.id), std::nullopt,
                  fmt::format("{}=\"{}\" of connection {} is not there; correct or remove it", role,
-                             road.value(), connection.attribute("id").value()))
-            .line = source.xml.line_of(connection);
+                             road.value(), connection.node.attribute("id").value()))
+            .line = connection.line;
       }
     }
   }
@@ -121,9 +119,7 @@ void dangling_connections(const Source& source, const validation::ValidateOption
 std::set<std::string_view> signal_ids(const Source& source) {
   std::set<std::string_view> ids;
   for (const RoadSource& road : source.roads) {
-    for (const auto node : road.node.child("signals").children("signal")) {
-      ids.insert(node.attribute("id").value());
-    }
+    for (const SignalRecord& signal : road.record.signals) ids.insert(signal.id);
   }
   return ids;
 }
@@ -132,11 +128,11 @@ void dangling_signals(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   const std::set<std::string_view> known = signal_ids(source);
   for (const RoadSource& road : source.roads) {
-    for (const auto node : road.node.child("signals").children("signalReference")) {
-      const char* id = node.attribute("id").value();
-      if (known.contains(id)) continue;
-      add_at(report, source, road, node,
-             fmt::format("refers to signal {}, which is not there; correct or remove it", id));
+    for (const SignalReference& reference : road.record.signal_references) {
+      if (known.contains(reference.signal_id)) continue;
+      add_at(report, source, road, reference.node,
+             fmt::format("refers to signal {}, which is not there; correct or remove it",
+                         reference.signal_id));
     }
   }
   for (const auto controller : source.xml.root().children("controller")) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <map>
 #include <set>
 
@@ -13,85 +12,88 @@ namespace {
 
 /// <connection> of a junction, with the roads that it names, where they are there.
 struct Connection {
-  pugi::xml_node junction, node;
+  const JunctionRecord& junction;
+  const JunctionConnection& record;
   const RoadSource *incoming = nullptr, *connecting = nullptr;  ///< connecting or linked
-  bool at_end = false;                                          ///< contactPoint="end"
 
-  std::string_view junction_id() const { return junction.attribute("id").value(); }
-  std::string_view type() const { return junction.attribute("type").value(); }
+  bool at_end() const { return record.contact == ContactPoint::end; }
 };
 
 template <typename Check>
 void for_each_connection(const Source& source, const Check& check) {
-  for (const auto junction : source.junctions) {
-    for (const auto node : junction.children("connection")) {
-      const auto via = node.attribute("connectingRoad") ? node.attribute("connectingRoad")
-                                                        : node.attribute("linkedRoad");
-      check(Connection{junction, node, source.find_road(node.attribute("incomingRoad").value()),
-                       source.find_road(via.value()),
-                       std::string_view(node.attribute("contactPoint").value()) == "end"});
+  for (const JunctionRecord& junction : source.document.junctions) {
+    for (const JunctionConnection& record : junction.connections) {
+      check(Connection{junction, record, source.find_road(record.incoming_road),
+                       source.find_road(record.connecting_road)});
     }
   }
 }
 
-validation::Finding& add(validation::Report& report, const Source& source,
-                         const Connection& connection, std::string message) {
+validation::Finding& add(validation::Report& report, const Connection& connection,
+                         std::string message) {
   validation::Finding& finding = report.add(
-      fmt::format("junction {}", connection.junction_id()),
+      fmt::format("junction {}", connection.junction.id),
       connection.connecting ? connection.connecting->place() : std::nullopt, std::move(message));
-  finding.line = source.xml.line_of(connection.node);
+  finding.line = connection.record.line;
   return finding;
 }
 
-const char* id_of(const Connection& connection) { return connection.node.attribute("id").value(); }
+const char* id_of(const Connection& connection) {
+  return connection.record.node.attribute("id").value();
+}
 
-bool has_link(const RoadSource& road, const char* end, const char* type, std::string_view id) {
-  const auto link = road.node.child("link").child(end);
-  return link && std::strcmp(link.attribute("elementType").value(), type) == 0 &&
-         link.attribute("elementId").value() == id;
+bool leads_to_road(const std::optional<RoadLink>& link, const RoadSource& road) {
+  return link && !link->to_junction && link->element_id == road.record.id;
+}
+
+bool leads_to_junction(const std::optional<RoadLink>& link, const JunctionRecord& junction) {
+  return link && link->to_junction && link->element_id == junction.id;
 }
 
 void connections_without_lanes(const Source& source, const validation::ValidateOptions&,
                                validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.node.child("laneLink") || connection.type() == "virtual") return;
-    add(report, source, connection,
+    if (connection.record.node.child("laneLink") ||
+        connection.junction.kind == JunctionKind::virtual_)
+      return;
+    add(report, connection,
         fmt::format("connection {} has no laneLink, so that no lane leads over it; add them",
                     id_of(connection)));
   });
 }
 
 bool touches(const RoadSource& road, const Connection& connection) {
-  if (has_link(road, "successor", "junction", connection.junction_id()) ||
-      has_link(road, "predecessor", "junction", connection.junction_id())) {
+  if (leads_to_junction(road.record.successor, connection.junction) ||
+      leads_to_junction(road.record.predecessor, connection.junction)) {
     return true;
   }
   const RoadSource* via = connection.connecting;
-  return via != nullptr && (has_link(*via, "predecessor", "road", road.id) ||
-                            has_link(*via, "successor", "road", road.id));
+  return via != nullptr && (leads_to_road(via->record.predecessor, road) ||
+                            leads_to_road(via->record.successor, road));
 }
 
 void incoming_roads_elsewhere(const Source& source, const validation::ValidateOptions&,
                               validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.incoming == nullptr || connection.type() == "virtual") return;
+    if (connection.incoming == nullptr || connection.junction.kind == JunctionKind::virtual_)
+      return;
     if (touches(*connection.incoming, connection)) return;
-    add(report, source, connection,
+    add(report, connection,
         fmt::format("incoming road {} of connection {} has no end at this junction; link the road "
                     "to it or remove the connection",
-                    connection.incoming->id, id_of(connection)));
+                    connection.incoming->record.id, id_of(connection)));
   });
 }
 
 void connecting_roads_that_come_in(const Source& source, const validation::ValidateOptions&,
                                    validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.incoming == nullptr || connection.incoming->junction.empty()) return;
-    if (connection.incoming->junction != connection.junction_id()) return;
-    add(report, source, connection,
+    if (connection.incoming == nullptr || connection.incoming->record.junction_id.empty()) return;
+    if (connection.incoming->record.junction_id != connection.junction.id) return;
+    add(report, connection,
         fmt::format("incoming road {} of connection {} is itself a connecting road of the "
                     "junction; name the road outside of it",
-                    connection.incoming->id, id_of(connection)));
+                    connection.incoming->record.id, id_of(connection)));
   });
 }
 
@@ -100,56 +102,60 @@ void double_connections(const Source& source, const validation::ValidateOptions&
   std::set<std::tuple<std::string_view, const RoadSource*, const RoadSource*>> seen;
   for_each_connection(source, [&](const Connection& connection) {
     if (connection.incoming == nullptr || connection.connecting == nullptr) return;
-    if (seen.emplace(connection.junction_id(), connection.incoming, connection.connecting).second) {
+    if (seen.emplace(connection.junction.id, connection.incoming, connection.connecting).second) {
       return;
     }
-    add(report, source, connection,
+    add(report, connection,
         fmt::format("connection {} is a second one from road {} to road {}; put its laneLinks into "
                     "the first",
-                    id_of(connection), connection.incoming->id, connection.connecting->id));
+                    id_of(connection), connection.incoming->record.id,
+                    connection.connecting->record.id));
   });
 }
 
 /// Whether the connecting road meets the incoming one with its other end.
 bool meets_at_other_end(const Connection& connection) {
   if (connection.incoming == nullptr || connection.connecting == nullptr) return false;
-  if (!connection.node.attribute("connectingRoad")) return false;
-  const char* named = connection.at_end ? "successor" : "predecessor";
-  const char* other = connection.at_end ? "predecessor" : "successor";
-  return !has_link(*connection.connecting, named, "road", connection.incoming->id) &&
-         has_link(*connection.connecting, other, "road", connection.incoming->id);
+  if (connection.record.direct) return false;
+  const RoadRecord& via = connection.connecting->record;
+  const auto& named = connection.at_end() ? via.successor : via.predecessor;
+  const auto& other = connection.at_end() ? via.predecessor : via.successor;
+  return !leads_to_road(named, *connection.incoming) && leads_to_road(other, *connection.incoming);
 }
 
 template <bool at_end>
 void wrong_contact_points(const Source& source, const validation::ValidateOptions&,
                           validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.at_end != at_end || !meets_at_other_end(connection)) return;
-    add(report, source, connection,
+    if (connection.at_end() != at_end || !meets_at_other_end(connection)) return;
+    add(report, connection,
         fmt::format("connection {} says that road {} meets road {} at its {}, but it is linked to "
                     "it at its {}; correct contactPoint",
-                    id_of(connection), connection.connecting->id, connection.incoming->id,
-                    at_end ? "end" : "start", at_end ? "start" : "end"));
+                    id_of(connection), connection.connecting->record.id,
+                    connection.incoming->record.id, at_end ? "end" : "start",
+                    at_end ? "start" : "end"));
   });
 }
 
 void foreign_connecting_roads(const Source& source, const validation::ValidateOptions&,
                               validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.connecting == nullptr || !connection.node.attribute("connectingRoad")) return;
-    if (connection.connecting->junction == connection.junction_id()) return;
-    add(report, source, connection,
+    if (connection.connecting == nullptr || connection.record.direct) return;
+    if (connection.connecting->record.junction_id == connection.junction.id) return;
+    add(report, connection,
         fmt::format("connecting road {} says that it is in junction \"{}\"; correct its attribute "
                     "junction",
-                    connection.connecting->id, connection.connecting->junction));
+                    connection.connecting->record.id, connection.connecting->record.junction_id));
   });
 }
 
 void linked_roads(const Source& source, const validation::ValidateOptions&,
                   validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.type() == "direct" || !connection.node.attribute("linkedRoad")) return;
-    add(report, source, connection,
+    if (connection.junction.kind == JunctionKind::direct ||
+        !connection.record.node.attribute("linkedRoad"))
+      return;
+    add(report, connection,
         fmt::format("connection {} has a linkedRoad, which direct junctions only have; make it a "
                     "connectingRoad",
                     id_of(connection)));
@@ -159,22 +165,25 @@ void linked_roads(const Source& source, const validation::ValidateOptions&,
 void connecting_roads(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.type() != "direct" || !connection.node.attribute("connectingRoad")) return;
-    add(report, source, connection,
+    if (connection.junction.kind != JunctionKind::direct || connection.record.direct) return;
+    add(report, connection,
         fmt::format("connection {} of a direct junction has a connectingRoad; make it a linkedRoad",
                     id_of(connection)));
   });
 }
 
+bool needs_no_connection(const JunctionRecord& junction) {
+  return junction.kind == JunctionKind::crossing || junction.kind == JunctionKind::virtual_;
+}
+
 void empty_junctions(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
-  for (const auto junction : source.junctions) {
-    const std::string_view type = junction.attribute("type").value();
-    if (junction.child("connection") || type == "crossing" || type == "virtual") continue;
+  for (const JunctionRecord& junction : source.document.junctions) {
+    if (!junction.connections.empty() || needs_no_connection(junction)) continue;
     report
-        .add(fmt::format("junction {}", junction.attribute("id").value()), std::nullopt,
+        .add(fmt::format("junction {}", junction.id), std::nullopt,
              "has no connection; add them or remove it")
-        .line = source.xml.line_of(junction);
+        .line = source.xml.line_of(junction.node);
   }
 }
 
@@ -184,35 +193,34 @@ void unused_connecting_roads(const Source& source, const validation::ValidateOpt
   for_each_connection(source,
                       [&](const Connection& connection) { used.insert(connection.connecting); });
   for (const RoadSource& road : source.roads) {
-    const auto junction = source.junction_by_id.find(road.junction);
+    const auto junction = source.junction_by_id.find(road.record.junction_id);
     if (used.contains(&road) || junction == source.junction_by_id.end()) continue;
-    const std::string_view type = junction->second.attribute("type").value();
-    if (type == "crossing" || type == "virtual") continue;
-    add_at(report, source, road, road.node,
+    if (needs_no_connection(*junction->second)) continue;
+    add_at(report, source, road, road.record.node,
            fmt::format("is in junction {}, but no connection of it leads over the road; add one or "
                        "remove the road",
-                       road.junction));
+                       road.record.junction_id));
   }
 }
 
-const SectionSource* touching_section(const RoadSource& road, bool at_end) {
-  if (road.sections.empty()) return nullptr;
-  return at_end ? &road.sections.back() : &road.sections.front();
+const LaneSection* touching_section(const RoadSource& road, bool at_end) {
+  if (road.record.sections.empty()) return nullptr;
+  return at_end ? &road.record.sections.back() : &road.record.sections.front();
 }
 
 void unknown_lanes(const Source& source, const validation::ValidateOptions&,
                    validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
     const RoadSource* via = connection.connecting;
-    if (via == nullptr || !connection.node.attribute("connectingRoad")) return;
-    const SectionSource* section = touching_section(*via, connection.at_end);
-    if (section == nullptr || section->node.attribute("singleSide").as_bool()) return;
-    for (const auto link : connection.node.children("laneLink")) {
+    if (via == nullptr || connection.record.direct) return;
+    const LaneSection* section = touching_section(*via, connection.at_end());
+    if (section == nullptr || section->single_side) return;
+    for (const auto link : connection.record.node.children("laneLink")) {
       const int to = link.attribute("to").as_int();
       if (section->find(to) != nullptr) continue;
-      add(report, source, connection,
+      add(report, connection,
           fmt::format("connection {} leads to lane {} of road {}, which is not there; correct it",
-                      id_of(connection), to, via->id));
+                      id_of(connection), to, via->record.id));
     }
   });
 }

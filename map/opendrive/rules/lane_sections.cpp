@@ -15,29 +15,30 @@ namespace {
 void missing_sections(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    if (!road.sections.empty()) continue;
-    add_at(report, source, road, road.node, "has no lane section; add one at s 0");
+    if (!road.record.sections.empty()) continue;
+    add_at(report, source, road, road.record.node, "has no lane section; add one at s 0");
   }
 }
 
 void late_sections(const Source& source, const validation::ValidateOptions& options,
                    validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    if (road.sections.empty() || !(road.sections[0].s_m > options.max_gap_m)) continue;
-    add_at(report, source, road, road.sections[0].node,
+    if (road.record.sections.empty() || !(road.record.sections[0].s_m > options.max_gap_m))
+      continue;
+    add_at(report, source, road, road.record.sections[0].node,
            fmt::format("its first lane section begins at s {} m; begin it at 0",
-                       road.sections[0].s_m));
+                       road.record.sections[0].s_m));
   }
 }
 
 void unordered_sections(const Source& source, const validation::ValidateOptions&,
                         validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (std::size_t i = 1; i < road.sections.size(); ++i) {
-      if (!(road.sections[i].s_m < road.sections[i - 1].s_m)) continue;
-      add_at(report, source, road, road.sections[i].node,
+    for (std::size_t i = 1; i < road.record.sections.size(); ++i) {
+      if (!(road.record.sections[i].s_m < road.record.sections[i - 1].s_m)) continue;
+      add_at(report, source, road, road.record.sections[i].node,
              fmt::format("lane section at s {} m stands behind that at {} m; list them in order",
-                         road.sections[i].s_m, road.sections[i - 1].s_m));
+                         road.record.sections[i].s_m, road.record.sections[i - 1].s_m));
     }
   }
 }
@@ -45,11 +46,11 @@ void unordered_sections(const Source& source, const validation::ValidateOptions&
 void empty_sections(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (std::size_t i = 0; i < road.sections.size(); ++i) {
-      const SectionSource& section = road.sections[i];
-      const double length_m = section.end_s_m - section.s_m;
-      const bool shares = section.is_single_sided() ||
-                          (i + 1 < road.sections.size() && road.sections[i + 1].is_single_sided());
+    for (std::size_t i = 0; i < road.record.sections.size(); ++i) {
+      const LaneSection& section = road.record.sections[i];
+      const double length_m = road.end_s_m(section) - section.s_m;
+      const bool shares = section.single_side || (i + 1 < road.record.sections.size() &&
+                                                  road.record.sections[i + 1].single_side);
       if (!(length_m <= 0.0) || shares) continue;
       add_at(report, source, road, section.node,
              fmt::format("lane section at s {} m has no length; remove it or correct its s",
@@ -59,9 +60,9 @@ void empty_sections(const Source& source, const validation::ValidateOptions&,
 }
 
 /// Ids of one side, by distance from the middle.
-std::vector<int> side_ids(const SectionSource& section, int sign) {
+std::vector<int> side_ids(const LaneSection& section, int sign) {
   std::vector<int> ids;
-  for (const LaneSource& lane : section.lanes) {
+  for (const LaneRecord& lane : section.listed()) {
     if (lane.id * sign > 0) ids.push_back(std::abs(lane.id));
   }
   std::sort(ids.begin(), ids.end());
@@ -71,7 +72,7 @@ std::vector<int> side_ids(const SectionSource& section, int sign) {
 void gaps_in_numbers(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
+    for (const LaneSection& section : road.record.sections) {
       for (const int sign : {1, -1}) {
         const std::vector<int> ids = side_ids(section, sign);
         for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -90,9 +91,11 @@ void gaps_in_numbers(const Source& source, const validation::ValidateOptions&,
 void lanes_on_wrong_side(const Source& source, const validation::ValidateOptions&,
                          validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
-        const bool fits = lane.side == "left" ? lane.id > 0 : lane.side == "center" || lane.id < 0;
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
+        const bool fits = std::string_view(lane.side) == "left"
+                              ? lane.id > 0
+                              : std::string_view(lane.side) == "center" || lane.id < 0;
         if (fits) continue;
         add_at(report, source, road, lane.node,
                fmt::format("stands in <{}>; left lanes have positive ids, right ones negative",
@@ -106,10 +109,12 @@ void lanes_on_wrong_side(const Source& source, const validation::ValidateOptions
 void broken_centres(const Source& source, const validation::ValidateOptions&,
                     validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      const auto in_centre = [](const LaneSource& lane) { return lane.side == "center"; };
-      const auto count = std::count_if(section.lanes.begin(), section.lanes.end(), in_centre);
-      const LaneSource* zero = section.find(0);
+    for (const LaneSection& section : road.record.sections) {
+      const auto in_centre = [](const LaneRecord& lane) {
+        return std::string_view(lane.side) == "center";
+      };
+      const auto count = std::ranges::count_if(section.listed(), in_centre);
+      const LaneRecord* zero = section.find(0);
       if (!section.node.child("center") || (count == 1 && zero && in_centre(*zero))) continue;
       add_at(report, source, road, section.node,
              fmt::format("lane section at s {} m needs one centre lane with id 0, has {} lanes in "
@@ -122,10 +127,10 @@ void broken_centres(const Source& source, const validation::ValidateOptions&,
 void wide_centres(const Source& source, const validation::ValidateOptions&,
                   validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
         const auto width = lane.node.child("width");
-        if (lane.side != "center" || !width) continue;
+        if (std::string_view(lane.side) != "center" || !width) continue;
         add_at(report, source, road, width,
                "the centre lane has a width, which it cannot have; remove it");
       }
@@ -133,23 +138,21 @@ void wide_centres(const Source& source, const validation::ValidateOptions&,
   }
 }
 
-bool is_level(const LaneSource& lane) { return lane.node.attribute("level").as_bool(); }
-
 void level_inside(const Source& source, const validation::ValidateOptions&,
                   validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
+    for (const LaneSection& section : road.record.sections) {
       for (const int sign : {1, -1}) {
         bool level = false;
         for (const int distance : side_ids(section, sign)) {
-          const LaneSource& lane = *section.find(sign * distance);
-          if (level && !is_level(lane)) {
+          const LaneRecord& lane = *section.find(sign * distance);
+          if (level && !lane.level) {
             add_at(report, source, road, lane.node,
                    "is not level although a lane further in is; level all lanes from there to the "
                    "road's edge")
                 .element = lane_element(road, section, lane.id);
           }
-          level = level || is_level(lane);
+          level = level || lane.level;
         }
       }
     }
@@ -159,8 +162,8 @@ void level_inside(const Source& source, const validation::ValidateOptions&,
 void mixed_access(const Source& source, const validation::ValidateOptions&,
                   validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
         std::set<double> allow, deny;
         for (const auto access : lane.node.children("access")) {
           const double s_m = source.number(access, "sOffset");
@@ -177,10 +180,9 @@ void mixed_access(const Source& source, const validation::ValidateOptions&,
   }
 }
 
-geometry::PiecewiseCubic border_of(const Source& source, const SectionSource& section,
-                                   const LaneSource& lane) {
+geometry::PiecewiseCubic border_of(const LaneRecord& lane) {
   std::vector<geometry::CubicRecord> records;
-  for (const CubicSource& cubic : source.cubics(lane.node, "border", "sOffset", section.s_m)) {
+  for (const CubicElement& cubic : whole(lane.border.listed)) {
     records.push_back(cubic.record);
   }
   std::stable_sort(records.begin(), records.end(),
@@ -225,16 +227,15 @@ std::optional<LeastValue> crossing(const geometry::PiecewiseCubic& outer,
 void crossing_borders(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      if (!(section.end_s_m > section.s_m)) continue;
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      if (!(road.end_s_m(section) > section.s_m)) continue;
+      for (const LaneRecord& lane : section.listed()) {
         const int sign = lane.id > 0 ? 1 : -1;
-        const LaneSource* inner = section.find(lane.id - sign);
-        if (lane.id == 0 || !lane.node.child("border") || lane.node.child("width")) continue;
-        if (inner == nullptr || (inner->id != 0 && !inner->node.child("border"))) continue;
+        const LaneRecord* inner = section.find(lane.id - sign);
+        if (lane.id == 0 || lane.border.listed.empty() || !lane.width.listed.empty()) continue;
+        if (inner == nullptr || (inner->id != 0 && inner->border.listed.empty())) continue;
         const auto worst =
-            crossing(border_of(source, section, lane), border_of(source, section, *inner),
-                     section.s_m, section.end_s_m, sign);
+            crossing(border_of(lane), border_of(*inner), section.s_m, road.end_s_m(section), sign);
         if (!worst) continue;
         validation::Finding& finding =
             add_at(report, source, road, lane.node,

@@ -11,13 +11,17 @@
 namespace roadbed::map::opendrive::rules {
 namespace {
 
-enum class End { start, end };
+using End = ContactPoint;
 
 const char* link_name(End end) { return end == End::start ? "predecessor" : "successor"; }
 const char* end_name(End end) { return end == End::start ? "start" : "end"; }
 
+const std::optional<RoadLink>& link_of(const RoadSource& road, End end) {
+  return end == End::start ? road.record.predecessor : road.record.successor;
+}
+
 /// <predecessor> or <successor> of a road that names another road which is there.
-struct RoadLink {
+struct LinkedEnd {
   pugi::xml_node node;
   const RoadSource* from = nullptr;
   End at = End::start;
@@ -25,15 +29,12 @@ struct RoadLink {
   std::optional<End> contact;
 };
 
-std::optional<RoadLink> link_at(const Source& source, const RoadSource& road, End at) {
-  const auto node = road.node.child("link").child(link_name(at));
-  if (!node || std::string_view(node.attribute("elementType").value()) == "junction") return {};
-  RoadLink link{node, &road, at, source.find_road(node.attribute("elementId").value()), {}};
-  const std::string_view contact = node.attribute("contactPoint").value();
-  if (contact == "start") link.contact = End::start;
-  if (contact == "end") link.contact = End::end;
-  if (link.to == nullptr) return {};
-  return link;
+std::optional<LinkedEnd> link_at(const Source& source, const RoadSource& road, End at) {
+  const std::optional<RoadLink>& link = link_of(road, at);
+  if (!link || link->to_junction) return {};
+  const RoadSource* to = source.find_road(link->element_id);
+  if (to == nullptr) return {};
+  return LinkedEnd{link->node, &road, at, to, link->contact};
 }
 
 template <typename Check>
@@ -47,20 +48,21 @@ void for_each_road_link(const Source& source, const Check& check) {
 
 void one_sided_roads(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
-  for_each_road_link(source, [&](const RoadLink& link) {
+  for_each_road_link(source, [&](const LinkedEnd& link) {
     if (!link.contact) return;
-    const auto back = link.to->node.child("link").child(link_name(*link.contact));
-    const std::string_view id = back.attribute("elementId").value();
-    const bool to_junction = std::string_view(back.attribute("elementType").value()) == "junction";
-    if (back && (to_junction ? id == link.from->junction || !link.to->junction.empty()
-                             : id == link.from->id)) {
+    const std::optional<RoadLink>& back = link_of(*link.to, *link.contact);
+    const std::string id = back ? back->element_id : std::string();
+    const bool to_junction = back && back->to_junction;
+    if (back &&
+        (to_junction ? id == link.from->record.junction_id || !link.to->record.junction_id.empty()
+                     : id == link.from->record.id)) {
       return;
     }
     // Several connecting roads meet a road's end; that end names their junction, or nothing.
-    if (!link.from->junction.empty() && !back) return;
+    if (!link.from->record.junction_id.empty() && !back) return;
     add_at(report, source, *link.from, link.node,
            fmt::format("its {} is the {} of road {}, whose {} is {}; make both name each other",
-                       link_name(link.at), end_name(*link.contact), link.to->id,
+                       link_name(link.at), end_name(*link.contact), link.to->record.id,
                        link_name(*link.contact),
                        back ? fmt::format("{} {}", to_junction ? "junction" : "road", id)
                             : std::string("not given")));
@@ -69,12 +71,12 @@ void one_sided_roads(const Source& source, const validation::ValidateOptions&,
 
 void missing_contact_points(const Source& source, const validation::ValidateOptions&,
                             validation::Report& report) {
-  for_each_road_link(source, [&](const RoadLink& link) {
+  for_each_road_link(source, [&](const LinkedEnd& link) {
     if (link.contact || link.node.attribute("elementS")) return;
     add_at(report, source, *link.from, link.node,
            fmt::format("its {} does not say whether it meets the start or the end of road {}; add "
                        "contactPoint",
-                       link_name(link.at), link.to->id));
+                       link_name(link.at), link.to->record.id));
   });
 }
 
@@ -87,8 +89,10 @@ std::optional<Eigen::Vector2d> end_of(const RoadSource& road, End end) {
 
 void contact_points_off(const Source& source, const validation::ValidateOptions& options,
                         validation::Report& report) {
-  for_each_road_link(source, [&](const RoadLink& link) {
-    if (!link.contact || !link.from->junction.empty() || !link.to->junction.empty()) return;
+  for_each_road_link(source, [&](const LinkedEnd& link) {
+    if (!link.contact || !link.from->record.junction_id.empty() ||
+        !link.to->record.junction_id.empty())
+      return;
     const auto here = end_of(*link.from, link.at), there = end_of(*link.to, *link.contact);
     if (!here || !there || (*here - *there).norm() <= options.max_gap_m) return;
     validation::Finding& finding = add_at(
@@ -96,37 +100,37 @@ void contact_points_off(const Source& source, const validation::ValidateOptions&
         fmt::format("its {} is {:.3f} m from the {} of road {}, which it is linked to; correct "
                     "contactPoint, the link or a reference line",
                     end_name(link.at), (*here - *there).norm(), end_name(*link.contact),
-                    link.to->id));
+                    link.to->record.id));
     finding.in_map = here;
   });
 }
 
 void ambiguous_links(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
-  std::map<std::pair<const RoadSource*, End>, std::vector<RoadLink>> by_target;
-  for_each_road_link(source, [&](const RoadLink& link) {
-    if (!link.contact || !link.from->junction.empty()) return;
+  std::map<std::pair<const RoadSource*, End>, std::vector<LinkedEnd>> by_target;
+  for_each_road_link(source, [&](const LinkedEnd& link) {
+    if (!link.contact || !link.from->record.junction_id.empty()) return;
     by_target[{link.to, *link.contact}].push_back(link);
   });
   for (const RoadSource& road : source.roads) {  // in order of the file, not of addresses
     for (const End end : {End::start, End::end}) {
       const auto found = by_target.find({&road, end});
       if (found == by_target.end() || found->second.size() < 2) continue;
-      for (const RoadLink& link : found->second) {
+      for (const LinkedEnd& link : found->second) {
         add_at(report, source, *link.from, link.node,
                fmt::format("shares the {} of road {} with {} other roads; use a junction",
-                           end_name(end), road.id, found->second.size() - 1));
+                           end_name(end), road.record.id, found->second.size() - 1));
       }
     }
   }
 }
 
-const SectionSource* section_at(const RoadSource& road, End end) {
-  if (road.sections.empty()) return nullptr;
-  return end == End::start ? &road.sections.front() : &road.sections.back();
+const LaneSection* section_at(const RoadSource& road, End end) {
+  if (road.record.sections.empty()) return nullptr;
+  return end == End::start ? &road.record.sections.front() : &road.record.sections.back();
 }
 
-const std::vector<int>& targets(const LaneSource& lane, End end) {
+const std::vector<int>& targets(const LaneRecord& lane, End end) {
   return end == End::start ? lane.predecessors : lane.successors;
 }
 
@@ -137,21 +141,21 @@ bool holds(const std::vector<int>& ids, int id) {
 /// One side of a seam between lane sections.
 struct SeamSide {
   const RoadSource* road;
-  const SectionSource* section;
+  const LaneSection* section;
   End end;
 };
 
 /// Links over a seam that the other side does not return.
 void find_one_sided(const Source& source, const SeamSide& here, const SeamSide& there,
                     validation::Report& report) {
-  for (const LaneSource& lane : here.section->lanes) {
+  for (const LaneRecord& lane : here.section->listed()) {
     if (lane.id == 0) continue;
     for (const int target : targets(lane, here.end)) {
-      const LaneSource* other = there.section->find(target);
+      const LaneRecord* other = there.section->find(target);
       if (other != nullptr && holds(targets(*other, there.end), lane.id)) continue;
       add_at(report, source, *here.road, lane.node,
              fmt::format("its {} is lane {} of road {}, {}; make both name each other",
-                         link_name(here.end), target, there.road->id,
+                         link_name(here.end), target, there.road->record.id,
                          other == nullptr
                              ? "which is not there"
                              : fmt::format("which does not have it as {}", link_name(there.end))))
@@ -163,17 +167,19 @@ void find_one_sided(const Source& source, const SeamSide& here, const SeamSide& 
 void one_sided_lanes(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (std::size_t i = 1; i < road.sections.size(); ++i) {
-      const SectionSource &before = road.sections[i - 1], &after = road.sections[i];
-      if (before.is_single_sided() || after.is_single_sided()) continue;
+    for (std::size_t i = 1; i < road.record.sections.size(); ++i) {
+      const LaneSection &before = road.record.sections[i - 1], &after = road.record.sections[i];
+      if (before.single_side || after.single_side) continue;
       find_one_sided(source, {&road, &before, End::end}, {&road, &after, End::start}, report);
       find_one_sided(source, {&road, &after, End::start}, {&road, &before, End::end}, report);
     }
   }
-  for_each_road_link(source, [&](const RoadLink& link) {
-    if (!link.contact || !link.from->junction.empty() || !link.to->junction.empty()) return;
-    const SectionSource* here = section_at(*link.from, link.at);
-    const SectionSource* there = section_at(*link.to, *link.contact);
+  for_each_road_link(source, [&](const LinkedEnd& link) {
+    if (!link.contact || !link.from->record.junction_id.empty() ||
+        !link.to->record.junction_id.empty())
+      return;
+    const LaneSection* here = section_at(*link.from, link.at);
+    const LaneSection* there = section_at(*link.to, *link.contact);
     if (here == nullptr || there == nullptr) return;
     find_one_sided(source, {link.from, here, link.at}, {link.to, there, *link.contact}, report);
   });
@@ -183,9 +189,9 @@ void linked_lanes_without_road(const Source& source, const validation::ValidateO
                                validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     for (const End end : {End::start, End::end}) {
-      const SectionSource* section = section_at(road, end);
-      if (section == nullptr || road.node.child("link").child(link_name(end))) continue;
-      for (const LaneSource& lane : section->lanes) {
+      const LaneSection* section = section_at(road, end);
+      if (section == nullptr || link_of(road, end)) continue;
+      for (const LaneRecord& lane : section->listed()) {
         if (lane.id == 0 || targets(lane, end).empty()) continue;
         add_at(report, source, road, lane.node,
                fmt::format("has a {} although its road has none; link the road or remove it",
@@ -196,59 +202,58 @@ void linked_lanes_without_road(const Source& source, const validation::ValidateO
   }
 }
 
-double start_width_m(const Source& source, const LaneSource& lane) {
-  const auto first = lane.node.child("width");
-  return first ? source.number(first, "a") : 1.0;
+double start_width_m(const LaneRecord& lane) {
+  return lane.width.listed.empty() ? 1.0 : lane.width.listed.front().record.a;
 }
 
 void appearing_lanes(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   constexpr double kNone = 1e-3;  // [m]
   for (const RoadSource& road : source.roads) {
-    for (std::size_t i = 1; i < road.sections.size(); ++i) {
-      std::map<int, std::vector<const LaneSource*>> followers;
-      for (const LaneSource& lane : road.sections[i].lanes) {
+    for (std::size_t i = 1; i < road.record.sections.size(); ++i) {
+      std::map<int, std::vector<const LaneRecord*>> followers;
+      for (const LaneRecord& lane : road.record.sections[i].listed()) {
         for (const int before : lane.predecessors) followers[before].push_back(&lane);
       }
       for (const auto& [before, lanes] : followers) {
         if (lanes.size() < 2) continue;
-        for (const LaneSource* lane : lanes) {
-          if (start_width_m(source, *lane) >= kNone) continue;
+        for (const LaneRecord* lane : lanes) {
+          if (start_width_m(*lane) >= kNone) continue;
           add_at(report, source, road, lane->node,
                  fmt::format("appears beside the lane that goes on from lane {}, but is linked to "
                              "it too; remove its predecessor",
                              before))
-              .element = lane_element(road, road.sections[i], lane->id);
+              .element = lane_element(road, road.record.sections[i], lane->id);
         }
       }
     }
   }
 }
 
-bool drives(const LaneSource& lane) {
+bool drives(const LaneRecord& lane) {
   static const std::set<std::string_view> kTypes = {
       "driving", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "bidirectional"};
   return kTypes.contains(lane.node.attribute("type").value());
 }
 
-bool any_drives(const SectionSource& section) {
-  return std::any_of(section.lanes.begin(), section.lanes.end(), drives);
+bool any_drives(const LaneSection& section) {
+  return std::ranges::any_of(section.listed(), drives);
 }
 
 void roads_linked_without_lanes(const Source& source, const validation::ValidateOptions&,
                                 validation::Report& report) {
-  for_each_road_link(source, [&](const RoadLink& link) {
-    const SectionSource* here = section_at(*link.from, link.at);
+  for_each_road_link(source, [&](const LinkedEnd& link) {
+    const LaneSection* here = section_at(*link.from, link.at);
     if (here == nullptr || !link.contact || !any_drives(*here)) return;
-    const SectionSource* there = section_at(*link.to, *link.contact);
-    const bool linked = std::any_of(
-        here->lanes.begin(), here->lanes.end(),
-        [&](const LaneSource& lane) { return drives(lane) && !targets(lane, link.at).empty(); });
+    const LaneSection* there = section_at(*link.to, *link.contact);
+    const bool linked = std::ranges::any_of(here->listed(), [&](const LaneRecord& lane) {
+      return drives(lane) && !targets(lane, link.at).empty();
+    });
     if (linked || there == nullptr || !any_drives(*there)) return;
     add_at(report, source, *link.from, link.node,
            fmt::format("its {} is road {}, but none of its driving lanes is linked there; link "
                        "them",
-                       link_name(link.at), link.to->id));
+                       link_name(link.at), link.to->record.id));
   });
 }
 

@@ -10,32 +10,24 @@
 namespace roadbed::map::opendrive::rules {
 namespace {
 
-using Cubics = std::vector<CubicSource>;
+using Cubics = std::vector<CubicElement>;
 
-Cubics elevation(const Source& source, const RoadSource& road) {
-  return source.cubics(road.node.child("elevationProfile"), "elevation", "s", 0.0);
-}
-
-Cubics superelevation(const Source& source, const RoadSource& road) {
-  return source.cubics(road.node.child("lateralProfile"), "superelevation", "s", 0.0);
-}
-
-Cubics lane_offset(const Source& source, const RoadSource& road) {
-  return source.cubics(road.node.child("lanes"), "laneOffset", "s", 0.0);
-}
+Cubics elevation(const RoadSource& road) { return whole(road.record.elevation.listed); }
+Cubics superelevation(const RoadSource& road) { return whole(road.record.superelevation.listed); }
+Cubics lane_offset(const RoadSource& road) { return whole(road.record.lane_offset.listed); }
 
 /// Calls `check(record, length, next)` for every record; `next` is null for the last one.
 template <typename Check>
 void for_each_record(const Cubics& records, double end_s_m, const Check& check) {
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const CubicSource* next = i + 1 < records.size() ? &records[i + 1] : nullptr;
+    const CubicElement* next = i + 1 < records.size() ? &records[i + 1] : nullptr;
     const double length_m = (next ? next->record.s_m : end_s_m) - records[i].record.s_m;
     if (length_m >= 0.0) check(records[i], length_m, next);
   }
 }
 
 validation::Finding& add(validation::Report& report, const Source& source, const RoadSource& road,
-                         const CubicSource& record, double s_m, std::string message) {
+                         const CubicElement& record, double s_m, std::string message) {
   validation::Finding& finding = add_at(report, source, road, record.node, std::move(message));
   finding.in_map = road.place_at(s_m);
   return finding;
@@ -47,8 +39,8 @@ struct Quantity {
 
 /// A step of a profile's value from one record to the next.
 void add_step(validation::Report& report, const Source& source, const RoadSource& road,
-              const CubicSource& before, double length_m, const CubicSource& after, double max_step,
-              const Quantity& what) {
+              const CubicElement& before, double length_m, const CubicElement& after,
+              double max_step, const Quantity& what) {
   const double step = after.record.a - value_at(before.record, length_m);
   if (std::abs(step) <= max_step) return;
   add(report, source, road, after, after.record.s_m,
@@ -58,8 +50,8 @@ void add_step(validation::Report& report, const Source& source, const RoadSource
 
 void find_steps(const Source& source, const RoadSource& road, const Cubics& records,
                 double max_step, const Quantity& what, validation::Report& report) {
-  for_each_record(records, road.length_m,
-                  [&](const CubicSource& before, double length_m, const CubicSource* after) {
+  for_each_record(records, road.record.length_m,
+                  [&](const CubicElement& before, double length_m, const CubicElement* after) {
                     if (after == nullptr) return;
                     add_step(report, source, road, before, length_m, *after, max_step, what);
                   });
@@ -68,8 +60,7 @@ void find_steps(const Source& source, const RoadSource& road, const Cubics& reco
 void elevation_steps(const Source& source, const validation::ValidateOptions& options,
                      validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    find_steps(source, road, elevation(source, road), options.max_step_m, {"elevation", "m"},
-               report);
+    find_steps(source, road, elevation(road), options.max_step_m, {"elevation", "m"}, report);
   }
 }
 
@@ -77,8 +68,7 @@ void superelevation_steps(const Source& source, const validation::ValidateOption
                           validation::Report& report) {
   constexpr double kMaxStep = 0.01;  // [rad], 5 cm at 5 m from the middle
   for (const RoadSource& road : source.roads) {
-    find_steps(source, road, superelevation(source, road), kMaxStep, {"superelevation", "rad"},
-               report);
+    find_steps(source, road, superelevation(road), kMaxStep, {"superelevation", "rad"}, report);
   }
 }
 
@@ -86,16 +76,16 @@ void superelevation_steps(const Source& source, const validation::ValidateOption
 /// their borders go on is asked of the lanes.
 bool begins_section(const RoadSource& road, double s_m) {
   constexpr double kSame_m = 0.01;
-  return std::any_of(road.sections.begin(), road.sections.end(), [&](const SectionSource& section) {
-    return std::abs(section.s_m - s_m) < kSame_m;
-  });
+  return std::any_of(
+      road.record.sections.begin(), road.record.sections.end(),
+      [&](const LaneSection& section) { return std::abs(section.s_m - s_m) < kSame_m; });
 }
 
 void lane_offset_steps(const Source& source, const validation::ValidateOptions& options,
                        validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for_each_record(lane_offset(source, road), road.length_m,
-                    [&](const CubicSource& before, double length_m, const CubicSource* after) {
+    for_each_record(lane_offset(road), road.record.length_m,
+                    [&](const CubicElement& before, double length_m, const CubicElement* after) {
                       if (after == nullptr || begins_section(road, after->record.s_m)) return;
                       add_step(report, source, road, before, length_m, *after, options.max_step_m,
                                {"lane offset", "m"});
@@ -106,8 +96,8 @@ void lane_offset_steps(const Source& source, const validation::ValidateOptions& 
 void slope_jumps(const Source& source, const validation::ValidateOptions& options,
                  validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for_each_record(elevation(source, road), road.length_m,
-                    [&](const CubicSource& before, double length_m, const CubicSource* after) {
+    for_each_record(elevation(road), road.record.length_m,
+                    [&](const CubicElement& before, double length_m, const CubicElement* after) {
                       if (after == nullptr) return;
                       const double jump = after->record.b - slope_at(before.record, length_m);
                       if (std::abs(jump) <= options.max_slope_jump) return;
@@ -122,8 +112,8 @@ void slope_jumps(const Source& source, const validation::ValidateOptions& option
 void steep_roads(const Source& source, const validation::ValidateOptions& options,
                  validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for_each_record(elevation(source, road), road.length_m,
-                    [&](const CubicSource& record, double length_m, const CubicSource*) {
+    for_each_record(elevation(road), road.record.length_m,
+                    [&](const CubicElement& record, double length_m, const CubicElement*) {
                       const LeastValue steepest = greatest_slope(record.record, length_m);
                       if (steepest.value <= options.max_slope || length_m == 0.0) return;
                       add(report, source, road, record, record.record.s_m + steepest.ds_m,
@@ -138,7 +128,7 @@ void steep_crossfalls(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   constexpr double kSteepest = 0.35;  // [rad]; roads stay below 0.1, test tracks go beyond 0.5
   for (const RoadSource& road : source.roads) {
-    for (const CubicSource& record : superelevation(source, road)) {
+    for (const CubicElement& record : superelevation(road)) {
       if (std::abs(record.record.a) <= kSteepest) continue;
       add(report, source, road, record, record.record.s_m,
           fmt::format("superelevation is {:.2f} rad at s {:.2f} m; check whether it is meant in "
@@ -155,7 +145,7 @@ bool is_on_earth(double elevation_m) { return elevation_m > -450.0 && elevation_
 void elevation_outliers(const Source& source, const validation::ValidateOptions&,
                         validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    for (const CubicSource& record : elevation(source, road)) {
+    for (const CubicElement& record : elevation(road)) {
       if (is_on_earth(record.record.a)) continue;
       add(report, source, road, record, record.record.s_m,
           fmt::format("elevation is {:.1f} m at s {:.2f} m, where no road is; correct it",
@@ -169,25 +159,23 @@ void elevation_outliers(const Source& source, const validation::ValidateOptions&
 template <typename Check>
 void for_each_lane(const Source& source, const Check& check) {
   for (const RoadSource& road : source.roads) {
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
         if (lane.id != 0) check(road, section, lane);
       }
     }
   }
 }
 
-Cubics widths(const Source& source, const SectionSource& section, const LaneSource& lane) {
-  return source.cubics(lane.node, "width", "sOffset", section.s_m);
-}
+Cubics widths(const LaneRecord& lane) { return whole(lane.width.listed); }
 
 void width_steps(const Source& source, const validation::ValidateOptions& options,
                  validation::Report& report) {
   for_each_lane(
-      source, [&](const RoadSource& road, const SectionSource& section, const LaneSource& lane) {
+      source, [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
         for_each_record(
-            widths(source, section, lane), section.end_s_m,
-            [&](const CubicSource& before, double length_m, const CubicSource* after) {
+            widths(lane), road.end_s_m(section),
+            [&](const CubicElement& before, double length_m, const CubicElement* after) {
               if (after == nullptr) return;
               const double step = after->record.a - value_at(before.record, length_m);
               if (std::abs(step) <= options.max_step_m) return;
@@ -202,10 +190,10 @@ void width_steps(const Source& source, const validation::ValidateOptions& option
 void negative_widths(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   constexpr double kNone = 1e-3;  // [m]
-  for_each_lane(source, [&](const RoadSource& road, const SectionSource& section,
-                            const LaneSource& lane) {
-    for_each_record(widths(source, section, lane), section.end_s_m,
-                    [&](const CubicSource& record, double length_m, const CubicSource*) {
+  for_each_lane(source, [&](const RoadSource& road, const LaneSection& section,
+                            const LaneRecord& lane) {
+    for_each_record(widths(lane), road.end_s_m(section),
+                    [&](const CubicElement& record, double length_m, const CubicElement*) {
                       const LeastValue least = least_value(record.record, length_m);
                       if (least.value >= -kNone) return;
                       const double s_m = record.record.s_m + least.ds_m;
@@ -221,10 +209,10 @@ void negative_widths(const Source& source, const validation::ValidateOptions&,
 void widths_without_start(const Source& source, const validation::ValidateOptions&,
                           validation::Report& report) {
   for_each_lane(
-      source, [&](const RoadSource& road, const SectionSource& section, const LaneSource& lane) {
-        const auto first = lane.node.child("width");
+      source, [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
+        const auto first = lane.width.listed.empty() ? pugi::xml_node() : lane.width.listed[0].node;
         const bool begins = first && !(source.number(first, "sOffset") > 1e-3);
-        if (begins || lane.node.child("border")) return;
+        if (begins || !lane.border.listed.empty()) return;
         add_at(report, source, road, lane.node,
                first ? "its first width does not begin at sOffset 0; say the width from there on"
                      : "has neither width nor border; add one")
@@ -234,14 +222,14 @@ void widths_without_start(const Source& source, const validation::ValidateOption
 
 void widths_beyond_sections(const Source& source, const validation::ValidateOptions& options,
                             validation::Report& report) {
-  for_each_lane(source, [&](const RoadSource& road, const SectionSource& section,
-                            const LaneSource& lane) {
-    for (const CubicSource& record : widths(source, section, lane)) {
-      if (!(record.record.s_m > section.end_s_m + options.max_gap_m)) continue;
+  for_each_lane(source, [&](const RoadSource& road, const LaneSection& section,
+                            const LaneRecord& lane) {
+    for (const CubicElement& record : widths(lane)) {
+      if (!(record.record.s_m > road.end_s_m(section) + options.max_gap_m)) continue;
       add_at(report, source, road, record.node,
              fmt::format("a width begins at s {:.3f} m, beyond the section's end at {:.3f} m, and "
                          "never holds; remove it or correct sOffset",
-                         record.record.s_m, section.end_s_m))
+                         record.record.s_m, road.end_s_m(section)))
           .element = lane_element(road, section, lane.id);
     }
   });
@@ -250,8 +238,8 @@ void widths_beyond_sections(const Source& source, const validation::ValidateOpti
 void widths_with_borders(const Source& source, const validation::ValidateOptions&,
                          validation::Report& report) {
   for_each_lane(source,
-                [&](const RoadSource& road, const SectionSource& section, const LaneSource& lane) {
-                  if (!lane.node.child("width") || !lane.node.child("border")) return;
+                [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
+                  if (lane.width.listed.empty() || lane.border.listed.empty()) return;
                   add_at(report, source, road, lane.node,
                          "has both width and border; keep the widths, which hold by the standard")
                       .element = lane_element(road, section, lane.id);
@@ -261,16 +249,16 @@ void widths_with_borders(const Source& source, const validation::ValidateOptions
 void borders_with_offset(const Source& source, const validation::ValidateOptions&,
                          validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    const Cubics offsets = lane_offset(source, road);
+    const Cubics offsets = lane_offset(road);
     bool moved = false;
-    for (const CubicSource& offset : offsets) {
+    for (const CubicElement& offset : offsets) {
       const auto& r = offset.record;
       moved = moved || r.a != 0.0 || r.b != 0.0 || r.c != 0.0 || r.d != 0.0;
     }
     if (!moved) continue;
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
-        if (!lane.node.child("border")) continue;
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
+        if (lane.border.listed.empty()) continue;
         add_at(report, source, road, lane.node,
                "has a border although its road has a lane offset; describe the lane by widths")
             .element = lane_element(road, section, lane.id);
@@ -313,13 +301,13 @@ void unordered_records(const Source& source, const validation::ValidateOptions&,
       {"lane", "roadMark", "sOffset", "road.lane.road_mark.elem_asc_order"},
   };
   for (const RoadSource& road : source.roads) {
-    find_disorder(source, road, road.node, {"road", "type", "s", "road.type.elem_asc_order"},
+    find_disorder(source, road, road.record.node, {"road", "type", "s", "road.type.elem_asc_order"},
                   report);
     for (const Ordered& kind : kOfRoad) {
-      find_disorder(source, road, road.node.child(kind.parent), kind, report);
+      find_disorder(source, road, road.record.node.child(kind.parent), kind, report);
     }
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
         for (const Ordered& kind : kOfLane) find_disorder(source, road, lane.node, kind, report);
       }
     }

@@ -27,17 +27,16 @@ bool goes_on(const geometry::CubicRecord& before, const geometry::CubicRecord& r
   return record.s_m > before.s_m && length_m > 0.0;
 }
 
-/// Where the records of an element are: under what, called what, with which attribute for s, from
-/// which station on to which.
+/// A profile, called what, and where its last record ends.
 struct Records {
-  pugi::xml_node parent;
-  const char *name, *s_attribute;
-  double from_s_m, to_s_m;
+  const Profile& profile;
+  const char* name;
+  double to_s_m;
 };
 
 void find_redundant(const Source& source, const RoadSource& road, const Records& where,
                     const std::string& element, validation::Report& report) {
-  const auto records = source.cubics(where.parent, where.name, where.s_attribute, where.from_s_m);
+  const std::vector<CubicElement> records = whole(where.profile.listed);
   for (std::size_t i = 1; i < records.size(); ++i) {
     const geometry::CubicRecord& record = records[i].record;
     const double end_m = i + 1 < records.size() ? records[i + 1].record.s_m : where.to_s_m;
@@ -54,30 +53,29 @@ void find_redundant(const Source& source, const RoadSource& road, const Records&
 void redundant_records(const Source& source, const validation::ValidateOptions&,
                        validation::Report& report) {
   for (const RoadSource& road : source.roads) {
-    const auto find = [&](const char* parent, const char* name) {
-      find_redundant(source, road, {road.node.child(parent), name, "s", 0.0, road.length_m},
-                     road.element(), report);
+    const auto find = [&](const Profile& profile, const char* name) {
+      find_redundant(source, road, {profile, name, road.record.length_m}, road.element(), report);
     };
-    find("elevationProfile", "elevation");
-    find("lateralProfile", "superelevation");
-    find("lanes", "laneOffset");
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
-        for (const char* name : {"width", "border"}) {
-          find_redundant(source, road, {lane.node, name, "sOffset", section.s_m, section.end_s_m},
-                         lane_element(road, section, lane.id), report);
-        }
+    find(road.record.elevation, "elevation");
+    find(road.record.superelevation, "superelevation");
+    find(road.record.lane_offset, "laneOffset");
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
+        const std::string element = lane_element(road, section, lane.id);
+        const double end_s_m = road.end_s_m(section);
+        find_redundant(source, road, {lane.width, "width", end_s_m}, element, report);
+        find_redundant(source, road, {lane.border, "border", end_s_m}, element, report);
       }
     }
   }
 }
 
-bool is_line(const GeometrySource& piece) {
-  return piece.start && piece.end && piece.node.child("line");
+bool is_line(const CurveSource& piece) {
+  return piece.start && piece.end && piece.record.node.child("line");
 }
 
 /// Whether the second line begins where the first ends, in its direction.
-bool goes_straight_on(const GeometrySource& before, const GeometrySource& piece) {
+bool goes_straight_on(const CurveSource& before, const CurveSource& piece) {
   const double gap_m = (piece.start->pose.position() - before.end->pose.position()).norm();
   const double turn =
       geometry::wrap_angle(piece.start->pose.heading_rad - before.end->pose.heading_rad);
@@ -88,13 +86,13 @@ void redundant_lines(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     for (std::size_t i = 1; i < road.geometry.size(); ++i) {
-      const GeometrySource &before = road.geometry[i - 1], &piece = road.geometry[i];
+      const CurveSource &before = road.geometry[i - 1], &piece = road.geometry[i];
       if (!is_line(before) || !is_line(piece) || !goes_straight_on(before, piece)) continue;
       validation::Finding& finding = add_at(
-          report, source, road, piece.node,
+          report, source, road, piece.record.node,
           fmt::format(
               "the line at s {:.3f} m goes on straight from the one before it; make them one",
-              piece.s_m));
+              piece.record.s_m));
       finding.in_map = piece.start->pose.position();
     }
   }
@@ -104,25 +102,21 @@ void redundant_lines(const Source& source, const validation::ValidateOptions&,
 /// let one with lanes in both directions have two.
 void repeated_connecting_roads(const Source& source, const validation::ValidateOptions&,
                                validation::Report& report) {
-  const auto header = source.xml.root().child("header");
-  if (header.attribute("revMajor").as_int() != 1 || header.attribute("revMinor").as_int() != 7) {
-    return;
-  }
-  std::map<std::string_view, pugi::xml_node> first;
-  for (const auto junction : source.junctions) {
-    for (const auto node : junction.children("connection")) {
-      const std::string_view road = node.attribute("connectingRoad").value();
-      const auto [known, is_new] = first.emplace(road, node);
-      if (road.empty() || is_new) continue;
-      const RoadSource* found = source.find_road(road);
+  if (source.document.version != "1.7") return;
+  std::map<std::string_view, const JunctionConnection*> first;
+  for (const JunctionRecord& junction : source.document.junctions) {
+    for (const JunctionConnection& connection : junction.connections) {
+      if (connection.direct || connection.connecting_road.empty()) continue;
+      const auto [known, is_new] = first.emplace(connection.connecting_road, &connection);
+      if (is_new) continue;
+      const RoadSource* found = source.find_road(connection.connecting_road);
       report
-          .add(fmt::format("junction {}", junction.attribute("id").value()),
-               found ? found->place() : std::nullopt,
+          .add(fmt::format("junction {}", junction.id), found ? found->place() : std::nullopt,
                fmt::format("connection {} leads over road {}, as connection {} does already; put "
                            "their laneLinks into one",
-                           node.attribute("id").value(), road,
-                           known->second.attribute("id").value()))
-          .line = source.xml.line_of(node);
+                           connection.node.attribute("id").value(), connection.connecting_road,
+                           known->second->node.attribute("id").value()))
+          .line = connection.line;
     }
   }
 }

@@ -19,7 +19,7 @@ std::string name_of(pugi::xml_node node) {
 template <typename Check>
 void for_each(const Source& source, const char* parent, const char* name, const Check& check) {
   for (const RoadSource& road : source.roads) {
-    for (const auto node : road.node.child(parent).children(name)) check(road, node);
+    for (const auto node : road.record.node.child(parent).children(name)) check(road, node);
   }
 }
 
@@ -39,10 +39,10 @@ void find_stations_off(const Source& source, const char* parent, const char* nam
                        validation::Report& report) {
   for_each(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
     const double s_m = source.number(node, "s");
-    if (!(s_m < -kAtEnd_m || s_m > road.length_m + kAtEnd_m)) return;
+    if (!(s_m < -kAtEnd_m || s_m > road.record.length_m + kAtEnd_m)) return;
     add(report, source, road, node,
         fmt::format("is at s {:.2f} m of road {}, which is {:.2f} m long; correct s or the road",
-                    s_m, road.id, road.length_m));
+                    s_m, road.record.id, road.record.length_m));
   });
 }
 
@@ -57,11 +57,11 @@ void objects_off_station(const Source& source, const validation::ValidateOptions
   find_stations_off(source, "objects", "object", report);
 }
 
-const SectionSource* section_at(const RoadSource& road, double s_m) {
-  if (road.sections.empty()) return nullptr;
+const LaneSection* section_at(const RoadSource& road, double s_m) {
+  if (road.record.sections.empty()) return nullptr;
   const auto after =
-      std::upper_bound(road.sections.begin() + 1, road.sections.end(), s_m + kAtEnd_m,
-                       [](double s, const SectionSource& section) { return s < section.s_m; });
+      std::upper_bound(road.record.sections.begin() + 1, road.record.sections.end(), s_m + kAtEnd_m,
+                       [](double s, const LaneSection& section) { return s < section.s_m; });
   return &*std::prev(after);
 }
 
@@ -74,8 +74,8 @@ LaneRange range_of(pugi::xml_node validity) {
   return {validity.attribute("fromLane").as_int(), validity.attribute("toLane").as_int()};
 }
 
-bool names_a_lane(const SectionSource& section, LaneRange range) {
-  return std::any_of(section.lanes.begin(), section.lanes.end(), [&](const LaneSource& lane) {
+bool names_a_lane(const LaneSection& section, LaneRange range) {
+  return std::ranges::any_of(section.listed(), [&](const LaneRecord& lane) {
     return lane.id >= std::min(range.from, range.to) && lane.id <= std::max(range.from, range.to);
   });
 }
@@ -94,12 +94,12 @@ void unknown_validity(const Source& source, const validation::ValidateOptions&,
                       validation::Report& report) {
   for_each_validity(source, [&](const RoadSource& road, pugi::xml_node node,
                                 pugi::xml_node validity) {
-    const SectionSource* section = section_at(road, source.number(node, "s"));
+    const LaneSection* section = section_at(road, source.number(node, "s"));
     const LaneRange range = range_of(validity);
     if (section == nullptr || names_a_lane(*section, range)) return;
     add(report, source, road, node,
         fmt::format("holds for lanes {} to {} of road {}, none of which is there; correct validity",
-                    range.from, range.to, road.id));
+                    range.from, range.to, road.record.id));
   });
 }
 
@@ -121,7 +121,7 @@ void reversed_validity(const Source& source, const validation::ValidateOptions&,
 /// Sign of the lanes that drive in the orientation's direction, 0 for both.
 int sign_of(const RoadSource& road, pugi::xml_node node) {
   const std::string_view orientation = node.attribute("orientation").value();
-  const bool left_hand = std::strcmp(road.node.attribute("rule").value(), "LHT") == 0;
+  const bool left_hand = road.record.left_hand_traffic;
   if (orientation == "+") return left_hand ? 1 : -1;
   if (orientation == "-") return left_hand ? -1 : 1;
   return 0;
@@ -139,7 +139,7 @@ void validity_against_orientation(const Source& source, const validation::Valida
             fmt::format("faces traffic of orientation {} but holds for lanes {} to {}, which drive "
                         "the other way; correct one of them",
                         node.attribute("orientation").value(), range.from, range.to));
-        const bool left_hand = std::strcmp(road.node.attribute("rule").value(), "LHT") == 0;
+        const bool left_hand = road.record.left_hand_traffic;
         const char* kind = std::strcmp(node.name(), "object") == 0   ? "object.validty"
                            : std::strcmp(node.name(), "signal") == 0 ? "signal.validity"
                                                                      : "signal.reference";
@@ -197,11 +197,11 @@ void empty_controllers(const Source& source, const validation::ValidateOptions&,
 template <typename Check>
 void for_each_speed(const Source& source, const Check& check) {
   for (const RoadSource& road : source.roads) {
-    for (const auto type : road.node.children("type")) {
+    for (const auto type : road.record.node.children("type")) {
       if (const auto speed = type.child("speed")) check(road, speed);
     }
-    for (const SectionSource& section : road.sections) {
-      for (const LaneSource& lane : section.lanes) {
+    for (const LaneSection& section : road.record.sections) {
+      for (const LaneRecord& lane : section.listed()) {
         for (const auto speed : lane.node.children("speed")) check(road, speed);
       }
     }

@@ -5,64 +5,34 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include "roadbed/geometry/curves/piecewise_cubic.h"
 #include "roadbed/geometry/curves/plan_view.h"
 #include "roadbed/map/files/xml.h"
+#include "roadbed/map/opendrive/document.h"
 #include "roadbed/map/validation/rule.h"
-
-// An OpenDRIVE document as it stands, faults and all. Numbers that are missing or broken are NaN:
-// comparisons with them are false, so that one fault is not found by many rules.
 
 namespace roadbed::map::opendrive::rules {
 
-/// <geometry>, with its ends as its own curve gives them.
-struct GeometrySource {
-  pugi::xml_node node;
-  double s_m = 0.0, length_m = 0.0;
-  std::optional<geometry::PlanPiece> piece;  ///< none if its numbers are broken
-  std::optional<geometry::PlanPoint> start, end;
+/// A curve of a reference line, with its ends as it gives them itself.
+struct CurveSource {
+  const GeometryRecord& record;
+  std::optional<geometry::PlanPoint> start, end;  ///< none if its numbers are broken
+
+  pugi::xml_node node() const { return record.node; }
 };
 
-/// A cubic record of a profile (elevation, width, …), with the element that holds it.
-struct CubicSource {
-  pugi::xml_node node;
-  geometry::CubicRecord record;
-};
-
-struct LaneSource {
-  pugi::xml_node node;
-  std::string_view side;  ///< "left", "center" or "right"
-  int id = 0;
-  std::vector<int> predecessors, successors;
-};
-
-struct SectionSource {
-  pugi::xml_node node;
-  double s_m = 0.0, end_s_m = 0.0;
-  std::vector<LaneSource> lanes;  ///< as listed; those without a whole number for an id left out
-  std::vector<std::pair<int, std::size_t>> by_id;  ///< ids with their places among the lanes
-
-  /// The first lane of that id.
-  const LaneSource* find(int id) const;
-  /// Whether it counts for the one side only that it has lanes on.
-  bool is_single_sided() const { return node.attribute("singleSide").as_bool(); }
-};
-
+/// A road with the ends of its curves.
 struct RoadSource {
-  pugi::xml_node node;
-  std::string id;
-  std::string junction;  ///< empty outside of junctions
-  double length_m = 0.0;
-  std::vector<GeometrySource> geometry;
-  std::vector<SectionSource> sections;
+  const RoadRecord& record;
+  std::vector<CurveSource> geometry;
 
-  std::string element() const { return "road " + id; }
+  std::string element() const { return "road " + record.id; }
   /// Where the road is, for findings without a place of their own.
   std::optional<Eigen::Vector2d> place() const;
   std::optional<Eigen::Vector2d> place_at(double s_m) const;
+  /// Where a section ends: at the one listed after it.
+  double end_s_m(const LaneSection& section) const;
 };
 
 /// What a schema would complain of.
@@ -72,21 +42,24 @@ struct SchemaFault {
   std::string message;
 };
 
+/// A document, as the file lists it, with what rules look up in it.
 struct Source {
-  explicit Source(const XmlDocument& document);
+  Source(const XmlDocument& xml, const Document& document);
 
   const XmlDocument& xml;
+  const Document& document;
   std::vector<RoadSource> roads;
-  std::map<std::string_view, const RoadSource*> road_by_id;  ///< the first of each id
-  std::vector<pugi::xml_node> junctions;
-  std::map<std::string_view, pugi::xml_node> junction_by_id;
+  std::map<std::string_view, const RoadSource*> road_by_id;          ///< the first of each id
+  std::map<std::string_view, const JunctionRecord*> junction_by_id;  ///< the first of each id
   std::vector<SchemaFault> schema_faults;
 
   const RoadSource* find_road(std::string_view id) const;
+  /// Of an attribute, NaN if it is missing or broken.
   double number(pugi::xml_node node, const char* attribute) const;
-  std::vector<CubicSource> cubics(pugi::xml_node parent, const char* name, const char* s_attribute,
-                                  double s_add_m) const;
 };
+
+/// Records of a profile whose numbers are whole.
+std::vector<CubicElement> whole(const std::vector<CubicElement>& listed);
 
 struct SourceRule {
   validation::RuleInfo info;
@@ -111,10 +84,14 @@ std::span<const SourceRule> signal_rules();      ///< signals, controllers, obje
 /// All of the above.
 std::vector<SourceRule> source_rules();
 
-validation::ElementLines element_lines(const XmlDocument& xml);
+/// What all rules find in a document.
+std::vector<validation::Finding> check(const XmlDocument& xml, const Document& document,
+                                       const validation::ValidateOptions& options);
+
+validation::ElementLines element_lines(const XmlDocument& xml, const Document& document);
 
 /// "lane 12/0/-1": road, index of the section, lane.
-std::string lane_element(const RoadSource& road, const SectionSource& section, int lane);
+std::string lane_element(const RoadSource& road, const LaneSection& section, int lane);
 
 /// The finding's element, line and place in one go.
 validation::Finding& add_at(validation::Report& report, const Source& source,

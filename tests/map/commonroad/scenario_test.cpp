@@ -88,6 +88,29 @@ TEST(CommonRoadScenario, GoalsAreLanesOrShapesWithIntervals) {
   EXPECT_EQ(region.centre_m, Eigen::Vector2d(56.75, -30));
 }
 
+TEST(CommonRoadScenario, LightsAreCyclesOfTimeSteps) {
+  const Scenario scenario = parse(
+      R"(<trafficLight id="7"><cycle>
+      <cycleElement><duration>60</duration><color>red</color></cycleElement>
+      <cycleElement><duration> 2.5</duration><color> green </color></cycleElement>
+      <cycleElement><duration>soon</duration><color>yellow</color></cycleElement>
+      <timeOffset>20</timeOffset></cycle><active>false</active></trafficLight>
+      <trafficLight id="8"/>)");
+  ASSERT_EQ(scenario.lights.size(), 2u);
+  const TrafficLight& light = scenario.lights[0];
+  EXPECT_EQ(light.id, "7");
+  EXPECT_EQ(light.offset_steps, 20.0);
+  EXPECT_FALSE(light.is_active);
+  ASSERT_EQ(light.cycle.size(), 3u);
+  EXPECT_EQ(light.cycle[0].colour, "red");
+  EXPECT_EQ(light.cycle[0].duration_steps, 60.0);
+  EXPECT_EQ(light.cycle[1].colour, "green");
+  EXPECT_EQ(light.cycle[1].duration_steps, 2.5);
+  EXPECT_EQ(light.cycle[2].duration_steps, 0.0);
+  EXPECT_TRUE(scenario.lights[1].is_active);
+  EXPECT_TRUE(scenario.lights[1].cycle.empty());
+}
+
 TEST(CommonRoadScenario, TheOldFormatNamesTheRoleInAnElement) {
   const Scenario scenario =
       parse("<obstacle id=\"3\"><role>static</role><type>unknown</type>" + kBox + kStart +
@@ -133,11 +156,6 @@ TEST(CommonRoadScenario, UnusableObstaclesAreRefusedWithTheirPlace) {
 TEST(CommonRoadScenario, ATimeStepOfNothingIsRefused) {
   EXPECT_THROW(parse_scenario("<commonRoad timeStepSize=\"0\"/>", "made.xml"), InputError);
   EXPECT_THROW(parse_scenario("<OpenDRIVE/>", "made.xml"), InputError);
-}
-
-TEST(CommonRoadScenario, OnlyCommonRoadFilesAreTakenForScenarios) {
-  EXPECT_TRUE(holds_scenario("<?xml version='1.0'?>\n<!-- made --> <commonRoad a='1'/>"));
-  EXPECT_FALSE(holds_scenario("<OpenDRIVE/>"));
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ class Pieces : public ByteSink {
 TEST(CompiledMap, IsWrittenInPiecesOfAChunkThatMakeTheSameBytes) {
   const RoadMap made = long_lanes();
   Pieces pieces;
-  write_compiled_map(made, "an appendix", pieces);
-  EXPECT_EQ(pieces.bytes, write_compiled_map(made, "an appendix"));
+  write_compiled_map(made, "a routing section", pieces);
+  EXPECT_EQ(pieces.bytes, write_compiled_map(made, "a routing section"));
   EXPECT_GT(pieces.bytes.size(), 10 * ChunkedFile::kChunkSize);
   EXPECT_EQ(pieces.longest, ChunkedFile::kChunkSize);
 }

@@ -70,7 +70,7 @@ TEST(LoadedChunks, ThatWereLetGoComeBackTheSame) {
   const FlatArray<char> lanes(file, "lanes");
   const std::string before(lanes.bytes());
   EXPECT_GT(file->chunks_in_memory(), 1U);
-  file->let_go();
+  file->evict_all();
   EXPECT_EQ(file->chunks_in_memory(), 0U);
   EXPECT_EQ(lanes.bytes(), before);
 }

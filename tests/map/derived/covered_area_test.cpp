@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "roadbed/geometry/polygons/weld.h"
+#include "roadbed/geometry/polygons/polygon.h"
 
 namespace roadbed::map {
 namespace {

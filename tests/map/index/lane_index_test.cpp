@@ -220,19 +220,5 @@ TEST(LaneIndex, LooksOnlyAtTheTypesAskedFor) {
   EXPECT_NEAR(found[0].distance_m, 1.75, 1e-9);
 }
 
-TEST(HilbertCurve, GoesFromEachPlaceToOneBesideIt) {
-  constexpr std::uint32_t side = 64;
-  std::vector<Eigen::Vector2i> at(side * side, {-1, -1});
-  const std::uint32_t first = lane_index::hilbert_place(0, 0);
-  for (std::uint32_t x = 0; x < side; ++x) {
-    for (std::uint32_t y = 0; y < side; ++y) {
-      const std::uint32_t place = lane_index::hilbert_place(x, y) - first;
-      ASSERT_LT(place, at.size());
-      at[place] = {static_cast<int>(x), static_cast<int>(y)};
-    }
-  }
-  for (std::size_t i = 1; i < at.size(); ++i) EXPECT_EQ((at[i] - at[i - 1]).cwiseAbs().sum(), 1);
-}
-
 }  // namespace
 }  // namespace roadbed::map

@@ -32,7 +32,7 @@ std::vector<std::int64_t> names(const RoadMap& road_map, const std::vector<LaneI
 
 bool has_remark(const RoadMap& road_map, const std::string& rule) {
   return std::any_of(road_map.remarks().begin(), road_map.remarks().end(),
-                     [&](const ImportRemark& remark) { return remark.rule == rule; });
+                     [&](const ImportDiagnostic& remark) { return remark.rule == rule; });
 }
 
 // Three lanes beside each other eastwards from x = 0 to 10, y = 0…3, 3…6, 6…9, and one behind the

@@ -141,7 +141,7 @@ TEST(OpenDrive, ALinkToAMissingRoadIsRemarkedNotRefused) {
   const RoadMap road_map = parse(straight_road(
       "A", 0, R"(<successor elementType="road" elementId="99" contactPoint="start"/>)"));
   const auto fault = std::find_if(road_map.remarks().begin(), road_map.remarks().end(),
-                                  [](const ImportRemark& r) { return r.is_fault; });
+                                  [](const ImportDiagnostic& r) { return r.is_fault; });
   ASSERT_NE(fault, road_map.remarks().end());
   EXPECT_THAT(fault->message, HasSubstr("road 99"));
   EXPECT_EQ(fault->element, "road A");
@@ -229,7 +229,7 @@ TEST(OpenDrive, PrefixesOfTheNamespaceChangeNothing) {
 
 std::vector<std::string> remarked(const RoadMap& road_map) {
   std::vector<std::string> rules;
-  for (const ImportRemark& remark : road_map.remarks()) {
+  for (const ImportDiagnostic& remark : road_map.remarks()) {
     if (remark.is_fault) rules.push_back(remark.rule);
   }
   return rules;

@@ -301,10 +301,10 @@ TEST(Audit, NeverCallsADriveThroughUnknownSpaceClearUnlessToldSo) {
   EXPECT_EQ(verdict(outside, UnknownPolicy::report), Verdict::unknown);
   EXPECT_EQ(verdict(outside, UnknownPolicy::occupied), Verdict::conflict);
 
-  EXPECT_EQ(audit_clearance(field, known, shape).unknown_share, 0.0);
-  EXPECT_NEAR(audit_clearance(field, outside, shape).unknown_share, 1.0, 1e-9);
+  EXPECT_EQ(audit_clearance(field, known, shape).unknown_fraction, 0.0);
+  EXPECT_NEAR(audit_clearance(field, outside, shape).unknown_fraction, 1.0, 1e-9);
   const AuditReport report = audit_clearance(field, over_patch, shape);
-  EXPECT_GT(report.unknown_share, 0.1);
+  EXPECT_GT(report.unknown_fraction, 0.1);
   EXPECT_FALSE(report.unknown.empty());
   // A wall of hits ends the street at 20 m; margins that are not measured count too.
   EXPECT_EQ(audit_clearance(field, known, shape, {.clearance_m = 1.25}).verdict, Verdict::unknown);

@@ -61,7 +61,7 @@ TEST(BodyProbe, SweptBoundIsNeverOverADistanceOnTheWay) {
       {"lamp", 2.5, 2.5, -0.3, -0.3, 0.4, 0.2, 1.5},
   };
   std::mt19937 random(29);
-  std::uniform_real_distribution<double> place(-9.0, 9.0), share(0.0, 1.0);
+  std::uniform_real_distribution<double> place(-9.0, 9.0), fraction(0.0, 1.0);
   int told = 0, near = 0;
   for (int round = 0; round < 400; ++round) {
     std::vector<Eigen::Vector2d> places;
@@ -75,7 +75,7 @@ TEST(BodyProbe, SweptBoundIsNeverOverADistanceOnTheWay) {
       const BodyProbe probe(field, drive, part, {ObstacleKind::occupied});
       const std::size_t segments = 1 + random() % 7, segment = random() % (8 - segments);
       Span span{segment, 0.0, 1.0, segments};
-      if (segments == 1) span.from = 0.9 * share(random), span.to = span.from + 0.1;
+      if (segments == 1) span.from = 0.9 * fraction(random), span.to = span.from + 0.1;
       constexpr double within_m = 4.0;
       const double bound_m = probe.swept_bound_m(span, within_m);
       const double least_m = least_within_m(posts, part, drive, span);

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/tests/support/random_drive.h"
 
@@ -153,10 +155,10 @@ TEST(AuditCertificate, IsRefutedByAnObstacleThatTheAuditDidNotSee) {
   while (refuted < 10) {
     const Audited made = audited(random, 3, {.unknown = UnknownPolicy::free});
     if (made.report.verdict != Verdict::clear) continue;
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     const double span_s = made.drive.end_s() - made.drive.start_s();
     const geometry::Pose2 pose =
-        made.drive.at(made.drive.start_s() + share(random) * span_s).pose();
+        made.drive.at(made.drive.start_s() + fraction(random) * span_s).pose();
     const Eigen::Vector2d beside = pose * Eigen::Vector2d(3.0, 0.84);
     auto cells = made.occupancy.cells();
     cells.push_back({{beside.x(), beside.y(), 1.0}, kSide_m, map::CellState::occupied});

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/tests/support/brute_force_distance.h"
@@ -40,7 +41,7 @@ double middle_of_column(int column) { return (column + 0.5) * kGrid_m - kEdge_m;
 /// Ground that rays from above reach nearly everywhere, and posts. Some columns no ray goes
 /// through, some only in part.
 OccupancyMap world_with_gaps(std::mt19937& random) {
-  std::uniform_real_distribution<double> height(0.0, 3.0), share(0.0, 1.0);
+  std::uniform_real_distribution<double> height(0.0, 3.0), fraction(0.0, 1.0);
   map::PointCloud cloud;
   const auto shoot = [&](double x, double y, double from_z, double to_z, bool has_ray) {
     std::optional<Eigen::Vector3d> sensor;
@@ -50,9 +51,9 @@ OccupancyMap world_with_gaps(std::mt19937& random) {
   };
   for (int i = 0; i < kColumns * kColumns; ++i) {
     const double x = middle_of_column(i % kColumns), y = middle_of_column(i / kColumns);
-    const double what = share(random);
+    const double what = fraction(random);
     if (what > 0.02) shoot(x, y, what < 0.03 ? height(random) : 4.5, -1.5, true);
-    if (share(random) < 0.01) shoot(x, y, 0.0, height(random), false);
+    if (fraction(random) < 0.01) shoot(x, y, 0.0, height(random), false);
   }
   return OccupancyMap::build(std::vector{cloud}, {.resolution_m = kGrid_m});
 }

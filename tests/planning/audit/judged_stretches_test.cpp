@@ -42,8 +42,8 @@ TEST(JudgedStretches, CoverTheDriveWithoutGapAndSayTheGravestVerdictOfEachTime) 
         EXPECT_EQ(judged[i].from_s, judged[i - 1].to_s);
         EXPECT_NE(judged[i].verdict, judged[i - 1].verdict);
       }
-      for (const double share : {0.01, 0.3, 0.5, 0.99}) {
-        const double t_s = judged[i].from_s + share * (judged[i].to_s - judged[i].from_s);
+      for (const double fraction : {0.01, 0.3, 0.5, 0.99}) {
+        const double t_s = judged[i].from_s + fraction * (judged[i].to_s - judged[i].from_s);
         EXPECT_EQ(judged[i].verdict, verdict_at(report, t_s)) << t_s;
       }
     }

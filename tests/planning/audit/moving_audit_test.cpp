@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
@@ -45,23 +46,21 @@ Trajectory any_motion(std::mt19937& random, double spread_m, std::size_t rows, d
 }
 
 /// A box that comes at any time, before the drive too, and may go before its end.
-MovingObstacle any_mover(std::mt19937& random, int number) {
+ObstacleInSource any_mover(std::mt19937& random, int number) {
   std::uniform_real_distribution<double> start(-1.0, 1.5), size(0.3, 5.0);
-  MovingObstacle obstacle{
-      .obstacle = {.id = std::to_string(number),
-                   .length_m = size(random),
-                   .width_m = 0.5 * size(random),
-                   .motion = any_motion(random, 14.0, 1 + random() % 4, start(random))}};
-  if (!obstacle.obstacle.is_static()) {
-    obstacle.from_s = obstacle.obstacle.motion.start_s();
-    obstacle.to_s = obstacle.obstacle.motion.end_s();
+  ObstacleInSource obstacle{.id = std::to_string(number),
+                            .length_m = size(random),
+                            .width_m = 0.5 * size(random),
+                            .motion = any_motion(random, 14.0, 1 + random() % 4, start(random))};
+  if (!obstacle.is_static()) {
+    obstacle.validity = {obstacle.motion.start_s(), obstacle.motion.end_s()};
   }
   return obstacle;
 }
 
 struct Traffic {
   Trajectory drive;
-  std::vector<MovingObstacle> moving;
+  std::vector<ObstacleInSource> moving;
 };
 
 Traffic random_traffic(std::mt19937& random) {
@@ -81,9 +80,8 @@ double distance_at(const Traffic& traffic, const VehicleShape& shape, double t_s
   const auto c = shape.corners_in_vehicle();
   const Quad body{pose * c[0], pose * c[1], pose * c[2], pose * c[3]};
   double least_m = std::numeric_limits<double>::infinity();
-  for (const MovingObstacle& moving : traffic.moving) {
-    if (t_s < moving.from_s || t_s > moving.to_s) continue;
-    const Obstacle& box = moving.obstacle;
+  for (const ObstacleInSource& box : traffic.moving) {
+    if (!box.is_there(t_s)) continue;
     const Quad quad = quad_at(box.motion.at(t_s).pose(), box.length_m, box.width_m);
     least_m = std::min(least_m, tests::quad_distance(body, quad));
   }
@@ -95,8 +93,8 @@ std::vector<double> dense_times(const Traffic& traffic) {
   const double from_s = traffic.drive.start_s(), to_s = traffic.drive.end_s();
   std::vector<double> times{from_s, to_s};
   for (double t_s = from_s; t_s < to_s; t_s += 0.0008) times.push_back(t_s);
-  for (const MovingObstacle& moving : traffic.moving) {
-    for (const double t_s : {moving.from_s, moving.to_s}) {
+  for (const ObstacleInSource& moving : traffic.moving) {
+    for (const double t_s : {moving.validity.from_s, moving.validity.to_s}) {
       if (from_s < t_s && t_s < to_s) times.push_back(t_s);
     }
   }
@@ -156,9 +154,8 @@ TEST(MovingAudit, EveryConflictNamesItsObstacleAndItsClearanceThen) {
         audit_clearance(field, traffic.drive, shape,
                         {.clearance_m = 0.4, .unknown = UnknownPolicy::free}, traffic.moving);
     for (const Conflict& conflict : report.conflicts) {
-      const auto named = std::ranges::find_if(traffic.moving, [&](const MovingObstacle& moving) {
-        return moving.obstacle.id == conflict.obstacle;
-      });
+      const auto named =
+          std::ranges::find(traffic.moving, conflict.obstacle, &ObstacleInSource::id);
       ASSERT_NE(named, traffic.moving.end());
       const Traffic alone{traffic.drive, {*named}};
       EXPECT_NEAR(distance_at(alone, shape, conflict.at.t_s), conflict.least_clearance_m, 1e-6);
@@ -175,13 +172,13 @@ TEST(MovingAudit, MeetsAtTheMomentWhenBothAreThereNotBeforeNorAfter) {
   const map::ClearanceField field(post, kBodyBand);
   const Trajectory drive({{.t_s = 0, .x_m = 0}, {.t_s = 4, .x_m = 40}});
   const auto crossing = [](double t_s) {
-    return MovingObstacle{
-        {.id = "crossing",
-         .length_m = 4.0,
-         .width_m = 2.0,
-         .motion = Trajectory(
-             {{.t_s = 0, .x_m = 20, .y_m = -10 * t_s, .heading_rad = M_PI / 2},
-              {.t_s = 10, .x_m = 20, .y_m = -10 * t_s + 100, .heading_rad = M_PI / 2}})}};
+    return ObstacleInSource{
+        .id = "crossing",
+        .length_m = 4.0,
+        .width_m = 2.0,
+        .motion =
+            Trajectory({{.t_s = 0, .x_m = 20, .y_m = -10 * t_s, .heading_rad = M_PI / 2},
+                        {.t_s = 10, .x_m = 20, .y_m = -10 * t_s + 100, .heading_rad = M_PI / 2}})};
   };
   const auto audited = [&](double t_s) {
     return audit_clearance(field, drive, VehicleShape{}, {.unknown = UnknownPolicy::free},
@@ -195,7 +192,7 @@ TEST(MovingAudit, MeetsAtTheMomentWhenBothAreThereNotBeforeNorAfter) {
 
 TEST(MovingAudit, TheCertificateHoldsAndIsRefutedByAnObstacleThatWasNotSeen) {
   std::mt19937 random(11);
-  std::uniform_real_distribution<double> margin(0.0, 0.5), share(0.0, 1.0);
+  std::uniform_real_distribution<double> margin(0.0, 0.5), fraction(0.0, 1.0);
   const map::OccupancyMap post = far_post();
   const auto cells = post.cells();
   const map::ClearanceField field(post, kBodyBand);
@@ -210,7 +207,8 @@ TEST(MovingAudit, TheCertificateHoldsAndIsRefutedByAnObstacleThatWasNotSeen) {
         audit_clearance(field, traffic.drive, shape, options, traffic.moving);
     const AuditCertificate certificate =
         certify(field, kBodyBand, traffic.drive, shape, options, report, traffic.moving);
-    const auto faults = [&](const AuditCertificate& of, const std::vector<MovingObstacle>& moving) {
+    const auto faults = [&](const AuditCertificate& of,
+                            const std::vector<ObstacleInSource>& moving) {
       return check_certificate(of, cells, 0.1, traffic.drive, moving);
     };
     EXPECT_EQ(certificate.verdict, report.verdict) << round;
@@ -224,12 +222,12 @@ TEST(MovingAudit, TheCertificateHoldsAndIsRefutedByAnObstacleThatWasNotSeen) {
       EXPECT_THAT(faults(cut, traffic.moving), Contains(HasSubstr("nothing is said of")));
     }
     const double span_s = traffic.drive.end_s() - traffic.drive.start_s();
-    const Pose2 pose = traffic.drive.at(traffic.drive.start_s() + share(random) * span_s).pose();
+    const Pose2 pose = traffic.drive.at(traffic.drive.start_s() + fraction(random) * span_s).pose();
     traffic.moving.push_back(
-        {{.id = "unseen",
-          .length_m = 0.5,
-          .width_m = 0.5,
-          .motion = Trajectory({{.t_s = 0.0, .x_m = pose.x_m, .y_m = pose.y_m}})}});
+        {.id = "unseen",
+         .length_m = 0.5,
+         .width_m = 0.5,
+         .motion = Trajectory({{.t_s = 0.0, .x_m = pose.x_m, .y_m = pose.y_m}})});
     EXPECT_THAT(faults(certificate, traffic.moving), Contains(HasSubstr("an obstacle is nearer")));
     ++refuted;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
@@ -204,8 +205,8 @@ TEST(ObservedAudit, ACertificateIsRefutedIfItHidesWhatIsUnknown) {
 
 TEST(ObservedAudit, ACertificateIsRefutedIfItsMeasuredShareIsAnother) {
   Certified forged = certified(row_of_posts(), straight(0.0, 40.0));
-  const double share = forged.certificate.measured_share;
-  forged.certificate.measured_share = share + 0.01;
+  const double fraction = forged.certificate.measured_fraction;
+  forged.certificate.measured_fraction = fraction + 0.01;
   EXPECT_THAT(forged.faults(), Contains(HasSubstr("measured_share")));
 }
 
@@ -219,7 +220,7 @@ TEST(ObservedAudit, AsksForAShareOfTheBodysOwnSpaceWhereToldTo) {
   AuditOptions options = free_space();
   const Trajectory drive = straight(0.0, 40.0);
   const AuditReport report = audit_among(occupancy, drive, options).whole;
-  EXPECT_NEAR(report.unknown_share, 0.5, 1e-3);
+  EXPECT_NEAR(report.unknown_fraction, 0.5, 1e-3);
   const Trajectory beside({{.t_s = 0.0, .y_m = -2.0}, {.t_s = 10.0, .x_m = 40.0, .y_m = -2.0}});
   EXPECT_EQ(audit_among(occupancy, beside, options).whole.verdict, Verdict::clear);
   options.least_measured = 0.01;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"

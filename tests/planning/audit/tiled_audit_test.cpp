@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
@@ -81,7 +82,7 @@ void expect_equal(const AuditReport& a, const AuditReport& b) {
   if (a.witness) {
     EXPECT_EQ(a.witness->min_in_source, b.witness->min_in_source);
   }
-  EXPECT_EQ(a.unknown_share, b.unknown_share);
+  EXPECT_EQ(a.unknown_fraction, b.unknown_fraction);
   expect_equal(a.conflicts, b.conflicts);
   expect_equal(a.unknown, b.unknown);
   expect_equal(a.undecided, b.undecided);

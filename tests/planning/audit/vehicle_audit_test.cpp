@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/random_drive.h"
@@ -188,9 +189,8 @@ TEST(VehicleAudit, EachPartKeepsItsDistanceFromWhatMoves) {
   const auto along = [](double y_m, double from_m, double to_m) {
     return Trajectory({{.t_s = 0, .x_m = from_m, .y_m = y_m}, {.t_s = 4, .x_m = to_m, .y_m = y_m}});
   };
-  const std::vector<MovingObstacle> moving{
-      {.obstacle = {
-           .id = "bicycle", .length_m = 1.8, .width_m = 0.6, .motion = along(1.4, 30.0, 40.0)}}};
+  const std::vector<ObstacleInSource> moving{
+      {.id = "bicycle", .length_m = 1.8, .width_m = 0.6, .motion = along(1.4, 30.0, 40.0)}};
   const AuditOptions options{.unknown = UnknownPolicy::free};
   const Trajectory drive = along(0.0, 0.0, 60.0);
   const VehicleSurroundings around(far_away, {}, parts, audited_region(drive, parts, options));
@@ -209,7 +209,7 @@ class CountedOccupancy : public map::OccupancySource {
   double resolution_m() const override { return occupancy_.resolution_m(); }
   const Eigen::Vector3d& origin_in_source() const override { return occupancy_.origin_in_source(); }
   const std::string& crs() const override { return occupancy_.crs(); }
-  std::optional<map::SeenThrough> seen_through() const override { return std::nullopt; }
+  std::optional<map::SeeThroughRemoval> seen_through() const override { return std::nullopt; }
   std::optional<map::Box3> bounds() const override { return occupancy_.bounds(); }
   std::vector<map::OccupancyCell> cells() const override { return occupancy_.cells(); }
   std::vector<map::OccupancyCell> cells_in(const map::Box3& box) const override {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/closed_loop.h"

@@ -81,7 +81,7 @@ class PlainSearch {
   }
 
   double wanted(const PlainState& s) const {
-    return std::min(q_.most_wanted_mps, q_.way.wanted_mps[q_.way.before(s.ahead)]);
+    return std::min(q_.most_wanted_mps, q_.profile.wanted_mps[q_.profile.before(s.ahead)]);
   }
 
   std::optional<PlainState> drive(const PlainState& from, double command, int layer) const {
@@ -123,7 +123,7 @@ class PlainSearch {
 
   double step_cost(const PlainState& from, const PlainState& to, int substep) const {
     const double want = wanted(to), missing = (want - to.speed) / std::max(5.0, want);
-    const double bend = std::max(0.0, to.speed - q_.way.most_mps[q_.way.before(to.ahead)]);
+    const double bend = std::max(0.0, to.speed - q_.profile.most_mps[q_.profile.before(to.ahead)]);
     const double keep_ahead = 1.5 + 0.8 * to.speed, keep_behind = 1.0 + 0.1 * to.speed;
     double ahead = keep_ahead, behind = keep_behind;
     for (const planning::StInterval& part : q_.occupancy.at(substep)) {
@@ -216,7 +216,7 @@ struct SearchCosts {
 
 SearchCosts search_costs_of(const SearchScene& scene) {
   const planning::StGraph occupancy(scene.way, true_traffic(scene.world), 0.0, 100, 0.3);
-  const planning::SpeedSearchQuestion question{.way = scene.way,
+  const planning::SpeedSearchQuestion question{.profile = scene.way,
                                                .occupancy = occupancy,
                                                .speed_mps = scene.speed_mps,
                                                .acceleration_mps2 = scene.acceleration_mps2,

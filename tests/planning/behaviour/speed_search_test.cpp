@@ -53,7 +53,7 @@ planning::SpeedSearchAnswer answer(const Case& asked) {
   const World world = world_with(asked.obstacles);
   const planning::PathProfile way = straight_way();
   const planning::StGraph occupancy(way, true_traffic(world), 0.0, 120, 0.3);
-  return search_speed({.way = way,
+  return search_speed({.profile = way,
                        .occupancy = occupancy,
                        .speed_mps = asked.speed_mps,
                        .horizon_s = asked.horizon_s,

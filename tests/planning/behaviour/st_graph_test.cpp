@@ -35,16 +35,12 @@ planning::PathProfile winding_way(std::mt19937& random) {
   return way;
 }
 
-struct OthersOnWay {
-  std::vector<planning::Obstacle> obstacles;
-  std::vector<planning::TimeSpan> presence;
-};
-
 /// Some that drive straight across or along, some that stand, some there for a while only.
-OthersOnWay others_around(const planning::PathProfile& way, std::mt19937& random) {
+std::vector<planning::Obstacle> others_around(const planning::PathProfile& way,
+                                              std::mt19937& random) {
   std::uniform_real_distribution<double> place(-8.0, 8.0), turn(-3.2, 3.2), speed(0.0, 12.0);
   std::uniform_int_distribution<std::size_t> sample(0, way.body.size() - 1);
-  OthersOnWay others;
+  std::vector<planning::Obstacle> others;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector2d from =
         way.body[sample(random)].centre + Eigen::Vector2d(place(random), place(random));
@@ -52,8 +48,8 @@ OthersOnWay others_around(const planning::PathProfile& way, std::mt19937& random
     const geometry::Pose2 start{from.x(), from.y(), heading};
     planning::Obstacle other{.id = "other", .motion = {}};
     other.motion = drive_through({{0.0, start}, {3.0, start * geometry::Pose2{3.0 * mps, 0, 0}}});
-    others.obstacles.push_back(other);
-    others.presence.push_back({i % 4 == 0 ? 0.5 : -1.0, i % 4 == 1 ? 1.5 : 1e9});
+    other.validity = {i % 4 == 0 ? 0.5 : -1.0, i % 4 == 1 ? 1.5 : 1e9};
+    others.push_back(other);
   }
   return others;
 }
@@ -64,15 +60,14 @@ TEST(StGraph, PartsAreThoseOfEverySampleAndEveryTimeLookedAt) {
   int touched = 0;
   for (int scene = 0; scene < 40; ++scene) {
     const planning::PathProfile way = winding_way(random);
-    const OthersOnWay others = others_around(way, random);
-    const planning::Traffic traffic{others.obstacles, others.presence};
-    const planning::StGraph occupancy(way, traffic, start_s, 20, margin);
+    const std::vector<planning::Obstacle> others = others_around(way, random);
+    const planning::StGraph occupancy(way, {others}, start_s, 20, margin);
     for (int step = 0; step <= 20; ++step) {
       const double t_s = start_s + 0.1 * step;
       std::vector<planning::StInterval> expected;
-      for (std::size_t o = 0; o < others.obstacles.size(); ++o) {
-        if (!traffic.is_there(o, t_s)) continue;
-        const geometry::Rectangle other = rectangle_at(others.obstacles[o], t_s);
+      for (std::size_t o = 0; o < others.size(); ++o) {
+        if (!others[o].is_there(t_s)) continue;
+        const geometry::Rectangle other = rectangle_at(others[o], t_s);
         std::size_t first = way.body.size(), last = 0;
         for (std::size_t i = 0; i < way.body.size(); ++i) {
           if (geometry::distance_m(way.body[i], other) > margin) continue;
@@ -101,8 +96,8 @@ TEST(StGraph, GapsAndWhatIsBlockedAreThoseOfAllParts) {
   std::uniform_real_distribution<double> anywhere(0.0, 110.0);
   for (int scene = 0; scene < 40; ++scene) {
     const planning::PathProfile way = winding_way(random);
-    const OthersOnWay others = others_around(way, random);
-    const planning::StGraph occupancy(way, {others.obstacles, others.presence}, 0.0, 20, 0.3);
+    const std::vector<planning::Obstacle> others = others_around(way, random);
+    const planning::StGraph occupancy(way, {others}, 0.0, 20, 0.3);
     for (int i = 0; i < 400; ++i) {
       const int step = i % 24;  // beyond the last one it is the last one
       const std::vector<planning::StInterval>& parts = occupancy.at(step);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/mirrored_map.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/cli/place.h"

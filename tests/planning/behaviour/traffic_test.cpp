@@ -28,10 +28,10 @@ planning::Obstacle circling(double later_turn_rate) {
 }
 
 planning::Obstacle foreseen(const planning::Obstacle& truth,
-                            const planning::TimeSpan& presence = {0, 6}) {
-  const std::vector<planning::Obstacle> obstacles{truth};
-  const std::vector<planning::TimeSpan> presences{presence};
-  return planning::PredictedTraffic({obstacles, presences}, kSeen_s).obstacles().at(0);
+                            const planning::TimeSpan& validity = {0, 6}) {
+  std::vector<planning::Obstacle> obstacles{truth};
+  obstacles.front().validity = validity;
+  return planning::PredictedTraffic({obstacles}, kSeen_s).obstacles().at(0);
 }
 
 TEST(PredictedTraffic, DoesNotDependOnTheFuture) {
@@ -56,12 +56,14 @@ TEST(PredictedTraffic, KeepsTheTurnThatWasSeenForTwoSeconds) {
 }
 
 TEST(PredictedTraffic, KnowsOnlyOfWhatIsThereAndKeepsItThere) {
-  const std::vector<planning::Obstacle> obstacles{circling(0.3), circling(0.3), circling(0.3)};
-  const std::vector<planning::TimeSpan> presence{{0.0, 3.2}, {3.5, 6.0}, {0.0, 2.0}};
-  const planning::PredictedTraffic foreseen({obstacles, presence}, kSeen_s);
-  EXPECT_TRUE(foreseen.traffic().is_there(0, 5.0));  // that it leaves is not known
-  EXPECT_FALSE(foreseen.traffic().is_there(1, 5.0));
-  EXPECT_FALSE(foreseen.traffic().is_there(2, 5.0));
+  std::vector<planning::Obstacle> obstacles{circling(0.3), circling(0.3), circling(0.3)};
+  obstacles[0].validity = {0.0, 3.2};
+  obstacles[1].validity = {3.5, 6.0};
+  obstacles[2].validity = {0.0, 2.0};
+  const planning::PredictedTraffic foreseen({obstacles}, kSeen_s);
+  EXPECT_TRUE(foreseen.obstacles()[0].is_there(5.0));  // that it leaves is not known
+  EXPECT_FALSE(foreseen.obstacles()[1].is_there(5.0));
+  EXPECT_FALSE(foreseen.obstacles()[2].is_there(5.0));
 }
 
 TEST(PredictedTraffic, WhatJustAppearedKeepsTheSpeedThatItIsSaidToHave) {

@@ -103,8 +103,8 @@ double least_slack_m(const std::vector<TrajectoryPoint>& drive,
       const double demanded_m = 0.15 + 0.15 * std::min(1.0, (driven_m + leg_m * k / 200.0) / 10.0);
       for (const Obstacle& obstacle : obstacles) {
         if (!obstacle.is_static() && at.t_s > 5.0) continue;
-        slack_m =
-            std::min(slack_m, geometry::distance_m(body, body_of(obstacle, at.t_s)) - demanded_m);
+        slack_m = std::min(slack_m,
+                           geometry::distance_m(body, rectangle_at(obstacle, at.t_s)) - demanded_m);
       }
     }
     driven_m += leg_m;
@@ -206,7 +206,7 @@ TEST(StaticObstacles, BoundIsBelowTheDistanceAndNear) {
     const Eigen::Vector2d point(60.0 * unit(random), 60.0 * unit(random));
     double exact_m = 1e300;
     for (const Obstacle& obstacle : obstacles) {
-      exact_m = std::min(exact_m, geometry::distance_m(body_of(obstacle, 0.0), point));
+      exact_m = std::min(exact_m, geometry::distance_m(rectangle_at(obstacle, 0.0), point));
     }
     EXPECT_LE(standing.distance_bound_m(point), exact_m + 1e-12);
     EXPECT_GE(standing.distance_bound_m(point), exact_m - 2.0 * StaticObstacles::kLargestGap_m);

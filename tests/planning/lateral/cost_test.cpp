@@ -92,14 +92,14 @@ Sampled sample() {
       .curvature = {1.0 / static_cast<double>(Curve::kRadius), 0, 0, 0, 0}};
   const LineView view = circle.view();
   const std::function<double(double)> previous = [](double s_m) { return 0.2 + 0.03 * s_m; };
-  const Course course{.line = view,
-                      .start = {.d_m = 0.4, .d_slope = 0.06, .d_curvature_per_m = 0.004},
-                      .speed = PlannedSpeed({9.0, 1.2, 11.0}),
-                      .previous_d_m = previous,
-                      .half_width_m = 0.8,
-                      .recovery_m = 10.0};
-  const geometry::Quintic quintic = QuinticFamily(course.start, Sampled::kLength_m).member(-1.3);
-  Sampled sampled{stations_over(course, Sampled::kLength_m, 13), quintic, {}, {}};
+  const CycleContext context{.line = view,
+                             .start = {.d_m = 0.4, .d_slope = 0.06, .d_curvature_per_m = 0.004},
+                             .speed = PlannedSpeed({9.0, 1.2, 11.0}),
+                             .previous_d_m = previous,
+                             .half_width_m = 0.8,
+                             .recovery_m = 10.0};
+  const geometry::Quintic quintic = QuinticFamily(context.start, Sampled::kLength_m).member(-1.3);
+  Sampled sampled{stations_over(context, Sampled::kLength_m, 13), quintic, {}, {}};
   sampled.points = cost_points(sampled.stations, quintic);
   for (std::size_t j = 0; j < 6; ++j) sampled.slow.curve.d[j] = quintic.coefficients()[j];
   return sampled;
@@ -203,16 +203,16 @@ TEST(Cost, KeepsItsMeaningWhenThereAreMorePoints) {
   const tests::AnalyticLine circle{.curvature = {0.02, 0, 0, 0, 0}};
   const LineView view = circle.view();
   const std::function<double(double)> none;
-  const Course course{.line = view,
-                      .start = {.d_m = 1.0},
-                      .speed = PlannedSpeed({10.0, 0.5, 12.0}),
-                      .previous_d_m = none,
-                      .half_width_m = 0.8,
-                      .recovery_m = 10.0};
-  const geometry::Quintic quintic = QuinticFamily(course.start, 20.0).member(-1.0);
+  const CycleContext context{.line = view,
+                             .start = {.d_m = 1.0},
+                             .speed = PlannedSpeed({10.0, 0.5, 12.0}),
+                             .previous_d_m = none,
+                             .half_width_m = 0.8,
+                             .recovery_m = 10.0};
+  const geometry::Quintic quintic = QuinticFamily(context.start, 20.0).member(-1.0);
   const CostFrame frame{20.0, 30.0, 10.0};
-  const CostTerms few = cost_terms(cost_points(stations_over(course, 20.0, 31), quintic), frame);
-  const CostTerms many = cost_terms(cost_points(stations_over(course, 20.0, 601), quintic), frame);
+  const CostTerms few = cost_terms(cost_points(stations_over(context, 20.0, 31), quintic), frame);
+  const CostTerms many = cost_terms(cost_points(stations_over(context, 20.0, 601), quintic), frame);
   for (std::size_t i = 0; i < few.size(); ++i) {
     EXPECT_NEAR(few[i], many[i], 0.02 * (many[i] + 0.01)) << name(static_cast<CostTerm>(i));
   }
@@ -222,14 +222,14 @@ TEST(Cost, OfALaneChangeIsOfOrderOneInEveryCurvatureTerm) {
   const tests::AnalyticLine straight;
   const LineView view = straight.view();
   const std::function<double(double)> none;
-  const Course course{.line = view,
-                      .start = {},
-                      .speed = PlannedSpeed({10.0, 0.0, 10.0}),
-                      .previous_d_m = none,
-                      .half_width_m = 0.8,
-                      .recovery_m = 10.0};
+  const CycleContext context{.line = view,
+                             .start = {},
+                             .speed = PlannedSpeed({10.0, 0.0, 10.0}),
+                             .previous_d_m = none,
+                             .half_width_m = 0.8,
+                             .recovery_m = 10.0};
   const auto points =
-      cost_points(stations_over(course, 20.0, 31), QuinticFamily(course.start, 20.0).member(3.5));
+      cost_points(stations_over(context, 20.0, 31), QuinticFamily(context.start, 20.0).member(3.5));
   for (const double term : {curvature_term(points), curvature_rate_term(points),
                             curvature_second_term(points), curvature_third_term(points)}) {
     EXPECT_GT(term, 0.1);

@@ -16,7 +16,7 @@ LineView axis() {
 geometry::Trajectory passing(double speed_mps, double until_s) {
   const LineView line = axis();
   const LateralPath path = [](double s_m) { return LateralState{.s_m = s_m, .d_m = 1.0}; };
-  const PathCourse course{
+  const DrivenPath course{
       .line = line, .path = path, .vehicle = {}, .start_s_m = 10.0, .start_t_s = 100.0};
   return passing_drive(course, PlannedSpeed({.speed_mps = speed_mps, .target_mps = speed_mps}),
                        60.0, until_s);

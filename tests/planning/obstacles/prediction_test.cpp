@@ -147,7 +147,7 @@ TEST(CollisionChecker, SeesAPostThatFliesAcrossTheDriveBetweenTwoPoints) {
         .id = "post",
         .length_m = 0.05,
         .width_m = 0.05,
-        .prediction = Prediction::constant_velocity(
+        .motion = Prediction::constant_velocity(
             {.t_s = at_s, .pose = {60.0, 0.0, 0.5 * std::numbers::pi}, .speed_mps = 30.0})};
   };
   EXPECT_FALSE(is_free(drive, {crossing(1.5)}));
@@ -159,7 +159,7 @@ TEST(CollisionChecker, LooksForEverAtWhatIsPredictedToStand) {
   const auto drive = straight_drive(100.0, 1.0, 10.0);
   const auto at_the_end = [](double speed_mps) {
     return PredictedObstacle{.id = "car",
-                             .prediction = Prediction::constant_velocity(
+                             .motion = Prediction::constant_velocity(
                                  {.t_s = 9.0, .pose = {95.0, 0.0, 0.0}, .speed_mps = speed_mps})};
   };
   EXPECT_FALSE(is_free(drive, {at_the_end(0.0)}));
@@ -174,7 +174,7 @@ TEST(CollisionChecker, AgreesWithDenseSamplingOfTurningObstacles) {
     ObservedMotion seen = random_motion(random);
     seen.pose.x_m += 20.0;
     seen.pose.y_m *= 0.4;
-    const PredictedObstacle obstacle{.id = "turns", .prediction = Prediction::constant_turn(seen)};
+    const PredictedObstacle obstacle{.id = "turns", .motion = Prediction::constant_turn(seen)};
     double slack_m = 1e300;
     for (int k = 0; k <= 8000; ++k) {
       const double t_s = 4.0 * k / 8000.0, driven_m = 10.0 * t_s;

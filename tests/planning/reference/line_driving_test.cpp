@@ -8,6 +8,7 @@
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/analytic_line.h"
 #include "roadbed/tests/support/made_maps.h"
 

@@ -6,6 +6,7 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "roadbed/planning/route/route.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/route_path.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::planning {
@@ -51,7 +51,7 @@ TEST(ChangeSpan, HasOnlyTheRoomBetweenStartAndGoal) {
   EXPECT_NEAR(answer.route->cost_s, 18.0 / kLimit_mps + 5.0 * 40.0 / 18.0, 1e-9);
   const RouteAnswer none = find_route(road_map, {road.left[0], 5, 0}, {road.right[1], 6.5, 0});
   ASSERT_FALSE(none.route) << "3 m and 6.5 m are less than 10 m";
-  EXPECT_EQ(none.obstacle->barriers, std::vector{Barrier::length});
+  EXPECT_EQ(none.explanation->blocking_rules, std::vector{BlockingRule::length});
   EXPECT_TRUE(find_route(road_map, {road.left[0], 5, 0}, {road.right[1], 7.1, 0}).route);
 }
 
@@ -76,7 +76,7 @@ TEST(ChangeSpan, EndsWhereTheLanesPart) {
   const RouteAnswer answer =
       find_route(road.made.build(), {road.left[0], 0, 0}, {road.right[1], 6, 0});
   ASSERT_FALSE(answer.route);
-  EXPECT_EQ(answer.obstacle->barriers, std::vector{Barrier::length});
+  EXPECT_EQ(answer.explanation->blocking_rules, std::vector{BlockingRule::length});
 }
 
 // Sections of three lanes eastwards, one behind the other.

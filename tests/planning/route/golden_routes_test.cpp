@@ -5,7 +5,7 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::planning {

@@ -1,5 +1,6 @@
 // Searches of a graph, held to Boost.Graph's Dijkstra: not one cost may differ.
 
+#include "roadbed/planning/route/build_network.h"
 #include "roadbed/planning/route/hierarchy_search.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ void expect_whole(const RouteGraph& graph, std::span<const Ticks> weights, const
 struct Prepared {
   RouteNetwork network;
   RouteOptions options;
-  TravelRules rules;
+  RoutingCostModel rules;
   RouteGraph graph;
   std::vector<Ticks> weights;
   Guide guide;
@@ -194,7 +195,7 @@ TEST(GraphSearches, CostWhatDijkstraOfAnotherLibraryFindsOnRealMaps) {
 }
 
 TEST(Hierarchy, AClosureLeavesWhatCustomisingAfreshGives) {
-  // The second one has changes that take several passages.
+  // The second one has changes that take several lane groups.
   const tests::ShortSections road(std::vector<double>(30, 7.0));
   for (const bool in_grid : {true, false}) {
     Prepared prepared(in_grid ? tests::lane_grid(6, 6) : make_route_network(road.made.build()));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/two_way_oracle.h"
 
@@ -82,13 +82,13 @@ bool connected(const map::RoadMap& road_map, LaneId from, LaneId to, bool both_w
   return Flood(road_map, both_ways, all_lanes, all_markings).connects(from, to);
 }
 
-TEST(RouteObstacle, OnARealMapHoldsAgainstFloodingIt) {
+TEST(NoRouteExplanation, OnARealMapHoldsAgainstFloodingIt) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   const map::RoadMap road_map = map::load_map(
       folder / "lanelet2/fzi-forschungszentrum-informatik+Lanelet2/mapping_example.osm");
   Router router(road_map);
   std::mt19937 random(20261121);
-  std::map<Barrier, int> seen;
+  std::map<BlockingRule, int> seen;
   int none = 0;
   while (none < 100) {
     const auto any_lane = [&] {
@@ -97,30 +97,32 @@ TEST(RouteObstacle, OnARealMapHoldsAgainstFloodingIt) {
     const LaneId from = any_lane(), to = any_lane();
     const RouteAnswer answer =
         router.find({from, 0.0, 0.0}, {to, 0.5 * road_map.lane(to).length_m(), 0.0});
-    if (answer.route || !answer.obstacle) continue;
+    if (answer.route || !answer.explanation) continue;
     ++none;
     SCOPED_TRACE(answer.reason);
-    const RouteObstacle& obstacle = *answer.obstacle;
-    ASSERT_FALSE(obstacle.barriers.empty());
-    EXPECT_GE(obstacle.lanes_from_start, 1U);
-    EXPECT_GE(obstacle.lanes_to_goal, 1U);
-    EXPECT_TRUE(std::isfinite(obstacle.gap_m));
-    const auto holds = [&](Barrier barrier) {
-      return std::count(obstacle.barriers.begin(), obstacle.barriers.end(), barrier) > 0;
+    const NoRouteExplanation& explanation = *answer.explanation;
+    ASSERT_FALSE(explanation.blocking_rules.empty());
+    EXPECT_GE(explanation.lanes_from_start, 1U);
+    EXPECT_GE(explanation.lanes_to_goal, 1U);
+    EXPECT_TRUE(std::isfinite(explanation.gap_m));
+    const auto holds = [&](BlockingRule barrier) {
+      return std::count(explanation.blocking_rules.begin(), explanation.blocking_rules.end(),
+                        barrier) > 0;
     };
-    for (const Barrier barrier : obstacle.barriers) ++seen[barrier];
-    EXPECT_FALSE(holds(Barrier::closed)) << "nothing is closed";
-    EXPECT_EQ(connected(road_map, from, to, true, true, true), !holds(Barrier::map_gap));
-    if (holds(Barrier::map_gap)) {
-      EXPECT_EQ(obstacle.barriers.size(), 1U);
+    for (const BlockingRule barrier : explanation.blocking_rules) ++seen[barrier];
+    EXPECT_FALSE(holds(BlockingRule::closed)) << "nothing is closed";
+    EXPECT_EQ(connected(road_map, from, to, true, true, true), !holds(BlockingRule::map_gap));
+    if (holds(BlockingRule::map_gap)) {
+      EXPECT_EQ(explanation.blocking_rules.size(), 1U);
       continue;
     }
     // Lanes too short for a change can be reached all the same: no step out of them is missing.
-    EXPECT_TRUE(holds(Barrier::length) || (obstacle.blocked_from && obstacle.blocked_to));
+    EXPECT_TRUE(holds(BlockingRule::length) ||
+                (explanation.blocked_from && explanation.blocked_to));
     // With the named rules left out the map is connected. Rules are put back in this order, each
     // while those after it are still left out: so without it alone the map is not.
-    const bool one_way = holds(Barrier::one_way), users = holds(Barrier::participant),
-               marking = holds(Barrier::marking);
+    const bool one_way = holds(BlockingRule::one_way), users = holds(BlockingRule::participant),
+               marking = holds(BlockingRule::marking);
     EXPECT_TRUE(connected(road_map, from, to, one_way, users, marking));
     if (one_way) {
       EXPECT_FALSE(connected(road_map, from, to, false, true, true));

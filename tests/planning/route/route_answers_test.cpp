@@ -10,9 +10,10 @@
 #include "roadbed/planning/route/alternatives.h"
 #include "roadbed/planning/route/closures.h"
 #include "roadbed/planning/route/guidance.h"
-#include "roadbed/planning/route/reach.h"
+#include "roadbed/planning/route/isochrone.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/route_solver.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/mirrored_map.h"
 #include "roadbed/tests/support/real_data.h"
@@ -72,7 +73,7 @@ TEST(Alternatives, DifferAsTheyPromiseAndTheFirstIsTheCheapest) {
     EXPECT_EQ(found[i].route.legs.back().lane, to.lane);
     double most = 0.0;
     for (std::size_t j = 0; j < i; ++j) {
-      most = std::max(most, shared_length(found[i].route, found[j].route));
+      most = std::max(most, shared_length_ratio(found[i].route, found[j].route));
     }
     EXPECT_NEAR(found[i].shared, most, 1e-12);
     EXPECT_LE(most, 0.7);
@@ -84,7 +85,7 @@ TEST(Reach, HoldsWhatRoutesCost) {
   Router router(town());
   const LanePlace from = place("1/0/-1", 10.0);
   const double limit_s = 60.0;
-  const auto reached = reach(router, from, limit_s);
+  const auto reached = isochrone(router, from, limit_s);
   ASSERT_GT(reached.size(), 10U);
   int inside = 0, outside = 0;
   for (const map::Lane& lane : town().lanes()) {
@@ -107,7 +108,7 @@ TEST(Reach, EndsWhereTheDistanceIsUsedUp) {
   RouteOptions options;
   options.cost = RouteCost::distance;
   Router router(road_map, options);
-  const auto reached = reach(router, {LaneId{0}, 20.0, 0.0}, 70.0);
+  const auto reached = isochrone(router, {LaneId{0}, 20.0, 0.0}, 70.0);
   ASSERT_EQ(reached.size(), 2U);
   EXPECT_NEAR(reached[0].part.from_s_m, 20.0, 1e-9);
   EXPECT_NEAR(reached[0].part.to_s_m, 50.0, 1e-9);
@@ -116,7 +117,7 @@ TEST(Reach, EndsWhereTheDistanceIsUsedUp) {
   const auto area = area_of(road_map, {reached[0].part, reached[1].part});
   ASSERT_EQ(area.size(), 1U);
   EXPECT_NEAR(geometry::area_m2(area[0]), 70.0 * 4.0, 1e-6);
-  EXPECT_THROW(reach(router, {LaneId{0}, 20.0, 0.0}, 0.0), std::invalid_argument);
+  EXPECT_THROW(isochrone(router, {LaneId{0}, 20.0, 0.0}, 0.0), std::invalid_argument);
 }
 
 TEST(Corridor, CoversEveryPlaceOfTheRoute) {

@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/router.h"
 
 #include <gtest/gtest.h>
 
@@ -204,8 +204,8 @@ TEST(FindRoute, NeedsTheLengthOfALaneChange) {
   const RouteAnswer answer =
       find_route(road_map, {lanes.left, 90.1, 0.0}, {lanes.after_right, 50.0, 0.0});
   EXPECT_FALSE(answer.route);
-  ASSERT_TRUE(answer.obstacle);
-  EXPECT_EQ(answer.obstacle->barriers, std::vector{Barrier::length});
+  ASSERT_TRUE(answer.explanation);
+  EXPECT_EQ(answer.explanation->blocking_rules, std::vector{BlockingRule::length});
 }
 
 TEST(FindRoute, AGoalBehindTheStartOnTheSameLaneTakesALoopOrIsRefused) {

@@ -7,13 +7,14 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/route/build_network.h"
 #include "roadbed/planning/route/guidance.h"
+#include "roadbed/planning/route/isochrone.h"
 #include "roadbed/planning/route/match_place.h"
-#include "roadbed/planning/route/reach.h"
-#include "roadbed/planning/route/route.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/route_path.h"
 #include "roadbed/planning/route/route_solver.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/planning/route/stored_network.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/real_data.h"
@@ -63,8 +64,8 @@ TEST(TwoWayLanes, AreDrivenBackwardsWithFallingStations) {
 TEST(TwoWayLanes, ThatAreOneWayAreNot) {
   const RouteAnswer answer =
       find_route(tests::three_roads_in_a_row().build(), {LaneId{2}, 40.0}, {LaneId{0}, 10.0});
-  ASSERT_TRUE(answer.obstacle);
-  EXPECT_EQ(answer.obstacle->barriers, std::vector{Barrier::one_way});
+  ASSERT_TRUE(answer.explanation);
+  EXPECT_EQ(answer.explanation->blocking_rules, std::vector{BlockingRule::one_way});
 }
 
 TEST(TwoWayLanes, LeadBackToAPlaceBehindOnTheSameLane) {
@@ -124,7 +125,7 @@ TEST(TwoWayLanes, AreReachedInBothDirections) {
   Router router(road_map, options);
   std::vector<LanePart> parts;
   std::vector<bool> reversed;
-  for (const ReachedLane& lane : reach(router, {LaneId{1}, 20.0}, 60.0)) {
+  for (const ReachedLane& lane : isochrone(router, {LaneId{1}, 20.0}, 60.0)) {
     parts.push_back(lane.part);
     reversed.push_back(lane.reversed);
     EXPECT_EQ(lane.reversed, lane.part.to_s_m < lane.part.from_s_m);

@@ -22,23 +22,23 @@ TEST(ObstaclesCsv, GathersTheRowsOfEachIdInAnyOrderOfColumns) {
       "bus,3,2.6,11,0.7,4,3,red\r\n",
       "boxes.csv");
   ASSERT_EQ(obstacles.size(), 2u);
-  EXPECT_EQ(obstacles[0].obstacle.id, "bus");
-  EXPECT_EQ(obstacles[0].from_s, 1.0);
-  EXPECT_EQ(obstacles[0].to_s, 3.0);
-  EXPECT_EQ(obstacles[0].obstacle.length_m, 12.0);  // the largest of each
-  EXPECT_EQ(obstacles[0].obstacle.width_m, 2.6);
-  const auto middle = obstacles[0].obstacle.motion.at(2.0);
+  EXPECT_EQ(obstacles[0].id, "bus");
+  EXPECT_EQ(obstacles[0].validity.from_s, 1.0);
+  EXPECT_EQ(obstacles[0].validity.to_s, 3.0);
+  EXPECT_EQ(obstacles[0].length_m, 12.0);  // the largest of each
+  EXPECT_EQ(obstacles[0].width_m, 2.6);
+  const auto middle = obstacles[0].motion.at(2.0);
   EXPECT_NEAR(middle.x_m, 2.0, 1e-12);
   EXPECT_NEAR(middle.y_m, 3.0, 1e-12);
   EXPECT_NEAR(middle.heading_rad, 0.6, 1e-12);
-  EXPECT_EQ(obstacles[1].obstacle.id, "post");
-  EXPECT_TRUE(std::isinf(obstacles[1].from_s) && std::isinf(obstacles[1].to_s));
+  EXPECT_EQ(obstacles[1].id, "post");
+  EXPECT_TRUE(std::isinf(obstacles[1].validity.from_s) && std::isinf(obstacles[1].validity.to_s));
 }
 
 TEST(ObstaclesCsv, TurnsTheShorterWayRound) {
   const auto obstacles = parse_obstacles_csv(
       "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n0,a,0,0,3.1,4,2\n1,a,0,0,-3.1,4,2\n", "b.csv");
-  EXPECT_NEAR(obstacles[0].obstacle.motion.at(0.5).heading_rad, M_PI, 1e-9);
+  EXPECT_NEAR(obstacles[0].motion.at(0.5).heading_rad, M_PI, 1e-9);
 }
 
 TEST(ObstaclesCsv, RefusesARowWithItsPlaceAndReason) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/files/json_node.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools {
 namespace {

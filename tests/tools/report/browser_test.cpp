@@ -11,7 +11,7 @@
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"
 #include "roadbed/tools/report/page_parts.h"
-#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/report_page.h"
 
 namespace roadbed::tools {
 namespace {
@@ -92,11 +92,13 @@ TEST(ReportInBrowser, RunsNoScriptOutOfANameInItsInput) {
   ROADBED_BROWSER_OR_SKIP(browser);
   const std::string attack = "</script><img src=x onerror='document.title=\"broken in\"'>";
   ReportInput input = tests::sample_report();
-  input.scenario = input.command = input.crs = attack;
-  input.lanes[0].name = input.obstacles[0].id = input.plans[0].note = attack;
-  input.decisions[0].state = input.decisions[0].reason = input.events[0].text = attack;
+  input.scenario = input.origin.command = input.origin.crs = attack;
+  input.scene.lanes[0].name = input.scene.obstacles[0].id = input.drive.cycles[0].plan_reason =
+      attack;
+  input.drive.cycles[0].chosen.reset();
+  input.decisions[0].state = input.decisions[0].reason = input.drive.events[0].text = attack;
   input.plots[0].title = input.plots[0].series[0].name = input.checks[0].name = attack;
-  input.checks[0].bound = input.sources[0].name = input.verdict.text = attack;
+  input.checks[0].bound = input.origin.sources[0].name = input.verdict.text = attack;
   const std::string page = page_after_scripts(browser, drive_report_html(input), "#t=0");
   EXPECT_TRUE(holds(page, "data-ready=\"yes\""));
   EXPECT_FALSE(holds(page, "<title>broken in"));

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "roadbed/tools/report/drive_plots.h"
-
 namespace roadbed::tools {
 namespace {
 

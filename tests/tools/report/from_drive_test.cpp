@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/report/page_parts.h"
+#include "roadbed/tools/report/report_page.h"
 
 namespace roadbed::tools {
 namespace {
@@ -66,24 +69,24 @@ TEST(DecisionsOf, AreRunsOfEqualBehaviourThatLeaveNoGap) {
 TEST(DecisionsOf, NothingAreNone) { EXPECT_TRUE(decisions_of({}).empty()); }
 
 TEST(ReportOf, SaysWhatEachCycleChose) {
-  const ReportInput input = reported(short_drive());
-  ASSERT_EQ(input.plans.size(), 5U);
-  EXPECT_EQ(input.plans[1].note, "ends 0.4 m to the right after 22.0 m");
-  EXPECT_EQ(input.plans[1].path.size(), 2U);
-  EXPECT_EQ(input.plans[3].reason, "car b");
-  EXPECT_EQ(input.plans[0].note, "none feasible");
-  EXPECT_EQ(input.plans[2].note, "all collide");
+  const auto plans = nlohmann::json::parse(page_data_json(reported(short_drive())))["plans"];
+  ASSERT_EQ(plans.size(), 5U);
+  EXPECT_EQ(plans[1]["note"], "ends 0.4 m to the right after 22.0 m");
+  EXPECT_EQ(plans[1]["path"].size(), 4U);
+  EXPECT_EQ(plans[3]["reason"], "car b");
+  EXPECT_EQ(plans[0]["note"], "none feasible");
+  EXPECT_EQ(plans[2]["note"], "all collide");
 }
 
 TEST(ReportOf, ShowsObstaclesAndGoalInSourceCoordinates) {
   const ReportInput input = reported(short_drive());
-  ASSERT_EQ(input.obstacles.size(), world().obstacles.size());
+  ASSERT_EQ(input.scene.obstacles.size(), world().obstacles.size());
   const Eigen::Vector2d in_map = world().obstacles[0].motion.points()[0].pose().position();
-  const Eigen::Vector2d shown = input.obstacles[0].motion.points()[0].pose().position();
+  const Eigen::Vector2d shown = input.scene.obstacles[0].motion.points()[0].pose().position();
   EXPECT_NEAR((shown - world().road_map.to_source(in_map)).norm(), 0.0, 1e-9);
-  ASSERT_TRUE(input.goal);
-  EXPECT_NEAR((*input.goal - input.route.back().back()).norm(), 0.0, 1e-9);
-  EXPECT_FALSE(input.lanes.empty());
+  ASSERT_TRUE(input.scene.goal);
+  EXPECT_NEAR((*input.scene.goal - input.scene.route.back().back()).norm(), 0.0, 1e-9);
+  EXPECT_FALSE(input.scene.lanes.empty());
 }
 
 TEST(ReportOf, SortsConflictsAmongTheEvents) {
@@ -93,9 +96,9 @@ TEST(ReportOf, SortsConflictsAmongTheEvents) {
   context.audit->conflicts.push_back(
       {.from_s = 0.1, .to_s = 0.2, .at = {}, .witness = {{0, 0}, {1, 1}}});
   const ReportInput input = reported(short_drive(), context);
-  ASSERT_EQ(input.events.size(), 2U);
-  EXPECT_EQ(input.events[0].severity, Severity::fault);
-  EXPECT_EQ(input.events[1].text, "close");
+  ASSERT_EQ(input.drive.events.size(), 2U);
+  EXPECT_EQ(input.drive.events[0].level, EventLevel::fault);
+  EXPECT_EQ(input.drive.events[1].text, "close");
   EXPECT_EQ(input.audit->tone, Tone::bad);
   EXPECT_EQ(input.verdict.tone, Tone::good);
 }
@@ -104,7 +107,7 @@ TEST(ReportOf, TakesAnAuditThatFoundTooMuchUnknownAsOpen) {
   ReportContext context;
   context.audit.emplace();
   context.audit->verdict = planning::Verdict::unknown;
-  context.audit->unknown_share = 0.48;
+  context.audit->unknown_fraction = 0.48;
   const ReportInput input = reported(short_drive(), context);
   EXPECT_EQ(input.audit->tone, Tone::open);
   EXPECT_NE(input.audit->text.find("48 % of the swept area was never measured"), std::string::npos);

@@ -1,9 +1,10 @@
 #include "roadbed/tools/report/from_map.h"
-#include "roadbed/planning/obstacles/moving_obstacle.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 
 #include <gtest/gtest.h>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tools {
@@ -72,7 +73,7 @@ TEST(ObstacleInSource, MovesItsPlaceAndKeepsTheRest) {
       .width_m = 2.5,
       .motion = geometry::Trajectory(
           {{.t_s = 1.0, .x_m = 3.0, .y_m = 4.0, .heading_rad = 0.7, .speed_mps = 2.0}})};
-  const planning::Obstacle moved = planning::obstacle_in_source(town(), obstacle);
+  const planning::ObstacleInSource moved = planning::obstacle_in_source(town(), obstacle);
   const auto point = moved.motion.points().front();
   EXPECT_NEAR((point.pose().position() - town().origin_in_source() - Eigen::Vector2d(3, 4)).norm(),
               0.0, 1e-9);

@@ -1,4 +1,5 @@
 #include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 
 #include <gtest/gtest.h>
 

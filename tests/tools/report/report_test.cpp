@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/report_page.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(Report, HoldsTheDriveWithinHalfAMillimetre) {
   const ReportInput input = tests::sample_report();
   const json data = data_of(drive_report_html(input));
   const auto x = values_of(data["drive"]["x"]), y = values_of(data["drive"]["y"]);
-  const auto& points = input.drive.points();
+  const auto& points = input.drive.trajectory.points();
   ASSERT_EQ(x.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(data["origin"][0].get<double>() + x[i], points[i].x_m, 5.1e-4);
@@ -96,14 +96,16 @@ TEST(Report, HasNoElementOutOfATextOfItsInput) {
   const ReportInput plain = tests::sample_report();
   ReportInput input = plain;
   const std::string attack = "\"'></script></style><script>alert(1)</script><b>{{data}}";
-  input.title = input.scenario = input.command = input.version = input.crs = attack;
+  input.title = input.scenario = input.origin.command = input.origin.version = input.origin.crs =
+      attack;
   input.verdict.text = input.audit->text = attack;
-  input.lanes[0].name = input.obstacles[0].id = input.obstacles[0].kind = attack;
-  input.plans[0].note = input.decisions[0].state = input.decisions[0].reason = attack;
-  input.events[0].text = input.plots[0].title = input.plots[0].unit = attack;
+  input.scene.lanes[0].name = input.scene.obstacles[0].id = input.scene.obstacles[0].kind = attack;
+  input.drive.cycles[0].chosen.reset();
+  input.drive.cycles[0].plan_reason = input.decisions[0].state = input.decisions[0].reason = attack;
+  input.drive.events[0].text = input.plots[0].title = input.plots[0].unit = attack;
   input.plots[0].series[0].name = attack;
   input.checks[0].name = input.checks[0].unit = input.checks[0].bound = attack;
-  input.sources[0] = {attack, attack, attack};
+  input.origin.sources[0] = {attack, attack, attack};
   const std::string before = drive_report_html(plain), after = drive_report_html(input);
   for (const char* part : {"<script", "</script", "</style", "<b>", "application/json"}) {
     EXPECT_EQ(count_of(after, part), count_of(before, part)) << part;
@@ -113,7 +115,7 @@ TEST(Report, HasNoElementOutOfATextOfItsInput) {
 
 TEST(Report, TakesNamesThatAreNoUtf8) {
   ReportInput input = tests::sample_report();
-  input.title = input.obstacles[0].id = "caf\xE9";
+  input.title = input.scene.obstacles[0].id = "caf\xE9";
   const std::string html = drive_report_html(input);
   EXPECT_TRUE(holds(html, "<h1>caf\xEF\xBF\xBD</h1>"));
   EXPECT_EQ(data_of(html)["obstacles"][0]["id"], "caf\xEF\xBF\xBD");
@@ -138,8 +140,8 @@ TEST(Report, NamesItsInputsAndHowToMakeItAgain) {
 
 TEST(Report, FoldsAwayALongListOfInputsOfOneKind) {
   ReportInput input = tests::sample_report();
-  input.sources = {{"map", "town.xodr", "1"}};
-  for (int i = 0; i < 28; ++i) input.sources.push_back({"cloud", "scan.pcd", "2"});
+  input.origin.sources = {{"map", "town.xodr", "1"}};
+  for (int i = 0; i < 28; ++i) input.origin.sources.push_back({"cloud", "scan.pcd", "2"});
   const std::string html = drive_report_html(input);
   EXPECT_TRUE(holds(html, "<dt>map</dt><dd><code>town.xodr</code>"));
   EXPECT_TRUE(holds(html, "<dt>cloud</dt><dd><details><summary>28 files</summary>"));
@@ -169,7 +171,7 @@ ReportInput restless_minute() {
                       12.0 + std::sin(3.1 * t_s), std::cos(7.7 * t_s), 0.1 * std::sin(9.0 * t_s),
                       0.0});
   }
-  input.drive = geometry::Trajectory(points);
+  input.drive.trajectory = geometry::Trajectory(points);
   ReportPlot plot{
       .title = "restless", .unit = "m/s", .t_s = {}, .series = {}, .lower = {}, .upper = {}};
   plot.series.resize(3);
@@ -178,14 +180,12 @@ ReportInput restless_minute() {
     for (auto& series : plot.series) series.values.push_back(std::sin(1e4 * point.t_s));
   }
   input.plots.assign(7, plot);
-  input.plans.clear();
+  input.drive.cycles.clear();
   for (int cycle = 0; cycle < 600; ++cycle) {
-    ReportPlan plan{.t_s = 0.1 * cycle,
-                    .path = {},
-                    .note = "ends 0.2 m to the left after 24.0 m",
-                    .reason = "car p1 is 22.4 m ahead"};
-    for (int i = 0; i < 31; ++i) plan.path.emplace_back(1.2 * cycle + i, std::sin(i));
-    input.plans.push_back(plan);
+    DriveCycle planned{.t_s = 0.1 * cycle, .reason = "car p1 is 22.4 m ahead"};
+    planned.chosen = planning::Candidate{.end_d_m = 0.2, .end_l_m = 24.0};
+    for (int i = 0; i < 31; ++i) planned.path.emplace_back(1.2 * cycle + i, std::sin(i));
+    input.drive.cycles.push_back(planned);
   }
   return input;
 }

@@ -42,8 +42,8 @@ ReportInput straight_drive(double heading_rad) {
     const Eigen::Vector2d place = 5.0 * i * along;
     points.push_back({.t_s = 0.5 * i, .x_m = place.x(), .y_m = place.y(), .speed_mps = 10.0});
   }
-  input.drive = geometry::Trajectory(points);
-  input.goal = 100.0 * along;
+  input.drive.trajectory = geometry::Trajectory(points);
+  input.scene.goal = 100.0 * along;
   return input;
 }
 

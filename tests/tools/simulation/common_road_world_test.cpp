@@ -52,9 +52,9 @@ TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
 TEST(CommonRoadWorld, RecordedObstaclesAreThereAsLongAsTheirRecording) {
   CommonRoadDrive problem = problem_of(junction());
   ASSERT_EQ(problem.world.obstacles.size(), 3u);
-  EXPECT_TRUE(problem.world.is_there(0, 1e6));  // stands
-  EXPECT_TRUE(problem.world.is_there(1, 3.0));  // 30 recorded steps
-  EXPECT_FALSE(problem.world.is_there(1, 3.1));
+  EXPECT_TRUE(problem.world.obstacles[0].is_there(1e6));  // stands
+  EXPECT_TRUE(problem.world.obstacles[1].is_there(3.0));  // 30 recorded steps
+  EXPECT_FALSE(problem.world.obstacles[1].is_there(3.1));
 }
 
 TEST(CommonRoadWorld, GoalIsReachedInItsTimeAtTheSameBytesEveryTime) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/closed_loop.h"

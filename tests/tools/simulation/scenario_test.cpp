@@ -167,7 +167,7 @@ TEST(Scenario, LightsAndDropoutsAreReadAndChecked) {
   EXPECT_EQ(colour_at(scenario.lights[0], 5.1), planning::LightColour::red);
   EXPECT_EQ(colour_at(scenario.lights[0], 17.1), planning::LightColour::green);
   EXPECT_EQ(scenario.noise.dropouts[0].to_s, 2.5);
-  EXPECT_EQ(scenario.noise.dropout_share, 0.1);
+  EXPECT_EQ(scenario.noise.dropout_ratio, 0.1);
   const auto message = [&](const std::string& pointer, const json& value) {
     json broken = document;
     broken[json::json_pointer(pointer)] = value;

@@ -7,7 +7,7 @@
 
 #include "roadbed/map/commonroad/rules/source.h"
 #include "roadbed/map/files/xml.h"
-#include "roadbed/map/source_rules.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/tests/support/slips.h"
 
 namespace roadbed::map::validation {
@@ -61,7 +61,8 @@ std::vector<tests::Slip> slips() {
 }
 
 TEST(CommonRoadRules, FindNothingInAFaultlessFile) {
-  for (const Finding& finding : check_source(XmlDocument(clean_file(), "file.xml"), {})) {
+  for (const Finding& finding :
+       format_of(clean_file())->judge(clean_file(), "file.xml", {}).findings) {
     ADD_FAILURE() << finding.rule << ": " << finding.element << ": " << finding.message;
   }
 }

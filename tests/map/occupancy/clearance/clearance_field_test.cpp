@@ -194,7 +194,7 @@ TEST(ClearanceField, InTilesOfAnySideSaysWhatTheWholeSaysBitForBit) {
         ASSERT_EQ(found->witness.min_in_source, expected->witness.min_in_source);
         ASSERT_EQ(found->witness.max_in_source, expected->witness.max_in_source);
       }
-      ASSERT_EQ(tiles.unknown_share(pose, shape), whole.unknown_share(pose, shape));
+      ASSERT_EQ(tiles.unknown_fraction(pose, shape), whole.unknown_fraction(pose, shape));
     }
   }
 }
@@ -237,7 +237,7 @@ TEST(ClearanceField, RefusesABodyThatItsTilesAreTooSmallFor) {
                                          .tile_m = 4.0,
                                          .body_radius_m = 2.0});
   EXPECT_THROW(tiles.nearest({5000.0, -20.0, 0.0}, VehicleShape{}, 1.0), std::invalid_argument);
-  EXPECT_THROW(tiles.unknown_share({5000.0, -20.0, 0.0}, VehicleShape{}), std::invalid_argument);
+  EXPECT_THROW(tiles.unknown_fraction({5000.0, -20.0, 0.0}, VehicleShape{}), std::invalid_argument);
 }
 
 /// A box of free cells 0 ≤ x, y < 10 m, 2 m high, only 1 m where x < 5 m.
@@ -271,12 +271,12 @@ TEST(ClearanceField, UnknownShareIsTheVolumeNeverMeasured) {
   const VehicleShape box{
       .length_m = 4.0, .width_m = 2.0, .rear_overhang_m = 2.0, .wheelbase_m = 1.0};
   EXPECT_FALSE(field.nearest({5.0, 5.0, 0.0}, box, 50.0));
-  EXPECT_EQ(field.unknown_share({7.5, 5.0, 0.0}, box), 0.0);
-  EXPECT_NEAR(field.unknown_share({2.5, 5.0, 0.7}, box), 0.5, 1e-12);
-  EXPECT_NEAR(field.unknown_share({5.0, 5.0, 0.0}, box), 0.25, 1e-12);
-  EXPECT_NEAR(field.unknown_share({10.0, 5.0, 0.0}, box), 0.5, 1e-12);
-  EXPECT_NEAR(field.unknown_share({10.0, 5.0, M_PI / 2}, box), 0.5, 1e-12);
-  EXPECT_NEAR(field.unknown_share({-50.0, 5.0, 0.3}, box), 1.0, 1e-12);
+  EXPECT_EQ(field.unknown_fraction({7.5, 5.0, 0.0}, box), 0.0);
+  EXPECT_NEAR(field.unknown_fraction({2.5, 5.0, 0.7}, box), 0.5, 1e-12);
+  EXPECT_NEAR(field.unknown_fraction({5.0, 5.0, 0.0}, box), 0.25, 1e-12);
+  EXPECT_NEAR(field.unknown_fraction({10.0, 5.0, 0.0}, box), 0.5, 1e-12);
+  EXPECT_NEAR(field.unknown_fraction({10.0, 5.0, M_PI / 2}, box), 0.5, 1e-12);
+  EXPECT_NEAR(field.unknown_fraction({-50.0, 5.0, 0.3}, box), 1.0, 1e-12);
   // Distances to unknown space: the half-measured columns, and all around.
   const auto to_unknown = [&](const Pose2& pose) {
     return field.nearest(pose, box, 50.0, ObstacleKind::unknown)->distance_m;
@@ -329,10 +329,10 @@ TEST(ClearanceField, UnknownShareIsThatOfClippedAreas) {
     const double whole = shape.length_m * shape.width_m;
     const double measured =
         0.5 * area_between(body, {0, 0}, {5, 10}) + area_between(body, {5, 0}, {10, 10});
-    const double share = field.unknown_share(pose, shape);
-    ASSERT_NEAR(share, 1.0 - measured / whole, 1e-9);
-    none += share == 0.0;
-    all += share == 1.0;
+    const double fraction = field.unknown_fraction(pose, shape);
+    ASSERT_NEAR(fraction, 1.0 - measured / whole, 1e-9);
+    none += fraction == 0.0;
+    all += fraction == 1.0;
   }
   EXPECT_GT(none, 50);
   EXPECT_GT(all, 100);
@@ -359,7 +359,7 @@ TEST(ClearanceField, UnknownShareOfARotatedVehicleEqualsDenseSampling) {
         unknown += !occupied;
       }
     }
-    EXPECT_NEAR(field.unknown_share(pose, shape), unknown / double(steps * steps), 3e-3);
+    EXPECT_NEAR(field.unknown_fraction(pose, shape), unknown / double(steps * steps), 3e-3);
   }
 }
 

@@ -33,8 +33,8 @@ TEST(RectangleCover, IsTheShareOfEachCellByDenseSampling) {
                                    static_cast<double>(y) + (i / steps + 0.5) / steps);
           inside += holds(rectangle, cell_m * at);
         }
-        ASSERT_NEAR(cover.share(x, y), inside / double(steps * steps), 0.04);
-        sum += cover.share(x, y);
+        ASSERT_NEAR(cover.fraction(x, y), inside / double(steps * steps), 0.04);
+        sum += cover.fraction(x, y);
       }
     }
     ASSERT_NEAR(sum * cell_m * cell_m, 4.0 * rectangle.half_length_m * rectangle.half_width_m,
@@ -48,7 +48,7 @@ TEST(RectangleCover, OfARectangleOfWholeCellsIsOneInThemAndNothingBeside) {
   for (std::int64_t y = cover.range().from_y; y < cover.range().to_y; ++y) {
     for (std::int64_t x = cover.range().from_x; x < cover.range().to_x; ++x) {
       const bool inside = x >= 2 && x < 6 && y >= 1 && y < 3;
-      EXPECT_EQ(cover.share(x, y), inside ? 1.0 : 0.0) << x << " " << y;
+      EXPECT_EQ(cover.fraction(x, y), inside ? 1.0 : 0.0) << x << " " << y;
     }
   }
 }

@@ -42,19 +42,19 @@ MadeCells with_margin(const MadeCells& cells, std::int64_t margin) {
 }
 
 geometry::Rectangle random_rectangle(std::mt19937& random, const CellRange& range, double cell_m) {
-  std::uniform_real_distribution<double> share(-0.2, 1.2), turn(-4.0, 4.0), half(0.01, 3.0);
+  std::uniform_real_distribution<double> fraction(-0.2, 1.2), turn(-4.0, 4.0), half(0.01, 3.0);
   const std::array<double, 6> straight{0.0, M_PI / 2, M_PI, -M_PI / 2, M_PI / 4, 1e-8};
   const double heading = random() % 3 == 0 ? straight[random() % straight.size()] : turn(random);
   Eigen::Vector2d axis(std::cos(heading), std::sin(heading));
   if (random() % 4 == 0) axis = Eigen::Vector2d(0.0, random() % 2 == 0 ? 1.0 : -1.0);
-  return {
-      .centre = cell_m * Eigen::Vector2d(static_cast<double>(range.from_x) +
-                                             share(random) * static_cast<double>(range.width()),
-                                         static_cast<double>(range.from_y) +
-                                             share(random) * static_cast<double>(range.height())),
-      .axis = axis,
-      .half_length_m = half(random),
-      .half_width_m = half(random)};
+  return {.centre =
+              cell_m * Eigen::Vector2d(static_cast<double>(range.from_x) +
+                                           fraction(random) * static_cast<double>(range.width()),
+                                       static_cast<double>(range.from_y) +
+                                           fraction(random) * static_cast<double>(range.height())),
+          .axis = axis,
+          .half_length_m = half(random),
+          .half_width_m = half(random)};
 }
 
 double to_cell_m(const geometry::Rectangle& rectangle, std::int64_t x, std::int64_t y,

@@ -1,4 +1,5 @@
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +9,6 @@
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/occupancy/clouds/lzf.h"
 
 namespace roadbed::map {
 namespace {
@@ -128,6 +128,23 @@ TEST(Pcd, RefusesCompressedSizesThatAreNotThere) {
               HasSubstr("2 points of 12 bytes"));
   put(body, 4, std::uint32_t{24});
   EXPECT_THAT(refusal(pcd(kFloats, kTwo, "binary_compressed\n" + body), "a.pcd"), HasSubstr("LZF"));
+}
+
+TEST(Pcd, RefusesLzfWithReferencesBeforeTheStartAndSizesThatDoNotFit) {
+  const auto refusal_of = [](const std::string& packed) {
+    std::string body;
+    append(body, static_cast<std::uint32_t>(packed.size()));
+    append(body, std::uint32_t{24});
+    return refusal(pcd(kFloats, kTwo, "binary_compressed\n" + body + packed), "a.pcd");
+  };
+  const std::string literals = "\x16" + std::string(23, '\0');  // 23 bytes as they are
+  EXPECT_EQ(refusal_of(literals + std::string("\0q", 2)), "accepted");
+  EXPECT_THAT(refusal_of(literals), HasSubstr("LZF"));
+  EXPECT_THAT(refusal_of(literals + std::string("\x20\x00", 2)), HasSubstr("LZF"));  // 26 bytes
+  EXPECT_THAT(refusal_of(std::string("\x20\x00", 2)), HasSubstr("LZF"));
+  EXPECT_THAT(refusal_of(std::string("\x00q\x20\x05", 4)), HasSubstr("LZF"));
+  EXPECT_THAT(refusal_of(std::string("\x00q\xe0", 3)), HasSubstr("LZF"));
+  EXPECT_THAT(refusal_of("\x16q"), HasSubstr("LZF"));
 }
 
 TEST(Pcd, RefusesWhatIsNotACloudInOneLine) {
@@ -262,15 +279,6 @@ TEST(Xyz, ReadsCommasSpacesCommentsCountsAndNamedColumns) {
   EXPECT_THAT(refusal("1,2,3\n1,,3\n", "a.xyz"), HasSubstr("not a number"));
   EXPECT_THAT(refusal("hello world again\n", "a.xyz"), HasSubstr("\"hello\""));
   EXPECT_THAT(refusal("\x7f\x45\x4c\x46", "a.bin"), HasSubstr("no known point cloud format"));
-}
-
-TEST(Lzf, RefusesReferencesBeforeTheStartAndSizesThatDoNotFit) {
-  EXPECT_EQ(decompress_lzf(std::string("\x00q", 2), 1), "q");
-  EXPECT_FALSE(decompress_lzf(std::string("\x00q", 2), 2));
-  EXPECT_FALSE(decompress_lzf(std::string("\x20\x00", 2), 3));
-  EXPECT_FALSE(decompress_lzf(std::string("\x00q\x20\x05", 4), 4));
-  EXPECT_FALSE(decompress_lzf(std::string("\x00q\xe0", 3), 1000));
-  EXPECT_FALSE(decompress_lzf("", 4'000'000'000u));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/tests/support/real_data.h"
 

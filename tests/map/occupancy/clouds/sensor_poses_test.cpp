@@ -1,4 +1,5 @@
 #include "roadbed/map/occupancy/clouds/sensor_poses.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/clouds/sensor_poses.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 

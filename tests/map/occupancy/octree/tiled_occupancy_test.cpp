@@ -15,6 +15,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/tile_builder.h"
+#include "roadbed/map/occupancy/octree/tree_origin.h"
 
 namespace roadbed::map {
 namespace {
@@ -183,7 +184,7 @@ TEST_F(TiledOccupancyTest, AFieldOverItSaysWhatOneOverTheWholeSaysBitForBit) {
       ASSERT_EQ(a->distance_m, b->distance_m);
       ASSERT_EQ(a->witness.min_in_source, b->witness.min_in_source);
     }
-    ASSERT_EQ(field.unknown_share(pose, {}), expected.unknown_share(pose, {}));
+    ASSERT_EQ(field.unknown_fraction(pose, {}), expected.unknown_fraction(pose, {}));
   }
 }
 

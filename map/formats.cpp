@@ -1,0 +1,181 @@
+#include "roadbed/map/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "roadbed/map/commonroad/read.h"
+#include "roadbed/map/commonroad/write.h"
+#include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/drawing/write_svg.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/xml.h"
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/files/xml_scanner.h"
+#include "roadbed/map/geojson/read.h"
+#include "roadbed/map/gis/layer_frame.h"
+#include "roadbed/map/gis/layers.h"
+#include "roadbed/map/gis/write_csv.h"
+#include "roadbed/map/gis/write_flatgeobuf.h"
+#include "roadbed/map/gis/write_geojson.h"
+#include "roadbed/map/gis/write_geopackage.h"
+#include "roadbed/map/lanelet2/read.h"
+#include "roadbed/map/lanelet2/write.h"
+#include "roadbed/map/opendrive/read.h"
+
+namespace roadbed::map {
+namespace {
+
+/// Whether the root has this name in any namespace.
+bool has_root(const FileContent& content, std::string_view name) {
+  return content.root.substr(content.root.find(':') + 1) == name;
+}
+
+RoadMap read_lanelet2(std::string bytes, const std::string& name, const LoadOptions&) {
+  if (is_other_encoding(bytes)) {
+    if (std::string converted = to_utf8(bytes); !converted.empty()) bytes = std::move(converted);
+  }
+  return RoadMap(lanelet2::read(bytes, name));
+}
+
+/// Coordinates of the CRS where it is known, else the source's raw ones.
+std::vector<Layer> placed_layers(const RoadMap& road_map, const SaveOptions& options) {
+  std::vector<Layer> layers = make_layers(road_map, options.layers);
+  to_source(road_map, layers);
+  if (options.is_own_crs) source_to_crs(road_map, layers);
+  return layers;
+}
+
+std::string geojson_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  std::vector<Layer> layers = placed_layers(road_map, options);
+  const bool lon_lat = !options.crs.empty();
+  if (lon_lat) to_lon_lat(options.crs, layers);
+  return write_geojson(layers, {lon_lat, road_map.format(), road_map.crs()});
+}
+
+std::string geopackage_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  return write_geopackage(placed_layers(road_map, options), options.crs);
+}
+
+std::string flatgeobuf_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  SaveOptions one = options;
+  if (one.layers.empty()) one.layers = {"lanes"};
+  return write_flatgeobuf(placed_layers(road_map, one).front(), options.crs);
+}
+
+std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
+  lanelet2::Lanelet2File file = lanelet2::write_lanelet2(road_map, {options.crs, offset});
+  if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  return std::move(file.bytes);
+}
+
+constexpr std::array<Format, 9> kFormats = {{
+    {.name = "compiled map",
+     .sniff = [](const FileContent& content) { return is_compiled_map(content.bytes); },
+     .read = [](std::string bytes, const std::string& name,
+                const LoadOptions&) { return read_compiled_map(std::move(bytes), name); }},
+    {.name = "OpenDRIVE",
+     .sniff = [](const FileContent& content) { return has_root(content, "OpenDRIVE"); },
+     .read =
+         [](std::string bytes, const std::string& name, const LoadOptions& options) {
+           return RoadMap(opendrive::read(XmlDocument(std::move(bytes), name), options));
+         },
+     .judge = judge_open_drive,
+     .rules = open_drive_rules},
+    {.name = "GeoJSON",
+     .sniff = [](const FileContent& content) { return geojson::is_geojson(content.bytes); },
+     .read = [](std::string bytes, const std::string& name,
+                const LoadOptions&) { return RoadMap(geojson::read(bytes, name)); },
+     .suffix = ".geojson",
+     .write = geojson_bytes,
+     .most_layers = 100,
+     .what = "layers, in longitude and latitude where the system is known"},
+    {.name = "GeoPackage",
+     .suffix = ".gpkg",
+     .write = geopackage_bytes,
+     .most_layers = 100,
+     .what = "layers with colours for QGIS (GeoPackage)"},
+    {.name = "FlatGeobuf",
+     .suffix = ".fgb",
+     .write = flatgeobuf_bytes,
+     .most_layers = 1,
+     .what = "one layer (FlatGeobuf)"},
+    {.name = "SVG",
+     .suffix = ".svg",
+     .write = [](const RoadMap& road_map, const SaveOptions&) { return write_svg(road_map); },
+     .what = "a picture"},
+    {.name = "CSV",
+     .suffix = ".csv",
+     .write = [](const RoadMap& road_map, const SaveOptions&) { return write_csv(road_map); },
+     .what = "all lane lines, a row per vertex"},
+    {.name = "Lanelet2",
+     .sniff = [](const FileContent& content) { return content.root == "osm"; },
+     .read = read_lanelet2,
+     .judge = judge_lanelet2,
+     .rules = lanelet2_rules,
+     .suffix = ".osm",
+     .write = lanelet2_bytes,
+     .what = "lanelets that other programs route on (Lanelet2)"},
+    {.name = "CommonRoad",
+     .sniff = [](const FileContent& content) { return has_root(content, "commonRoad"); },
+     .read =
+         [](std::string bytes, const std::string& name, const LoadOptions&) {
+           return RoadMap(commonroad::read(XmlDocument(std::move(bytes), name)));
+         },
+     .judge = judge_common_road,
+     .rules = common_road_rules,
+     .suffix = ".xml",
+     .write = [](const RoadMap& road_map,
+                 const SaveOptions&) { return commonroad::write_common_road(road_map); },
+     .what = "lanes, links and rules (CommonRoad 2020a)"},
+}};
+
+template <typename Fits>
+const Format* find_format(const Fits& fits) {
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(), fits);
+  return found == kFormats.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const Format> formats() { return kFormats; }
+
+const Format* format_of(const std::string& bytes) {
+  const FileContent content{bytes, looks_like_xml(bytes) ? root_element(bytes) : ""};
+  return find_format(
+      [&](const Format& format) { return format.sniff != nullptr && format.sniff(content); });
+}
+
+const Format* format_of(const std::filesystem::path& file) {
+  try {
+    return format_of(read_file_start(file, 100'000));
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+const Format* format_of(const RoadMap& road_map) {
+  return find_format(
+      [&](const Format& format) { return road_map.format().starts_with(format.name); });
+}
+
+const Format& format_to_write(const std::filesystem::path& file) {
+  const std::string suffix = file.extension().string();
+  const Format* format =
+      find_format([&](const Format& one) { return one.write != nullptr && one.suffix == suffix; });
+  if (format != nullptr) return *format;
+  std::string known;
+  for (const Format& one : kFormats) {
+    if (one.write != nullptr) known += fmt::format("{}{}", known.empty() ? "" : ", ", one.suffix);
+  }
+  throw InputError({.file = file.string(),
+                    .found = fmt::format("the suffix \"{}\" names no format", suffix),
+                    .needed = known,
+                    .remedy = "rename the output"});
+}
+
+}  // namespace roadbed::map

@@ -1,0 +1,68 @@
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/cloud_formats.h"
+#include "roadbed/map/occupancy/clouds/local_origin.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+namespace {
+
+using Parser = RawCloud (*)(std::string_view, const std::string&);
+
+bool begins_as_pcd(std::string_view bytes) {
+  TextScanner lines(bytes.substr(0, 4096));
+  while (!lines.done()) {
+    std::string_view line = lines.next_line();
+    if (line.starts_with("# .PCD")) return true;
+    const std::string word = lower(next_word(line));
+    if (word.empty() || word.starts_with('#')) continue;
+    return word == "version" || word == "fields" || word == "columns";
+  }
+  return false;
+}
+
+Parser parser_by_suffix(const std::string& name) {
+  const std::string suffix = lower(std::filesystem::path(name).extension().string());
+  if (suffix == ".pcd") return parse_pcd;
+  if (suffix == ".ply") return parse_ply;
+  if (suffix == ".las" || suffix == ".laz") return parse_las;
+  for (const char* text : {".xyz", ".csv", ".txt", ".asc", ".pts"}) {
+    if (suffix == text) return parse_xyz;
+  }
+  return nullptr;
+}
+
+Parser choose_parser(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("LASF")) return parse_las;
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply;
+  if (begins_as_pcd(bytes)) return parse_pcd;
+  if (const Parser parser = parser_by_suffix(name)) return parser;
+  refuse_cloud(name, "", "", "is of no known point cloud format", ".pcd, .ply, .las, .xyz or .csv",
+               "convert it, or rename it to what it is");
+}
+
+}  // namespace
+
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
+  RawCloud raw = choose_parser(bytes, name)(bytes, name);
+  if (raw.empty()) {
+    refuse_cloud(name, "", "",
+                 raw.dropped_not_finite == 0
+                     ? "holds no point"
+                     : fmt::format("none of its {} points is finite", raw.dropped_not_finite),
+                 "at least one finite point", "check how the cloud was made");
+  }
+  PointCloud cloud = relative_to_origin(std::move(raw));
+  cloud.name = name;
+  return cloud;
+}
+
+PointCloud read_point_cloud(const std::filesystem::path& file) {
+  return parse_point_cloud(read_file(file), file.string());
+}
+
+}  // namespace roadbed::map::occupancy::clouds

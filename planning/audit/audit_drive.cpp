@@ -1,0 +1,71 @@
+#include "roadbed/planning/audit/audit_drive.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "roadbed/planning/audit/vehicle_audit.h"
+
+namespace roadbed::planning::inline audit {
+namespace {
+
+// How far the vehicle reaches, with the margin.
+map::BodyReach reach_of(const AuditQuestion& question) {
+  map::BodyReach reach;
+  for (const geometry::BodyPart& part : question.parts) {
+    const double grown_m = part.radius_m + question.options.inflate_m;
+    reach.rear_m = std::min(reach.rear_m, part.rear_m - grown_m);
+    reach.front_m = std::max(reach.front_m, part.front_m + grown_m);
+  }
+  return reach;
+}
+
+void audit_within(const VehicleSurroundings& around, const geometry::Trajectory& drive_in_source,
+                  const AuditQuestion& question, DriveAudit& audit) {
+  VehicleAudit found =
+      audit_vehicle(around, drive_in_source, question.options, question.moving_in_source);
+  if (question.certifies) {
+    audit.certificates = certify_vehicle(around, drive_in_source, question.options, found,
+                                         question.moving_in_source);
+  }
+  audit.report = std::move(found.whole);
+}
+
+}  // namespace
+
+map::HeightBand AuditQuestion::heights(const GroundUnder& under) const {
+  map::HeightBand all{parts.front().from_height_m, parts.front().to_height_m};
+  for (const geometry::BodyPart& part : parts) {
+    all = {std::min(all.from_m, part.from_height_m), std::max(all.to_m, part.to_height_m)};
+  }
+  return under.band(all.from_m, all.to_m);
+}
+
+std::vector<geometry::BodyPart> AuditQuestion::inflated_parts() const {
+  std::vector<geometry::BodyPart> inflated;
+  for (const geometry::BodyPart& part : parts) {
+    inflated.push_back(geometry::inflated(part, options.inflate_m));
+  }
+  return inflated;
+}
+
+DriveAudit audit_drive(const map::OccupancySource& occupancy,
+                       const geometry::Trajectory& drive_in_source, const AuditQuestion& question,
+                       const std::function<void(const GroundUnder&)>& on_ground) {
+  DriveAudit audit{
+      .ground = ground_under(occupancy, drive_in_source, question.ground, reach_of(question))};
+  if (on_ground) on_ground(audit.ground);
+  map::FieldRegion region = audited_region(drive_in_source, question.parts, question.options);
+  region.most_cells /= question.drives_at_once;
+  const VehicleSurroundings around(occupancy, audit.ground, question.parts, region);
+  audit_within(around, drive_in_source, question, audit);
+  return audit;
+}
+
+DriveAudit audit_drive(std::shared_ptr<const map::ClearanceField> field,
+                       const geometry::Trajectory& drive_in_source, const AuditQuestion& question) {
+  DriveAudit audit;
+  audit_within({std::move(field), question.parts}, drive_in_source, question, audit);
+  return audit;
+}
+
+}  // namespace roadbed::planning::audit

@@ -1,0 +1,82 @@
+#include "roadbed/planning/lateral/candidate_costs.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "roadbed/planning/lateral/candidate_batch.h"
+
+namespace roadbed::planning::inline lateral {
+namespace {
+
+BatchConfig config_of(const CandidateEvaluator& evaluator) {
+  const PlanOptions& options = evaluator.options();
+  BatchConfig config{
+      .end_d_m = evaluator.grid().end_d_m(),
+      .weights = options.weights,
+      .frame = {},
+      .limits = driving_limits(evaluator.vehicle(), options.max_lateral_acceleration_mps2)};
+  if (options.limit_steering_rate) {
+    config.limits.max_steering_rate_radps = evaluator.vehicle().max_steering_rate_radps;
+  }
+  return config;
+}
+
+bool evaluates_all(const PlanOptions& options) {
+  return options.exhaustive || options.keep_candidates;
+}
+
+// What batches refer to, in one block. Batches that are evaluated at once share their points, which
+// then stay in the fastest cache.
+std::shared_ptr<KernelPoint[]> kernel_points(const CandidateEvaluator& evaluator) {
+  const auto count = static_cast<std::size_t>(evaluator.options().points);
+  const std::size_t batches =
+      evaluates_all(evaluator.options()) ? 1 : evaluator.grid().length_count();
+  return std::make_unique_for_overwrite<KernelPoint[]>(batches * count);
+}
+
+// The cost of their length is the same for all candidates of a batch, and no other term is
+// negative.
+std::vector<double> least_costs(const CandidateEvaluator& evaluator) {
+  std::vector<double> costs;
+  for (std::size_t batch = 0; batch < evaluator.grid().length_count(); ++batch) {
+    costs.push_back((1.0 - 1e-9) * of(evaluator.options().weights, CostTerm::length) *
+                    length_term(evaluator.frame(batch)));
+  }
+  return costs;
+}
+
+}  // namespace
+
+CandidateSearch search_by_cost(const CandidateEvaluator& evaluator) {
+  const bool all = evaluates_all(evaluator.options());
+  const auto make_batch = [&evaluator, all, points = kernel_points(evaluator),
+                           config = config_of(evaluator)](std::size_t batch) mutable {
+    const auto count = static_cast<std::size_t>(evaluator.options().points);
+    const std::size_t first = all ? 0 : batch * count;
+    config.frame = evaluator.frame(batch);
+    return CandidateBatch(evaluator.make_stations(batch), evaluator.family(batch), config,
+                          std::span(points.get() + first, count));
+  };
+  return {evaluator.grid().offset_count(), least_costs(evaluator), make_batch, all};
+}
+
+Candidate candidate_at(const CandidateEvaluator& evaluator, const CandidateSearch& search,
+                       std::size_t index) {
+  return {.end_d_m = evaluator.grid().end_d_m(index),
+          .end_l_m = evaluator.grid().end_l_m(index),
+          .terms = {},
+          .cost = search.cost(index),
+          .rejection = search.rejections()[index]};
+}
+
+Candidate candidate_with_terms(CandidateEvaluator& evaluator, const CandidateSearch& search,
+                               std::size_t index) {
+  Candidate candidate = candidate_at(evaluator, search, index);
+  const std::size_t batch = index / evaluator.grid().offset_count();
+  const auto points = cost_points(evaluator.stations(batch), evaluator.quintic(index));
+  if (!points.empty()) candidate.terms = cost_terms(points, evaluator.frame(batch));
+  return candidate;
+}
+
+}  // namespace roadbed::planning::lateral

@@ -1,0 +1,169 @@
+#include "roadbed/tools/files/json.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "roadbed/map/files/input_error.h"
+
+namespace roadbed::tools::inline files {
+namespace {
+
+std::string escaped(std::string_view key) {
+  std::string token;
+  for (const char c : key) {
+    if (c == '~') {
+      token += "~0";
+    } else if (c == '/') {
+      token += "~1";
+    } else {
+      token += c;
+    }
+  }
+  return token;
+}
+
+[[noreturn]] void refuse_text(const std::string& file, std::size_t byte, const std::string& found) {
+  throw map::InputError({.file = file,
+                         .place = fmt::format("byte {}", byte),
+                         .found = found,
+                         .remedy = "mend the text"});
+}
+
+/// Remembers the keys of every open object.
+class DuplicateKeys {
+ public:
+  explicit DuplicateKeys(const std::string& file) : file_(file) {}
+
+  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    if (event == nlohmann::json::parse_event_t::object_start) open_.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) open_.pop_back();
+    if (event == nlohmann::json::parse_event_t::key &&
+        !open_.back().insert(parsed.get_ref<const std::string&>()).second) {
+      throw map::InputError({.file = file_,
+                             .element = fmt::format("key \"{}\"", parsed.get<std::string>()),
+                             .found = "stands twice in one object",
+                             .remedy = "remove one of the two"});
+    }
+    return true;
+  }
+
+ private:
+  std::string file_;
+  std::vector<std::set<std::string>> open_;
+};
+
+}  // namespace
+
+JsonNode::JsonNode(const nlohmann::json& value, std::string file, std::string pointer)
+    : value_(&value), file_(std::move(file)), pointer_(std::move(pointer)) {}
+
+void JsonNode::require_object(std::initializer_list<std::string_view> known_keys) const {
+  for (const auto& [key, member] : members()) {
+    if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
+    member.refuse("is not a known key", fmt::format("one of {}", fmt::join(known_keys, ", ")),
+                  "mend its name or remove it");
+  }
+}
+
+JsonNode JsonNode::at(std::string_view key) const {
+  if (std::optional<JsonNode> member = find(key)) return *member;
+  refuse(fmt::format("has no key \"{}\"", key), "it", "add it");
+}
+
+std::optional<JsonNode> JsonNode::find(std::string_view key) const {
+  if (!value_->is_object()) {
+    refuse(fmt::format("is {}", value_->type_name()), "an object", "write {\"key\": …}");
+  }
+  const auto member = value_->find(key);
+  if (member == value_->end()) return std::nullopt;
+  return JsonNode(*member, file_, pointer_ + "/" + escaped(key));
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+  if (!value_->is_array()) {
+    refuse(fmt::format("is {}", value_->type_name()), "an array", "write […]");
+  }
+  std::vector<JsonNode> nodes;
+  for (std::size_t i = 0; i < value_->size(); ++i) {
+    nodes.emplace_back((*value_)[i], file_, fmt::format("{}/{}", pointer_, i));
+  }
+  return nodes;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+  if (!value_->is_object()) {
+    refuse(fmt::format("is {}", value_->type_name()), "an object", "write {\"key\": …}");
+  }
+  std::vector<std::pair<std::string, JsonNode>> nodes;
+  for (auto member = value_->begin(); member != value_->end(); ++member) {
+    nodes.emplace_back(member.key(),
+                       JsonNode(*member, file_, pointer_ + "/" + escaped(member.key())));
+  }
+  return nodes;
+}
+
+double JsonNode::number(Range range) const {
+  if (!value_->is_number()) {
+    refuse(fmt::format("is {}", value_->type_name()), "a number", "write one");
+  }
+  const double number = value_->get<double>();
+  if (!(number >= range.least && number <= range.most)) {
+    refuse(fmt::format("is {}", number), fmt::format("{} to {}", range.least, range.most),
+           "change it");
+  }
+  return number;
+}
+
+double JsonNode::number_or(std::string_view key, double otherwise, Range range) const {
+  const std::optional<JsonNode> member = find(key);
+  return member ? member->number(range) : otherwise;
+}
+
+std::string JsonNode::text() const {
+  if (!value_->is_string()) {
+    refuse(fmt::format("is {}", value_->type_name()), "a string", "write \"…\"");
+  }
+  std::string text = value_->get<std::string>();
+  if (text.empty()) refuse("is empty", "a text", "fill it in");
+  return text;
+}
+
+std::string JsonNode::one_line() const {
+  constexpr unsigned char first_printable = 0x20, del = 0x7f;
+  std::string line = text();
+  const auto is_control = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < first_printable || byte == del;
+  };
+  if (std::ranges::any_of(line, is_control)) {
+    refuse("has a control character", "one line of text", "take it out");
+  }
+  return line;
+}
+
+void JsonNode::refuse(const std::string& found, const std::string& needed,
+                      const std::string& remedy) const {
+  throw map::InputError({.file = file_,
+                         .place = pointer_.empty() ? "/" : pointer_,
+                         .found = found,
+                         .needed = needed,
+                         .remedy = remedy});
+}
+
+nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& file) {
+  try {
+    return nlohmann::json::parse(bytes, DuplicateKeys(file));
+  } catch (const nlohmann::json::parse_error& error) {
+    refuse_text(file, error.byte, "is not JSON here");
+  } catch (const nlohmann::json::out_of_range&) {
+    throw map::InputError({.file = file,
+                           .found = "a number is too large for double precision",
+                           .remedy = "write a smaller one"});
+  }
+}
+
+}  // namespace roadbed::tools
