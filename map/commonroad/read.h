@@ -6,7 +6,7 @@
 namespace roadbed::map::commonroad {
 
 /// The road network of a CommonRoad file (XML formats 2018b and 2020a). What moves on it is read by
-/// `read_scenario` of common_road_scenario.h.
+/// `parse_scenario` of scenario_reader.h.
 /// @throws InputError with the place in the file if it is unusable.
 RoadMapParts read(const XmlDocument& xml);
 
