@@ -131,9 +131,12 @@ void zero_lengths(const Source& source, const validation::ValidateOptions&,
     }
     for (const CurveSource& piece : road.geometry) {
       if (!(piece.record.length_m < kShortestPieceM)) continue;
-      add_at(report, source, road, piece.record.node,
-             fmt::format("geometry at s {} m has length {} m; remove it", piece.record.s_m,
-                         piece.record.length_m));
+      validation::Finding& finding =
+          add_at(report, source, road, piece.record.node,
+                 fmt::format("geometry at s {} m has length {} m; remove it", piece.record.s_m,
+                             piece.record.length_m));
+      // What is left of rounding does no harm: the piece is left out.
+      if (piece.record.length_m > 0.0) finding.severity = validation::Severity::info;
     }
   }
 }

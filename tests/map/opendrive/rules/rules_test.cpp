@@ -1,6 +1,7 @@
 // Every rule about OpenDRIVE's text: silent on a faultless file, and speaking up where one thing in
 // it is broken.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -211,6 +212,22 @@ TEST(OpenDriveRules, FindRecordsThatOnlyGoOnWhateverTheirDegree) {
   const std::string text = tests::with_slip(clean_file(), {"", before, bent});
   EXPECT_EQ(of_rule(tests::with_slip(text, {"", cubic, same}), "profile.redundant").size(), 1u);
   EXPECT_TRUE(of_rule(tests::with_slip(text, {"", cubic, other}), "profile.redundant").empty());
+}
+
+TEST(OpenDriveRules, OnlyNoteAPieceThatRoundingLeft) {
+  const auto piece = [](const char* length) {
+    return fmt::format(R"(hdg="0" length="40"><line/></geometry>
+   <geometry s="40" x="40" y="0" hdg="0" length="{}"><line/></geometry>
+   <geometry s="40" x="40" y="0" hdg="0" length="60"><arc curvature="0.0000001"/></geometry>)",
+                       length);
+  };
+  const std::string joint = R"(hdg="0" length="40"><line/></geometry>
+   <geometry s="40" x="40" y="0" hdg="0" length="60"><arc curvature="0.0000001"/></geometry>)";
+  const auto severity = [&](const char* length) {
+    return of_rule(with(joint, piece(length)), "curve.zero-length").at(0).severity;
+  };
+  EXPECT_EQ(severity("0.000000000000001"), Severity::info);
+  EXPECT_EQ(severity("0"), Severity::warning);
 }
 
 TEST(OpenDriveRules, LetOtherRevisionsLeadOverOneRoadTwice) {
