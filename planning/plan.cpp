@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/lateral/candidate_costs.h"
 #include "roadbed/planning/lateral/candidate_evaluator.h"
 #include "roadbed/planning/lateral/candidate_search.h"
 #include "roadbed/planning/lateral/feasibility_check.h"
+#include "roadbed/planning/lateral/search_by_cost.h"
 
 namespace roadbed::planning {
 namespace {

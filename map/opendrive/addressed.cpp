@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "roadbed/map/opendrive/cross_section.h"
+#include "roadbed/map/opendrive/lane_borders.h"
 #include "roadbed/map/opendrive/road_frame.h"
 
 namespace roadbed::map::opendrive {

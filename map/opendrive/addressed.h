@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "roadbed/map/opendrive/lanes.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 
 namespace roadbed::map::opendrive {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "roadbed/map/opendrive/cross_section.h"
+#include "roadbed/map/opendrive/lane_borders.h"
 #include "roadbed/map/opendrive/marks.h"
 #include "roadbed/map/opendrive/virtual.h"
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "roadbed/map/elements/lane_graph.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 #include "roadbed/map/opendrive/document.h"
-#include "roadbed/map/opendrive/lanes.h"
 
 namespace roadbed::map::opendrive {
 

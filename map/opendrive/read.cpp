@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/opendrive/lanes.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 #include "roadbed/map/opendrive/links.h"
 #include "roadbed/map/opendrive/place_objects.h"
 #include "roadbed/map/opendrive/place_signals.h"

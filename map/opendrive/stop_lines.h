@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "roadbed/map/opendrive/lanes.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 #include "roadbed/map/opendrive/road_frame.h"
 
 namespace roadbed::map::opendrive {

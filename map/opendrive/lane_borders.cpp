@@ -1,11 +1,11 @@
-#include "roadbed/map/opendrive/cross_section.h"
+#include "roadbed/map/opendrive/lane_borders.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/map/opendrive/side_stretch.h"
+#include "roadbed/map/opendrive/borders_at_station.h"
 
 namespace roadbed::map::opendrive {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/side_stretch.h"
+#include "roadbed/map/opendrive/borders_at_station.h"
 
 #include <algorithm>
 #include <cmath>

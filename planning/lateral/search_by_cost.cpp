@@ -1,4 +1,4 @@
-#include "roadbed/planning/lateral/candidate_costs.h"
+#include "roadbed/planning/lateral/search_by_cost.h"
 
 #include <memory>
 #include <span>

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/lanes.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "roadbed/map/elements/lane_ring.h"
-#include "roadbed/map/opendrive/cross_section.h"
+#include "roadbed/map/opendrive/lane_borders.h"
 #include "roadbed/map/opendrive/marks.h"
 #include "roadbed/map/opendrive/road_rules.h"
 
