@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <utility>
 
 #include "roadbed/map/compiled/compiled_map.h"
@@ -10,6 +9,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::map {
 namespace {
@@ -54,15 +54,7 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) 
 
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options) {
-  const std::string bytes = format_to_write(file).write(road_map, options);
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream.flush()) {
-    throw InputError({.file = file.string(),
-                      .found = "it cannot be written",
-                      .needed = "a place to write",
-                      .remedy = "check the folder and its space"});
-  }
+  write_output(file, format_to_write(file).write(road_map, options));
 }
 
 }  // namespace roadbed::map

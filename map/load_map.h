@@ -16,10 +16,10 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options =
 /// The same from bytes; `name` stands for the file in messages.
 RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions& options = {});
 
-/// Writes a map in the format that the file's suffix names, over what is there. Compiled maps are
-/// written by write_compiled_map().
-/// @throws InputError if the suffix names none, the format cannot hold the map, or the file cannot
-///         be written.
+/// Writes a map in the format that the file's suffix names, over what is there: at every moment
+/// there is the old file, or the new one, whole. Compiled maps are written by write_compiled_map().
+/// @throws InputError if the suffix names none, or the format cannot hold the map.
+/// @throws OutputError if the file cannot be written.
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options = {});
 

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector2d;
 using Kernel = CGAL::Simple_cartesian<double>;
-using Traits = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
-using Graph = CGAL::Segment_Delaunay_graph_2<Traits>;
+using VoronoiTraits = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
+using Graph = CGAL::Segment_Delaunay_graph_2<VoronoiTraits>;
 using Site = Graph::Site_2;
 
 Kernel::Point_2 to_cgal(const Vector2d& point) { return {point.x(), point.y()}; }

@@ -12,9 +12,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-double share_along(const Vector2d& along, const Vector2d& from_a) {
+/// From the segment a … b.
+double distance_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
+  const Vector2d along = b - a;
   const double squared = along.squaredNorm();
-  return squared > 0.0 ? std::clamp(from_a.dot(along) / squared, 0.0, 1.0) : 0.0;
+  const double ratio = squared > 0.0 ? std::clamp((point - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (a + ratio * along - point).norm();
 }
 
 struct Farthest {
@@ -22,30 +25,18 @@ struct Farthest {
   double distance_m;
 };
 
-Farthest farthest_between(std::span<const Vector2d> points, std::size_t first, std::size_t last,
-                          decltype(distance_to_foot_m)* distance) {
+Farthest farthest_between(std::span<const Vector2d> points, std::size_t first, std::size_t last) {
   Farthest farthest{first, 0.0};
   for (std::size_t i = first + 1; i < last; ++i) {
-    const double distance_m = distance(points[first], points[last], points[i]);
-    if (distance_m > farthest.distance_m) farthest = {i, distance_m};
+    const double off_m = distance_m(points[first], points[last], points[i]);
+    if (off_m > farthest.distance_m) farthest = {i, off_m};
   }
   return farthest;
 }
 
 }  // namespace
 
-double distance_to_foot_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
-  const Vector2d along = b - a;
-  return (a + share_along(along, point - a) * along - point).norm();
-}
-
-double distance_from_start_m(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
-  const Vector2d along = b - a;
-  return (point - a - share_along(along, point - a) * along).norm();
-}
-
-std::vector<Vector2d> simplify(std::span<const Vector2d> points, double tolerance_m,
-                               decltype(distance_to_foot_m)* distance) {
+std::vector<Vector2d> simplify(std::span<const Vector2d> points, double tolerance_m) {
   if (!(tolerance_m >= 0.0) || !std::isfinite(tolerance_m)) {
     throw std::invalid_argument(
         fmt::format("simplify: tolerance must be finite and not negative, got {} m", tolerance_m));
@@ -57,7 +48,7 @@ std::vector<Vector2d> simplify(std::span<const Vector2d> points, double toleranc
   while (!open.empty()) {
     const auto [first, last] = open.back();
     open.pop_back();
-    const Farthest farthest = farthest_between(points, first, last, distance);
+    const Farthest farthest = farthest_between(points, first, last);
     if (farthest.distance_m <= tolerance_m) continue;
     keeps[farthest.index] = true;
     open.emplace_back(first, farthest.index);

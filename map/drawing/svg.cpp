@@ -52,8 +52,7 @@ bool PictureFrame::shows(const Eigen::AlignedBox2d& box_in_plane) const {
 
 std::string svg_line(const PictureFrame& frame, std::span<const Vector2d> points_in_plane) {
   constexpr double kTolerance_px = 0.2;
-  return path_data(frame, geometry::simplify(in_picture(frame, points_in_plane), kTolerance_px,
-                                             geometry::distance_from_start_m));
+  return path_data(frame, geometry::simplify(in_picture(frame, points_in_plane), kTolerance_px));
 }
 
 std::string svg_ring(const PictureFrame& frame, std::span<const Vector2d> points_in_plane) {

@@ -10,14 +10,14 @@
 namespace roadbed::map::inline index::lane_index {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound_m = std::numeric_limits<double>::infinity();
 
 /// Nearer to its border than this a point is on it, and so inside the lane.
 constexpr double kOnBorder_m2 = 1e-18;
 
 /// Nearest place of a centreline.
 struct Foot {
-  double squared_m2 = kInfinity;
+  double squared_m2 = kNoBound_m;
   std::uint64_t segment = 0;
   double share = 0.0;
 };
@@ -32,7 +32,7 @@ double squared_distance(const Point& a, const Point& b, const Eigen::Vector2d& p
 }
 
 double squared_distance(const Point* points, std::uint64_t count, const Eigen::Vector2d& p) {
-  double least = kInfinity, share = 0.0;
+  double least = kNoBound_m, share = 0.0;
   for (std::uint64_t i = 1; i < count; ++i) {
     least = std::min(least, squared_distance(points[i - 1], points[i], p, share));
   }
@@ -124,7 +124,7 @@ class Search {
       visit_beside();
     }
     for (const Candidate& candidate : scratch_.candidates) {
-      if (candidate.squared_m2 <= bound_m2_ && candidate.squared_m2 < kInfinity)
+      if (candidate.squared_m2 <= bound_m2_ && candidate.squared_m2 < kNoBound_m)
         scratch_.found.push_back(match(candidate));
     }
     std::sort(scratch_.found.begin(), scratch_.found.end(), [](const auto& a, const auto& b) {
@@ -352,7 +352,7 @@ class Search {
   const Eigen::Vector2d point_;
   const FloatPoint box_;
   Scratch& scratch_;
-  double bound_m2_ = kInfinity;
+  double bound_m2_ = kNoBound_m;
   float bound_ = std::numeric_limits<float>::infinity();
 };
 

@@ -17,8 +17,6 @@ constexpr double kMostCertified_m = 5.0;  // more room than this would only make
 constexpr double kMostOver_m = 1.0;       // the same, of what a span promises over its goal
 constexpr double kLeastMotion_m = 1e-7;   // motion bound of a span that is not halved any more
 
-constexpr double kOver_m = 1e-9;  // a bound over by this is over, whatever the rounding
-
 /// Proven spans, and the stretches that could not be proven.
 struct Cover {
   std::vector<ProvenSpan> proven;

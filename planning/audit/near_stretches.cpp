@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kMostSpans = 1e6;  // in a drive that is too near all along
 
-constexpr double kOver_m = 1e-9;  // a bound that is over by this is over, whatever the rounding
-
 // Two conflicts with an undecided time between them are one.
 void add(std::vector<Conflict>& conflicts, const Conflict& next) {
   if (conflicts.empty() || conflicts.back().to_s < next.from_s) {

@@ -11,6 +11,9 @@
 
 namespace roadbed::planning::inline audit {
 
+/// A bound over what is asked by this is over, whatever the rounding.
+inline constexpr double kOver_m = 1e-9;
+
 /// A part of one segment of a drive, between two of its samples: `from`, `to` in 0 … 1. Or several
 /// whole segments, one after the other, whose middle is a sample.
 struct Span {

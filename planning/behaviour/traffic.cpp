@@ -16,7 +16,7 @@ constexpr double kTurnsFor_s = 2.0;  // nobody turns for ever
 // Nor speeds up or brakes for ever; who brakes may well come to rest.
 constexpr double kSpeedsUpFor_s = 1.0, kBrakesFor_s = 2.0;
 constexpr double kMostSpeedUp_mps2 = 2.5, kMostBraking_mps2 = 6.0;
-constexpr double kStands_mps = 0.05;  // slower is noise of a recording
+constexpr double kRecordedNoise_mps = 0.05;  // slower is noise of a recording
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
 /// What was seen of somebody until now.
@@ -33,7 +33,7 @@ double mean_speed_mps(const geometry::TrajectoryPoint& before,
   const Eigen::Vector2d moved = after.pose().position() - before.pose().position();
   const Eigen::Vector2d along{std::cos(after.heading_rad), std::sin(after.heading_rad)};
   const double speed = std::copysign(moved.norm(), moved.dot(along)) / (after.t_s - before.t_s);
-  return std::abs(speed) < kStands_mps ? 0.0 : speed;
+  return std::abs(speed) < kRecordedNoise_mps ? 0.0 : speed;
 }
 
 /// Speed, its change and the bend over the last moments, pose of now.

@@ -6,8 +6,6 @@ namespace roadbed::planning::inline route {
 namespace {
 
 constexpr double kAtEnd_m = 1e-6;
-constexpr double kLeastPart_m = 0.1;  // of a lane group, to be worth beginning in it
-constexpr std::size_t kMostSpans = 64;
 
 // Part of a lane group that the change may use.
 FractionRange part_of(const RouteNetwork& network, const ChangeSpan& span, std::size_t lane_group) {

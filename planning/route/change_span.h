@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "roadbed/planning/route/routing_cost_model.h"
 
 namespace roadbed::planning::inline route {
+
+inline constexpr double kLeastPart_m = 0.1;    ///< of a lane group, to be worth a part of a change
+inline constexpr std::size_t kMostSpans = 64;  ///< from one lane, or to one end
 
 /// Lane changes, one or more to the same side, that take more than one lane group: they begin in
 /// one and end in a following one, while the lanes stay neighbours across the section ends between.

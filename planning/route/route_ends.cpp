@@ -6,8 +6,6 @@ namespace roadbed::planning::inline route {
 namespace {
 
 constexpr double kSectionEnd_m = 1e-6;
-constexpr double kLeastPart_m = 0.1;  // of a lane group, to be worth ending in it
-constexpr std::size_t kMostSpans = 64;
 
 double fraction_of(const RouteNetwork& network, const NetworkPlace& place) {
   const double length_m = network.lanes[place.lane].length_m;

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/lateral/batch_cost_kernel.h"
 #include "roadbed/tests/benchmark/peak_flops.h"
 #include "roadbed/tests/benchmark/planner_scene.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace {
 
@@ -176,14 +176,14 @@ double peak_memory_mb() {
 }
 
 void run(const Options& options) {
-  if (!options.dump_file.empty()) tools::check_writable(options.dump_file, true);
+  if (!options.dump_file.empty()) map::check_writable(options.dump_file, true);
   const benchmark_scene::PlannerScene scene(benchmark_scene::read_way_points(options.path_file),
                                             options.blocked);
   const Timing timing = time_cycles(scene, options);
   const std::ptrdiff_t cheaper = colliding(scene, options);
   const Work work = work_of(options);
   const double gflops = 1e3 * work.gflop / timing.median_cpu_ms;
-  if (!options.dump_file.empty()) tools::write_output(options.dump_file, dump(scene, options));
+  if (!options.dump_file.empty()) map::write_output(options.dump_file, dump(scene, options));
   if (options.json) {
     const ordered_json json = {{"candidates", 5396},
                                {"terms", planning::kCostTerms},

@@ -9,6 +9,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -57,7 +58,7 @@ TEST(Formats, SavedMapsAreReadAgain) {
   EXPECT_GT(load_map(file).lanes().size(), 0u);
   std::filesystem::remove(file);
   EXPECT_THROW(save_map(town, "town.docx"), InputError);
-  EXPECT_THROW(save_map(town, "/no/such/folder/town.xml"), InputError);
+  EXPECT_THROW(save_map(town, "/no/such/folder/town.xml"), OutputError);
 }
 
 }  // namespace

@@ -143,4 +143,4 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
                                          {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

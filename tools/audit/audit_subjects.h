@@ -57,4 +57,4 @@ class AuditSubjects {
   double speed_kmh_ = 30.0, offset_m_ = 0.0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

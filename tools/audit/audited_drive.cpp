@@ -88,4 +88,4 @@ std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
   return audited;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

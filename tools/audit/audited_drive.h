@@ -46,4 +46,4 @@ std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
                                     const planning::AuditQuestion& question, int threads,
                                     const std::function<void()>& done_one);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

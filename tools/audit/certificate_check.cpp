@@ -279,4 +279,4 @@ bool check_certificate_file(const fs::path& certificate, const CertificateDemand
   return holds;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

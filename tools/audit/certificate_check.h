@@ -28,4 +28,4 @@ bool check_certificate_file(const std::filesystem::path& certificate,
                             const CertificateDemands& demands, bool json, const Inputs& inputs,
                             std::ostream& out);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

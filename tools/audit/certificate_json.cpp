@@ -469,4 +469,4 @@ std::vector<std::filesystem::path> files_named_by_certificate(const std::filesys
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

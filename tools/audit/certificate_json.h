@@ -68,4 +68,4 @@ std::vector<std::filesystem::path> files_named_by_certificate(const std::filesys
 /// The same as `read_certificate_json` from bytes; `name` stands for the file in messages.
 CertificateFile parse_certificate_json(std::string_view bytes, const std::string& name);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

@@ -143,4 +143,4 @@ std::vector<std::string> ground_faults_of(const CertificateFile& file,
   return {fault};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

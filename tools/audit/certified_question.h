@@ -24,4 +24,4 @@ std::vector<std::string> ground_faults_of(const CertificateFile& file,
                                           const std::vector<map::OccupancyCell>& cells,
                                           double cell_m);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

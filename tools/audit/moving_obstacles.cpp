@@ -38,4 +38,4 @@ std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path&
   return parse_obstacles_csv(map::read_file(file), file.string());
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

@@ -14,4 +14,4 @@ namespace roadbed::tools::inline audit {
 std::vector<planning::ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
                                                               const Inputs& inputs);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::audit

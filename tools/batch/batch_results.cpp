@@ -6,9 +6,10 @@
 #include <string_view>
 
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/cli/build_id.h"
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/streamed_output.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -189,10 +190,10 @@ BatchSummary write_results(const ResultStore& store, const std::vector<LineResul
     summary.add(job.line, line);
   }
   results.commit();
-  write_output(folder / "summary.json", summary.document(kMostInSummary));
-  write_output(folder / "index.html",
-               batch_page(summary, fmt::format("{} jobs", with_commas(order.size()))));
+  map::write_output(folder / "summary.json", summary.document(kMostInSummary));
+  map::write_output(folder / "index.html",
+                    batch_page(summary, fmt::format("{} jobs", with_commas(order.size()))));
   return summary;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -20,4 +20,4 @@ constexpr std::size_t kMostInSummary = 10;
 BatchSummary write_results(const ResultStore& store, const std::vector<LineResult>& order,
                            const std::filesystem::path& folder);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

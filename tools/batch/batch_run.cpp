@@ -244,4 +244,4 @@ StopSignal::~StopSignal() {
 
 bool StopSignal::is_asked() { return stop_is_asked; }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

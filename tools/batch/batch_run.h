@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/file_hashes.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job_lines.h"
@@ -20,7 +21,7 @@
 #include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/batch/result_store.h"
 #include "roadbed/tools/cli/progress_bar.h"
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/streamed_output.h"
 
 namespace roadbed::tools::inline batch {
 
@@ -121,4 +122,4 @@ class StopSignal {
   }, terminate_{}, pipe_{}, file_size_{};
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

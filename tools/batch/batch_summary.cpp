@@ -142,4 +142,4 @@ std::string with_commas(std::size_t number) {
   return text;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -67,4 +67,4 @@ class BatchSummary {
 /// "1,234,567".
 std::string with_commas(std::size_t number);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -133,4 +133,4 @@ std::vector<fs::path> FileHashes::named_in(const fs::path& path, const FilesName
   return names_.put(path.native(), {stamp, std::move(names)}).names;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -58,4 +58,4 @@ class FileHashes {
   RecentlyUsed<KnownNames> names_{kMost};
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -61,4 +61,4 @@ std::vector<std::string> matching_files(const std::string& pattern) {
   return found;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -10,4 +10,4 @@ namespace roadbed::tools::inline batch {
 /// such signs matches what it names.
 std::vector<std::string> matching_files(const std::string& pattern);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

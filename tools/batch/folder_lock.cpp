@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 int open_or_refuse(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor >= 0) return descriptor;
-  throw OutputError({.file = file.string(),
-                     .found = std::string("cannot be made: ") + std::strerror(errno),
-                     .remedy = "choose a folder that you may write to"});
+  throw map::OutputError({.file = file.string(),
+                          .found = std::string("cannot be made: ") + std::strerror(errno),
+                          .remedy = "choose a folder that you may write to"});
 }
 
 using IsLeft = bool (*)(const std::string& name);
@@ -81,4 +81,4 @@ void UnfinishedMark::remove() {
   fs::remove(mark_, ignored);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

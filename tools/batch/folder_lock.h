@@ -33,4 +33,4 @@ class UnfinishedMark {
   std::filesystem::path mark_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -69,4 +69,4 @@ std::size_t InputCache::made() const {
   return made_;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -57,4 +57,4 @@ class InputCache final : public Inputs {
   mutable std::size_t made_ = 0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

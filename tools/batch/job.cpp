@@ -184,4 +184,4 @@ std::string hash_of_bad_line(std::string_view line) {
   return map::sha256_of_bytes(program() + " bad line " + std::string(line));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

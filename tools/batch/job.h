@@ -42,4 +42,4 @@ std::string hash_of(const Job& job, FileHashes& files);
 /// That of a line which is no job.
 std::string hash_of_bad_line(std::string_view line);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

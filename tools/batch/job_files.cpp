@@ -76,4 +76,4 @@ void remove_files_of(const std::string& hash, const fs::path& folder) {
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

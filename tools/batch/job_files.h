@@ -29,4 +29,4 @@ void remove_files_of(const std::string& hash, const std::filesystem::path& folde
 /// Where the files of a job are: `FOLDER/files/ab`.
 std::filesystem::path folder_of_files(const std::string& hash, const std::filesystem::path& folder);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

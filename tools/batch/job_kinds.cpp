@@ -38,4 +38,4 @@ const JobKind* JobKinds::find(std::string_view name) const {
   return found == kinds_.end() ? nullptr : &*found;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -41,4 +41,4 @@ class JobKinds {
   std::vector<JobKind> kinds_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -39,4 +39,4 @@ std::optional<JobLines::Line> JobLines::read() {
   return line;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

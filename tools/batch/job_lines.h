@@ -37,4 +37,4 @@ class JobLines {
   std::uint64_t bytes_ = 0;  // taken so far
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

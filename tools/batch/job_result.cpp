@@ -143,4 +143,4 @@ std::optional<ResultHead> read_head(std::string_view line) {
   return result;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

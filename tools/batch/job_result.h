@@ -84,4 +84,4 @@ struct ResultHead {
 /// None if the line is no whole result, as one that was cut off.
 std::optional<ResultHead> read_head(std::string_view line);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -10,10 +10,10 @@
 #include <system_error>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_result.h"
 #include "roadbed/tools/batch/job_verdict.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -55,9 +55,9 @@ std::vector<std::string> words_of(const Job& job, const std::vector<JobOutput>& 
 }
 
 [[noreturn]] void refuse_folder(const fs::path& folder, const std::string& found) {
-  throw OutputError({.file = folder.string(),
-                     .found = found,
-                     .remedy = "free some space or choose another folder"});
+  throw map::OutputError({.file = folder.string(),
+                          .found = found,
+                          .remedy = "free some space or choose another folder"});
 }
 
 void make_folder(const fs::path& folder) {
@@ -120,7 +120,7 @@ JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& f
                       const std::shared_ptr<const Inputs>& inputs) {
   try {
     return run_command(job, hash, folder, inputs);
-  } catch (const OutputError& error) {
+  } catch (const map::OutputError& error) {
     return failure(hash, Cause::disk, kFailed, error.what());
   } catch (const map::InputError& error) {
     return failure(hash, Cause::input, kFailed, error.what());
@@ -173,4 +173,4 @@ JobResult run_job(const Job& job, const std::string& hash, const fs::path& folde
   return result;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

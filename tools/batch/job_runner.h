@@ -79,4 +79,4 @@ JobResult run_job(const Job& job, const std::string& hash, const std::filesystem
 /// What the job's command says of its options, before it reads anything; nothing if all is well.
 std::string fault_of_options(const Job& job);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -111,4 +111,4 @@ JobVerdict verdict_of(std::string_view kind, const json& document) {
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -17,4 +17,4 @@ struct JobVerdict {
 /// @throws std::invalid_argument if it is not what that command prints.
 JobVerdict verdict_of(std::string_view kind, const nlohmann::json& document);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -72,4 +72,4 @@ void MemoryGate::leave() {
   left_.notify_one();
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

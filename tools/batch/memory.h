@@ -58,4 +58,4 @@ class MemoryGate {
   int running_ = 0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -61,4 +61,4 @@ class RecentlyUsed {
   std::unordered_map<std::string_view, typename Values::iterator> by_name_;  // names of `values_`
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -10,8 +10,9 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/job_lines.h"
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/streamed_output.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -94,7 +95,7 @@ void ResultStore::add(std::string_view line) {
   if (!head) throw std::invalid_argument("ResultStore::add: the line is no result");
   const std::scoped_lock lock(mutex_);
   if (!own_) {
-    make_output_folder(folder_ / "journal", true);
+    map::make_output_folder(folder_ / "journal", true);
     own_ = std::make_unique<AppendedFile>(journals_.back());
   }
   const std::uint64_t begin = own_->append(line);
@@ -120,4 +121,4 @@ std::string ResultStore::line(const JobHash& hash) const {
   return line;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

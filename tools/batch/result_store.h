@@ -10,8 +10,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/job_result.h"
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/tools/files/streamed_output.h"
 
 namespace roadbed::tools::inline batch {
 
@@ -68,4 +69,4 @@ class ResultStore {
   std::unordered_map<JobHash, Entry, HashOfHash> entries_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -85,4 +85,4 @@ void serve(std::istream& in, std::ostream& out, const JobKinds& kinds,
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -22,4 +22,4 @@ struct ServeOptions {
 /// by that name, and if its inputs are not those of that hash, they have changed.
 void serve(std::istream& in, std::ostream& out, const JobKinds& kinds, const ServeOptions& options);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -27,9 +27,10 @@ using Clock = std::chrono::steady_clock;
 constexpr int kCannotRun = 127;
 
 [[noreturn]] void refuse(const char* what) {
-  throw OutputError({.file = "a process of its own for jobs",
-                     .found = fmt::format("cannot be started: {}: {}", what, std::strerror(errno)),
-                     .remedy = "run with fewer --threads, or without --isolate"});
+  throw map::OutputError(
+      {.file = "a process of its own for jobs",
+       .found = fmt::format("cannot be started: {}: {}", what, std::strerror(errno)),
+       .remedy = "run with fewer --threads, or without --isolate"});
 }
 
 struct Pipe {
@@ -201,4 +202,4 @@ ServeProcess::Answer ServeProcess::ask(const std::string& line, std::optional<do
   return answer;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

@@ -51,4 +51,4 @@ class ServeProcess {
   int input_ = -1, output_ = -1, answered_ = 0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::batch

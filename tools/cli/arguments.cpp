@@ -197,4 +197,4 @@ std::string ArgumentSet::parse(std::vector<std::string> words) {
   return {};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

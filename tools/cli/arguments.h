@@ -156,4 +156,4 @@ class ArgumentSet {
   Arguments arguments_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -61,4 +61,4 @@ std::string build_id() {
   return id;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

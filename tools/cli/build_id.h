@@ -15,4 +15,4 @@ std::string name_and_version();
 /// change of the code. Empty where the linker wrote none.
 std::string build_id();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -40,4 +40,4 @@ class Command {
   virtual Exit run(const Streams& streams, const CommonOptions& common) = 0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

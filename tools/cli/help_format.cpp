@@ -131,4 +131,4 @@ class HelpFormat : public CLI::Formatter {
 
 std::shared_ptr<CLI::FormatterBase> make_help_format() { return std::make_shared<HelpFormat>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -12,4 +12,4 @@ namespace roadbed::tools::inline cli {
 /// in words behind the explanation.
 std::shared_ptr<CLI::FormatterBase> make_help_format();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

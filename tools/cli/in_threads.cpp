@@ -72,4 +72,4 @@ void in_threads(std::size_t count, int threads, const std::function<void(std::si
   in_threads_that_make(count, threads, [&] { return work; });
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

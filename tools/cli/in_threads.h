@@ -26,4 +26,4 @@ void in_threads(std::size_t count, int threads, const Make& make, const Work& wo
   });
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

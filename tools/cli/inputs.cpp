@@ -54,4 +54,4 @@ Inputs::Thing Inputs::get(const std::string&, const std::vector<fs::path>&,
   return make();
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -59,4 +59,4 @@ class Inputs {
                     const std::function<Thing()>& make) const;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -156,4 +156,4 @@ Place find_place(const map::RoadMap& road_map, const std::string& text,
                                        : at_point(road_map, text, participant);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -39,4 +39,4 @@ std::optional<Eigen::Vector2d> parse_point(std::string_view text);
 Place find_place(const map::RoadMap& road_map, const std::string& text,
                  map::Participant participant = map::Participant::car);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

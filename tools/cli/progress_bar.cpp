@@ -48,4 +48,4 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / hour_s);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -37,4 +37,4 @@ class ProgressBar {
 /// "45 s", "3 min", "2.5 h".
 std::string duration_text(double seconds);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

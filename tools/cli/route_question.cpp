@@ -183,4 +183,4 @@ RouteQuestion::Asked RouteQuestion::on(const map::RoadMap& road_map) const {
   return asked;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -66,4 +66,4 @@ class RouteQuestion {
   RouteRules rules_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

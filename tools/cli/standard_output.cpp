@@ -7,7 +7,7 @@
 #include <cstring>
 #include <iostream>
 
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::tools::inline cli {
 namespace {
@@ -31,7 +31,7 @@ StandardOutput::~StandardOutput() {
 bool StandardOutput::finish() { return write_pending(); }
 
 std::string StandardOutput::fault() const {
-  return OutputError(
+  return map::OutputError(
              {.file = "standard output",
               .found = std::string("cannot be written: ") + std::strerror(error_),
               .remedy =
@@ -78,4 +78,4 @@ void hold_closed_streams() {
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

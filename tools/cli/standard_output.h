@@ -39,4 +39,4 @@ class StandardOutput : public std::streambuf {
 /// them and is printed into. Using them is an error as before.
 void hold_closed_streams();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::cli

@@ -14,6 +14,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
@@ -26,7 +27,6 @@
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_json.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/report/audit_index.h"
@@ -85,7 +85,7 @@ class AuditCommand : public Command {
       return holds ? Exit::ok : Exit::failed;
     }
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
-      if (!output.empty()) check_writable(output, force_);
+      if (!output.empty()) map::check_writable(output, force_);
     }
     const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
     AuditQuestion question = asked(vehicle);
@@ -288,7 +288,7 @@ class AuditCommand : public Command {
           if (common.quiet) return;
           streams.err << ground_note(ground, question, scene.occupancy->resolution_m());
         });
-    if (!saved_drive_.empty()) write_output(saved_drive_, write_trajectory_csv(audited.drive));
+    if (!saved_drive_.empty()) map::write_output(saved_drive_, write_trajectory_csv(audited.drive));
     write_picture(audited, question, scene);
     write_report(audited, question, scene);
     write_certificate(audited.audit, question);
@@ -338,10 +338,10 @@ class AuditCommand : public Command {
                      const Scene& scene) const {
     if (svg_.empty()) return;
     const map::HeightBand heights = question.heights(audited.audit.ground);
-    write_output(svg_,
-                 audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
-                            occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
-                            drawn_lanes(audited, question, scene), question.moving_in_source}));
+    map::write_output(
+        svg_, audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
+                         occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
+                         drawn_lanes(audited, question, scene), question.moving_in_source}));
   }
 
   // The vehicle's rectangle, grown by the margin on every side.
@@ -374,8 +374,8 @@ class AuditCommand : public Command {
     if (!subjects_.is_swept()) {
       page.sources.push_back(source("trajectory", certified_file(subjects_.file())));
     }
-    write_output(report_,
-                 drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)));
+    map::write_output(
+        report_, drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)));
   }
 
   void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
@@ -392,7 +392,7 @@ class AuditCommand : public Command {
       index.back().pictures = close_ups(
           audited.audit.report, {audited.drive, parts, occupied, lanes, question.moving_in_source});
     }
-    write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()));
+    map::write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()));
   }
 
   static ReportSource source(const char* role, const CertifiedFile& file) {
@@ -421,14 +421,14 @@ class AuditCommand : public Command {
     }
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
     if (!map_.empty()) file.roads = certified_once(map_);
-    write_output(certificate_, write_certificate_json(file));
+    map::write_output(certificate_, write_certificate_json(file));
   }
 
   void write_files(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                    const Scene& scene) const {
-    if (!junit_.empty()) write_output(junit_, audits_junit(audits, occupancy_.string()));
+    if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, occupancy_.string()));
     if (!geojson_.empty()) {
-      write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()));
+      map::write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()));
     }
   }
 
@@ -449,4 +449,4 @@ class AuditCommand : public Command {
 
 std::unique_ptr<Command> make_audit_command() { return std::make_unique<AuditCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -138,4 +138,4 @@ std::string audits_geojson(const std::vector<AuditedDrive>& audits,
   return text + "\n]}\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

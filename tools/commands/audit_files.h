@@ -17,4 +17,4 @@ std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::str
 std::string audits_geojson(const std::vector<AuditedDrive>& audits,
                            const planning::AuditQuestion& question, const std::string& crs);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -69,4 +69,4 @@ std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
   return boxes;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -40,4 +40,4 @@ void check_overlap(const std::optional<map::Box2>& roads, const std::optional<ma
 std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
                                       const map::HeightBand& band, const map::Box2& around);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -273,4 +273,4 @@ std::string audits_table(const std::vector<AuditedDrive>& audits) {
   return text + "\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

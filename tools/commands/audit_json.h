@@ -27,4 +27,4 @@ IndexedAudit indexed(const AuditedDrive& audited);
 /// A line per drive, and one with the counts.
 std::string audits_table(const std::vector<AuditedDrive>& audits);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

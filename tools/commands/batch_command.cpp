@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/batch_summary.h"
@@ -15,7 +16,6 @@
 #include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/batch/serve.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -91,7 +91,7 @@ class BatchCommand : public Command {
       list_missing(options(common), job_kinds(), ResultStore(folder_), streams.out);
       return Exit::ok;
     }
-    make_output_folder(folder_, true);
+    map::make_output_folder(folder_, true);
     const FolderLock lock(folder_);
     return run_jobs(streams, common);
   }
@@ -114,7 +114,7 @@ class BatchCommand : public Command {
   }
 
   Exit run_server(const Streams& streams) const {
-    make_output_folder(folder_, true);
+    map::make_output_folder(folder_, true);
     if (!job_memory_.empty()) limit_memory(*parse_memory_size(job_memory_));
     serve(std::cin, streams.out, job_kinds(),
           {.folder = folder_,
@@ -202,6 +202,15 @@ class BatchCommand : public Command {
 
 }  // namespace
 
+const JobKinds& job_kinds() {
+  static const JobKinds kinds({{"import", make_import_command},
+                               {"validate", make_validate_command},
+                               {"route", make_route_command},
+                               {"simulate", make_simulate_command},
+                               {"audit", make_audit_command}});
+  return kinds;
+}
+
 std::unique_ptr<Command> make_batch_command() { return std::make_unique<BatchCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

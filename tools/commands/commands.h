@@ -32,4 +32,4 @@ std::unique_ptr<Command> make_jobs_command();
 /// Those that may be jobs of a batch.
 const JobKinds& job_kinds();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

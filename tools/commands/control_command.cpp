@@ -153,4 +153,4 @@ class ControlCommand : public Command {
 
 std::unique_ptr<Command> make_control_command() { return std::make_unique<ControlCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

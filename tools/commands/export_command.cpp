@@ -11,8 +11,8 @@
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -66,12 +66,12 @@ class ExportCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     const map::Format& format = map::format_to_write(output_);
     check_layers(format, layers_);
-    check_writable(output_, force_);
+    map::check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
     std::vector<std::string> notes;
     const std::string bytes =
         format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
-    write_output(output_, bytes);
+    map::write_output(output_, bytes);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_.string(), road_map.lanes().size(),
                  bytes.size());
@@ -111,4 +111,4 @@ class ExportCommand : public Command {
 
 std::unique_ptr<Command> make_export_command() { return std::make_unique<ExportCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <vector>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools::inline commands {
@@ -30,11 +30,11 @@ class FiguresCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    make_output_folder(folder_, force_);
+    map::make_output_folder(folder_, force_);
     const std::filesystem::path folder = folder_;
     for (const Figure& figure : all_figures()) {
-      write_output(folder / (figure.name + ".svg"), chart_svg(figure.chart));
-      write_output(folder / (figure.name + ".csv"), chart_csv(figure.chart));
+      map::write_output(folder / (figure.name + ".svg"), chart_svg(figure.chart));
+      map::write_output(folder / (figure.name + ".csv"), chart_csv(figure.chart));
       fmt::print(streams.out, "{}\n", (folder / figure.name).string());
     }
     return Exit::ok;
@@ -49,4 +49,4 @@ class FiguresCommand : public Command {
 
 std::unique_ptr<Command> make_figures_command() { return std::make_unique<FiguresCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -249,4 +249,4 @@ std::string rules_table() {
   return table;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -30,4 +30,4 @@ std::string findings_svg(const map::Validation& validation);
 /// All rules as a Markdown table, as the README of map/validation holds it.
 std::string rules_table();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -38,4 +38,4 @@ void keep_heap_in_huge_pages(const std::filesystem::path& input) {
   std::free(block);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

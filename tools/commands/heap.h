@@ -10,4 +10,4 @@ namespace roadbed::tools::inline commands {
 /// an import. Does nothing for files of more than 128 MB, or where the file is not there.
 void keep_heap_in_huge_pages(const std::filesystem::path& input);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

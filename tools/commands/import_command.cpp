@@ -7,11 +7,11 @@
 
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/stored_network.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/heap.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -47,12 +47,12 @@ class ImportCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    check_writable(output_, force_);
+    map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
-    OutputFile output(output_);
+    map::OutputFile output(output_);
     map::write_compiled_map(road_map, network, output);
     output.commit();
     if (json_) print_json(streams.out, road_map);
@@ -101,4 +101,4 @@ class ImportCommand : public Command {
 
 std::unique_ptr<Command> make_import_command() { return std::make_unique<ImportCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -214,4 +214,4 @@ class InfoCommand : public Command {
 
 std::unique_ptr<Command> make_info_command() { return std::make_unique<InfoCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -15,14 +15,15 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_runner.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/points_csv.h"
+#include "roadbed/tools/files/streamed_output.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -245,7 +246,7 @@ class JobsCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     const KindOptions& options = *std::ranges::find_if(options_, &KindOptions::given);
-    check_writable(options.file(), options.force());
+    map::check_writable(options.file(), options.force());
     BufferedOutput lines(options.file());
     std::size_t written = 0;
     const std::size_t count = options.for_each_job([&](const Json& job) {
@@ -271,4 +272,4 @@ class JobsCommand : public Command {
 
 std::unique_ptr<Command> make_jobs_command() { return std::make_unique<JobsCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

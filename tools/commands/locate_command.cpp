@@ -146,4 +146,4 @@ class LocateCommand : public Command {
 
 std::unique_ptr<Command> make_locate_command() { return std::make_unique<LocateCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

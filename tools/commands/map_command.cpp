@@ -28,4 +28,4 @@ class MapCommand : public Command {
 
 std::unique_ptr<Command> make_map_command() { return std::make_unique<MapCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

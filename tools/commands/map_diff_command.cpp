@@ -82,4 +82,4 @@ class MapDiffCommand : public Command {
 
 std::unique_ptr<Command> make_map_diff_command() { return std::make_unique<MapDiffCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

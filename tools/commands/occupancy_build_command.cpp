@@ -18,8 +18,8 @@
 #include "roadbed/map/occupancy/octree/tile_builder.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/map/occupancy/octree/tree_origin.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -113,9 +113,9 @@ class OccupancyBuildCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (tiles_m_) return build_tiles(streams, common);
-    check_writable(output_, force_);
+    map::check_writable(output_, force_);
     const Made made = make(streams.err, common.quiet);
-    write_output(output_, made.file.bytes);
+    map::write_output(output_, made.file.bytes);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(), made.file.nodes,
                  made.resolution_m, made.file.bytes.size());
@@ -227,10 +227,10 @@ class OccupancyBuildCommand : public Command {
   }
 
   Exit build_tiles(const Streams& streams, const CommonOptions& common) const {
-    if (std::filesystem::exists(output_)) make_output_folder(output_, force_);
+    if (std::filesystem::exists(output_)) map::make_output_folder(output_, force_);
     const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
     const map::TileBuilder::Plan plan = plan_of_tiles(poses, streams.err, common.quiet);
-    make_output_folder(output_, force_);
+    map::make_output_folder(output_, force_);
     try {
       const map::TilesIndex index = write_tiles(plan, poses);
       if (!common.quiet) {
@@ -254,9 +254,9 @@ class OccupancyBuildCommand : public Command {
     std::error_code ignored;
     std::filesystem::remove(map::tiles_index_file(output_), ignored);
     map::TilesIndex index = builder.finish([this](const std::string& file, std::string_view bytes) {
-      write_output(output_ / file, bytes);
+      map::write_output(output_ / file, bytes);
     });
-    write_output(map::tiles_index_file(output_), map::write_tiles_index(index));
+    map::write_output(map::tiles_index_file(output_), map::write_tiles_index(index));
     return index;
   }
 
@@ -341,4 +341,4 @@ std::unique_ptr<Command> make_occupancy_build_command() {
   return std::make_unique<OccupancyBuildCommand>();
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -40,4 +40,4 @@ class OccupancyCommand : public Command {
 
 std::unique_ptr<Command> make_occupancy_command() { return std::make_unique<OccupancyCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

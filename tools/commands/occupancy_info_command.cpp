@@ -187,4 +187,4 @@ std::unique_ptr<Command> make_occupancy_info_command() {
   return std::make_unique<OccupancyInfoCommand>();
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/weights_json.h"
 #include "roadbed/tools/report/from_occupancy.h"
@@ -204,7 +204,7 @@ class PlanCommand : public Command {
     options.circles = circles_;
     const World world = make_world(scenario);
     const planning::PlanInput input = input_of(scenario, world);
-    make_output_folder(folder_, force_);
+    map::make_output_folder(folder_, force_);
     const Plan plan = planning::plan_path(input, scenario.vehicle, options);
     write(scenario, world, input, plan);
     if (json_) {
@@ -220,10 +220,10 @@ class PlanCommand : public Command {
   void write(const Scenario& scenario, const World& world, const planning::PlanInput& input,
              const Plan& plan) const {
     const std::filesystem::path folder = folder_;
-    write_output(folder / "candidates.csv", candidates_csv(plan));
+    map::write_output(folder / "candidates.csv", candidates_csv(plan));
     if (plan.chosen) {
-      write_output(folder / "trajectory.csv",
-                   write_trajectory_csv(in_source(plan, input.origin_in_source)));
+      map::write_output(folder / "trajectory.csv",
+                        write_trajectory_csv(in_source(plan, input.origin_in_source)));
     }
     PlanPicture picture{.input = input,
                         .plan = plan,
@@ -236,7 +236,7 @@ class PlanCommand : public Command {
       picture.occupied =
           occupied_in(*world.occupancy, map::HeightBand{}, {start - around, start + around});
     }
-    write_output(folder / "plan.svg", plan_svg(picture));
+    map::write_output(folder / "plan.svg", plan_svg(picture));
   }
 
   std::string scene_file_, folder_, weights_file_;
@@ -248,4 +248,4 @@ class PlanCommand : public Command {
 
 std::unique_ptr<Command> make_plan_command() { return std::make_unique<PlanCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

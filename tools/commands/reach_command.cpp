@@ -9,13 +9,13 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/isochrone.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/route_output.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -70,7 +70,7 @@ class ReachCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions&) override {
     if (!output_.empty()) {
       check_suffix(output_, kAreaSuffixes);
-      check_writable(output_, force_);
+      map::check_writable(output_, force_);
     }
     const Limit limit = limit_of(within_).value();
     const map::RoadMap road_map = map::load_map(map_file_);
@@ -92,13 +92,13 @@ class ReachCommand : public Command {
   void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
              const char* unit) const {
     if (output_.extension() == ".csv")
-      return write_output(output_, reached_csv(road_map, reached, unit));
+      return map::write_output(output_, reached_csv(road_map, reached, unit));
     std::vector<planning::LanePart> parts;
     for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
     const auto area = planning::area_of(road_map, parts);
-    write_output(output_, output_.extension() == ".svg"
-                              ? area_svg(road_map, area, {})
-                              : area_geojson(road_map, area, {{"within", within_}}));
+    map::write_output(output_, output_.extension() == ".svg"
+                                   ? area_svg(road_map, area, {})
+                                   : area_geojson(road_map, area, {{"within", within_}}));
   }
 
   void print(const Streams& streams, const map::RoadMap& road_map,
@@ -136,4 +136,4 @@ class ReachCommand : public Command {
 
 std::unique_ptr<Command> make_reach_command() { return std::make_unique<ReachCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

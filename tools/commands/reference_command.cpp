@@ -9,13 +9,13 @@
 #include <string>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/reference/line_driving.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/way_point_line.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -67,7 +67,7 @@ class ReferenceCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    check_writable(output_, force_);
+    map::check_writable(output_, force_);
     return way_points_.asked() ? through_way_points(streams, common) : along_route(streams, common);
   }
 
@@ -82,7 +82,7 @@ class ReferenceCommand : public Command {
 
   Exit through_way_points(const Streams& streams, const CommonOptions& common) const {
     const WayPointLine::Table table = way_points_.table(step_m_, options_.max_smoothing_m);
-    write_output(output_, table.csv);
+    map::write_output(output_, table.csv);
     if (!common.quiet) {
       for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
       fmt::print(streams.err,
@@ -105,7 +105,7 @@ class ReferenceCommand : public Command {
     planning::ReferenceLineOptions options = options_;
     options.corner_vehicle = way_points_.vehicle();
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
-    write_output(output_, line_csv(road_map, line, step_m_));
+    map::write_output(output_, line_csv(road_map, line, step_m_));
     if (!common.quiet) {
       for (const std::string& note : line.notes()) fmt::print(streams.err, "note: {}\n", note);
       const planning::LineDriving driving = planning::driving_along(
@@ -132,4 +132,4 @@ class ReferenceCommand : public Command {
 
 std::unique_ptr<Command> make_reference_command() { return std::make_unique<ReferenceCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

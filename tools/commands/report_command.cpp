@@ -166,4 +166,4 @@ class ReportCommand : public Command {
 
 std::unique_ptr<Command> make_report_command() { return std::make_unique<ReportCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -20,7 +20,7 @@
 namespace roadbed::tools::inline commands {
 namespace {
 
-struct Row : OdRow {
+struct PairRow : OdRow {
   std::optional<planning::RoutePlace> from_place, to_place;
 };
 
@@ -30,7 +30,7 @@ struct Cell {
 };
 
 void place_row(const map::RoadMap& road_map, const planning::Router& router,
-               map::Participant participant, Row& row) {
+               map::Participant participant, PairRow& row) {
   try {
     row.from_place = find_place(road_map, row.from, participant).for_route();
     row.to_place = find_place(road_map, row.to, participant).for_route();
@@ -42,8 +42,8 @@ void place_row(const map::RoadMap& road_map, const planning::Router& router,
   if (row.fault.empty()) row.fault = router.unfit(*row.to_place, "goal");
 }
 
-std::vector<Row> read_rows(const std::filesystem::path& file) {
-  std::vector<Row> rows;
+std::vector<PairRow> read_rows(const std::filesystem::path& file) {
+  std::vector<PairRow> rows;
   for (OdRow& row : parse_od_csv(map::read_file(file), file.string())) {
     rows.push_back({std::move(row), {}, {}});
   }
@@ -61,7 +61,7 @@ class Batch {
     router_.prepare();
   }
 
-  void place(std::vector<Row>& rows) const {
+  void place(std::vector<PairRow>& rows) const {
     in_threads(rows.size(), options_.threads, [&](std::size_t i) {
       if (rows[i].fault.empty()) {
         place_row(road_map_, router_, router_.options().participant, rows[i]);
@@ -69,7 +69,7 @@ class Batch {
     });
   }
 
-  std::vector<Cell> answer_rows(const std::vector<Row>& rows) const {
+  std::vector<Cell> answer_rows(const std::vector<PairRow>& rows) const {
     std::vector<Cell> cells(rows.size());
     in_threads(
         rows.size(), options_.threads,
@@ -80,7 +80,7 @@ class Batch {
     return cells;
   }
 
-  std::vector<Cell> answer_matrix(const std::vector<Row>& rows) const {
+  std::vector<Cell> answer_matrix(const std::vector<PairRow>& rows) const {
     std::vector<planning::ClimbedSpace> goals(rows.size());
     const auto make = [&] { return planning::HierarchySearch(solver_.metric()); };
     in_threads(rows.size(), options_.threads, make,
@@ -111,7 +111,7 @@ class Batch {
     std::optional<planning::NoRouteExplainer> obstacles;
   };
 
-  Cell answer(Own& own, const Row& row) const {
+  Cell answer(Own& own, const PairRow& row) const {
     if (!row.fault.empty()) return none(row, row.fault);
     planning::RouteTask task = solver_.task(*row.from_place, *row.to_place);
     const planning::GraphPath path = own.search.find(task.start.seeds, task.goal.seeds);
@@ -131,7 +131,7 @@ class Batch {
     return cell;
   }
 
-  Cell none(const Row& row, const std::string& reason) const {
+  Cell none(const PairRow& row, const std::string& reason) const {
     Cell cell;
     cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, csv_field(row.from), csv_field(row.to),
                            csv_field(reason));
@@ -140,7 +140,7 @@ class Batch {
   }
 
   // The table says that there is none, the document why.
-  Cell no_route(Own& own, const Row& row) const {
+  Cell no_route(Own& own, const PairRow& row) const {
     const planning::RoutePlace from = *row.from_place, to = *row.to_place;
     Cell cell =
         none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
@@ -154,12 +154,12 @@ class Batch {
     return cell;
   }
 
-  static std::string with_row(Json json, const Row& row) {
+  static std::string with_row(Json json, const PairRow& row) {
     json["row"] = row.line;
     return text_of(json, 1);
   }
 
-  Cell matrix_cell(const Row& from, const Row& to, const planning::ClimbedSpace& start,
+  Cell matrix_cell(const PairRow& from, const PairRow& to, const planning::ClimbedSpace& start,
                    const planning::ClimbedSpace& goal) const {
     planning::Ticks ticks = cost_between(start, goal);
     const auto direct = direct_way(solver_.model(), *from.from_place, *to.to_place);
@@ -204,7 +204,7 @@ std::string header(const planning::RouteOptions& rules, bool matrix) {
 
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const RouteBatchOptions& options) {
-  std::vector<Row> rows = read_rows(file);
+  std::vector<PairRow> rows = read_rows(file);
   const Batch batch(road_map, rules, options);
   batch.place(rows);
   const std::vector<Cell> cells =
@@ -217,7 +217,7 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
     if (options.json) add_element(cell.json, documents);
     ++(cell.found ? answer.found : answer.none);
   }
-  for (const Row& row : rows) {
+  for (const PairRow& row : rows) {
     if (row.fault.empty()) continue;
     answer.faults.push_back(fmt::format("{}:{}: {}", file.string(), row.line, row.fault));
   }
@@ -227,4 +227,4 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
   return answer;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

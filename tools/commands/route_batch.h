@@ -29,4 +29,4 @@ struct BatchAnswer {
 BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
                         const planning::RouteOptions& rules, const RouteBatchOptions& options);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

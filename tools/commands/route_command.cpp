@@ -6,6 +6,7 @@
 #include <string>
 
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/alternatives.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/router.h"
@@ -14,7 +15,6 @@
 #include "roadbed/tools/commands/route_batch.h"
 #include "roadbed/tools/commands/route_output.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -67,7 +67,7 @@ class RouteCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!output_.empty()) {
       check_suffix(output_, batch_.empty() ? kAreaSuffixes : std::vector<std::string>{".csv"});
-      check_writable(output_, force_);
+      map::check_writable(output_, force_);
     }
     if (!batch_.empty()) return run_batch(streams, common);
     const auto kept_map = common.inputs->road_map(map_file_);
@@ -86,7 +86,7 @@ class RouteCommand : public Command {
         routes.push_back(std::move(others[i].route));
       }
     }
-    if (!output_.empty()) write_output(output_, file_text(output_, road_map, routes));
+    if (!output_.empty()) map::write_output(output_, file_text(output_, road_map, routes));
     print(streams, road_map, asked, routes, shared);
     if (!common.quiet) note_defaults(streams, routes.front());
     return Exit::ok;
@@ -114,7 +114,7 @@ class RouteCommand : public Command {
     if (output_.empty()) {
       fmt::print(streams.out, "{}", json_ ? answer.json : answer.csv);
     } else {
-      write_output(output_, answer.csv);
+      map::write_output(output_, answer.csv);
       if (json_) fmt::print(streams.out, "{}", answer.json);
     }
     for (const std::string& fault : answer.faults) {
@@ -189,4 +189,4 @@ class RouteCommand : public Command {
 
 std::unique_ptr<Command> make_route_command() { return std::make_unique<RouteCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -314,4 +314,4 @@ void check_suffix(const std::filesystem::path& output, const std::vector<std::st
                          .remedy = "rename the output"});
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

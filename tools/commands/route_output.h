@@ -51,4 +51,4 @@ inline const std::vector<std::string> kAreaSuffixes = {".geojson", ".json", ".cs
 /// @throws InputError if it does not.
 void check_suffix(const std::filesystem::path& output, const std::vector<std::string>& suffixes);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -33,4 +33,4 @@ nlohmann::ordered_json scenario_counts(const std::string& bytes, const std::stri
           {"planning_problems", scenario.planning_problems.size()}};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

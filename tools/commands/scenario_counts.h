@@ -10,4 +10,4 @@ namespace roadbed::tools::inline commands {
 /// @throws InputError if the scenario is unusable.
 nlohmann::ordered_json scenario_counts(const std::string& bytes, const std::string& name);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

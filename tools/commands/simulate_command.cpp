@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/output_file.h"
 #include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/report/drive_files.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -28,7 +28,7 @@ using DrivenFile = decltype(DrivenScenario::files)::value_type;
 /// Of what an earlier drive left, the solution goes, too, where this drive has none: nobody could
 /// tell that it is not this drive's.
 void write_files(const DrivenScenario& driven, const fs::path& folder) {
-  for (const auto& [name, bytes] : driven.files) write_output(folder / name, bytes);
+  for (const auto& [name, bytes] : driven.files) map::write_output(folder / name, bytes);
   if (std::ranges::find(driven.files, "solution.xml", &DrivenFile::first) == driven.files.end()) {
     fs::remove(folder / "solution.xml");
   }
@@ -46,7 +46,7 @@ std::string seed_fault(const std::string& text) {
 }
 
 /// One scenario of many: what became of it.
-struct Row {
+struct ScenarioRow {
   fs::path file;
   std::string outcome = {}, text = {};
   double at_s = 0.0, slowest_ms = 0.0, median_ms = 0.0;
@@ -54,13 +54,13 @@ struct Row {
 };
 
 /// Scenarios right in the folder, by name, which is also that of a scenario's outputs.
-std::vector<Row> rows_of(const fs::path& folder) {
-  std::vector<Row> rows;
+std::vector<ScenarioRow> rows_of(const fs::path& folder) {
+  std::vector<ScenarioRow> rows;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string suffix = entry.path().extension().string();
     if (suffix == ".json" || suffix == ".xml") rows.push_back({.file = entry.path()});
   }
-  const auto stem = [](const Row& row) { return row.file.stem(); };
+  const auto stem = [](const ScenarioRow& row) { return row.file.stem(); };
   std::ranges::sort(rows, {}, stem);
   const auto twice = std::ranges::adjacent_find(rows, {}, stem);
   if (twice != rows.end()) {
@@ -72,7 +72,7 @@ std::vector<Row> rows_of(const fs::path& folder) {
   return rows;
 }
 
-void note_times(std::vector<double> cycle_ms, Row& row) {
+void note_times(std::vector<double> cycle_ms, ScenarioRow& row) {
   if (cycle_ms.empty()) return;
   std::ranges::sort(cycle_ms);
   row.slowest_ms = cycle_ms.back();
@@ -88,18 +88,18 @@ struct DriveOptions {
 
 /// Drives one; whatever is wrong with it is its own outcome.
 /// @throws OutputError, std::bad_alloc  which say nothing of the scenario.
-void drive_row(const DriveOptions& options, Row& row) {
+void drive_row(const DriveOptions& options, ScenarioRow& row) {
   try {
     const DrivenScenario driven = drive_scenario(row.file, options.choice, *options.inputs);
     const fs::path folder = options.output / row.file.stem();
-    make_output_folder(folder, true);
+    map::make_output_folder(folder, true);
     write_files(driven, folder);
     row.outcome = name(driven.verdict.outcome);
     row.text = driven.verdict.text;
     row.at_s = driven.verdict.at_s;
     row.is_good = driven.verdict.outcome == Outcome::goal_reached;
     note_times(driven.cycle_ms, row);
-  } catch (const OutputError&) {
+  } catch (const map::OutputError&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;
@@ -109,16 +109,16 @@ void drive_row(const DriveOptions& options, Row& row) {
   }
 }
 
-void drive_all(std::vector<Row>& rows, const DriveOptions& options, ProgressBar& progress) {
+void drive_all(std::vector<ScenarioRow>& rows, const DriveOptions& options, ProgressBar& progress) {
   in_threads(rows.size(), options.threads, [&](std::size_t i) {
     drive_row(options, rows[i]);
     progress.done_one();
   });
 }
 
-std::string table_csv(const std::vector<Row>& rows) {
+std::string table_csv(const std::vector<ScenarioRow>& rows) {
   std::string csv = "scenario,outcome,at_s,text\n";
-  for (const Row& row : rows) {
+  for (const ScenarioRow& row : rows) {
     std::string text = row.text;
     std::ranges::replace(text, '"', '\'');
     csv +=
@@ -158,7 +158,7 @@ class SimulateCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    if (!timings_file_.empty()) check_writable(timings_file_, force_);
+    if (!timings_file_.empty()) map::check_writable(timings_file_, force_);
     read_changes();
     return fs::is_directory(scenario_file_) ? run_folder(streams, common)
                                             : run_one(streams, common);
@@ -194,9 +194,9 @@ class SimulateCommand : public Command {
 
   Exit run_one(const Streams& streams, const CommonOptions& common) const {
     const DrivenScenario driven = drive_scenario(scenario_file_, choice_, *common.inputs);
-    make_output_folder(folder_, force_);
+    map::make_output_folder(folder_, force_);
     write_files(driven, folder_);
-    if (!timings_file_.empty()) write_output(timings_file_, timings_csv(driven.cycle_ms));
+    if (!timings_file_.empty()) map::write_output(timings_file_, timings_csv(driven.cycle_ms));
     print_one(streams.out, driven);
     if (!common.quiet) {
       fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
@@ -216,35 +216,35 @@ class SimulateCommand : public Command {
   }
 
   Exit run_folder(const Streams& streams, const CommonOptions& common) const {
-    std::vector<Row> rows = rows_of(scenario_file_);
+    std::vector<ScenarioRow> rows = rows_of(scenario_file_);
     if (rows.empty()) {
       throw map::InputError({.file = scenario_file_.string(),
                              .found = "no scenario",
                              .needed = "files that end in .json or .xml",
                              .remedy = "give another folder"});
     }
-    make_output_folder(folder_, force_);
+    map::make_output_folder(folder_, force_);
     ProgressBar progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     drive_all(rows, {folder_, choice_, common.inputs, common.threads}, progress);
-    write_output(folder_ / "drives.csv", table_csv(rows));
-    if (!timings_file_.empty()) write_output(timings_file_, folder_timings_csv(rows));
+    map::write_output(folder_ / "drives.csv", table_csv(rows));
+    if (!timings_file_.empty()) map::write_output(timings_file_, folder_timings_csv(rows));
     json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);
-    const bool all_good = std::ranges::all_of(rows, &Row::is_good);
+    const bool all_good = std::ranges::all_of(rows, &ScenarioRow::is_good);
     return all_good ? Exit::ok : Exit::failed;
   }
 
-  static std::string folder_timings_csv(const std::vector<Row>& rows) {
+  static std::string folder_timings_csv(const std::vector<ScenarioRow>& rows) {
     std::string csv = "scenario,median_ms,slowest_ms\n";
-    for (const Row& row : rows) {
+    for (const ScenarioRow& row : rows) {
       csv += fmt::format("{},{:.3f},{:.3f}\n", row.file.stem().string(), row.median_ms,
                          row.slowest_ms);
     }
     return csv;
   }
 
-  static void print_json(std::ostream& out, const std::vector<Row>& rows) {
+  static void print_json(std::ostream& out, const std::vector<ScenarioRow>& rows) {
     Json drives = Json::array();
-    for (const Row& row : rows) {
+    for (const ScenarioRow& row : rows) {
       drives.push_back({{"scenario", row.file.stem().string()},
                         {"outcome", row.outcome},
                         {"at_s", row.at_s},
@@ -253,12 +253,12 @@ class SimulateCommand : public Command {
     out << Json{{"drives", drives}}.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   }
 
-  static void print_table(std::ostream& out, const std::vector<Row>& rows) {
-    for (const Row& row : rows) {
+  static void print_table(std::ostream& out, const std::vector<ScenarioRow>& rows) {
+    for (const ScenarioRow& row : rows) {
       fmt::print(out, "{:32} {:13} {}\n", row.file.stem().string(), row.outcome, row.text);
     }
-    fmt::print(out, "{} of {} reach their goal\n", std::ranges::count_if(rows, &Row::is_good),
-               rows.size());
+    fmt::print(out, "{} of {} reach their goal\n",
+               std::ranges::count_if(rows, &ScenarioRow::is_good), rows.size());
   }
 
   fs::path scenario_file_, folder_, timings_file_;
@@ -271,4 +271,4 @@ class SimulateCommand : public Command {
 
 std::unique_ptr<Command> make_simulate_command() { return std::make_unique<SimulateCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

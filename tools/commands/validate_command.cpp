@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/finding_reports.h"
-#include "roadbed/tools/files/output_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -46,7 +46,7 @@ class ValidateCommand : public Command {
       return Exit::ok;
     }
     for (const std::filesystem::path* file : {&junit_, &sarif_, &geojson_, &svg_}) {
-      if (!file->empty()) check_writable(*file, force_);
+      if (!file->empty()) map::check_writable(*file, force_);
     }
     const Validation validation = map::validate_file(input_, options_);
     if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
@@ -93,12 +93,12 @@ class ValidateCommand : public Command {
   void write_files(const Streams& streams, const Validation& validation) const {
     const std::string name = input_.filename().string();
     const std::string source = input_.generic_string();
-    if (!junit_.empty()) write_output(junit_, findings_junit(validation, name));
-    if (!sarif_.empty()) write_output(sarif_, findings_sarif(validation, source));
-    if (!geojson_.empty()) write_output(geojson_, findings_geojson(validation));
+    if (!junit_.empty()) map::write_output(junit_, findings_junit(validation, name));
+    if (!sarif_.empty()) map::write_output(sarif_, findings_sarif(validation, source));
+    if (!geojson_.empty()) map::write_output(geojson_, findings_geojson(validation));
     if (svg_.empty()) return;
     if (validation.road_map) {
-      write_output(svg_, findings_svg(validation));
+      map::write_output(svg_, findings_svg(validation));
     } else {
       fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
                  svg_.string());
@@ -125,4 +125,4 @@ class ValidateCommand : public Command {
 
 std::unique_ptr<Command> make_validate_command() { return std::make_unique<ValidateCommand>(); }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

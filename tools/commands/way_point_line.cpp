@@ -151,4 +151,4 @@ WayPointLine::Table WayPointLine::rows_of(const Line& made, double step_m) const
   return table;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -65,4 +65,4 @@ class WayPointLine {
   double speed_limit_kmh_ = 50.0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::commands

@@ -122,4 +122,4 @@ void CsvReader::refuse(const std::string& element, const std::string& found,
                          .remedy = remedy});
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -60,4 +60,4 @@ class CsvReader {
   std::vector<std::string> names_, fields_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

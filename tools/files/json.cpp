@@ -166,4 +166,4 @@ nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& fi
   }
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -68,4 +68,4 @@ class JsonNode {
 /// @throws InputError with the byte at which the text stops to be JSON.
 nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& file);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -116,4 +116,4 @@ std::string obstacles_text(const std::vector<planning::ObstacleInSource>& obstac
   return fmt::to_string(text);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

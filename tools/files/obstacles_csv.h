@@ -20,4 +20,4 @@ std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view byt
 /// All that is known of obstacles, so that equal texts mean equal obstacles.
 std::string obstacles_text(const std::vector<planning::ObstacleInSource>& obstacles);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -53,4 +53,4 @@ std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name)
   return rows;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -30,4 +30,4 @@ struct OdRow {
 /// @throws InputError if there is no such header or no row at all.
 std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

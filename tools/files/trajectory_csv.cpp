@@ -248,4 +248,4 @@ std::string curvature_note(const geometry::Trajectory& drive, const geometry::Ve
       at_s, worst_per_m, most_per_m);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

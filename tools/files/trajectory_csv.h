@@ -43,4 +43,4 @@ std::optional<ImplausibleRow> implausible_row(const std::vector<geometry::Trajec
 /// over a metre of path, so that noise of positions is no bend.
 std::string curvature_note(const geometry::Trajectory& drive, const geometry::VehicleShape& shape);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -241,4 +241,4 @@ VehicleShape read_vehicle_shape_json(const std::filesystem::path& file) {
   return vehicle_shape_in(JsonNode(document, file.string()));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

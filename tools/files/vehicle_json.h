@@ -64,4 +64,4 @@ geometry::VehicleShape vehicle_shape_in(const JsonNode& node);
 /// The same from a vehicle's file.
 geometry::VehicleShape read_vehicle_shape_json(const std::filesystem::path& file);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

@@ -44,4 +44,4 @@ planning::CostTerms read_weights(const std::filesystem::path& file) {
   return parse_weights(map::read_file(file), file.string());
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

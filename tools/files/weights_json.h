@@ -15,4 +15,4 @@ planning::CostTerms read_weights(const std::filesystem::path& file);
 /// The same from bytes; `name` stands for the file in messages.
 planning::CostTerms parse_weights(std::string_view bytes, const std::string& name);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::files

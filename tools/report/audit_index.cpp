@@ -90,4 +90,4 @@ std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std:
                             map::html_text(version));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -23,4 +23,4 @@ struct IndexedAudit {
 std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std::string& occupancy,
                              const std::string& version);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

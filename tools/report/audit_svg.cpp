@@ -246,4 +246,4 @@ std::string audit_svg(const AuditPicture& picture) {
          panel_svg(picture, frame.size_px.y()) + "</svg>\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

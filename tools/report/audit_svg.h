@@ -27,4 +27,4 @@ struct AuditPicture {
 /// where it is least. 900 wide, with a scale bar. Same input, same bytes.
 std::string audit_svg(const AuditPicture& picture);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -208,4 +208,4 @@ std::string chart_csv(const Chart& chart) {
   return fmt::to_string(csv);
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

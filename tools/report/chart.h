@@ -36,4 +36,4 @@ std::string chart_svg(const Chart& chart);
 /// `series,x,y`, a row per point.
 std::string chart_csv(const Chart& chart);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

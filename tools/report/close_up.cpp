@@ -192,4 +192,4 @@ std::vector<ReportPicture> close_ups(const planning::AuditReport& report,
   return pictures;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

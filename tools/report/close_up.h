@@ -29,4 +29,4 @@ struct CloseUpScene {
 std::vector<ReportPicture> close_ups(const planning::AuditReport& report,
                                      const CloseUpScene& scene);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -239,4 +239,4 @@ std::vector<ReportPlot> drive_plots(const Drive& drive,
       clearance_plot(drive, audit)};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -27,4 +27,4 @@ std::vector<ReportCheck> drive_checks(const Drive& drive,
 std::vector<ReportPlot> drive_plots(const Drive& drive,
                                     const std::optional<planning::AuditReport>& audit);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

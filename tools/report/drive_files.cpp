@@ -110,4 +110,4 @@ DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice,
   return drive_and_describe(scenario, world, choice).result;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

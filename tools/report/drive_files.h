@@ -37,4 +37,4 @@ struct DriveChoice {
 DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {},
                               const Inputs& inputs = Inputs());
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -166,4 +166,4 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   return input;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -29,4 +29,4 @@ struct AuditSurroundings {
 ReportInput report_of_audit(const geometry::Trajectory& drive, const planning::AuditReport& report,
                             const AuditSurroundings& around);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -116,4 +116,4 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
   return input;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

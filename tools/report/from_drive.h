@@ -28,4 +28,4 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
 /// Stretches of equal behaviour, each with the reason of its first cycle.
 std::vector<ReportDecision> decisions_of(const Drive& drive);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

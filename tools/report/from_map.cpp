@@ -81,4 +81,4 @@ LineInSource reference_points(const map::RoadMap& road_map, const planning::Refe
   return points;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

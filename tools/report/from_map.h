@@ -27,4 +27,4 @@ std::optional<Eigen::Vector2d> route_goal(const map::RoadMap& road_map,
 /// Points of the reference line, one a metre.
 LineInSource reference_points(const map::RoadMap& road_map, const planning::ReferenceLine& line);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -63,4 +63,4 @@ std::vector<Box2> occupied_in(const map::OccupancySource& occupancy, const map::
   return joined(std::move(boxes));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

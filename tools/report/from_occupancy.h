@@ -18,4 +18,4 @@ std::vector<map::Box2> occupied_in(const map::OccupancySource& occupancy,
 /// The same from boxes of any kind.
 std::vector<map::Box2> joined(std::vector<map::Box2> boxes);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -120,4 +120,4 @@ Figure candidates() {
 
 std::vector<Figure> lateral_planner_figures() { return {overtaking(), candidates()}; }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -106,8 +106,7 @@ Json list_of(const Items& items, Function coded) {
 Json coded_lanes(const ReportInput& input, const Eigen::Vector2d& origin) {
   Json lanes = Json::array();
   const auto line = [&](const LineInSource& full) {
-    return coded_line(geometry::simplify(full, kLaneTolerance_m, geometry::distance_from_start_m),
-                      origin);
+    return coded_line(geometry::simplify(full, kLaneTolerance_m), origin);
   };
   for (const ReportLane& lane : input.scene.lanes) {
     const std::string_view look = lane.look();
@@ -260,8 +259,7 @@ std::string page_data_json(const ReportInput& input) {
   check_plots(input);
   const Eigen::Vector2d origin = choose_origin(input);
   const auto line = [&](const LineInSource& full) {
-    return coded_line(geometry::simplify(full, kPathTolerance_m, geometry::distance_from_start_m),
-                      origin);
+    return coded_line(geometry::simplify(full, kPathTolerance_m), origin);
   };
   const Json data = {
       {"origin", {origin.x(), origin.y()}},
@@ -318,4 +316,4 @@ std::string escape_json_for_script(std::string_view json) {
   return escaped;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -44,4 +44,4 @@ std::string page_data_json(const ReportInput& input);
 /// which JSON allows inside its strings, the only place where it has them.
 std::string escape_json_for_script(std::string_view json);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

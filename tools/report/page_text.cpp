@@ -209,4 +209,4 @@ std::string page_foot(const ReportInput& input) {
   return html + sources_html(input.origin.sources) + "</dl>";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

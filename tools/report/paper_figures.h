@@ -25,4 +25,4 @@ std::vector<Figure> lateral_planner_figures();
 /// beside those of the original Stanley law and of pure pursuit.
 std::vector<Figure> tracking_figures();
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -293,4 +293,4 @@ std::string plan_svg(const PlanPicture& picture) {
   return svg + "</svg>\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -24,4 +24,4 @@ struct PlanPicture {
 /// in metres from its rear axle.
 std::string plan_svg(const PlanPicture& picture);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -204,4 +204,4 @@ std::vector<Figure> reference_line_figures() {
           curvature(corner)};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

@@ -38,4 +38,4 @@ Tone tone_of(planning::Verdict verdict) {
   return verdict == planning::Verdict::conflict ? Tone::bad : Tone::open;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

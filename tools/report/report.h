@@ -125,4 +125,4 @@ struct ReportInput {
   ReportOrigin origin;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

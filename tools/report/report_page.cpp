@@ -45,4 +45,4 @@ std::string drive_report_html(const ReportInput& input) {
                                 {"dygraphs_licence", map::html_text(kDygraphsLicence)}});
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

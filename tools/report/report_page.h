@@ -11,4 +11,4 @@ namespace roadbed::tools::inline report {
 /// @throws std::invalid_argument if a plot's series differ in length from its times.
 std::string drive_report_html(const ReportInput& input);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

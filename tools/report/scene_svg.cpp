@@ -302,4 +302,4 @@ std::string drive_scene_svg(const ReportInput& input) {
   return svg + legend_svg(input, frame) + "</g></svg>\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

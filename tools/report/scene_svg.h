@@ -11,4 +11,4 @@ namespace roadbed::tools::inline report {
 /// same bytes.
 std::string drive_scene_svg(const ReportInput& input);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

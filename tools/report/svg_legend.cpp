@@ -53,4 +53,4 @@ void SvgLegend::add_speeds(double top_mps) {
   x_px_ += 180.0;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

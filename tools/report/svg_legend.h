@@ -29,4 +29,4 @@ class SvgLegend {
   std::string svg_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

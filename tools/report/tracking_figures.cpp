@@ -209,4 +209,4 @@ std::vector<Figure> tracking_figures() {
   return figures;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::report

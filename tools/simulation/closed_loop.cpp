@@ -287,4 +287,4 @@ Drive drive(const Scenario& scenario, World& world, const LoopOptions& options) 
   return ClosedLoop(scenario, world, options).run();
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -20,4 +20,4 @@ struct LoopOptions {
 /// @param world  the motions of its drivers become what they did.
 Drive drive(const Scenario& scenario, World& world, const LoopOptions& options = {});
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

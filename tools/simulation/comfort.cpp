@@ -118,4 +118,4 @@ bool Comfort::is_comfortable() const {
          most_jerk_mps3 <= 8.37;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -30,4 +30,4 @@ struct Comfort {
 /// @param drive  rows at equal steps, the last may be earlier.
 Comfort comfort_of(const geometry::Trajectory& drive);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -428,4 +428,4 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
           .start_step = problem.initial_state.time_step.least};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

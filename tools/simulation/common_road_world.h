@@ -29,4 +29,4 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                                        const ScenarioChanges& changes = {},
                                        const Inputs& inputs = Inputs());
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

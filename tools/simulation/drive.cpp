@@ -85,4 +85,4 @@ std::optional<CandidateGrid> candidate_grid(const planning::Plan& plan, std::siz
   return grid;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -91,4 +91,4 @@ struct Drive {
 /// @param last  none before the first cycle.
 std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

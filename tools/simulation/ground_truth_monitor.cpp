@@ -63,4 +63,4 @@ geometry::TrajectoryPoint GroundTruthMonitor::row(double t_s,
           .curvature_per_m = std::tan(truth.steering_rad) / vehicle_.wheelbase_m};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -37,4 +37,4 @@ class GroundTruthMonitor {
   std::string touched_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

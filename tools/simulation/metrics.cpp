@@ -294,4 +294,4 @@ double wrong_way_m(const Drive& drive) {
   return back_m;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -34,4 +34,4 @@ std::optional<SafetyMetric> least_headway(const Drive& drive);
 /// Metres driven against the reference line.
 double wrong_way_m(const Drive& drive);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -116,4 +116,4 @@ geometry::Trajectory drive_through(const std::vector<TimedPose>& poses_in_map) {
   return geometry::Trajectory(std::move(points));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

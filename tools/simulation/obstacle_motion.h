@@ -36,4 +36,4 @@ geometry::Trajectory drive_along(const Way& way, double way_length_m,
 /// straight lines between them.
 geometry::Trajectory drive_through(const std::vector<TimedPose>& poses_in_map);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

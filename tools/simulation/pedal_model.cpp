@@ -48,4 +48,4 @@ double GradeProfile::grade_rad(double s_m) const {
                    (2.0 * kHalfBase_m));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

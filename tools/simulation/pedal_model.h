@@ -48,4 +48,4 @@ class PedalModel {
   std::optional<double> force_N_;  ///< at the wheels; none: not begun, what keeps the speed
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

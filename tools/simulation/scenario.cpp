@@ -330,4 +330,4 @@ ScenarioNoise read_noise_json(const std::filesystem::path& file) {
   return noise_in(JsonNode(document, file.string()));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -123,4 +123,4 @@ std::optional<std::uint64_t> parse_seed(std::string_view text);
 /// @throws InputError naming the key, or the byte where the text is not JSON.
 ScenarioNoise read_noise_json(const std::filesystem::path& file);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

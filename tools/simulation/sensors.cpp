@@ -33,4 +33,4 @@ control::LeadMeasurement Sensors::measure(const planning::Lead& truth, double ow
               truth.speed_mps - own_speed_mps + noise(deviations_.relative_speed_mps)};
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -28,4 +28,4 @@ class Sensors {
   std::normal_distribution<double> normal_;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -38,4 +38,4 @@ std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive) {
   return xml + "  </ksTrajectory>\n</CommonRoadSolution>\n";
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -11,4 +11,4 @@ namespace roadbed::tools::inline simulation {
 /// vehicle's centre at the scenario's time steps.
 std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive);
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

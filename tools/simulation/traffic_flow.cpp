@@ -128,4 +128,4 @@ void TrafficFlow::foresee(const Car& car) {
   obstacles_[car.obstacle].motion = geometry::Trajectory(std::move(points));
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -78,4 +78,4 @@ class TrafficFlow {
   int steps_ = 0;
 };
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

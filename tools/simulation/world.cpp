@@ -196,4 +196,4 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
   return world;
 }
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

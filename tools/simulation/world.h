@@ -21,4 +21,4 @@ struct World : planning::DrivingTask {
 ///         goal, or an obstacle touches the ego at the start; it names the place in the scenario.
 World make_world(const Scenario& scenario, const Inputs& inputs = Inputs());
 
-}  // namespace roadbed::tools
+}  // namespace roadbed::tools::simulation

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "roadbed/geometry/primitives/polyline.h"
 
@@ -30,6 +31,31 @@ TEST(Simplify, KeepsWithinTheToleranceOfEveryPoint) {
 TEST(Simplify, KeepsClosedLinesOpenedUp) {
   const std::vector<Vector2d> ring = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}};
   EXPECT_EQ(simplify(ring, 0.1), ring);
+}
+
+TEST(Simplify, KeepsNoisyLinesWithinTheToleranceOfEveryPoint) {
+  std::mt19937 random(20261121);
+  std::uniform_real_distribution<double> noise_m(-0.02, 0.02);
+  for (int round = 0; round < 50; ++round) {
+    std::vector<Vector2d> line;
+    for (int i = 0; i < 300; ++i) {
+      line.emplace_back(0.1 * i, std::sin(0.05 * i) + noise_m(random));
+    }
+    const auto simple = simplify(line, 0.05);
+    const Polyline shown(simple);
+    for (const Vector2d& point : line) {
+      EXPECT_LE((shown.at(shown.project(point).s_m) - point).norm(), 0.05 + 1e-12);
+    }
+    EXPECT_LT(simple.size(), line.size() / 3);
+  }
+}
+
+TEST(Simplify, LeavesTheEndsOfAStraightLine) {
+  EXPECT_EQ(simplify(std::vector<Vector2d>{{0, 0}, {1, 1}, {2, 2}, {5, 5}}, 1e-9).size(), 2U);
+}
+
+TEST(Simplify, KeepsALineThatComesBackToItsStart) {
+  EXPECT_EQ(simplify(std::vector<Vector2d>{{0, 0}, {3, 0}, {0, 0}}, 0.1).size(), 3U);
 }
 
 TEST(Simplify, LeavesShortLinesAlone) {

@@ -1,8 +1,7 @@
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/map/storage/output_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -10,9 +9,8 @@
 #include <cstring>
 #include <string>
 #include <system_error>
-#include <utility>
 
-namespace roadbed::tools::inline files {
+namespace roadbed::map::inline storage {
 namespace {
 
 [[noreturn]] void refuse_output(const std::filesystem::path& file, const std::string& found,
@@ -50,28 +48,9 @@ void refuse_other_than_file(const std::filesystem::path& file) {
 
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0)
-    return;  // the file itself is synced; some systems refuse_output to open folders
+  if (descriptor < 0) return;  // the file itself is synced; some systems refuse to open folders
   ::fsync(descriptor);
   ::close(descriptor);
-}
-
-[[noreturn]] void refuse(const std::filesystem::path& file) {
-  throw OutputError({.file = file.string(),
-                     .found = std::string("cannot be written: ") + std::strerror(errno),
-                     .remedy = "free some space and run again: what is done stays done"});
-}
-
-// Returns how much of the bytes was written.
-std::size_t write_all(int descriptor, std::string_view bytes) {
-  std::size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t more = ::write(descriptor, bytes.data() + written, bytes.size() - written);
-    if (more < 0 && errno == EINTR) continue;
-    if (more <= 0) break;
-    written += static_cast<std::size_t>(more);
-  }
-  return written;
 }
 
 }  // namespace
@@ -158,52 +137,4 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
   output.commit();
 }
 
-void BufferedOutput::add(std::string_view bytes) {
-  constexpr std::size_t piece = std::size_t{1} << 20;
-  buffer_ += bytes;
-  if (buffer_.size() >= piece) flush();
-}
-
-void BufferedOutput::commit() {
-  flush();
-  file_.commit();
-}
-
-void BufferedOutput::flush() {
-  file_.write(written_, buffer_);
-  written_ += buffer_.size();
-  buffer_.clear();
-}
-
-AppendedFile::AppendedFile(std::filesystem::path file) : file_(std::move(file)) {}
-
-AppendedFile::~AppendedFile() {
-  if (descriptor_ < 0) return;
-  ::fsync(descriptor_);
-  ::close(descriptor_);
-}
-
-void AppendedFile::open() {
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  struct stat status {};
-  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) refuse(file_);
-  size_ = static_cast<std::uint64_t>(status.st_size);
-}
-
-std::uint64_t AppendedFile::append(std::string_view line) {
-  if (descriptor_ < 0) open();
-  const std::string bytes = std::string(line) + '\n';
-  const std::size_t written = write_all(descriptor_, bytes);
-  if (written < bytes.size()) {
-    const int cause = errno;
-    // What is left of it if this fails too is no whole line, and passed over by readers.
-    if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) size_ += written;
-    errno = cause;
-    refuse(file_);
-  }
-  const std::uint64_t begin = size_;
-  size_ += bytes.size();
-  return begin;
-}
-
-}  // namespace roadbed::tools
+}  // namespace roadbed::map::storage

@@ -8,10 +8,10 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/storage/chunked_file.h"
 
-namespace roadbed::tools::inline files {
+namespace roadbed::map::inline storage {
 
 /// An output that cannot be written, for want of space or rights: no fault of the inputs.
-class OutputError : public map::InputError {
+class OutputError : public InputError {
  public:
   using InputError::InputError;
 };
@@ -28,7 +28,7 @@ void make_output_folder(const std::filesystem::path& folder, bool force);
 /// A file that is written piece by piece: to a temporary file beside it, which is synced and
 /// renamed in the end. At every moment there is the old file, or the new one, whole; without
 /// `commit` nothing is left behind. Of a link, what it leads to is replaced.
-class OutputFile : public map::ByteSink {
+class OutputFile : public ByteSink {
  public:
   /// @throws OutputError if it cannot be written.
   explicit OutputFile(const std::filesystem::path& file);
@@ -51,47 +51,4 @@ class OutputFile : public map::ByteSink {
 /// @throws OutputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 
-/// An output of many small pieces, one after the other, collected into few writes.
-class BufferedOutput {
- public:
-  /// @throws OutputError if it cannot be written, as do the others.
-  explicit BufferedOutput(const std::filesystem::path& file) : file_(file) {}
-
-  void add(std::string_view bytes);
-
-  /// Puts the whole file in place; without it nothing is left behind.
-  void commit();
-
- private:
-  void flush();
-
-  OutputFile file_;
-  std::string buffer_;
-  std::uint64_t written_ = 0;
-};
-
-/// A file of lines that only grows. A line is written at once, so that of a process that is killed
-/// the last one may be cut off, and no other.
-class AppendedFile {
- public:
-  /// The file is made with its first line.
-  explicit AppendedFile(std::filesystem::path file);
-  ~AppendedFile();
-  AppendedFile(const AppendedFile&) = delete;
-  AppendedFile& operator=(const AppendedFile&) = delete;
-
-  const std::filesystem::path& file() const { return file_; }
-
-  /// Adds a line, without its end, and returns the byte at which it begins.
-  /// @throws OutputError if it cannot be written; nothing of it stays then.
-  std::uint64_t append(std::string_view line);
-
- private:
-  void open();
-
-  std::filesystem::path file_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0;
-};
-
-}  // namespace roadbed::tools
+}  // namespace roadbed::map::storage

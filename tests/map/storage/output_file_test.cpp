@@ -1,4 +1,4 @@
-#include "roadbed/tools/files/output_file.h"
+#include "roadbed/map/storage/output_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -13,7 +13,7 @@
 
 #include "roadbed/tests/support/program_run.h"
 
-namespace roadbed::tools {
+namespace roadbed::map {
 namespace {
 
 TEST(OutputFile, IsTheOldOneOrTheNewOneWheneverTheWriterIsKilled) {
@@ -72,11 +72,11 @@ TEST(OutputFile, IsNeverPutInThePlaceOfAPipe) {
   const tests::TemporaryFolder folder;
   const auto pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(check_writable(pipe, true), OutputError);
+  EXPECT_THROW(map::check_writable(pipe, true), OutputError);
   EXPECT_THROW(write_output(pipe, "bytes"), OutputError);
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
   EXPECT_EQ(tests::files_below(folder.path()), std::vector<std::string>{});
 }
 
 }  // namespace
-}  // namespace roadbed::tools
+}  // namespace roadbed::map
