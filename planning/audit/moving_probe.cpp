@@ -34,6 +34,7 @@ std::vector<double> ways_m(const geometry::Trajectory& motion, double radius_m) 
 
 }  // namespace
 
+// So that along a whole segment the same obstacles are there.
 geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
                                              std::span<const ObstacleInSource> obstacles) {
   if (drive.empty()) return drive;
@@ -66,6 +67,8 @@ MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::Body
   }
 }
 
+// An obstacle that appears where a segment ends counts from the next one on; the ends of the drive
+// belong to its first and last segment.
 bool MovingProbe::is_there(const Mover& mover, std::size_t segment) const {
   const double start_s = state_at(segment, 0.0).t_s, end_s = state_at(segment, 1.0).t_s;
   const TimeSpan& there = mover.from->validity;
@@ -85,6 +88,8 @@ double MovingProbe::way_until_m(const Mover& mover, double t_s) {
   return mover.way_m[i - 1] + fraction * (mover.way_m[i] - mover.way_m[i - 1]);
 }
 
+// Between two times the distance of two bodies changes by at most what both move. An obstacle that
+// is farther than that in the middle of a segment stays beyond the horizon all along it.
 std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
   const Span whole{segment, 0.0, 1.0};
   const geometry::TrajectoryPoint middle = middle_of(whole);
@@ -127,6 +132,7 @@ double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
   return std::max(0.0, least_m);
 }
 
+// Of obstacles equally near the first counts, so that reports do not depend on the search's order.
 std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_m) const {
   const geometry::TrajectoryPoint state = middle_of(span);
   const geometry::Rectangle body = part_.core_at(state.pose());

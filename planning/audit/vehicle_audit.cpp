@@ -58,6 +58,8 @@ AuditReport with_name(AuditReport report, const BodyPart& part) {
   return report;
 }
 
+// Least clearances are those of the nearest part, of several equally near the first; the unknown
+// fraction is that of the parts' volumes together.
 AuditReport merged(const std::vector<BodyPart>& parts, const std::vector<AuditReport>& reports) {
   if (parts.size() == 1) return reports.front();
   AuditReport whole = with_name(reports.front(), parts.front());
@@ -98,6 +100,7 @@ VehicleSurroundings::VehicleSurroundings(const map::OccupancySource& occupancy,
   }
   std::size_t apart = 0;  // bands
   for (std::size_t i = 0; i < bands_.size(); ++i) apart += first_alike(bands_, i) == i;
+  // Bands of the same heights share a field; the limit holds for all fields together.
   map::FieldRegion of_each = region;
   of_each.most_cells /= std::max<std::size_t>(1, apart);
   for (std::size_t i = 0; i < bands_.size(); ++i) {

@@ -46,6 +46,7 @@ bool is_in(const PolygonShape& shape, const Eigen::Vector2d& point) {
   return is_in(shape.corners_m, point);
 }
 
+// The least of heading + 2π k that is not before the window has to be within it.
 bool holds_heading(const Window& window, double heading_rad) {
   const double turns = std::ceil((window.least - heading_rad) / (2.0 * std::numbers::pi) - 1e-12);
   return heading_rad + 2.0 * std::numbers::pi * turns <= window.most + 1e-9;
@@ -118,6 +119,7 @@ std::vector<GoalStretch> goal_stretches(const TimedGoal& goal, const map::RoadMa
   std::vector<GoalStretch> stretches;
   for (const GoalState& state : goal.states) {
     GoalStretch stretch{.time_s = state.time_s, .speed_mps = state.speed_mps};
+    // The offset nearest to the line at which the goal is crossed; left first.
     bool found = state.is_anywhere();
     for (int i = 0; i <= kMostOffsets && !found; ++i) {
       for (const double side : {1.0, -1.0}) {

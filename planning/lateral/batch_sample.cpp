@@ -15,6 +15,8 @@ double weight_of(const BatchConfig& config, CostTerm term, double scale) {
   return of(config.weights, term) / (scale * scale);
 }
 
+// The velocity in the line's frame is u + d_e v, as offsets are linear in d_e. Speed and turn of
+// the path are bilinear in it, so each of their derivatives is a quadratic in d_e.
 void set_quadratics(const BatchSample& at, KernelPoint& point) {
   const geometry::CurvatureDerivatives line = curvatures(at.station.line);
   const FrameVelocity u = geometry::frame_velocity(line, at.at_zero);
@@ -32,6 +34,9 @@ void set_quadratics(const BatchSample& at, KernelPoint& point) {
   }
 }
 
+// What `cost_terms` computes for one candidate, as factors of |κ|² … |κ‴|² at a sample: a term's
+// weight over its squared scale, times the sample's part of the trapezoidal mean. The lateral jerk
+// is d(v² κ)/dt = 2 v a κ + v³ κ′.
 void set_weights(const BatchSample& at, const BatchConfig& config, KernelPoint& point) {
   const double v = at.station.speed.speed_mps, a = at.station.speed.acceleration_mps2;
   const auto weight = [&](CostTerm term, double scale) {

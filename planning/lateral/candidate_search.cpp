@@ -130,6 +130,9 @@ CandidateSearch::Entry CandidateSearch::pop(const Known& known) {
   return entry;
 }
 
+// The kernel sums in another order than the single evaluation, so that costs that are equal by
+// design differ in their last digits. All within that are handed out together: who asks chooses by
+// `is_preferred`, never by rounding.
 std::vector<std::size_t> CandidateSearch::pop_equals(const Known& known) {
   if (!is_heap_) std::ranges::make_heap(heap_, is_later);
   is_heap_ = true;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSlowest_mps = 0.05;  // mean over a section; a standing vehicle creeps, for times
 
+// The slack lets an end of the range count that is a multiple but for rounding (0.3 / 0.1 < 3).
 // Multiples of `step` in [from, to].
 std::vector<double> multiples(const char* what, double step, double from, double to) {
   const bool finite = std::isfinite(step) && std::isfinite(from) && std::isfinite(to);
@@ -96,6 +97,8 @@ DrivingLimits driving_limits(const geometry::VehicleShape& vehicle,
           .wheelbase_m = vehicle.wheelbase_m};
 }
 
+// Who starts outside of the corridor has `recovery_m` to come back, linearly. Without it no
+// candidate would be within the road at l = 0, and none could lead back.
 double allowed_excess_m(const CycleContext& context, double l_m) {
   return context.start_excess_m * std::max(0.0, 1.0 - l_m / context.recovery_m);
 }

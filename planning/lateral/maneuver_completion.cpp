@@ -115,6 +115,9 @@ double ManeuverCompletion::free_until_m(const LateralPath& hold, double end_s_m)
   return context_.start.s_m + kPassStep_m * static_cast<double>(contact->segment + 1);
 }
 
+// To stop at the offset is the simplest way to complete; else to pass what is there and go back.
+// A single place to go back at may be a gap that has closed by the next cycle: what is not yet
+// begun needs two next to each other.
 bool ManeuverCompletion::find(double end_d_m, double end_s_m) const {
   const double start_s_m = context_.start.s_m;
   const geometry::Quintic out = QuinticFamily(context_.start, end_s_m - start_s_m).member(end_d_m);

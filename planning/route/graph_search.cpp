@@ -16,6 +16,9 @@ std::uint64_t entry(Ticks estimate, std::uint32_t node) {
 
 }  // namespace
 
+// No arc costs less per metre between its ends than the cheapest of all, so distance times that
+// never overestimates, and falls along an arc by at most what the arc costs: A* settles each node
+// once.
 Guide make_guide(const RouteGraph& graph, const RouteNetwork& network,
                  std::span<const Ticks> weights) {
   Guide guide;
@@ -54,6 +57,8 @@ void GraphSearch::begin() {
   heap_.clear();
 }
 
+// A node that gets cheaper leaves its former entry in the heap; entries whose estimate is no longer
+// the node's are passed over when they come up. Equal estimates come up by node, in any run.
 void GraphSearch::improve(std::uint32_t node, Ticks cost, std::uint32_t parent) {
   State& at = state(node);
   if (cost >= at.cost) return;
@@ -84,6 +89,7 @@ GraphPath GraphSearch::find(std::span<const Ticks> weights, const Guide& guide,
   while (!heap_.empty()) {
     const auto estimate = static_cast<Ticks>(heap_.front() >> 32);
     const auto node = static_cast<std::uint32_t>(heap_.front());
+    // Estimates never fall: whatever follows reaches no goal for less.
     if (estimate >= best) break;
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
     heap_.pop_back();

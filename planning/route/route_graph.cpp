@@ -71,6 +71,7 @@ void add_arcs_of(const RouteNetwork& network, std::uint32_t node, double enough_
   }
 }
 
+// A counting sort of the arcs by their heads; it is stable, so arcs to a node stay in order.
 void add_backward_rows(RouteGraph& graph) {
   graph.first_in.assign(graph.nodes() + 1, 0);
   for (const std::uint32_t to : graph.head) ++graph.first_in[to + 1];
