@@ -24,7 +24,7 @@ constexpr double kBehindRear_m = 3.0;                     // of who is not overt
 constexpr double kMoves_mps = 1.0, kSlower_mps = 2.5;
 constexpr double kLeadWithin_m = 70.0;
 constexpr double kBeforeEnd_m = 10.0;  // of the stretch, to be back in the lane
-constexpr double kBehind_m = 3.0;      // kept from who comes up behind in the other lane
+constexpr double kBehind_m = 3.0;      // kept from traffic that comes up behind in the other lane
 constexpr double kRelease_mps2 = 2.0;  // at which a faster vehicle closes up comfortably
 
 }  // namespace
@@ -146,7 +146,7 @@ bool Overtaking::is_no_matter(const Mover& mover, const State& now, double pass_
   return is_behind && (mover.speed_mps < 0.0 || !in_way);
 }
 
-/// Metres that are missing to one of the others until the vehicle is back in its lane; 0 or less:
+/// Metres by which the gap to one of the others is too short until the vehicle is back in its lane; 0 or less:
 /// none.
 double Overtaking::missing_m(const Mover& mover, double now_s_m, const State& past,
                              const State& back, double limit_mps) const {
@@ -183,8 +183,8 @@ std::optional<std::string> Overtaking::why_not(const State& from, const Mover& l
     if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
     const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
     if (missing <= 0.0) continue;
-    return fmt::format("{} {}, {:.0f} m of way are missing", task_.obstacles[mover.obstacle].id,
-                       mover.speed_mps < 0.0 ? "comes" : "drives there", missing);
+    return fmt::format("{} is {}, the gap is {:.0f} m too short", task_.obstacles[mover.obstacle].id,
+                       mover.speed_mps < 0.0 ? "oncoming" : "in the other lane", missing);
   }
   return std::nullopt;
 }

@@ -13,7 +13,7 @@ namespace roadbed::planning::inline behaviour {
 
 /// Whether to overtake a slower vehicle through the lane of oncoming traffic.
 ///
-///     s ▲                       ╲  who comes, at worst: speeding up to the limit and a tenth
+///     s ▲                       ╲  oncoming, at worst: speeding up to the limit and a tenth
 ///       │              ╱ margin  ╲
 ///       │     back ╱●╱─ ─ ─ ─ ─ ─ ╲
 ///       │       ╱╱   ╱ lead
@@ -21,8 +21,8 @@ namespace roadbed::planning::inline behaviour {
 ///       └──────────────────────────▶ t
 ///
 /// It is begun if, accelerating as the cruise control does, the vehicle is back in its lane, with
-/// distance to the one overtaken and to whoever drives ahead of that one, before the nearest of
-/// those who come is there at its worst; and if it can be given up, by braking and falling back
+/// distance to the one overtaken and to whoever drives ahead of that one, before the nearest
+/// oncoming vehicle is there at its worst; and if it can be given up, by braking and falling back
 /// behind the one overtaken, until the front is beside that one's rear. All of this is asked again
 /// in each cycle: what can no longer be ended in time is given up while that is possible. Where the
 /// vehicle may not, or does not want to, it keeps to its own lane as long as the one ahead moves;

@@ -99,7 +99,7 @@ double RightOfWay::left_m(const StopPoint& place, const View& view) const {
   return place.s_m - view.s_m - vehicle_.front_m();
 }
 
-/// Who has begun to cross looks further at those who may cross its path.
+/// Having begun to cross, the vehicle goes on looking at those who may cross its path.
 void RightOfWay::pass_places(const View& view) {
   const std::vector<StopPoint>& places = task_.stop_points;
   while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
@@ -188,7 +188,7 @@ std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const Vi
 /// None also marks those who only cross.
 std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const View& view,
                                                  Gap gap) {
-  // Who joins those who come from the side is not to be caught up with soon.
+  // Joining crossing traffic, the vehicle is not to be caught up with soon.
   const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
   const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
                          (joins ? kJoining_m : 0.0);  // of the rear axle

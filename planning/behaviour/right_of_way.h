@@ -22,7 +22,7 @@ struct StopConstraint {
 /// traffic that has the right of way.
 ///
 /// A gap is good if the vehicle, driving on from here at a comfortable acceleration, leaves what it
-/// crosses with 1 s to who was there before and 1.5 s to who comes after. Who drives along on the
+/// crosses 1 s after the vehicle before it and 1.5 s before the next one. Who drives along on the
 /// path already is the cruise control's lead, and not looked at here.
 class RightOfWay {
  public:
