@@ -4,8 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "roadbed/control/baseline_steering.h"
-#include "roadbed/control/stanley.h"
+#include "roadbed/control/steering_laws.h"
 
 namespace roadbed::control {
 namespace {

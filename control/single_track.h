@@ -23,4 +23,33 @@ struct SingleTrackInput {
 SingleTrackState step(const SingleTrackState& state, const SingleTrackInput& input, double step_s,
                       const geometry::VehicleShape& vehicle);
 
+/// Mass and tyres of a single-track vehicle that slips; lengths from the centre of gravity.
+struct DynamicVehicle {
+  double mass_kg, yaw_inertia_kgm2;
+  double front_axle_m, rear_axle_m, height_m;  ///< of the centre of gravity to axles and ground
+  double max_steering_rad, max_steering_rate_radps;
+  double friction = 1.0489;
+  double cornering_stiffness_per_rad = 21.92 / 1.0489;  ///< per unit of load and friction
+};
+
+/// CommonRoad's parameter sets 1 (Ford Escort), 2 (BMW 320i) and 3 (VW Vanagon).
+/// @throws std::invalid_argument for another number.
+DynamicVehicle common_road_vehicle(int number);
+
+/// State of the centre of gravity.
+struct DynamicState {
+  geometry::Pose2 pose{};  ///< heading is the body's, not that of motion
+  double speed_mps = 0.0;
+  double steering_rad = 0.0;
+  double yaw_rate_radps = 0.0;
+  double slip_rad = 0.0;  ///< β: direction of motion minus heading
+};
+
+/// State after `step_s` of constant input (classic Runge–Kutta) by the linear-tyre single-track
+/// model with load transfer, ST of [Althoff, Würsching 2020, CommonRoad: Vehicle Models, section
+/// 7]; below 0.1 m/s it rolls without slip. Steering angle and rate keep to the vehicle's limits,
+/// the speed stays ≥ 0.
+DynamicState step(const DynamicState& state, const SingleTrackInput& input, double step_s,
+                  const DynamicVehicle& vehicle);
+
 }  // namespace roadbed::control

@@ -1,4 +1,4 @@
-#include "roadbed/control/string_gain.h"
+#include "roadbed/control/cruise_design.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

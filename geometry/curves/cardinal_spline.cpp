@@ -1,4 +1,4 @@
-#include "roadbed/geometry/curves/cardinal_spline.h"
+#include "roadbed/geometry/curves/smooth_curve.h"
 
 namespace roadbed::geometry::inline curves {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadbed::geometry::inline motion {
 namespace {
@@ -30,6 +31,36 @@ double nearest_corner_m(const Rectangle& rectangle, const Rectangle& of) {
     nearest_m = std::min(nearest_m, distance_m(rectangle, corner));
   }
   return nearest_m;
+}
+
+// Across and along the rectangle, from its centre.
+Eigen::Vector2d in_frame_of(const Rectangle& rectangle, const Eigen::Vector2d& point) {
+  const Eigen::Vector2d offset = point - rectangle.centre;
+  return {offset.dot(rectangle.axis),
+          rectangle.axis.x() * offset.y() - rectangle.axis.y() * offset.x()};
+}
+
+Eigen::Vector2d nearest_point_of(const Rectangle& rectangle, const Eigen::Vector2d& to) {
+  const Eigen::Vector2d half(rectangle.half_length_m, rectangle.half_width_m);
+  const Eigen::Vector2d local = in_frame_of(rectangle, to).cwiseMax(-half).cwiseMin(half);
+  return rectangle.centre + local.x() * rectangle.axis + local.y() * left_of(rectangle.axis);
+}
+
+/// The point of `thing` that is nearest to `body`; its centre where they overlap. Disjoint convex
+/// shapes are nearest at a corner of one of them.
+Eigen::Vector2d nearest_to(const Rectangle& body, const Rectangle& thing) {
+  Eigen::Vector2d nearest = thing.centre;
+  if (motion::distance_m(body, thing) == 0.0) return nearest;
+  double least_m = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Eigen::Vector2d& point) {
+    const double distance_m = motion::distance_m(body, point);
+    if (distance_m >= least_m) return;
+    least_m = distance_m;
+    nearest = point;
+  };
+  for (const Eigen::Vector2d& corner : thing.corners()) consider(corner);
+  for (const Eigen::Vector2d& corner : body.corners()) consider(nearest_point_of(thing, corner));
+  return nearest;
 }
 
 }  // namespace
@@ -63,6 +94,21 @@ double distance_m(const Rectangle& a, const Rectangle& b) {
   if (!are_apart(a, b)) return 0.0;
   // Disjoint convex shapes are nearest at a corner of one of them.
   return std::min(nearest_corner_m(a, b), nearest_corner_m(b, a));
+}
+
+std::string_view side_towards(const Rectangle& thing, const Rectangle& body) {
+  constexpr double same_m = 1e-6;
+  const Eigen::Vector2d at = in_frame_of(body, nearest_to(body, thing));
+  const double ahead_m = std::abs(at.x()) - body.half_length_m;
+  const double aside_m = std::abs(at.y()) - body.half_width_m;
+  const bool front = at.x() > 0.0, left = at.y() > 0.0;
+  if (ahead_m > same_m && aside_m > same_m) {
+    constexpr std::array<std::string_view, 4> corners{"rear right corner", "rear left corner",
+                                                      "front right corner", "front left corner"};
+    return corners[(front ? 2u : 0u) + (left ? 1u : 0u)];
+  }
+  if (ahead_m > aside_m) return front ? "front" : "rear";
+  return left ? "left side" : "right side";
 }
 
 }  // namespace roadbed::geometry::motion

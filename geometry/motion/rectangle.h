@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string_view>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
@@ -30,5 +31,10 @@ double distance_m(const Rectangle& rectangle, const Eigen::Vector2d& point);
 
 /// Distance between two rectangles [m], 0 where they touch or overlap. Exact up to rounding.
 double distance_m(const Rectangle& a, const Rectangle& b);
+
+/// The side or corner of a rectangle of a vehicle that is nearest to a thing: "front", "rear",
+/// "left side", "right side", "front left corner" and so on; of a thing that overlaps it, the side
+/// that its centre is nearest to.
+std::string_view side_towards(const Rectangle& thing, const Rectangle& body);
 
 }  // namespace roadbed::geometry::motion

@@ -5,8 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "roadbed/geometry/polygons/segment_voronoi.h"
-
 namespace roadbed::geometry::inline polygons {
 namespace {
 

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/polygons/exact.h"
-#include "roadbed/geometry/polygons/ring_checks.h"
-#include "roadbed/geometry/polygons/weld.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 namespace roadbed::geometry::inline polygons {
 namespace {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "roadbed/geometry/polygons/ring.h"
@@ -53,5 +56,16 @@ struct United {
 
 /// `unite` that says what its welding did.
 United unite_and_report(std::span<const Polygon> polygons, double weld_m);
+
+/// What makes a polygon unusable, and in which of its rings.
+struct PolygonFault {
+  std::size_t ring = 0;  ///< 0: the outer one, i: hole i − 1
+  std::string what;      ///< "its edges cross", …
+};
+
+/// Whether rings enclose a region: each has an area and does not cross itself, every hole lies
+/// inside the outer ring, and no two holes overlap. They may touch at points. Either sense of
+/// rotation is allowed. Exact (CGAL). O(N log N) for a faultless polygon.
+std::optional<PolygonFault> find_fault(const Polygon& polygon);
 
 }  // namespace roadbed::geometry::polygons

@@ -1,4 +1,4 @@
-#include "roadbed/geometry/polygons/ring_checks.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 #include <algorithm>
 #include <cmath>

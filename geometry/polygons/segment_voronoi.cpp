@@ -1,4 +1,4 @@
-#include "roadbed/geometry/polygons/segment_voronoi.h"
+#include "roadbed/geometry/polygons/medial_axis.h"
 
 #include <CGAL/Segment_Delaunay_graph_2.h>
 #include <CGAL/Segment_Delaunay_graph_filtered_traits_2.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace roadbed::geometry::inline primitives {
 
@@ -12,10 +13,21 @@ struct Pose2 {
   double heading_rad = 0.0;  ///< from the x axis, counter-clockwise; not wrapped
 
   Eigen::Vector2d position() const { return {x_m, y_m}; }
-  Pose2 inverse() const;
+  Pose2 inverse() const {
+    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+    return {-c * x_m - s * y_m, s * x_m - c * y_m, -heading_rad};
+  }
 };
 
-Eigen::Vector2d operator*(const Pose2& a_from_b, const Eigen::Vector2d& point_in_b);
-Pose2 operator*(const Pose2& a_from_b, const Pose2& b_from_c);
+inline Eigen::Vector2d operator*(const Pose2& a_from_b, const Eigen::Vector2d& point_in_b) {
+  const double c = std::cos(a_from_b.heading_rad), s = std::sin(a_from_b.heading_rad);
+  return {a_from_b.x_m + c * point_in_b.x() - s * point_in_b.y(),
+          a_from_b.y_m + s * point_in_b.x() + c * point_in_b.y()};
+}
+
+inline Pose2 operator*(const Pose2& a_from_b, const Pose2& b_from_c) {
+  const Eigen::Vector2d position = a_from_b * b_from_c.position();
+  return {position.x(), position.y(), a_from_b.heading_rad + b_from_c.heading_rad};
+}
 
 }  // namespace roadbed::geometry::primitives

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "roadbed/geometry/primitives/simplify.h"
+#include "roadbed/geometry/primitives/polyline.h"
 #include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::map::inline drawing {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/geometry/polygons/polygon_fault.h"
+#include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/geojson/document.h"

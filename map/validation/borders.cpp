@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "roadbed/geometry/polygons/polygon.h"
-#include "roadbed/geometry/polygons/ring_checks.h"
+#include "roadbed/geometry/polygons/ring.h"
 #include "roadbed/map/validation/lane_folds.h"
 #include "roadbed/map/validation/rules.h"
 

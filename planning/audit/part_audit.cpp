@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/audit/judged_stretches.h"
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/planning/audit/moving_probe.h"
-#include "roadbed/planning/obstacles/body_side.h"
 
 namespace roadbed::planning::inline audit {
 namespace {

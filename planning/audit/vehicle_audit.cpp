@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "roadbed/planning/audit/judged_stretches.h"
+#include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/planning/audit/moving_probe.h"
 #include "roadbed/planning/audit/observed_space.h"
 #include "roadbed/planning/audit/part_audit.h"

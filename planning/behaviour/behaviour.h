@@ -14,7 +14,23 @@ enum class Behaviour {
   stop,       ///< comes to rest: at the goal, or because no candidate is left
   emergency,  ///< the safety layer brakes harder than the cruise control may
 };
-std::string_view name(Behaviour behaviour);
+inline std::string_view name(Behaviour behaviour) {
+  switch (behaviour) {
+    case Behaviour::cruise:
+      return "cruise";
+    case Behaviour::pass:
+      return "pass";
+    case Behaviour::follow:
+      return "follow";
+    case Behaviour::yield:
+      return "yield";
+    case Behaviour::stop:
+      return "stop";
+    case Behaviour::emergency:
+      return "emergency";
+  }
+  return "";
+}
 
 /// The vehicle ahead that the cruise control follows.
 struct DriveLead {

@@ -9,7 +9,6 @@
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
-#include "roadbed/planning/behaviour/safety.h"
 #include "roadbed/planning/behaviour/traffic.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 

@@ -7,7 +7,6 @@
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/behaviour/light_cycle.h"
 #include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/behaviour/timed_goal.h"
 #include "roadbed/planning/obstacles/obstacle.h"
@@ -35,7 +34,13 @@ struct DrivingTask {
   double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
 
   /// Obstacles that are there at a time.
-  std::vector<Obstacle> obstacles_at(double t_s) const;
+  std::vector<Obstacle> obstacles_at(double t_s) const {
+    std::vector<Obstacle> there;
+    for (const Obstacle& obstacle : obstacles) {
+      if (obstacle.is_there(t_s)) there.push_back(obstacle);
+    }
+    return there;
+  }
 };
 
 /// How the ego is to be driven.
@@ -47,7 +52,12 @@ struct DrivingOptions {
 };
 
 /// Greatest speeds along a line for a vehicle that is driven so.
-SpeedCeiling ceiling_of(const ReferenceLine& line, const geometry::VehicleShape& vehicle,
-                        const DrivingOptions& options);
+inline SpeedCeiling ceiling_of(const ReferenceLine& line, const geometry::VehicleShape& vehicle,
+                               const DrivingOptions& options) {
+  return speed_ceiling(line, vehicle,
+                       {.desired_speed_mps = options.desired_speed_mps,
+                        .max_lateral_acceleration_mps2 = options.max_lateral_acceleration_mps2,
+                        .deceleration_mps2 = options.comfort_deceleration_mps2});
+}
 
 }  // namespace roadbed::planning::behaviour

@@ -5,7 +5,6 @@
 
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/planned_path.h"
-#include "roadbed/planning/behaviour/vehicle_state.h"
 #include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::planning::inline behaviour {

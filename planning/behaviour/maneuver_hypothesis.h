@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -54,15 +55,29 @@ struct ManeuverHypothesis {
 };
 
 /// How far beside the reference line the path ends.
-double beside_m(const ManeuverHypothesis& hypothesis);
+inline double beside_m(const ManeuverHypothesis& hypothesis) {
+  return hypothesis.proposal ? std::abs(hypothesis.proposal->plan.chosen->end_d_m) : 0.0;
+}
 
 /// Whether it meets nothing, and takes no bend faster than can be borne.
-bool is_drivable(const ManeuverHypothesis& hypothesis);
+inline bool is_drivable(const ManeuverHypothesis& hypothesis) {
+  constexpr double kBearable_mps = 0.3;  // beyond what a bend allows
+  return hypothesis.answer.is_free && hypothesis.answer.bend_excess_mps <= kBearable_mps;
+}
 
 /// Whether nothing else need be tried: it is drivable, and does not miss the goal.
-bool is_good(const ManeuverHypothesis& hypothesis);
+inline bool is_good(const ManeuverHypothesis& hypothesis) {
+  return is_drivable(hypothesis) && !hypothesis.answer.misses_goal;
+}
 
 /// Free before not free; then by cost, or by how long it is free and how slow it is by then.
-bool is_better(const ManeuverHypothesis& a, const ManeuverHypothesis& b);
+inline bool is_better(const ManeuverHypothesis& a, const ManeuverHypothesis& b) {
+  if (a.answer.is_free != b.answer.is_free) return a.answer.is_free;
+  if (a.answer.is_free) return a.cost < b.cost;
+  if (a.answer.free_until_s != b.answer.free_until_s) {
+    return a.answer.free_until_s > b.answer.free_until_s;
+  }
+  return a.answer.plan.back().speed_mps < b.answer.plan.back().speed_mps;
+}
 
 }  // namespace roadbed::planning::behaviour

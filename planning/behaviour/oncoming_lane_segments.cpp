@@ -1,4 +1,4 @@
-#include "roadbed/planning/behaviour/oncoming_lane_segments.h"
+#include "roadbed/planning/behaviour/overtaking.h"
 
 #include <algorithm>
 #include <limits>

@@ -8,8 +8,8 @@
 #include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
+#include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
-#include "roadbed/planning/behaviour/vehicle_state.h"
 
 namespace roadbed::planning::inline behaviour {
 

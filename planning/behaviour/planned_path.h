@@ -8,6 +8,14 @@
 
 namespace roadbed::planning::inline behaviour {
 
+/// State of the own vehicle, true or measured; the pose is that of its rear axle.
+struct VehicleState {
+  geometry::Pose2 map_from_vehicle{};
+  double speed_mps = 0.0;
+  double steering_rad = 0.0;
+  double acceleration_mps2 = 0.0;
+};
+
 /// The path that a plan draws beside its reference line, p(s) = r(s) + d(s) n(s), evaluated exactly
 /// at any station `s` of the line: nothing is sampled between the planner and the controller.
 class PlannedPath {

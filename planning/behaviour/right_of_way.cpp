@@ -8,7 +8,6 @@
 
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/path_profile.h"
-#include "roadbed/planning/behaviour/safety.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/behaviour/st_graph.h"
 

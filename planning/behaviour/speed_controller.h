@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/vehicle_state.h"
+#include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {

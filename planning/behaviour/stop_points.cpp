@@ -203,6 +203,18 @@ class Finder {
 
 }  // namespace
 
+LightColour colour_at(const LightCycle& light, double t_s) {
+  double cycle_s = 0.0;
+  for (const LightPhase& phase : light.phases) cycle_s += phase.duration_s;
+  double in_cycle_s = std::fmod(t_s - light.offset_s, cycle_s);
+  if (in_cycle_s < 0.0) in_cycle_s += cycle_s;
+  for (const LightPhase& phase : light.phases) {
+    if (in_cycle_s < phase.duration_s) return phase.colour;
+    in_cycle_s -= phase.duration_s;
+  }
+  return light.phases.back().colour;
+}
+
 std::vector<StopPoint> stop_points(const map::RoadMap& road_map, const Route& route,
                                    const ReferenceLine& line, std::span<const LightCycle> lights) {
   return Finder(road_map, route, line, lights).all();

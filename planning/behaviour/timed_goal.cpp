@@ -7,7 +7,7 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/planning/obstacles/shape_bounds.h"
+#include "roadbed/planning/obstacles/recorded_obstacles.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

@@ -12,7 +12,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/lateral/cost.h"
 #include "roadbed/planning/lateral/planned_speed.h"
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline lateral {
 

@@ -1,4 +1,4 @@
-#include "roadbed/planning/lateral/partial_arc_lengths.h"
+#include "roadbed/planning/lateral/candidate_evaluator.h"
 
 #include <algorithm>
 #include <cmath>

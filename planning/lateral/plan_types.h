@@ -15,7 +15,7 @@
 #include "roadbed/planning/lateral/planned_speed.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/obstacles/prediction.h"
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline lateral {
 

@@ -5,7 +5,7 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/planning/obstacles/obstacle.h"
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline obstacles {
 

@@ -11,7 +11,6 @@
 
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/planning/obstacles/shape_bounds.h"
 
 namespace roadbed::planning::inline obstacles {
 namespace {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
@@ -38,5 +40,11 @@ ObstacleInSource recorded_obstacle(const map::commonroad::Obstacle& from,
 ///         states that do not follow each other, nothing that says where it is.
 std::vector<ObstacleInSource> recorded_boxes(const map::commonroad::Scenario& scenario,
                                              const std::string& name);
+
+/// A rectangle of CommonRoad, in the frame that it is given in.
+geometry::Rectangle rectangle_of(const map::commonroad::RectangleShape& shape);
+
+/// The least box around all parts of a shape; empty for a shape without any.
+Eigen::AlignedBox2d bounds_of(const map::commonroad::Shape& shape);
 
 }  // namespace roadbed::planning::obstacles

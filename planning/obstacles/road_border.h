@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline obstacles {
 

@@ -1,4 +1,4 @@
-#include "roadbed/planning/obstacles/shape_bounds.h"
+#include "roadbed/planning/obstacles/recorded_obstacles.h"
 
 #include <cmath>
 #include <variant>

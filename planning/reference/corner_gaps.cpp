@@ -1,4 +1,4 @@
-#include "roadbed/planning/reference/corner_gaps.h"
+#include "roadbed/planning/reference/way_point_path.h"
 
 #include <fmt/format.h>
 

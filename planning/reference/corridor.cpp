@@ -1,4 +1,4 @@
-#include "roadbed/planning/reference/corridor.h"
+#include "roadbed/planning/reference/reference_line_data.h"
 
 #include <algorithm>
 #include <cmath>

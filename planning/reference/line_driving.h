@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline reference {
 

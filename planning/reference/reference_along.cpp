@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "roadbed/geometry/curves/fit_curve.h"
-#include "roadbed/planning/reference/corridor.h"
 #include "roadbed/planning/reference/line_driving.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/reference_line_data.h"

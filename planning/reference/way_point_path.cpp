@@ -12,7 +12,6 @@
 
 #include "roadbed/geometry/curves/quintic_bezier.h"
 #include "roadbed/geometry/curves/spline_curve.h"
-#include "roadbed/planning/reference/corner_gaps.h"
 
 namespace roadbed::planning::inline reference {
 namespace {

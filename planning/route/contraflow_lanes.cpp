@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/build_network.h"
+#include "roadbed/planning/route/route_network.h"
 
 #include <algorithm>
 #include <cmath>

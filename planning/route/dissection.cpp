@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/dissection.h"
+#include "roadbed/planning/route/hierarchy.h"
 
 #include <algorithm>
 #include <array>

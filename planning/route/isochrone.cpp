@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/isochrone.h"
+#include "roadbed/planning/route/route_area.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/index/point_index.h"
-#include "roadbed/planning/route/build_network.h"
+#include "roadbed/planning/route/route_network.h"
 #include "roadbed/planning/route/route_solver.h"
 
 namespace roadbed::planning::inline route {

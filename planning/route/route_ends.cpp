@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/route_ends.h"
+#include "roadbed/planning/route/route_solver.h"
 
 #include <algorithm>
 

@@ -1,13 +1,32 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/planning/route/csr_lists.h"
 
 namespace roadbed::planning::inline route {
+
+/// Lists of one kind of thing, one behind the other in a single array: group i is
+/// items[first[i]] … items[first[i + 1]].
+template <typename T>
+struct CsrLists {
+  std::vector<std::uint32_t> first{0};
+  std::vector<T> items;
+
+  std::size_t groups() const { return first.size() - 1; }
+  std::span<const T> of(std::size_t group) const {
+    return {items.data() + first[group], items.data() + first[group + 1]};
+  }
+  /// What was appended to `items` since the last call becomes the next group.
+  void end_list() { first.push_back(static_cast<std::uint32_t>(items.size())); }
+};
 
 inline constexpr std::uint32_t kNoLane = 0xffffffffU;
 
@@ -72,5 +91,36 @@ bool may_reverse(const map::Lane& lane, map::Participant kind);
 
 /// Which way a lane turns from its first metre to its last.
 Turn bend_of(const map::Lane& lane);
+
+/// O(points of the map).
+RouteNetwork make_route_network(const map::RoadMap& road_map, const NetworkOptions& options = {});
+
+/// Adds to a network of a map's lanes those that may be driven against their direction.
+///
+///        left            ◀─────── reversed ────        right
+///     ───────▶ lane ───▶ ─────── two-way lane ▶ ───▶ lane
+///
+/// They have the map's links the other way round. Where borders meet head to head or
+/// back to back a lane also leads over into one that is driven the other way: ends belong together
+/// if both corners are within 5 cm. Lights are for the lane's own direction. O(N log N).
+void add_contraflow_lanes(const map::RoadMap& road_map, const NetworkOptions& options,
+                          RouteNetwork& network);
+
+/// Finds for each lane of a network those beside it that are driven the same way, and where a
+/// change to them is permitted. O(lanes).
+void add_neighbours(const map::RoadMap& road_map, const NetworkOptions& options,
+                    RouteNetwork& network);
+
+/// A network as bytes: what `import` puts into a compiled map as its routing section, so that a
+/// route is found without touching lanes that it does not use. Layout: README.md.
+std::string write_route_network(const RouteNetwork& network);
+
+/// None if the bytes are empty or of another version.
+/// @throws std::invalid_argument if they are damaged, or not of so many lanes.
+std::optional<RouteNetwork> read_route_network(std::string_view bytes, std::size_t lanes);
+
+/// The network of a map: the one in its compiled form, else made now.
+/// @throws InputError if the compiled map is damaged.
+RouteNetwork route_network_of(const map::RoadMap& road_map);
 
 }  // namespace roadbed::planning::route

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "roadbed/planning/route/dissection.h"
+#include "roadbed/planning/route/hierarchy.h"
 
 namespace roadbed::planning::inline route {
 

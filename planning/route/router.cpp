@@ -7,8 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "roadbed/planning/route/route_network.h"
 #include "roadbed/planning/route/route_solver.h"
-#include "roadbed/planning/route/stored_network.h"
 
 namespace roadbed::planning::inline route {
 namespace {

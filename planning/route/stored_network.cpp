@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/stored_network.h"
+#include "roadbed/planning/route/route_network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "roadbed/map/elements/byte_io.h"
 #include "roadbed/map/index/road_map_index.h"
-#include "roadbed/planning/route/build_network.h"
 
 namespace roadbed::planning::inline route {
 namespace {

@@ -19,9 +19,9 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/build_network.h"
-#include "roadbed/planning/route/dissection.h"
+#include "roadbed/planning/route/hierarchy.h"
 #include "roadbed/planning/route/hierarchy_search.h"
+#include "roadbed/planning/route/route_network.h"
 #include "roadbed/planning/route/route_solver.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/boost_routes.h"

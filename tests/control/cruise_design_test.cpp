@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "roadbed/control/string_gain.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::control {

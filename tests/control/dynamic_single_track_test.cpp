@@ -1,4 +1,4 @@
-#include "roadbed/control/dynamic_single_track.h"
+#include "roadbed/control/single_track.h"
 
 #include <gtest/gtest.h>
 

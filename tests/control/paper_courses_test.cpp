@@ -1,4 +1,4 @@
-#include "roadbed/control/paper_courses.h"
+#include "roadbed/control/course.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/control/pedals.h"
+#include "roadbed/control/lower_controller.h"
 
 #include <gtest/gtest.h>
 

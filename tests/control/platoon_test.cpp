@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "roadbed/control/cruise_control.h"
+#include "roadbed/control/cruise_design.h"
 #include "roadbed/control/lower_controller.h"
-#include "roadbed/control/string_gain.h"
 
 namespace roadbed::control {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
-#include "roadbed/tools/audit/certified_question.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed;

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "roadbed/planning/route/route_graph.h"
-#include "roadbed/planning/route/stored_network.h"
+#include "roadbed/planning/route/route_network.h"
 
 // What a sound network is used for must not read beyond it. The last byte says how many lanes the
 // map has.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/planning/lateral/path_drive.h"
+#include "roadbed/planning/lateral/maneuver_completion.h"
 #include "roadbed/planning/plan.h"
 
 namespace roadbed::planning {

@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "roadbed/planning/reference/line_view.h"
+#include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::tests {
 

@@ -3,13 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
+#include "roadbed/map/commonroad/scenario_reader.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/audit/swept_drive.h"
+#include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/files/obstacles_csv.h"
 #include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
@@ -32,6 +40,17 @@ Pose2 in_source(const map::RoadMap& road_map, const Pose2& in_map) {
 bool is_drive(const fs::path& file, const fs::path& folder) {
   if (file.filename() == "trajectory.csv") return true;
   return file.extension() == ".csv" && file.parent_path() == folder;
+}
+
+using planning::ObstacleInSource;
+
+std::vector<ObstacleInSource> of_scenario(const std::filesystem::path& file, const Inputs& inputs) {
+  const World world = make_world(read_scenario(file), inputs);
+  std::vector<ObstacleInSource> obstacles;
+  for (const planning::Obstacle& obstacle : world.obstacles) {
+    obstacles.push_back(planning::obstacle_in_source(world.road_map, obstacle));
+  }
+  return obstacles;
 }
 
 }  // namespace
@@ -141,6 +160,17 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
   return {.name = fmt::format("lane {}{}", lane.name, suffix()),
           .swept = planning::swept_along(pose_at, length_m,
                                          {.speed_mps = speed_kmh_ / 3.6, .offset_m = offset_m_})};
+}
+
+std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
+                                                    const Inputs& inputs) {
+  if (is_common_road(file)) {
+    const std::string name = file.string();
+    return planning::recorded_boxes(map::commonroad::parse_scenario(map::read_file(file), name),
+                                    name);
+  }
+  if (file.extension() == ".json") return of_scenario(file, inputs);
+  return parse_obstacles_csv(map::read_file(file), file.string());
 }
 
 }  // namespace roadbed::tools::audit

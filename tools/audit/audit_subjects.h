@@ -6,7 +6,9 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/cli/route_question.h"
 
 namespace roadbed::tools::inline audit {
@@ -56,5 +58,11 @@ class AuditSubjects {
   std::string lane_;
   double speed_kmh_ = 30.0, offset_m_ = 0.0;
 };
+
+/// Obstacles over time, in source coordinates: of a scenario (`.json`, or CommonRoad `.xml`, see
+/// `recorded_boxes`), or boxes with time stamps (`.csv`).
+/// @throws InputError if the file, or one that it names, is unusable.
+std::vector<planning::ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
+                                                              const Inputs& inputs);
 
 }  // namespace roadbed::tools::audit

@@ -16,9 +16,8 @@
 #include "roadbed/map/occupancy/ground/ground_claims.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/certificate_json.h"
-#include "roadbed/tools/audit/certified_question.h"
-#include "roadbed/tools/audit/moving_obstacles.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 

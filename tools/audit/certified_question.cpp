@@ -1,4 +1,4 @@
-#include "roadbed/tools/audit/certified_question.h"
+#include "roadbed/tools/audit/certificate_check.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "roadbed/map/occupancy/ground/ground_claims.h"
-#include "roadbed/planning/audit/map_ground_claims.h"
-#include "roadbed/planning/audit/measured_ground_claims.h"
+#include "roadbed/planning/audit/certificate_check.h"
 
 namespace roadbed::tools::inline audit {
 namespace {

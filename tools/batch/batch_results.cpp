@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/batch_results.h"
+#include "roadbed/tools/batch/batch_summary.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/streamed_output.h"
 

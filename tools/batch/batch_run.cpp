@@ -12,7 +12,6 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/job.h"
-#include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/cli/in_threads.h"
 

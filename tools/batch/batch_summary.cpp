@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "roadbed/tools/batch/job_verdict.h"
+#include "roadbed/tools/batch/job_result.h"
 #include "roadbed/tools/cli/build_id.h"
 
 namespace roadbed::tools::inline batch {

@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/job_files.h"
+#include "roadbed/tools/batch/job.h"
 
 #include <algorithm>
 #include <system_error>

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -83,5 +84,16 @@ struct ResultHead {
 
 /// None if the line is no whole result, as one that was cut off.
 std::optional<ResultHead> read_head(std::string_view line);
+
+/// What a job's document comes to.
+struct JobVerdict {
+  std::string text;      ///< "conflict, least clearance 0.120 m"
+  double badness = 0.0;  ///< greater is worse, among jobs of one kind and status
+};
+
+/// @param kind      name of the command.
+/// @param document  the JSON that it printed.
+/// @throws std::invalid_argument if it is not what that command prints.
+JobVerdict verdict_of(std::string_view kind, const nlohmann::json& document);
 
 }  // namespace roadbed::tools::batch

@@ -11,9 +11,8 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/tools/batch/job_files.h"
+#include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_result.h"
-#include "roadbed/tools/batch/job_verdict.h"
 
 namespace roadbed::tools::inline batch {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/job_verdict.h"
+#include "roadbed/tools/batch/job_result.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/serve.h"
+#include "roadbed/tools/batch/serve_process.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,6 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job.h"
-#include "roadbed/tools/batch/job_files.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/batch/job_result.h"
 #include "roadbed/tools/batch/job_runner.h"

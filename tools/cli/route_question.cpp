@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/planning/route/closures.h"
+#include "roadbed/planning/route/route_options.h"
 
 namespace roadbed::tools::inline cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/tools/commands/audit_files.h"
+#include "roadbed/tools/commands/audit_output.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,7 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/files/xml_characters.h"
-#include "roadbed/planning/audit/judged_stretches.h"
-#include "roadbed/tools/commands/audit_json.h"
+#include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {

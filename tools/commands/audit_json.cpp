@@ -1,4 +1,4 @@
-#include "roadbed/tools/commands/audit_json.h"
+#include "roadbed/tools/commands/audit_output.h"
 #include "roadbed/tools/files/json.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/audit/judged_stretches.h"
+#include "roadbed/planning/audit/audit_report.h"
 
 namespace roadbed::tools::inline commands {
 namespace {

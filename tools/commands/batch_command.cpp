@@ -9,12 +9,11 @@
 #include <string>
 
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/folder_lock.h"
 #include "roadbed/tools/batch/memory.h"
-#include "roadbed/tools/batch/serve.h"
+#include "roadbed/tools/batch/serve_process.h"
 #include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools::inline commands {

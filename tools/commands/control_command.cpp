@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "roadbed/control/cruise_design.h"
-#include "roadbed/control/string_gain.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/commands/commands.h"
 

@@ -1,19 +1,21 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <string>
 
+#include "roadbed/map/commonroad/scenario_reader.h"
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/derived/area_centreline.h"
 #include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/commands/scenario_counts.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
@@ -177,6 +179,34 @@ void print_info(std::ostream& out, const Json& info) {
   if (info.contains("scenario") && info.at("scenario").is_object()) {
     line("scenario", scenario_text(info.at("scenario")));
   }
+}
+
+/// What a CommonRoad file holds beyond its map: time step, obstacles by role, planning problems;
+/// null for any other file.
+/// @throws InputError if the scenario is unusable.
+Json scenario_counts(const std::string& bytes, const std::string& name) {
+  namespace commonroad = map::commonroad;
+  const map::Format* format = map::format_of(bytes);
+  if (format == nullptr || format->name != "CommonRoad") return nullptr;
+  const commonroad::Scenario scenario = commonroad::parse_scenario(bytes, name);
+  const auto count = [&](commonroad::ObstacleRole role) {
+    return std::count_if(scenario.obstacles.begin(), scenario.obstacles.end(),
+                         [&](const commonroad::Obstacle& o) { return o.role == role; });
+  };
+  long last_step = 0;
+  for (const commonroad::Obstacle& obstacle : scenario.obstacles) {
+    for (const commonroad::State& state : obstacle.trajectory) {
+      last_step = std::max(last_step, state.time_step.most);
+    }
+  }
+  return {{"benchmark_id", scenario.benchmark_id},
+          {"time_step_s", scenario.time_step_s},
+          {"static_obstacles", count(commonroad::ObstacleRole::fixed)},
+          {"dynamic_obstacles", count(commonroad::ObstacleRole::dynamic)},
+          {"other_obstacles",
+           count(commonroad::ObstacleRole::environment) + count(commonroad::ObstacleRole::phantom)},
+          {"recorded_s", static_cast<double>(last_step) * scenario.time_step_s},
+          {"planning_problems", scenario.planning_problems.size()}};
 }
 
 class InfoCommand : public Command {

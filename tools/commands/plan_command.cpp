@@ -14,8 +14,8 @@
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/weights_json.h"
-#include "roadbed/tools/report/from_occupancy.h"
 #include "roadbed/tools/report/plan_svg.h"
+#include "roadbed/tools/report/surroundings.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 

@@ -10,7 +10,7 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/planning/route/isochrone.h"
+#include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"

@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/audit_index.h"
+#include "roadbed/tools/report/audit_pages.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/audit_svg.h"
+#include "roadbed/tools/report/audit_pictures.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "roadbed/map/drawing/svg.h"
-#include "roadbed/tools/report/close_up.h"
 
 namespace roadbed::tools::inline report {
 namespace {

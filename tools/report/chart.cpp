@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/chart.h"
+#include "roadbed/tools/report/paper_figures.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/close_up.h"
+#include "roadbed/tools/report/audit_pictures.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/drive_checks.h"
+#include "roadbed/tools/report/from_drive.h"
 
 #include <fmt/format.h>
 

@@ -8,12 +8,10 @@
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/from_drive.h"
-#include "roadbed/tools/report/report_page.h"
-#include "roadbed/tools/report/scene_svg.h"
-#include "roadbed/tools/simulation/closed_loop.h"
-#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/metrics.h"
-#include "roadbed/tools/simulation/solution_xml.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline report {
 namespace {

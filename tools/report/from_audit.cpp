@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/from_audit.h"
+#include "roadbed/tools/report/audit_pages.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "roadbed/planning/audit/judged_stretches.h"
-#include "roadbed/tools/report/close_up.h"
+#include "roadbed/planning/audit/audit_report.h"
+#include "roadbed/tools/report/audit_pictures.h"
 
 namespace roadbed::tools::inline report {
 namespace {

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/tools/report/drive_checks.h"
-#include "roadbed/tools/report/from_map.h"
-#include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/report/surroundings.h"
 
 namespace roadbed::tools::inline report {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/from_map.h"
+#include "roadbed/tools/report/surroundings.h"
 
 #include <algorithm>
 #include <cmath>

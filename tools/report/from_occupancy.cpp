@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/from_occupancy.h"
+#include "roadbed/tools/report/surroundings.h"
 
 #include <algorithm>
 #include <array>

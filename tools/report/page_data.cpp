@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/primitives/simplify.h"
+#include "roadbed/geometry/primitives/polyline.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline report {

@@ -125,4 +125,14 @@ struct ReportInput {
   ReportOrigin origin;
 };
 
+/// One HTML page that plays the drive, from `file://`, without any other file and without network.
+/// Same input, same bytes.
+/// @throws std::invalid_argument if a plot's series differ in length from its times.
+std::string drive_report_html(const ReportInput& input);
+
+/// The whole drive as one picture on its own background, 900 wide: lanes, route, driven path
+/// coloured by speed, footprints every few seconds, obstacles, scale bar and legend. Same input,
+/// same bytes.
+std::string drive_scene_svg(const ReportInput& input);
+
 }  // namespace roadbed::tools::report

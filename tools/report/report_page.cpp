@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/report_page.h"
+#include "roadbed/tools/report/report.h"
 
 #include <map>
 #include <string>

@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "roadbed/control/course.h"
 #include "roadbed/control/course_run.h"
 #include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
-#include "roadbed/control/paper_courses.h"
-#include "roadbed/control/stanley.h"
+#include "roadbed/control/steering_laws.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools::inline report {

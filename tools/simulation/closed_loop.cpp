@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,8 @@
 #include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/control/single_track.h"
-#include "roadbed/control/stanley.h"
+#include "roadbed/control/steering_laws.h"
 #include "roadbed/planning/behaviour/pilot.h"
-#include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/sensors.h"

@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/simulation/world.h"
 
 #include <fmt/format.h>
 

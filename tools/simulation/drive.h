@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline simulation {
 
@@ -90,5 +93,21 @@ struct Drive {
 /// another lead, …
 /// @param last  none before the first cycle.
 std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last);
+
+/// Bounds of the loop; the scenario's own options come on top.
+struct LoopOptions {
+  double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
+  planning::PilotOptions pilot = {};
+  std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
+};
+
+/// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
+/// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.
+/// @param world  the motions of its drivers become what they did.
+Drive drive(const Scenario& scenario, World& world, const LoopOptions& options = {});
+
+/// A drive as a CommonRoad solution (KS model, vehicle 2, cost function SM1): the states of the
+/// vehicle's centre at the scenario's time steps.
+std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive);
 
 }  // namespace roadbed::tools::simulation

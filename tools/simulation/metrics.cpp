@@ -6,7 +6,6 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/tools/simulation/comfort.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

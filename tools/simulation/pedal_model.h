@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/control/pedals.h"
+#include "roadbed/control/lower_controller.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/route.h"

@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/solution_xml.h"
+#include "roadbed/tools/simulation/drive.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "roadbed/geometry/curves/band_matrix.h"
+#include "roadbed/geometry/curves/spline_problem.h"
 
 namespace roadbed::geometry {
 namespace {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "roadbed/geometry/polygons/segment_voronoi.h"
-
 namespace roadbed::geometry {
 namespace {
 

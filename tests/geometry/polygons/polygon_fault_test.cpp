@@ -1,4 +1,4 @@
-#include "roadbed/geometry/polygons/polygon_fault.h"
+#include "roadbed/geometry/polygons/polygon.h"
 
 #include <gtest/gtest.h>
 

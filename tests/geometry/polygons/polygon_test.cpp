@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "roadbed/geometry/polygons/ring_checks.h"
+#include "roadbed/geometry/polygons/ring.h"
 #include "roadbed/geometry/primitives/pose2.h"
 
 namespace roadbed::geometry {

@@ -1,4 +1,4 @@
-#include "roadbed/geometry/polygons/weld.h"
+#include "roadbed/geometry/polygons/ring.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,10 @@
-#include "roadbed/geometry/primitives/simplify.h"
+#include "roadbed/geometry/primitives/polyline.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
-
-#include "roadbed/geometry/primitives/polyline.h"
 
 namespace roadbed::geometry {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/judged_stretches.h"
+#include "roadbed/planning/audit/audit_report.h"
 
 #include <gtest/gtest.h>
 

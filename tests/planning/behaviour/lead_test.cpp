@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "roadbed/planning/behaviour/safety.h"
-
 namespace roadbed::tools {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "roadbed/tests/support/straight_world.h"
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {

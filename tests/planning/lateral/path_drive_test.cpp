@@ -1,4 +1,4 @@
-#include "roadbed/planning/lateral/path_drive.h"
+#include "roadbed/planning/lateral/maneuver_completion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Searches of a graph, held to Boost.Graph's Dijkstra: not one cost may differ.
 
-#include "roadbed/planning/route/build_network.h"
 #include "roadbed/planning/route/hierarchy_search.h"
+#include "roadbed/planning/route/route_network.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/dissection.h"
+#include "roadbed/planning/route/hierarchy.h"
 #include "roadbed/tests/support/boost_routes.h"
 #include "roadbed/tests/support/lane_grid.h"
 #include "roadbed/tests/support/made_maps.h"

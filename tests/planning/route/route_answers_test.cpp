@@ -8,10 +8,9 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/route/alternatives.h"
-#include "roadbed/planning/route/closures.h"
 #include "roadbed/planning/route/guidance.h"
-#include "roadbed/planning/route/isochrone.h"
 #include "roadbed/planning/route/route_area.h"
+#include "roadbed/planning/route/route_options.h"
 #include "roadbed/planning/route/route_solver.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "roadbed/planning/route/build_network.h"
+#include "roadbed/planning/route/route_network.h"
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::planning {

@@ -1,4 +1,4 @@
-#include "roadbed/planning/route/stored_network.h"
+#include "roadbed/planning/route/route_network.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/route/build_network.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/lane_grid.h"
 #include "roadbed/tests/support/made_maps.h"

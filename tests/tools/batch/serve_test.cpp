@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/serve.h"
+#include "roadbed/tools/batch/serve_process.h"
 #include "roadbed/tools/commands/commands.h"
 
 #include <gmock/gmock.h>

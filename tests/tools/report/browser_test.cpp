@@ -11,7 +11,7 @@
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"
 #include "roadbed/tools/report/page_parts.h"
-#include "roadbed/tools/report/report_page.h"
+#include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools {
 namespace {

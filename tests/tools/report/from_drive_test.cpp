@@ -8,7 +8,7 @@
 
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/report/page_parts.h"
-#include "roadbed/tools/report/report_page.h"
+#include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools {
 namespace {

@@ -1,5 +1,5 @@
-#include "roadbed/tools/report/from_map.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/tools/report/surroundings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "roadbed/tools/report/from_occupancy.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/tools/report/surroundings.h"
 
 #include <gtest/gtest.h>
 

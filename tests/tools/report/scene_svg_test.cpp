@@ -1,4 +1,4 @@
-#include "roadbed/tools/report/scene_svg.h"
+#include "roadbed/tools/report/report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/comfort.h"
+#include "roadbed/tools/simulation/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

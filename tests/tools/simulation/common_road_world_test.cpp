@@ -1,4 +1,4 @@
-#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/simulation/world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,7 @@
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/files/trajectory_csv.h"
-#include "roadbed/tools/simulation/closed_loop.h"
-#include "roadbed/tools/simulation/solution_xml.h"
+#include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
 namespace {

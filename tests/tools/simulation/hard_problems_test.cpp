@@ -8,8 +8,8 @@
 #include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/straight_world.h"
-#include "roadbed/tools/simulation/closed_loop.h"
-#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/simulation/drive.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools {
 namespace {

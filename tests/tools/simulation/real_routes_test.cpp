@@ -13,7 +13,7 @@
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/cli/place.h"
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
 namespace {

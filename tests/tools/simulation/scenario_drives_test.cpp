@@ -5,7 +5,7 @@
 #include <string>
 
 #include "roadbed/tests/support/real_data.h"
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {

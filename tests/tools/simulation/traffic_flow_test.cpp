@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "roadbed/tests/support/real_data.h"
-#include "roadbed/tools/simulation/closed_loop.h"
+#include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "roadbed/tests/support/real_data.h"
-#include "roadbed/tools/simulation/common_road_world.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools {
 namespace {

@@ -9,6 +9,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools::inline report {
 
@@ -26,5 +27,21 @@ struct AuditPicture {
 /// over unknown space in violet; below them the clearance over time, up to 5 m, and a close-up of
 /// where it is least. 900 wide, with a scale bar. Same input, same bytes.
 std::string audit_svg(const AuditPicture& picture);
+
+/// What the close-ups of an audit show, all in source coordinates.
+struct CloseUpScene {
+  const geometry::Trajectory& drive;
+  const std::vector<geometry::BodyPart>& parts;  ///< of the vehicle as audited, with the margin
+  const std::vector<map::Box2>& occupied;        ///< of the heights of the vehicle
+  const std::vector<geometry::Ring>& lanes;      ///< of a map; may be empty
+  const std::vector<planning::ObstacleInSource>& moving;
+};
+
+/// A picture for each conflict, at its least clearance: the vehicle with the part that is nearest,
+/// the cell or moving thing that is in its way, and an arrow of their distance. Without a conflict
+/// that of the least clearance of the drive; none where nothing is near. At most 24, in order of
+/// time. Same input, same bytes.
+std::vector<ReportPicture> close_ups(const planning::AuditReport& report,
+                                     const CloseUpScene& scene);
 
 }  // namespace roadbed::tools::report

@@ -6,9 +6,11 @@
 
 #include "roadbed/planning/audit/audit.h"
 #include "roadbed/tools/audit/audited_drive.h"
-#include "roadbed/tools/report/audit_index.h"
+#include "roadbed/tools/report/audit_pages.h"
 
 namespace roadbed::tools::inline commands {
+
+// Audits in the forms that people and other programs read.
 
 /// An audit as `audit --json` prints it: `{"verdict":…,"least_clearance_m":…,"unknown_share":…,
 /// "conflicts":[…],"stretches":[…],…}`, without the profile.
@@ -26,5 +28,13 @@ IndexedAudit indexed(const AuditedDrive& audited);
 
 /// A line per drive, and one with the counts.
 std::string audits_table(const std::vector<AuditedDrive>& audits);
+
+/// A test case per drive: failed where the drive is not clear, an error where it is unusable.
+std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& occupancy);
+
+/// A line per stretch of one verdict, and for each conflict the vehicle's outline (with its
+/// margin) where it is nearest, and the witness. Coordinates are the source's; `crs` names them.
+std::string audits_geojson(const std::vector<AuditedDrive>& audits,
+                           const planning::AuditQuestion& question, const std::string& crs);
 
 }  // namespace roadbed::tools::commands
