@@ -124,7 +124,7 @@ class TimedPilot : public Pilot {
                   std::vector<ManeuverHypothesis>& all, ManeuverHypothesis& best) {
     if (!is_drivable(best)) add_paths_beside(view, question, kBeside, all, best);
     if (best.answer.misses_goal) add_paths_beside(view, question, kOtherLanes, all, best);
-    if (!is_good(best)) add_other_courses(view, question, all, best);
+    if (!is_good(best)) add_other_lines(view, question, all, best);
   }
 
   /// The planner's choice; near a goal that lies beside the line, one that leads through it.
@@ -150,7 +150,7 @@ class TimedPilot : public Pilot {
     }
   }
 
-  void add_other_courses(const PilotView& view, const LateralReplanner::Question& question,
+  void add_other_lines(const PilotView& view, const LateralReplanner::Question& question,
                          std::vector<ManeuverHypothesis>& all, ManeuverHypothesis& best) {
     for (GoalLine& other : goal_lines_) {
       if (&other == &goal_line()) continue;

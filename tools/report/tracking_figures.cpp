@@ -7,19 +7,19 @@
 #include <string>
 #include <utility>
 
-#include "roadbed/control/course.h"
-#include "roadbed/control/course_run.h"
 #include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
-#include "roadbed/control/steering_laws.h"
+#include "roadbed/control/sampled_path.h"
+#include "roadbed/control/stanley.h"
+#include "roadbed/control/tracking_run.h"
 #include "roadbed/tools/report/paper_figures.h"
 
 namespace roadbed::tools::inline report {
 namespace {
 
-using control::CourseRunRow;
-using control::CourseRunSummary;
 using control::SteeringLaw;
+using control::TrackingSample;
+using control::TrackingSummary;
 
 constexpr std::array<double, 6> kSpeeds_mps{5.0, 10.0, 15.0, 20.0, 25.0, 30.0};
 constexpr std::array<const char*, 6> kSpeedColours{"#0072b2", "#d62728", "#00785a",
@@ -94,46 +94,46 @@ class NoisyFollowing {
 /// One of the paper's two tests.
 struct Test {
   const char *name, *title;
-  control::Course (*course)(double speed_mps);
+  control::SampledPath (*path)(double speed_mps);
 };
 constexpr std::array<Test, 2> kTests{{
-    {"right_turn", "right turn at a crossroad", control::right_turn_course},
-    {"zig_zag", "zig-zag", control::zig_zag_course},
+    {"right_turn", "right turn at a crossroad", control::right_turn_path},
+    {"zig_zag", "zig-zag", control::zig_zag_path},
 }};
 
 /// A quantity of a run, over time and as its largest value.
 struct Quantity {
   const char *name, *label;
-  double CourseRunRow::*value;
-  double CourseRunSummary::*largest;
+  double TrackingSample::*value;
+  double TrackingSummary::*largest;
 };
 constexpr std::array<Quantity, 4> kQuantities{{
-    {"cross_track", "e_fa [m]", &CourseRunRow::cross_track_m,
-     &CourseRunSummary::largest_cross_track_m},
-    {"heading", "θ_e [rad]", &CourseRunRow::heading_rad, &CourseRunSummary::largest_heading_rad},
-    {"steering_rate", "steering rate [rad/s]", &CourseRunRow::steering_rate_radps,
-     &CourseRunSummary::largest_steering_rate_radps},
-    {"lateral_jerk", "lateral jerk [m/s³]", &CourseRunRow::lateral_jerk_mps3,
-     &CourseRunSummary::largest_lateral_jerk_mps3},
+    {"cross_track", "e_fa [m]", &TrackingSample::cross_track_m,
+     &TrackingSummary::largest_cross_track_m},
+    {"heading", "θ_e [rad]", &TrackingSample::heading_rad, &TrackingSummary::largest_heading_rad},
+    {"steering_rate", "steering rate [rad/s]", &TrackingSample::steering_rate_radps,
+     &TrackingSummary::largest_steering_rate_radps},
+    {"lateral_jerk", "lateral jerk [m/s³]", &TrackingSample::lateral_jerk_mps3,
+     &TrackingSummary::largest_lateral_jerk_mps3},
 }};
 
-using Runs = std::vector<std::vector<CourseRunRow>>;  // one per speed
+using Runs = std::vector<std::vector<TrackingSample>>;  // one per speed
 
 Runs runs_of(const Test& test, SteeringLaw law) {
   Runs runs;
   for (const double speed : kSpeeds_mps) {
-    runs.push_back(control::run_course(test.course(speed), {.law = law, .speed_mps = speed}));
+    runs.push_back(control::track_path(test.path(speed), {.law = law, .speed_mps = speed}));
   }
   return runs;
 }
 
 Figure driven_way(const Test& test) {
-  const control::Course course = test.course(kSpeeds_mps.front());
+  const control::SampledPath path = test.path(kSpeeds_mps.front());
   Series way{"course", Mark::line, kBlack, {}}, driven{"rear axle, 5 m/s", Mark::dashed, kRed, {}};
-  for (double s_m = 0.0; s_m <= course.length_m(); s_m += 0.25) {
-    way.points.push_back(course.at(s_m).position());
+  for (double s_m = 0.0; s_m <= path.length_m(); s_m += 0.25) {
+    way.points.push_back(path.at(s_m).position());
   }
-  for (const CourseRunRow& row : control::run_course(course, {.speed_mps = kSpeeds_mps.front()})) {
+  for (const TrackingSample& row : control::track_path(path, {.speed_mps = kSpeeds_mps.front()})) {
     driven.points.push_back(row.state.pose.position());
   }
   return {fmt::format("figure_14_{}_course", test.name),

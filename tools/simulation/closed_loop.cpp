@@ -11,7 +11,7 @@
 #include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/control/single_track.h"
-#include "roadbed/control/steering_laws.h"
+#include "roadbed/control/stanley.h"
 #include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"

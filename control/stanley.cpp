@@ -1,4 +1,4 @@
-#include "roadbed/control/steering_laws.h"
+#include "roadbed/control/stanley.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,11 +40,11 @@ double original_stanley_steering_rad(const TrackingError& error, double speed_mp
   return limited(error.heading_rad + correction_rad, vehicle);
 }
 
-double pure_pursuit_steering_rad(const geometry::Pose2& map_from_vehicle, const Course& course,
+double pure_pursuit_steering_rad(const geometry::Pose2& map_from_vehicle, const SampledPath& path,
                                  double rear_s_m, double ahead_m,
                                  const geometry::VehicleShape& vehicle) {
   const Eigen::Vector2d target =
-      map_from_vehicle.inverse() * course.at(rear_s_m + ahead_m).position();
+      map_from_vehicle.inverse() * path.at(rear_s_m + ahead_m).position();
   const double squared_m2 = std::max(1e-6, target.squaredNorm());
   return limited(std::atan(2.0 * vehicle.wheelbase_m * target.y() / squared_m2), vehicle);
 }

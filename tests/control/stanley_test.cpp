@@ -1,4 +1,4 @@
-#include "roadbed/control/steering_laws.h"
+#include "roadbed/control/stanley.h"
 
 #include <gtest/gtest.h>
 

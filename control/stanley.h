@@ -1,6 +1,6 @@
 #pragma once
 
-#include "roadbed/control/course.h"
+#include "roadbed/control/sampled_path.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 
@@ -40,10 +40,10 @@ double stanley_steering_rad(const TrackingError& error, double speed_mps,
 double original_stanley_steering_rad(const TrackingError& error, double speed_mps,
                                      double gain_per_s, const geometry::VehicleShape& vehicle);
 
-/// Pure pursuit: the circle through the rear axle, tangent to the vehicle, that meets the course at
+/// Pure pursuit: the circle through the rear axle, tangent to the vehicle, that meets the path at
 /// its target, δ = atan(2 L sin α / l) [Coulter 1992, CMU-RI-TR-92-01]. The target lies `ahead_m`
-/// beyond the course's place nearest to the rear axle, `rear_s_m`.
-double pure_pursuit_steering_rad(const geometry::Pose2& map_from_vehicle, const Course& course,
+/// beyond the path's place nearest to the rear axle, `rear_s_m`.
+double pure_pursuit_steering_rad(const geometry::Pose2& map_from_vehicle, const SampledPath& path,
                                  double rear_s_m, double ahead_m,
                                  const geometry::VehicleShape& vehicle);
 

@@ -1,28 +1,28 @@
-#include "roadbed/control/course_run.h"
+#include "roadbed/control/tracking_run.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "roadbed/control/steering_laws.h"
+#include "roadbed/control/stanley.h"
 
 namespace roadbed::control {
 namespace {
 
-class CourseRun {
+class TrackingRun {
  public:
-  CourseRun(const Course& course, const CourseRunOptions& options)
-      : course_(course), options_(options) {
-    state_.pose = course.at(0.0);
+  TrackingRun(const SampledPath& path, const TrackingOptions& options)
+      : path_(path), options_(options) {
+    state_.pose = path.at(0.0);
     state_.speed_mps = options.speed_mps;
   }
 
-  std::vector<CourseRunRow> rows() {
-    std::vector<CourseRunRow> rows;
-    const double longest_s = 2.0 * course_.length_m() / options_.speed_mps;
+  std::vector<TrackingSample> rows() {
+    std::vector<TrackingSample> rows;
+    const double longest_s = 2.0 * path_.length_m() / options_.speed_mps;
     for (int k = 0; k * options_.step_s < longest_s; ++k) {
       const TrackingError error = locate();
-      if (front_s_m_ >= course_.length_m()) break;
+      if (front_s_m_ >= path_.length_m()) break;
       rows.push_back(advance(k * options_.step_s, error));
     }
     return rows;
@@ -33,17 +33,17 @@ class CourseRun {
 
   TrackingError locate() {
     const Eigen::Vector2d front = state_.pose * Eigen::Vector2d(wheelbase_m(), 0.0);
-    front_s_m_ = course_.nearest_s_m(front, front_s_m_);
-    rear_s_m_ = course_.nearest_s_m(state_.pose.position(), rear_s_m_);
-    return tracking_error(state_.pose, wheelbase_m(), course_.at(front_s_m_));
+    front_s_m_ = path_.nearest_s_m(front, front_s_m_);
+    rear_s_m_ = path_.nearest_s_m(state_.pose.position(), rear_s_m_);
+    return tracking_error(state_.pose, wheelbase_m(), path_.at(front_s_m_));
   }
 
-  CourseRunRow advance(double t_s, const TrackingError& error) {
+  TrackingSample advance(double t_s, const TrackingError& error) {
     const double before = state_.steering_rad, wanted = steering(error);
-    CourseRunRow row{.t_s = t_s,
-                     .state = state_,
-                     .cross_track_m = error.cross_track_m,
-                     .heading_rad = error.heading_rad};
+    TrackingSample row{.t_s = t_s,
+                       .state = state_,
+                       .cross_track_m = error.cross_track_m,
+                       .heading_rad = error.heading_rad};
     if (options_.euler) {
       euler_step(wanted);
     } else {
@@ -60,8 +60,8 @@ class CourseRun {
     const double speed = options_.speed_mps;
     switch (options_.law) {
       case SteeringLaw::stanley:
-        error.heading_rad += course_.at(front_s_m_ + speed * options_.preview_s).heading_rad -
-                             course_.at(front_s_m_).heading_rad;
+        error.heading_rad += path_.at(front_s_m_ + speed * options_.preview_s).heading_rad -
+                             path_.at(front_s_m_).heading_rad;
         return stanley_steering_rad(error, speed, options_.vehicle);
       case SteeringLaw::original_stanley:
         return original_stanley_steering_rad(error, speed, options_.original_gain_per_s,
@@ -69,7 +69,7 @@ class CourseRun {
       case SteeringLaw::pure_pursuit:
         break;
     }
-    return pure_pursuit_steering_rad(state_.pose, course_, rear_s_m_, pursuit_distance_m(speed),
+    return pure_pursuit_steering_rad(state_.pose, path_, rear_s_m_, pursuit_distance_m(speed),
                                      options_.vehicle);
   }
 
@@ -82,8 +82,8 @@ class CourseRun {
     state_.steering_rad = steering_rad;
   }
 
-  const Course& course_;
-  const CourseRunOptions& options_;
+  const SampledPath& path_;
+  const TrackingOptions& options_;
   SingleTrackState state_;
   double front_s_m_ = 0.0, rear_s_m_ = 0.0;
 };
@@ -100,17 +100,17 @@ struct Extent {
 
 }  // namespace
 
-std::vector<CourseRunRow> run_course(const Course& course, const CourseRunOptions& options) {
+std::vector<TrackingSample> track_path(const SampledPath& path, const TrackingOptions& options) {
   if (!(options.speed_mps > 0.0) || !(options.step_s > 0.0)) {
-    throw std::invalid_argument("run_course: speed and step must be positive");
+    throw std::invalid_argument("track_path: speed and step must be positive");
   }
-  return CourseRun(course, options).rows();
+  return TrackingRun(path, options).rows();
 }
 
-CourseRunSummary summarise(const std::vector<CourseRunRow>& run) {
+TrackingSummary summarise(const std::vector<TrackingSample>& run) {
   if (run.empty()) return {};
   Extent cross_track, heading, rate, jerk;
-  for (const CourseRunRow& row : run) {
+  for (const TrackingSample& row : run) {
     cross_track.add(row.cross_track_m);
     heading.add(row.heading_rad);
     rate.add(row.steering_rate_radps);

@@ -1,4 +1,4 @@
-#include "roadbed/control/course.h"
+#include "roadbed/control/sampled_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +66,8 @@ void add_corner(std::vector<Pose2>& poses, const geometry::QuinticBezier& corner
   }
 }
 
-Course course_of(const std::vector<double>& turns_rad, double speed_mps) {
-  if (!(speed_mps > 0.0)) throw std::invalid_argument("the courses' speed must be positive");
+SampledPath path_of_turns(const std::vector<double>& turns_rad, double speed_mps) {
+  if (!(speed_mps > 0.0)) throw std::invalid_argument("the paths' speed must be positive");
   const double leg_m = geometry::kGentleGaps.total_m();
   const double lateral_mps2 =
       speed_mps * speed_mps * peak_curvature_per_m(corners(turns_rad, leg_m));
@@ -76,23 +76,24 @@ Course course_of(const std::vector<double>& turns_rad, double speed_mps) {
   add_straight(poses, kBefore_s * speed_mps);
   for (const auto& corner : corners(turns_rad, scale * leg_m)) add_corner(poses, corner);
   add_straight(poses, kAfter_s * speed_mps);
-  return Course(std::move(poses));
+  return SampledPath(std::move(poses));
 }
 
 }  // namespace
 
-Course::Course(std::vector<geometry::Pose2> poses) : poses_(std::move(poses)), stations_m_{0.0} {
-  if (poses_.size() < 2) throw std::invalid_argument("Course: needs at least two poses");
+SampledPath::SampledPath(std::vector<geometry::Pose2> poses)
+    : poses_(std::move(poses)), stations_m_{0.0} {
+  if (poses_.size() < 2) throw std::invalid_argument("SampledPath: needs at least two poses");
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     const double step_m = (poses_[i].position() - poses_[i - 1].position()).norm();
-    if (!(step_m > 0.0)) throw std::invalid_argument("Course: neighbouring poses coincide");
+    if (!(step_m > 0.0)) throw std::invalid_argument("SampledPath: neighbouring poses coincide");
     stations_m_.push_back(stations_m_.back() + step_m);
     const double before = poses_[i - 1].heading_rad;
     poses_[i].heading_rad = before + geometry::wrap_angle(poses_[i].heading_rad - before);
   }
 }
 
-geometry::Pose2 Course::at(double s_m) const {
+geometry::Pose2 SampledPath::at(double s_m) const {
   const double inside_m = std::clamp(s_m, 0.0, length_m());
   const auto after = std::upper_bound(stations_m_.begin() + 1, stations_m_.end() - 1, inside_m);
   const auto i = static_cast<std::size_t>(after - stations_m_.begin());
@@ -104,7 +105,8 @@ geometry::Pose2 Course::at(double s_m) const {
           a.y_m + share * (b.y_m - a.y_m) + beyond_m * std::sin(heading), heading};
 }
 
-double Course::nearest_s_m(const Eigen::Vector2d& point, double near_s_m, double window_m) const {
+double SampledPath::nearest_s_m(const Eigen::Vector2d& point, double near_s_m,
+                                double window_m) const {
   double nearest_m = std::numeric_limits<double>::infinity(), found_s_m = near_s_m;
   const auto first =
       std::lower_bound(stations_m_.begin() + 1, stations_m_.end() - 1, near_s_m - window_m);
@@ -124,13 +126,13 @@ double Course::nearest_s_m(const Eigen::Vector2d& point, double near_s_m, double
   return found_s_m;
 }
 
-Course right_turn_course(double speed_mps) {
-  return course_of({-0.5 * std::numbers::pi}, speed_mps);
+SampledPath right_turn_path(double speed_mps) {
+  return path_of_turns({-0.5 * std::numbers::pi}, speed_mps);
 }
 
-Course zig_zag_course(double speed_mps) {
+SampledPath zig_zag_path(double speed_mps) {
   const double half = std::numbers::pi / 9.0, whole = 2.0 * half;
-  return course_of({half, -whole, whole, -whole, whole, -half}, speed_mps);
+  return path_of_turns({half, -whole, whole, -whole, whole, -half}, speed_mps);
 }
 
 }  // namespace roadbed::control

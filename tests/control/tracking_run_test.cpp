@@ -1,4 +1,4 @@
-#include "roadbed/control/course_run.h"
+#include "roadbed/control/tracking_run.h"
 
 #include <gtest/gtest.h>
 
@@ -31,15 +31,15 @@ std::vector<std::vector<double>> read_rows(const std::filesystem::path& csv) {
   return rows;
 }
 
-Course read_course(const std::filesystem::path& csv) {
+SampledPath read_course(const std::filesystem::path& csv) {
   std::vector<geometry::Pose2> poses;
   for (const auto& row : read_rows(csv)) poses.push_back({row.at(1), row.at(2), row.at(3)});
-  return Course(poses);
+  return SampledPath(poses);
 }
 
 /// As the peer's runs were made.
-CourseRunOptions as_the_peer(SteeringLaw law, double speed_kmph) {
-  CourseRunOptions options{.law = law, .speed_mps = speed_kmph / 3.6, .step_s = 0.1, .euler = true};
+TrackingOptions as_the_peer(SteeringLaw law, double speed_kmph) {
+  TrackingOptions options{.law = law, .speed_mps = speed_kmph / 3.6, .step_s = 0.1, .euler = true};
   options.vehicle.wheelbase_m = 2.9;
   options.vehicle.max_steering_rad = std::numbers::pi / 6.0;
   return options;
@@ -51,16 +51,16 @@ struct PeerFigure {
 constexpr std::array<PeerFigure, 4> kPeer{
     {{20, 0.096, 0.131}, {30, 0.203, 0.184}, {40, 0.341, 0.229}, {50, 0.508, 0.291}}};
 
-CourseRunSummary run(const Course& course, const CourseRunOptions& options) {
-  return summarise(run_course(course, options));
+TrackingSummary run(const SampledPath& path, const TrackingOptions& options) {
+  return summarise(track_path(path, options));
 }
 
 // PythonRobotics' own run at 30 km/h (k = 0.5), rear axle.
-TEST(CourseRun, OriginalLawDrivesThePeersRun) {
+TEST(TrackingRun, OriginalLawDrivesThePeersRun) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  const Course course = read_course(folder / "control/stanley_course.csv");
+  const SampledPath path = read_course(folder / "control/stanley_course.csv");
   const auto peer = read_rows(folder / "control/stanley_aligned_run.csv");
-  const auto ours = run_course(course, as_the_peer(SteeringLaw::original_stanley, 30));
+  const auto ours = track_path(path, as_the_peer(SteeringLaw::original_stanley, 30));
   ASSERT_GT(ours.size(), 200U);
   for (std::size_t k = 0; k < 200; ++k) {
     EXPECT_NEAR(ours[k].state.pose.x_m, peer[k].at(1), 0.05) << peer[k].at(0) << " s";
@@ -69,26 +69,26 @@ TEST(CourseRun, OriginalLawDrivesThePeersRun) {
   }
 }
 
-TEST(CourseRun, PureLawsReachTheErrorsThatWereMeasured) {
+TEST(TrackingRun, PureLawsReachTheErrorsThatWereMeasured) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  const Course course = read_course(folder / "control/stanley_course.csv");
+  const SampledPath path = read_course(folder / "control/stanley_course.csv");
   for (const auto& [speed, peer_rms_m, paper_rms_m] : kPeer) {
-    const auto original = run(course, as_the_peer(SteeringLaw::original_stanley, speed));
-    const auto paper = run(course, as_the_peer(SteeringLaw::stanley, speed));
+    const auto original = run(path, as_the_peer(SteeringLaw::original_stanley, speed));
+    const auto paper = run(path, as_the_peer(SteeringLaw::stanley, speed));
     EXPECT_NEAR(original.cross_track_rms_m, peer_rms_m, 0.002) << speed << " km/h";
     EXPECT_NEAR(paper.cross_track_rms_m, paper_rms_m, 0.002) << speed << " km/h";
   }
 }
 
-TEST(CourseRun, HalfAStepOfPreviewHalvesThePeersErrorWithoutSteeringHarder) {
+TEST(TrackingRun, HalfAStepOfPreviewHalvesThePeersErrorWithoutSteeringHarder) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
-  const Course course = read_course(folder / "control/stanley_course.csv");
+  const SampledPath path = read_course(folder / "control/stanley_course.csv");
   for (const auto& [speed, peer_rms_m, paper_rms_m] : kPeer) {
-    CourseRunOptions options = as_the_peer(SteeringLaw::stanley, speed);
+    TrackingOptions options = as_the_peer(SteeringLaw::stanley, speed);
     const double peer_rate =
-        run(course, as_the_peer(SteeringLaw::original_stanley, speed)).steering_rate_rms_radps;
+        run(path, as_the_peer(SteeringLaw::original_stanley, speed)).steering_rate_rms_radps;
     options.preview_s = 0.5 * options.step_s;
-    const auto ours = run(course, options);
+    const auto ours = run(path, options);
     EXPECT_LT(ours.cross_track_rms_m, 0.5 * peer_rms_m) << speed << " km/h";
     EXPECT_LT(ours.steering_rate_rms_radps, 1.15 * peer_rate) << speed << " km/h";
     // A whole step would be as wrong as none: the delay is half a step, and nothing else.
@@ -96,66 +96,66 @@ TEST(CourseRun, HalfAStepOfPreviewHalvesThePeersErrorWithoutSteeringHarder) {
   }
 }
 
-Course circle(double radius_m) {
+SampledPath circle(double radius_m) {
   std::vector<geometry::Pose2> poses;
   for (int i = 0; i <= 600; ++i) {
     const double angle = 0.01 * i;
     poses.push_back({radius_m * std::sin(angle), radius_m * (1.0 - std::cos(angle)), angle});
   }
-  return Course(poses);
+  return SampledPath(poses);
 }
 
-TEST(Course, NearestStationIsTheArcFromTheStart) {
-  const Course course = circle(20.0);
+TEST(SampledPath, NearestStationIsTheArcFromTheStart) {
+  const SampledPath path = circle(20.0);
   for (double angle = 0.3; angle < 5.5; angle += 0.37) {
     for (const double d_m : {-2.0, 0.0, 3.0}) {
       const double radius_m = 20.0 - d_m;
       const Eigen::Vector2d point(radius_m * std::sin(angle), 20.0 - radius_m * std::cos(angle));
-      EXPECT_NEAR(course.nearest_s_m(point, 20.0 * angle + 3.0), 20.0 * angle,
+      EXPECT_NEAR(path.nearest_s_m(point, 20.0 * angle + 3.0), 20.0 * angle,
                   0.03);  // chords of 0.2 m
     }
-    EXPECT_NEAR(course.at(20.0 * angle).heading_rad, angle, 1e-4);
+    EXPECT_NEAR(path.at(20.0 * angle).heading_rad, angle, 1e-4);
   }
 }
 
-TEST(Course, LeadsStraightOnPastItsEnds) {
-  const Course course({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
-  EXPECT_DOUBLE_EQ(course.at(5.0).x_m, 5.0);
-  EXPECT_DOUBLE_EQ(course.at(-1.5).x_m, -1.5);
-  EXPECT_DOUBLE_EQ(course.nearest_s_m({4.0, 1.0}, 2.0), 4.0);
-  EXPECT_DOUBLE_EQ(course.nearest_s_m({-3.0, 1.0}, 0.0), -3.0);
-  EXPECT_THROW(Course({{0, 0, 0}}), std::invalid_argument);
-  EXPECT_THROW(Course({{0, 0, 0}, {0, 0, 1}}), std::invalid_argument);
+TEST(SampledPath, LeadsStraightOnPastItsEnds) {
+  const SampledPath path({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  EXPECT_DOUBLE_EQ(path.at(5.0).x_m, 5.0);
+  EXPECT_DOUBLE_EQ(path.at(-1.5).x_m, -1.5);
+  EXPECT_DOUBLE_EQ(path.nearest_s_m({4.0, 1.0}, 2.0), 4.0);
+  EXPECT_DOUBLE_EQ(path.nearest_s_m({-3.0, 1.0}, 0.0), -3.0);
+  EXPECT_THROW(SampledPath({{0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(SampledPath({{0, 0, 0}, {0, 0, 1}}), std::invalid_argument);
 }
 
 // The front axle on the circle: sin δ = L / R.
-TEST(CourseRun, EveryLawSettlesOnACircleAtTheSteeringAngleThatItAsksFor) {
+TEST(TrackingRun, EveryLawSettlesOnACircleAtTheSteeringAngleThatItAsksFor) {
   const double radius_m = 30.0;
   for (const SteeringLaw law :
        {SteeringLaw::stanley, SteeringLaw::original_stanley, SteeringLaw::pure_pursuit}) {
-    const auto rows = run_course(circle(radius_m), {.law = law, .speed_mps = 5.0});
+    const auto rows = track_path(circle(radius_m), {.law = law, .speed_mps = 5.0});
     const double asked = std::asin(geometry::VehicleShape{}.wheelbase_m / radius_m);
-    const CourseRunRow& settled = rows[4 * rows.size() / 5];
+    const TrackingSample& settled = rows[4 * rows.size() / 5];
     EXPECT_NEAR(settled.state.steering_rad, asked, 0.003);
     EXPECT_LT(std::abs(settled.cross_track_m), 0.15);
     EXPECT_NEAR(settled.steering_rate_radps, 0.0, 0.01);
   }
 }
 
-TEST(CourseRun, LateralJerkIsTheChangeOfLateralAcceleration) {
-  const auto rows = run_course(circle(30.0), {.speed_mps = 5.0});
+TEST(TrackingRun, LateralJerkIsTheChangeOfLateralAcceleration) {
+  const auto rows = track_path(circle(30.0), {.speed_mps = 5.0});
   const double wheelbase_m = geometry::VehicleShape{}.wheelbase_m;
   double acceleration_mps2 = 0.0;
-  for (const CourseRunRow& row : rows) {
+  for (const TrackingSample& row : rows) {
     const double truth = 25.0 * std::tan(row.state.steering_rad) / wheelbase_m;
     EXPECT_NEAR(acceleration_mps2, truth, 1e-9) << row.t_s << " s";
     acceleration_mps2 += 0.01 * row.lateral_jerk_mps3;
   }
 }
 
-TEST(CourseRun, SpeedAndStepMustBePositive) {
-  EXPECT_THROW(run_course(circle(30.0), {.speed_mps = 0.0}), std::invalid_argument);
-  EXPECT_THROW(run_course(circle(30.0), {.step_s = std::nan("")}), std::invalid_argument);
+TEST(TrackingRun, SpeedAndStepMustBePositive) {
+  EXPECT_THROW(track_path(circle(30.0), {.speed_mps = 0.0}), std::invalid_argument);
+  EXPECT_THROW(track_path(circle(30.0), {.step_s = std::nan("")}), std::invalid_argument);
 }
 
 }  // namespace

@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "roadbed/control/course.h"
+#include "roadbed/control/sampled_path.h"
 #include "roadbed/control/single_track.h"
 
 namespace roadbed::control {
 
 enum class SteeringLaw { stanley, original_stanley, pure_pursuit };
 
-/// How a vehicle is sent along a course at constant speed, and by which law.
-struct CourseRunOptions {
+/// How a vehicle is sent along a path at constant speed, and by which law.
+struct TrackingOptions {
   SteeringLaw law = SteeringLaw::stanley;
   double speed_mps = 10.0;
   double step_s = 0.01;  ///< of law and vehicle
@@ -25,7 +25,7 @@ struct CourseRunOptions {
 };
 
 /// One step of a run: errors of the front axle at its start, and what the law made of them.
-struct CourseRunRow {
+struct TrackingSample {
   double t_s = 0.0;
   SingleTrackState state;
   double cross_track_m = 0.0;  ///< positive: the path is to the left
@@ -34,18 +34,18 @@ struct CourseRunRow {
   double lateral_jerk_mps3 = 0.0;  ///< d/dt of v² tan(δ)/L at constant speed
 };
 
-/// Drives from the course's start, rear axle on it and aligned with it, until the front axle
+/// Drives from the path's start, rear axle on it and aligned with it, until the front axle
 /// reaches its end.
 /// @throws std::invalid_argument if speed or step is not positive.
-std::vector<CourseRunRow> run_course(const Course& course, const CourseRunOptions& options);
+std::vector<TrackingSample> track_path(const SampledPath& path, const TrackingOptions& options);
 
 /// Largest values and root mean squares of a run.
-struct CourseRunSummary {
+struct TrackingSummary {
   double cross_track_rms_m = 0.0, largest_cross_track_m = 0.0;
   double heading_rms_rad = 0.0, largest_heading_rad = 0.0;
   double steering_rate_rms_radps = 0.0, largest_steering_rate_radps = 0.0;
   double lateral_jerk_rms_mps3 = 0.0, largest_lateral_jerk_mps3 = 0.0;
 };
-CourseRunSummary summarise(const std::vector<CourseRunRow>& run);
+TrackingSummary summarise(const std::vector<TrackingSample>& run);
 
 }  // namespace roadbed::control
