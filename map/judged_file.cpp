@@ -10,7 +10,6 @@
 #include "roadbed/map/lanelet2/read.h"
 #include "roadbed/map/lanelet2/rules/source.h"
 #include "roadbed/map/opendrive/read.h"
-#include "roadbed/map/opendrive/read_document.h"
 #include "roadbed/map/opendrive/rules/source.h"
 
 namespace roadbed::map {

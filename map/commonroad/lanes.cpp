@@ -7,7 +7,6 @@
 
 #include "roadbed/map/commonroad/elements.h"
 #include "roadbed/map/commonroad/values.h"
-#include "roadbed/map/elements/lane_ring.h"
 
 namespace roadbed::map::commonroad {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/map/derived/overpasses.h"
+#include "roadbed/map/derived/conflicts.h"
 
 #include <algorithm>
 #include <cstddef>

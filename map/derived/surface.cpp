@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
-
-#include "roadbed/geometry/polygons/polygon.h"
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -15,7 +14,7 @@ using geometry::Ring;
 /// Lanes in order of id.
 using LaneSet = std::vector<LaneId>;
 
-bool has(const LaneSet& lanes, LaneId id) {
+bool is_among(LaneId id, const LaneSet& lanes) {
   return std::binary_search(lanes.begin(), lanes.end(), id);
 }
 
@@ -56,12 +55,12 @@ class StripCutter {
     const auto place = std::lower_bound(wanted_.begin(), wanted_.end(), id) - wanted_.begin();
     return taken_[static_cast<std::size_t>(place)];
   }
-  bool is_taken(LaneId id) { return !has(wanted_, id) || taken(id); }
+  bool is_taken(LaneId id) { return !is_among(id, wanted_) || taken(id); }
 
   bool is_leftmost(LaneId id) const {
     const std::optional<Neighbour>& left = road_map_.graph().of(id).left;
     return !is_beside(road_map_, road_map_.lane(id), left) || !left->same_direction ||
-           !has(wanted_, left->lane);
+           !is_among(left->lane, wanted_);
   }
 
   /// The lane and those to its right, as far as they are left to take.
@@ -161,6 +160,26 @@ std::vector<Polygon> junction_surface(const RoadMap& road_map, JunctionId juncti
 
 std::vector<Polygon> drivable_surface(const RoadMap& road_map, const SurfaceOptions& options) {
   return lanes_surface(road_map, drivable_lanes(road_map), options).polygons;
+}
+
+std::vector<geometry::Polygon> road_area_surface(const RoadMap& road_map,
+                                                 const SurfaceOptions& options) {
+  std::vector<geometry::Polygon> polygons;
+  for (const Area& area : road_map.areas()) {
+    if (area.is_road) polygons.insert(polygons.end(), area.in_map.begin(), area.in_map.end());
+  }
+  return geometry::unite(polygons, options.weld_m);
+}
+
+std::vector<geometry::MedialBranch> road_centrelines(const RoadMap& road_map,
+                                                     const SurfaceOptions& options) {
+  std::vector<geometry::MedialBranch> branches;
+  for (const geometry::Polygon& polygon : road_area_surface(road_map, options)) {
+    auto found = geometry::medial_axis(polygon);
+    branches.insert(branches.end(), std::make_move_iterator(found.begin()),
+                    std::make_move_iterator(found.end()));
+  }
+  return branches;
 }
 
 }  // namespace roadbed::map::derived

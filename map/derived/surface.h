@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "roadbed/geometry/polygons/medial_axis.h"
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/model/road_map.h"
 
@@ -43,5 +44,15 @@ std::vector<geometry::Polygon> junction_surface(const RoadMap& road_map, Junctio
 /// Area of all drivable lanes of the map.
 std::vector<geometry::Polygon> drivable_surface(const RoadMap& road_map,
                                                 const SurfaceOptions& options = {});
+
+/// Area of all road areas of the map (`Area::is_road`), areas that touch joined.
+std::vector<geometry::Polygon> road_area_surface(const RoadMap& road_map,
+                                                 const SurfaceOptions& options = {});
+
+/// Lines in the middle of the map's road areas, with the width along them: the medial axis of
+/// `road_area_surface`, without branches that only lead into a corner. Made anew at each call; in
+/// order of their first point. O(N log N).
+std::vector<geometry::MedialBranch> road_centrelines(const RoadMap& road_map,
+                                                     const SurfaceOptions& options = {});
 
 }  // namespace roadbed::map::derived

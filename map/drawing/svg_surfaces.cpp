@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "roadbed/map/derived/area_centreline.h"
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/drawing/svg_drawing.h"
 

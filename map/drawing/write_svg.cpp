@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "roadbed/map/derived/overpasses.h"
+#include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/drawing/svg_drawing.h"
 #include "roadbed/map/files/xml_characters.h"
 

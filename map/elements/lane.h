@@ -118,4 +118,12 @@ struct Lane {
   static Eigen::Vector2d point_at(const LaneLine& line, double station_m);
 };
 
+/// The polygon between a lane's borders, counter-clockwise and simple: of a ring that folds over
+/// itself the largest part is kept. Empty if nothing of it has an area, or it folds without end.
+geometry::Ring lane_ring(const geometry::Polyline& left_in_map,
+                         const geometry::Polyline& right_in_map);
+
+/// The same for any closed ring of points.
+geometry::Ring simple_ring(geometry::Ring ring);
+
 }  // namespace roadbed::map::elements

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,18 +41,31 @@ class LaneGraph {
 
   /// @param links  one per lane, in order of LaneId.
   /// @throws std::invalid_argument if a link names a lane that is not there.
-  explicit LaneGraph(std::vector<LaneLinks> links);
+  explicit LaneGraph(std::vector<LaneLinks> links) : links_(std::move(links)) { check(); }
 
   /// The same, unchecked: for links that check themselves when they are made.
   explicit LaneGraph(LazyList<LaneLinks> links) : links_(std::move(links)) {}
 
   /// @throws std::invalid_argument if a link names a lane that is not there.
-  void check() const;
+  void check() const {
+    for (const LaneLinks& of_lane : links_) {
+      for (const LaneId id : of_lane.successors) check(id);
+      for (const LaneId id : of_lane.predecessors) check(id);
+      if (of_lane.left) check(of_lane.left->lane);
+      if (of_lane.right) check(of_lane.right->lane);
+    }
+  }
 
   std::size_t size() const { return links_.size(); }
   const LaneLinks& of(LaneId lane) const { return links_.at(lane.index); }
 
  private:
+  void check(LaneId id) const {
+    if (id.index < links_.size()) return;
+    throw std::invalid_argument("LaneGraph: a link names lane " + std::to_string(id.index) +
+                                " of " + std::to_string(links_.size()));
+  }
+
   LazyList<LaneLinks> links_;
 };
 

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "roadbed/map/elements/attributes.h"
+#include "roadbed/map/elements/furniture.h"
 #include "roadbed/map/elements/lane.h"
 #include "roadbed/map/elements/lane_graph.h"
-#include "roadbed/map/elements/map_object.h"
-#include "roadbed/map/elements/regulation.h"
 #include "roadbed/map/elements/road.h"
-#include "roadbed/map/elements/signal.h"
 
 namespace roadbed::map::inline elements {
 

@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/elements/attributes.h"
 #include "roadbed/map/elements/id.h"
+#include "roadbed/map/elements/participants.h"
 
 namespace roadbed::map::inline elements {
 
@@ -30,6 +33,16 @@ struct Junction {
   std::string name;
   JunctionKind kind = JunctionKind::common;
   std::vector<RoadId> connecting_roads;
+};
+
+/// An area without a direction of travel: Lanelet2's area, a road surface of a GeoJSON file.
+struct Area {
+  std::string source_id;
+  std::string type;      ///< the source's word: "parking", "walkway", …
+  bool is_road = false;  ///< vehicles may be there
+  std::vector<geometry::Polygon> in_map;
+  Participants participants;
+  Attributes attributes;
 };
 
 }  // namespace roadbed::map::elements

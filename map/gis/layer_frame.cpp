@@ -1,4 +1,4 @@
-#include "roadbed/map/gis/layer_frame.h"
+#include "roadbed/map/gis/layers.h"
 
 #include "roadbed/map/files/projection.h"
 
@@ -19,6 +19,15 @@ void for_each_point(std::vector<Layer>& layers, const Change& change) {
 }
 
 }  // namespace
+
+Eigen::AlignedBox2d box_of(const Shape& shape) {
+  Eigen::AlignedBox2d box;
+  for (const auto& rings : shape) {
+    // Holes are inside the first ring.
+    for (const Eigen::Vector3d& point : rings[0]) box.extend(Eigen::Vector2d(point.head<2>()));
+  }
+  return box;
+}
 
 void to_source(const RoadMap& road_map, std::vector<Layer>& layers) {
   for_each_point(layers, [&](Eigen::Vector3d& point) {

@@ -1,4 +1,4 @@
-#include "roadbed/map/gis/layer_style.h"
+#include "roadbed/map/gis/geopackage_content.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "roadbed/map/derived/area_centreline.h"
 #include "roadbed/map/derived/lane_relations.h"
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/validation/validate.h"

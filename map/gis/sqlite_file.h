@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/gis/layer.h"
+#include "roadbed/map/gis/layers.h"
 
 struct sqlite3;
 struct sqlite3_stmt;

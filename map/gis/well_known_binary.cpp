@@ -1,4 +1,4 @@
-#include "roadbed/map/gis/well_known_binary.h"
+#include "roadbed/map/gis/geopackage_content.h"
 
 #include <bit>
 #include <cstdint>

@@ -1,10 +1,10 @@
-#include "roadbed/map/gis/write_csv.h"
+#include "roadbed/map/gis/write.h"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
-#include "roadbed/map/derived/area_centreline.h"
+#include "roadbed/map/derived/surface.h"
 
 namespace roadbed::map::inline gis {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/map/gis/write_geojson.h"
+#include "roadbed/map/gis/write.h"
 
 #include <fmt/format.h>
 

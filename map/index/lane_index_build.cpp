@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "roadbed/geometry/index/hilbert.h"
-#include "roadbed/map/index/lane_index_check.h"
 #include "roadbed/map/index/lane_index_data.h"
 
 namespace roadbed::map::inline index::lane_index {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "roadbed/map/elements/lane.h"
@@ -79,5 +80,23 @@ std::vector<std::uint64_t> level_starts(std::uint64_t cells);
 
 /// Lanes without a polygon get no cells.
 Data build(const LazyList<Lane>& lanes);
+
+/// Compares arrays with those that build() makes of lanes, which come one by one, in order of id:
+/// neither the lanes nor the arrays have to be in memory. Keeps a box per cell.
+class Check {
+ public:
+  Check() = default;
+  virtual ~Check() = default;
+  Check(const Check&) = delete;
+  Check& operator=(const Check&) = delete;
+
+  virtual void add(const Lane& lane) = 0;
+
+  /// Whether the arrays are those of the lanes added, which were all.
+  virtual bool holds() = 0;
+};
+
+/// @param data  outlives the check.
+std::unique_ptr<Check> make_check(const Data& data);
 
 }  // namespace roadbed::map::index::lane_index

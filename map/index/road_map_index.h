@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/index/lane_index.h"
-#include "roadbed/map/index/lane_index_check.h"
+#include "roadbed/map/index/lane_index_data.h"
 #include "roadbed/map/storage/flat_array.h"
 #include "roadbed/map/storage/lazy_list.h"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "roadbed/map/elements/lane_ring.h"
 #include "roadbed/map/lanelet2/traffic_rules.h"
 
 namespace roadbed::map::lanelet2 {

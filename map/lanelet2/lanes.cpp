@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "roadbed/map/elements/lane_ring.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/centreline.h"
 #include "roadbed/map/lanelet2/traffic_rules.h"

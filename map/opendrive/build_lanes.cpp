@@ -6,10 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "roadbed/map/elements/lane_ring.h"
 #include "roadbed/map/opendrive/lane_borders.h"
-#include "roadbed/map/opendrive/marks.h"
-#include "roadbed/map/opendrive/road_rules.h"
 
 namespace roadbed::map::opendrive {
 namespace {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "roadbed/map/elements/lane_graph.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/opendrive/budget.h"
 #include "roadbed/map/opendrive/document.h"
@@ -52,5 +53,10 @@ std::vector<Stretch<Value>> in_driving_order(const BuiltLanes& built, LaneId lan
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,
                        const std::map<std::string, JunctionId>& junctions, double max_error_m,
                        PointBudget& budget, std::vector<ImportDiagnostic>& remarks);
+
+/// How the lanes connect: along roads, across road ends, through junctions, and side by side.
+/// Links that name what is not there are remarked and left out.
+std::vector<LaneLinks> link_lanes(const Document& document, const BuiltLanes& built,
+                                  std::vector<ImportDiagnostic>& remarks);
 
 }  // namespace roadbed::map::opendrive

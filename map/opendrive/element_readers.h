@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/opendrive/document.h"
@@ -43,6 +44,20 @@ void mend_road(RoadRecord& road);
 
 /// Fills in which section follows which on each side. O(number of sections).
 void connect_sections(std::vector<LaneSection>& sections);
+
+/// Roads of virtual junctions join others in between (elementS): splits the lane sections there, so
+/// that lanes end and begin where others join them. What is split is remarked; a station off the
+/// road too.
+void split_at_virtual_links(Document& document);
+
+/// The lane sections of a road that meet at a station inside it: the one that ends there and the
+/// one that begins there. None where no section begins at that station.
+std::optional<std::pair<std::size_t, std::size_t>> sections_meeting_at(const RoadRecord& road,
+                                                                       double s_m);
+
+/// <roadMark> with what it allows: by its laneChange, without that by its line type — of a double
+/// line the one nearer to the driver.
+RoadMark read_mark(const XmlDocument& xml, pugi::xml_node node, int lane_id, double s_m);
 
 /// <signals> of a road: signals and references to signals of other roads. One that cannot be read
 /// is left out and remarked: it must not make a city unusable.

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/map/opendrive/borders_at_station.h"
-
 namespace roadbed::map::opendrive {
 namespace {
 

@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "roadbed/geometry/curves/plan_view.h"
+#include "roadbed/map/opendrive/borders_at_station.h"
 #include "roadbed/map/opendrive/budget.h"
-#include "roadbed/map/opendrive/document.h"
-#include "roadbed/map/opendrive/section_side.h"
 
 namespace roadbed::map::opendrive {
 

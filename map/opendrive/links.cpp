@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/links.h"
+#include "roadbed/map/opendrive/build_lanes.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,8 @@
 #include <optional>
 #include <set>
 
+#include "roadbed/map/opendrive/element_readers.h"
 #include "roadbed/map/opendrive/lane_borders.h"
-#include "roadbed/map/opendrive/marks.h"
-#include "roadbed/map/opendrive/virtual.h"
 
 namespace roadbed::map::opendrive {
 namespace {

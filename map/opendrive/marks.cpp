@@ -1,8 +1,9 @@
-#include "roadbed/map/opendrive/marks.h"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "roadbed/map/opendrive/element_readers.h"
+#include "roadbed/map/opendrive/stretch.h"
 
 namespace roadbed::map::opendrive {
 namespace {

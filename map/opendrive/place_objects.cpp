@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/place_objects.h"
+#include "roadbed/map/opendrive/furniture.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-
-#include "roadbed/map/elements/lane_ring.h"
 
 namespace roadbed::map::opendrive {
 namespace {

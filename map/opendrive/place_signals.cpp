@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/place_signals.h"
+#include "roadbed/map/opendrive/furniture.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,6 @@
 #include <map>
 #include <numbers>
 #include <string_view>
-
-#include "roadbed/map/opendrive/addressed.h"
 
 namespace roadbed::map::opendrive {
 namespace {

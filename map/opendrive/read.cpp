@@ -7,11 +7,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/opendrive/build_lanes.h"
-#include "roadbed/map/opendrive/links.h"
-#include "roadbed/map/opendrive/place_objects.h"
-#include "roadbed/map/opendrive/place_signals.h"
-#include "roadbed/map/opendrive/read_document.h"
-#include "roadbed/map/opendrive/stop_lines.h"
+#include "roadbed/map/opendrive/furniture.h"
 
 namespace roadbed::map::opendrive {
 namespace {

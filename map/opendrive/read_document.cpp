@@ -1,10 +1,9 @@
-#include "roadbed/map/opendrive/read_document.h"
+#include "roadbed/map/opendrive/read.h"
 
 #include <cmath>
 
 #include "roadbed/map/opendrive/budget.h"
 #include "roadbed/map/opendrive/element_readers.h"
-#include "roadbed/map/opendrive/virtual.h"
 
 namespace roadbed::map::opendrive {
 namespace {

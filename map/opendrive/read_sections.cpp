@@ -7,7 +7,6 @@
 #include <iterator>
 #include <string_view>
 
-#include "roadbed/map/opendrive/marks.h"
 #include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive {

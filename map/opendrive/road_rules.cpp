@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/road_rules.h"
+#include "roadbed/map/opendrive/stretch.h"
 
 #include <fmt/format.h>
 

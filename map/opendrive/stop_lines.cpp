@@ -1,12 +1,9 @@
-#include "roadbed/map/opendrive/stop_lines.h"
+#include "roadbed/map/opendrive/furniture.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
-
-#include "roadbed/map/opendrive/addressed.h"
-#include "roadbed/map/opendrive/place_objects.h"
 
 namespace roadbed::map::opendrive {
 namespace {

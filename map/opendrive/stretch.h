@@ -1,8 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "roadbed/map/opendrive/document.h"
 
 namespace roadbed::map::opendrive {
 
@@ -37,5 +41,31 @@ std::vector<Stretch<Value>> stretches(const std::vector<Record>& records, double
   for (std::size_t i = 0; i + 1 < found.size(); ++i) found[i].to_s_m = found[i + 1].from_s_m;
   return found;
 }
+
+/// A lane's speed limit by road station: its own where it has one, else that of the road.
+std::vector<Stretch<std::optional<double>>> speed_stretches(const RoadRecord& road,
+                                                            const LaneRecord& lane, double from_s_m,
+                                                            double to_s_m);
+
+/// Who may use all of a lane: what its type says, narrowed or widened by its <access> records. At
+/// one station "allow" lets in those named and nobody else, then "deny" keeps those named out.
+Participants participants_along(const LaneRecord& lane);
+
+/// The <access> records in words, by road station, "0 deny truck, 50 allow bus": they may name what
+/// is no road user (autonomousTraffic, delivery) or change along the lane.
+std::string access_in_words(const LaneRecord& lane);
+
+/// The same marking from the other side, or seen against the road: double lines change places.
+MarkType mirrored(MarkType type);
+
+/// Markings of a lane's outer border (lane 0: of the middle) as lines follow each other from left
+/// to right, seen along the road.
+std::vector<Stretch<BorderMark>> border_marks(const LaneRecord& lane, double from_s_m,
+                                              double to_s_m);
+
+/// Where a lane's outer marking (lane 0: the one in the middle) may be crossed towards larger lane
+/// ids, or smaller ones.
+std::vector<Stretch<bool>> crossings(const LaneRecord& lane, bool to_larger_id, double from_s_m,
+                                     double to_s_m);
 
 }  // namespace roadbed::map::opendrive

@@ -1,12 +1,10 @@
-#include "roadbed/map/opendrive/virtual.h"
+#include "roadbed/map/opendrive/element_readers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "roadbed/map/opendrive/element_readers.h"
 
 namespace roadbed::map::opendrive {
 namespace {

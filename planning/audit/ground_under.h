@@ -5,8 +5,8 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/map/occupancy/ground/ground.h"
-#include "roadbed/map/occupancy/ground/measured_ground.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 
 namespace roadbed::planning::inline audit {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/derived/area_centreline.h"
+#include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 

@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/map/occupancy/ground/ground.h"
-#include "roadbed/map/occupancy/ground/ground_claims.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/tools/audit/audit_subjects.h"
+#include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"

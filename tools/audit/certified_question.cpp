@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/map/occupancy/ground/ground_claims.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/planning/audit/certificate_check.h"
 
 namespace roadbed::tools::inline audit {

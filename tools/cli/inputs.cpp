@@ -4,7 +4,7 @@
 
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/map/occupancy/octree/load_occupancy.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 
 namespace roadbed::tools::inline cli {

@@ -9,7 +9,6 @@
 
 #include "roadbed/map/commonroad/scenario_reader.h"
 #include "roadbed/map/compiled/compiled_map.h"
-#include "roadbed/map/derived/area_centreline.h"
 #include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/read_file.h"

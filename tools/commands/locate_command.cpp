@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/derived/road_place.h"
+#include "roadbed/map/derived/lane_frame.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/commands.h"

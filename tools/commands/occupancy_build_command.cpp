@@ -10,14 +10,12 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/clouds/sensor_poses.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tile_builder.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
-#include "roadbed/map/occupancy/octree/tree_origin.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
 

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 
-namespace roadbed::map::inline occupancy::inline ground {
-class Ground;
-}
+#include "roadbed/map/occupancy/ground/ground.h"
 
 namespace roadbed::map::inline occupancy::inline clearance {
 
@@ -19,7 +18,11 @@ struct HeightBand {
 
   /// Whether a box that begins at a height and is so high reaches into the band, by more than a
   /// touch, in the column of a point.
-  bool holds(const Eigen::Vector2d& in_source, double low_m, double height_m) const;
+  bool holds(const Eigen::Vector2d& in_source, double low_m, double height_m) const {
+    constexpr double touch_m = 1e-6;  // what overlaps the band by less only touches it
+    const double above_m = ground ? low_m - ground->height_m(in_source) : low_m;
+    return std::min(above_m + height_m, to_m) - std::max(above_m, from_m) > touch_m;
+  }
 };
 
 /// An axis-aligned box in plan view, in source coordinates.

@@ -39,6 +39,21 @@ struct RawCloud {
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& sensor);
 };
 
+/// Records of one size that hold x, y and z as floats in the order of this machine's bytes.
+struct FloatRecords {
+  const char* first;
+  std::size_t count, size;                   ///< records, and bytes of each
+  std::size_t x_offset, y_offset, z_offset;  ///< bytes before them in a record
+};
+
+/// Takes the points of records into a cloud, as `RawCloud::add` does one by one, but some thousands
+/// at a time: copied, then judged all together.
+void add_float_points(const FloatRecords& records, RawCloud& cloud);
+
+/// The cloud of what a file holds, with the local origin that `PointCloud` names; its own name is
+/// not set. @pre there is a point.
+PointCloud relative_to_origin(RawCloud raw);
+
 /// Places of three fields in a point.
 using FieldColumns = std::array<std::size_t, 3>;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 
@@ -12,5 +13,25 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor);
 /// A cloud in its sensor's frame, moved to where the sensor stood: the sensor is at the pose's
 /// origin, whatever viewpoint the file named; sensor positions of single points move along.
 PointCloud placed(const PointCloud& cloud, const Eigen::Isometry3d& world_from_sensor);
+
+/// A cloud in pieces that reach over some `side_m` along each axis at most, sensors included: what
+/// was measured from nowhere in cubes from `origin_in_source` on, whole scans by where their
+/// middles lie. A scan that reaches farther by itself is a piece of its own.
+std::vector<PointCloud> split_cloud(const PointCloud& cloud,
+                                    const Eigen::Vector3d& origin_in_source, double side_m);
+
+/// What to take out of a cloud before occupancy is built from it.
+struct CloudFilter {
+  double voxel_m = 0.0;             ///< one point, the mean, per cube of this side; 0: keep all
+  int outlier_neighbours = 0;       ///< compare distances to this many neighbours; 0: keep all
+  double outlier_deviations = 2.0;  ///< over the mean by more standard deviations: an outlier
+
+  bool does_something() const { return voxel_m > 0.0 || outlier_neighbours > 0; }
+};
+
+/// Applies PCL's StatisticalOutlierRemoval, then its VoxelGrid. PCL is opened now, not when the
+/// program starts, which would cost every command 50 ms.
+/// @throws InputError if roadbed was built without PCL, or no point is left.
+PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter);
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/clouds/float_points.h"
+#include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/clouds/local_origin.h"
+#include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
-#include "roadbed/map/occupancy/clouds/float_points.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {

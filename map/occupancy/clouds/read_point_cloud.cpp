@@ -6,7 +6,6 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
-#include "roadbed/map/occupancy/clouds/local_origin.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {

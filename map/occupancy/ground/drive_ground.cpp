@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/ground/drive_places.h"
-#include "roadbed/map/occupancy/ground/ground_plane.h"
 
 namespace roadbed::map::inline occupancy::inline ground {
 namespace {

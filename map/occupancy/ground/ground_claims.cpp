@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/ground/ground_claims.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 
 #include "roadbed/geometry/index/point_index.h"
 #include "roadbed/map/occupancy/ground/drive_places.h"
-#include "roadbed/map/occupancy/ground/ground_plane.h"
 
 namespace roadbed::map::inline occupancy::inline ground {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/ground/measured_ground.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 
 #include "roadbed/map/occupancy/ground/column_minima.h"
 #include "roadbed/map/occupancy/ground/drive_places.h"
-#include "roadbed/map/occupancy/ground/ground_plane.h"
 
 namespace roadbed::map::inline occupancy::inline ground {
 namespace {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "roadbed/map/occupancy/octree/morton.h"
-
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
 

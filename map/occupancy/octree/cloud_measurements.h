@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
@@ -69,5 +70,15 @@ class CloudMeasurements {
   FreeSpaceRays carved_;  // by the scan that is being added
   std::vector<CellKey> keys_;
 };
+
+/// What clouds measured, and where.
+struct MeasuredClouds {
+  Eigen::Vector3d origin_in_source;
+  std::string crs;
+  CloudMeasurements cells;
+};
+
+/// @throws as `OccupancyMap::build`, and if the clouds have more than one CRS.
+MeasuredClouds measure_clouds(std::span<const PointCloud> clouds, const OccupancyOptions& options);
 
 }  // namespace roadbed::map::occupancy::octree

@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <limits>
 
-#include "roadbed/map/occupancy/octree/morton.h"
-
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
 

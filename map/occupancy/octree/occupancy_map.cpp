@@ -3,19 +3,18 @@
 #include <fmt/format.h>
 #include <octomap/octomap.h>
 
-#include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/octree_file.h"
-#include "roadbed/map/occupancy/octree/tree_origin.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
@@ -53,72 +52,6 @@ OccupancyCell cell_of(const octomap::OcTree& octree, const Leaf& leaf,
           octree.isNodeOccupied(*leaf) ? CellState::occupied : CellState::free};
 }
 
-Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolution_m) {
-  Box3 all = bounds(clouds.front());
-  for (const PointCloud& cloud : clouds.subspan(1)) {
-    const Box3 box = bounds(cloud);
-    all.min_in_source = all.min_in_source.cwiseMin(box.min_in_source);
-    all.max_in_source = all.max_in_source.cwiseMax(box.max_in_source);
-  }
-  return tree_origin(all, resolution_m);
-}
-
-void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
-  if (!(options.resolution_m > 0.0) || !std::isfinite(options.resolution_m)) {
-    throw std::invalid_argument(
-        fmt::format("OccupancyMap: resolution must be positive, got {} m", options.resolution_m));
-  }
-  if (!(options.carve_range_m > 0.0)) {
-    throw std::invalid_argument(fmt::format(
-        "OccupancyMap: carving range must be positive, got {} m", options.carve_range_m));
-  }
-  const int least = options.remove_seen_through;
-  if (least < 0 || least > static_cast<int>(BlockCounts::kMost) ||
-      (least > 0 && !options.sticky_hits)) {
-    throw std::invalid_argument(fmt::format(
-        "OccupancyMap: 0 to {} clouds may see through sticky hits to take them away, got {}",
-        BlockCounts::kMost, least));
-  }
-  const bool all_hold_points = std::all_of(clouds.begin(), clouds.end(),
-                                           [](const PointCloud& c) { return !c.points.empty(); });
-  if (clouds.empty() || !all_hold_points) {
-    throw std::invalid_argument("OccupancyMap: every cloud needs at least 1 point");
-  }
-}
-
-std::string common_crs(std::span<const PointCloud> clouds) {
-  for (const PointCloud& cloud : clouds) {
-    if (cloud.crs != clouds.front().crs) {
-      throw InputError(
-          {.file = cloud.name,
-           .element = "CRS",
-           .found = fmt::format("\"{}\"", cloud.crs),
-           .needed = fmt::format("\"{}\" as {} has", clouds.front().crs, clouds.front().name),
-           .remedy = "bring the clouds into one frame first"});
-    }
-  }
-  return clouds.front().crs;
-}
-
-/// What was measured, and where.
-struct Measured {
-  Eigen::Vector3d origin_in_source;
-  std::string crs;
-  CloudMeasurements cells;
-};
-
-Measured measure(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
-  check(clouds, options);
-  std::size_t points = 0;
-  for (const PointCloud& cloud : clouds) points += cloud.points.size();
-  std::string crs = common_crs(clouds);
-  const Eigen::Vector3d origin = choose_origin(clouds, options.resolution_m);
-  Measured measured{origin, std::move(crs),
-                    CloudMeasurements(origin, options, ScanAccumulator(options), points)};
-  for (const PointCloud& cloud : clouds) measured.cells.add(cloud);
-  return measured;
-}
-
 std::optional<SeeThroughRemoval> seen_through_of(const OccupancyOptions& options,
                                                  const CloudMeasurements& cells) {
   if (options.remove_seen_through == 0) return std::nullopt;
@@ -134,7 +67,7 @@ OccupancyMap& OccupancyMap::operator=(OccupancyMap&&) noexcept = default;
 
 OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
                                  const OccupancyOptions& options) {
-  Measured measured = measure(clouds, options);
+  MeasuredClouds measured = measure_clouds(clouds, options);
   auto tree = std::make_unique<Tree>(options.resolution_m);
   tree->crs = measured.crs;
   tree->origin_in_source = measured.origin_in_source;
@@ -153,7 +86,7 @@ OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
 
 OccupancyMap::File OccupancyMap::build_bt(std::span<const PointCloud> clouds,
                                           const OccupancyOptions& options) {
-  Measured measured = measure(clouds, options);
+  MeasuredClouds measured = measure_clouds(clouds, options);
   const OctreeBytes bytes = measured.cells.bt();
   const auto seen_through = seen_through_of(options, measured.cells);
   return {octree_header(OctreeForm::bt, {.resolution_m = options.resolution_m,
@@ -254,5 +187,25 @@ std::string OccupancyMap::to_ot() const {
 }
 
 bool is_occupancy_file(std::string_view bytes) { return is_octree_file(bytes); }
+
+OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
+                            const OccupancyOptions& options) {
+  std::vector<PointCloud> clouds;
+  for (const std::filesystem::path& file : files) {
+    const std::string bytes = read_file(file);
+    if (!is_occupancy_file(bytes)) {
+      clouds.push_back(parse_point_cloud(bytes, file.string()));
+      check_is_in_metres(clouds.back());
+    } else if (files.size() == 1) {
+      return OccupancyMap::parse(bytes, file.string());
+    } else {
+      throw InputError({.file = file.string(),
+                        .found = "is an octree beside other files",
+                        .needed = "one octree alone, or point clouds",
+                        .remedy = "give the clouds that the octree was built from"});
+    }
+  }
+  return OccupancyMap::build(clouds, options);
+}
 
 }  // namespace roadbed::map::occupancy::octree

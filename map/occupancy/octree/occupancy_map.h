@@ -83,4 +83,10 @@ class OccupancyMap final : public OccupancySource {
 /// Whether the bytes begin as a `.bt` or `.ot` does.
 bool is_occupancy_file(std::string_view bytes);
 
+/// Occupancy from one `.bt` or `.ot` file, which keeps its own resolution, or from any number of
+/// point clouds, which carve from their files' viewpoints.
+/// @throws InputError if a file is unusable, or an octree is not the only file.
+OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
+                            const OccupancyOptions& options = {});
+
 }  // namespace roadbed::map::occupancy::octree

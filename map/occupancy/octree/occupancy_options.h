@@ -1,6 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
+
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
@@ -18,5 +21,9 @@ struct OccupancyOptions {
   /// rays graze, as well. 0: never.
   int remove_seen_through = 0;
 };
+
+/// Where the octree of clouds within such bounds has its origin: that of the source where the
+/// octree's range allows it, else the middle.
+Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m);
 
 }  // namespace roadbed::map::occupancy::octree

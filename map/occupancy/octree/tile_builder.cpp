@@ -11,10 +11,10 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/sha256.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 #include "roadbed/map/occupancy/octree/cell_range.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/map/occupancy/octree/split_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {

@@ -1,4 +1,4 @@
-#include "roadbed/map/derived/road_place.h"
+#include "roadbed/map/derived/lane_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "roadbed/map/derived/area_centreline.h"
+#include "roadbed/map/derived/surface.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/real_data.h"

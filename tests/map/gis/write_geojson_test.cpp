@@ -1,10 +1,9 @@
-#include "roadbed/map/gis/write_geojson.h"
+#include "roadbed/map/gis/write.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "roadbed/map/gis/layer_frame.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/tests/support/made_maps.h"
 

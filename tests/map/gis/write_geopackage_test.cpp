@@ -1,4 +1,4 @@
-#include "roadbed/map/gis/write_geopackage.h"
+#include "roadbed/map/gis/write.h"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>

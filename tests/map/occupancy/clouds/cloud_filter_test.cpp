@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/clouds/cloud_filter.h"
+#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 
 #include <gtest/gtest.h>
 

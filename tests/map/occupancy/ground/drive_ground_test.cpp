@@ -9,8 +9,6 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/occupancy/ground/ground_claims.h"
-#include "roadbed/map/occupancy/ground/measured_ground.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/certificate_check.h"
 #include "roadbed/planning/audit/vehicle_audit.h"

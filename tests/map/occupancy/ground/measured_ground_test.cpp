@@ -1,4 +1,4 @@
-#include "roadbed/map/occupancy/ground/measured_ground.h"
+#include "roadbed/map/occupancy/ground/drive_ground.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -15,7 +15,6 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/tile_builder.h"
-#include "roadbed/map/occupancy/octree/tree_origin.h"
 
 namespace roadbed::map {
 namespace {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/elements/attributes.h"
 #include "roadbed/map/elements/id.h"
 
@@ -42,6 +43,37 @@ struct StopLine {
   std::vector<Eigen::Vector3d> in_map;  ///< two points or more, x y z [m]
   std::vector<LaneId> lanes;
   std::vector<std::string> signals;  ///< source ids of those that say when to stop
+};
+
+/// What a regulation refers to: a lane, or a line or point by its coordinates.
+struct RegulationMember {
+  std::string role;       ///< as in Lanelet2: "refers", "ref_line", "yield", "right_of_way", …
+  std::string source_id;  ///< of the element
+  std::optional<LaneId> lane;
+  std::vector<Eigen::Vector3d> in_map;  ///< points of a line, one of a point; empty for a lane
+  Attributes attributes;                ///< the element's own
+};
+
+/// A traffic rule that holds on some lanes, whatever kind it is: Lanelet2's regulatory element,
+/// CommonRoad's intersection. Kinds that nobody here knows are kept like all others.
+struct Regulation {
+  std::string source_id;
+  std::string type;  ///< "traffic_light", "right_of_way", "speed_limit", "intersection", …
+  std::vector<LaneId> lanes;  ///< on which it holds
+  std::vector<RegulationMember> members;
+  Attributes attributes;
+};
+
+/// A thing on or beside the road: crosswalk, parking space, building, pole.
+struct MapObject {
+  std::string source_id, name;
+  std::string type;  ///< the source's word: "crosswalk", "parkingSpace", …
+  std::optional<RoadId> road;
+  double road_s_m = 0.0, road_t_m = 0.0;  ///< 0 without a road
+  Eigen::Vector2d in_map{0, 0};
+  geometry::Ring outline_in_map;  ///< counter-clockwise; empty for a point
+  double z_m = 0.0, height_m = 0.0;
+  Attributes attributes;
 };
 
 }  // namespace roadbed::map::elements
