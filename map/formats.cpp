@@ -30,13 +30,6 @@ bool has_root(const FileContent& content, std::string_view name) {
   return content.root.substr(content.root.find(':') + 1) == name;
 }
 
-RoadMap read_lanelet2(std::string bytes, const std::string& name, const LoadOptions&) {
-  if (is_other_encoding(bytes)) {
-    if (std::string converted = to_utf8(bytes); !converted.empty()) bytes = std::move(converted);
-  }
-  return RoadMap(lanelet2::read(bytes, name));
-}
-
 /// Coordinates of the CRS where it is known, else the source's raw ones.
 std::vector<Layer> placed_layers(const RoadMap& road_map, const SaveOptions& options) {
   std::vector<Layer> layers = make_layers(road_map, options.layers);
@@ -110,7 +103,8 @@ constexpr std::array<Format, 9> kFormats = {{
      .what = "all lane lines, a row per vertex"},
     {.name = "Lanelet2",
      .sniff = [](const FileContent& content) { return content.root == "osm"; },
-     .read = read_lanelet2,
+     .read = [](std::string bytes, const std::string& name,
+                const LoadOptions&) { return RoadMap(lanelet2::read(std::move(bytes), name)); },
      .judge = judge_lanelet2,
      .rules = lanelet2_rules,
      .suffix = ".osm",
@@ -120,7 +114,7 @@ constexpr std::array<Format, 9> kFormats = {{
      .sniff = [](const FileContent& content) { return has_root(content, "commonRoad"); },
      .read =
          [](std::string bytes, const std::string& name, const LoadOptions&) {
-           return RoadMap(commonroad::read(XmlDocument(std::move(bytes), name)));
+           return RoadMap(commonroad::read(commonroad::Document(std::move(bytes), name)));
          },
      .judge = judge_common_road,
      .rules = common_road_rules,

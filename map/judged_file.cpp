@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "roadbed/map/commonroad/read.h"
-#include "roadbed/map/commonroad/rules/source.h"
+#include "roadbed/map/commonroad/rules/rules.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/lanelet2/read.h"
@@ -18,20 +18,6 @@ namespace {
 constexpr validation::RuleInfo kNotWellFormed = {
     "source.not-well-formed", "asam.net:xodr:1.0.0:xml.valid_xml_document",
     validation::Severity::error, "the file is no well-formed XML"};
-
-/// Runs the rules of one format over a tree.
-template <typename Source, typename Rules>
-std::vector<validation::Finding> check(const XmlDocument& xml, const Rules& rules,
-                                       const validation::ValidateOptions& options) {
-  std::vector<validation::Finding> findings;
-  const Source source(xml);
-  for (const auto& rule : rules) {
-    validation::Report report(rule.info, findings);
-    rule.check(source, options, report);
-    report.finish();
-  }
-  return findings;
-}
 
 /// Line in a message of the form "FILE:LINE: …", 0 if there is none.
 long line_in(const std::string& message, const std::string& name) {
@@ -58,25 +44,34 @@ validation::Finding refused(const std::string& message) {
           .message = message};
 }
 
-/// The tree of the text; none if it is not well-formed, which then is what is found.
-std::optional<XmlDocument> tree_of(std::string bytes, const std::string& name, JudgedFile& judged) {
+/// What `read` makes of the file; none if that refuses it, which then is a finding.
+template <typename Read, typename Say>
+auto made(JudgedFile& judged, const Say& finding, const Read& read)
+    -> std::optional<decltype(read())> {
   try {
-    return std::optional<XmlDocument>(std::in_place, std::move(bytes), name);
+    return read();
   } catch (const InputError& error) {
     judged.refusal = error.what();
-    judged.findings.push_back(not_well_formed(error.what(), name));
+    judged.findings.push_back(finding(error.what()));
     return {};
   }
 }
 
+/// A step of reading a file: none if its text is not well-formed.
+template <typename Read>
+auto parsed(JudgedFile& judged, const std::string& name, const Read& read) {
+  return made(
+      judged, [&](const char* message) { return not_well_formed(message, name); }, read);
+}
+
+/// The map, without the remarks that rules about the text make, too.
 template <typename Read>
 void read_into(JudgedFile& judged, const Read& read) {
-  try {
-    judged.road_map = read();
-  } catch (const InputError& error) {
-    judged.refusal = error.what();
-    judged.findings.push_back(refused(error.what()));
-  }
+  judged.road_map = made(judged, refused, [&] {
+    RoadMapParts parts = read();
+    std::erase_if(parts.remarks, &ImportDiagnostic::in_text);
+    return RoadMap(std::move(parts));
+  });
 }
 
 template <typename Rules>
@@ -91,39 +86,48 @@ std::vector<validation::RuleInfo> infos_of(const Rules& rules) {
 JudgedFile judge_open_drive(std::string bytes, const std::string& name,
                             const validation::ValidateOptions& options) {
   JudgedFile judged;
-  auto xml = tree_of(std::move(bytes), name, judged);
+  auto xml = parsed(judged, name, [&] { return XmlDocument(std::move(bytes), name); });
   if (!xml) return judged;
   opendrive::Document document = opendrive::read_document(*xml);
   judged.findings = opendrive::rules::check(*xml, document, options);
   judged.lines = opendrive::rules::element_lines(*xml, document);
-  read_into(judged,
-            [&] { return RoadMap(opendrive::read(*std::move(xml), std::move(document), {})); });
+  read_into(judged, [&] {
+    RoadMapParts parts = opendrive::read(*std::move(xml), std::move(document), {});
+    opendrive::rules::mark_told(parts.remarks, judged.findings);
+    return parts;
+  });
   return judged;
 }
 
 JudgedFile judge_lanelet2(std::string bytes, const std::string& name,
                           const validation::ValidateOptions& options) {
   JudgedFile judged;
-  if (const auto xml = tree_of(bytes, name, judged)) {
-    judged.findings =
-        check<lanelet2::rules::Source>(*xml, lanelet2::rules::source_rules(), options);
-    judged.lines = lanelet2::rules::element_lines(*xml);
-  } else {
-    return judged;
+  const auto unread = [&](const char* message) {  // a line: that of a fault of the XML
+    return line_in(message, name) > 0 ? not_well_formed(message, name) : refused(message);
+  };
+  auto document =
+      made(judged, unread, [&] { return lanelet2::read_document(std::move(bytes), name); });
+  if (!document) return judged;
+  auto built = made(judged, refused, [&] { return lanelet2::build_lanes(*document); });
+  for (validation::Finding& finding :
+       lanelet2::rules::check(*document, built ? *built : lanelet2::BuiltLanes(), options)) {
+    judged.findings.push_back(std::move(finding));
   }
-  read_into(judged, [&] { return RoadMap(lanelet2::read(bytes, name)); });
+  judged.lines = lanelet2::rules::element_lines(*document);
+  if (!built) return judged;
+  read_into(judged, [&] { return lanelet2::read(*std::move(document), *std::move(built)); });
   return judged;
 }
 
 JudgedFile judge_common_road(std::string bytes, const std::string& name,
                              const validation::ValidateOptions& options) {
   JudgedFile judged;
-  const auto xml = tree_of(std::move(bytes), name, judged);
-  if (!xml) return judged;
-  judged.findings =
-      check<commonroad::rules::Source>(*xml, commonroad::rules::source_rules(), options);
-  judged.lines = commonroad::rules::element_lines(*xml);
-  read_into(judged, [&] { return RoadMap(commonroad::read(*xml)); });
+  const auto document =
+      parsed(judged, name, [&] { return commonroad::Document(std::move(bytes), name); });
+  if (!document) return judged;
+  judged.findings = commonroad::rules::check(*document, options);
+  judged.lines = commonroad::rules::element_lines(*document);
+  read_into(judged, [&] { return commonroad::read(*document); });
   return judged;
 }
 

@@ -34,9 +34,7 @@ namespace {
 }  // namespace
 
 MapBytes map_bytes(std::string bytes, const std::string& name) {
-  if (is_other_encoding(bytes) && !looks_like_xml(bytes)) {  // UTF-16
-    if (std::string converted = to_utf8(bytes); !converted.empty()) bytes = std::move(converted);
-  }
+  if (!looks_like_xml(bytes)) bytes = in_utf8(std::move(bytes));  // UTF-16
   const Format* format = format_of(bytes);
   if (format == nullptr) refuse(std::move(bytes), name);
   return {std::move(bytes), *format};

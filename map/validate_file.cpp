@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <string_view>
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/map/validation/rules.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map {
@@ -24,36 +24,15 @@ void sort_by_rule(Findings& findings) {
       [](const validation::Finding& a, const validation::Finding& b) { return a.rule < b.rule; });
 }
 
-/// "12" of "road 12" and of "lane 12/0/-1".
-std::string road_of(const std::string& element) {
-  const std::size_t from = element.find(' ') + 1;
-  return element.substr(from, element.find('/', from) - from);
-}
-
-bool is_about_links(const validation::Finding& finding) {
-  return finding.rule.starts_with("link.") || finding.rule.starts_with("id.dangling") ||
-         finding.rule.starts_with("junction.");
-}
-
-/// What the text shows already, its reader and the map need not say again: remarks about a line
-/// that has a finding, or about links of a road whose links have one, and findings of the same
-/// ASAM rule about the same element.
-void drop_repeats(Findings& of_map, const Findings& of_source) {
-  std::set<long> lines;
-  std::set<std::pair<std::string, std::string>> said;
-  std::set<std::string> badly_linked;
-  for (const validation::Finding& finding : of_source) {
-    lines.insert(finding.line);
-    if (is_about_links(finding)) badly_linked.insert(road_of(finding.element));
-    if (!finding.asam_rule.empty()) said.emplace(finding.asam_rule, finding.element);
+/// A rule of ASAM's that a finding about the text names need not be named again for what the map
+/// shows of the same element.
+void drop_told(Findings& of_map, const Findings& of_text) {
+  std::set<std::pair<std::string_view, std::string_view>> told;
+  for (const validation::Finding& finding : of_text) {
+    if (!finding.asam_rule.empty()) told.emplace(finding.asam_rule, finding.element);
   }
   std::erase_if(of_map, [&](const validation::Finding& finding) {
-    const bool remark =
-        finding.rule.starts_with("import.") && finding.severity != validation::Severity::info;
-    const bool said_of_links =
-        finding.rule == "import.link" && badly_linked.contains(road_of(finding.element));
-    return (remark && finding.line > 0 && lines.contains(finding.line)) || said_of_links ||
-           said.contains({finding.asam_rule, finding.element});
+    return told.contains({finding.asam_rule, finding.element});
   });
 }
 
@@ -99,7 +78,7 @@ Validation validate_bytes(std::string bytes, const std::string& name,
       if (finding.in_map) finding.in_map = validation.road_map->to_map(*finding.in_map);
     }
     Findings of_map = validation::validate(*validation.road_map, options);
-    drop_repeats(of_map, validation.findings);
+    drop_told(of_map, validation.findings);
     add_lines(of_map, judged.lines);
     append(validation.findings, std::move(of_map));
   }

@@ -1,11 +1,10 @@
-#include "roadbed/map/commonroad/lanes.h"
+#include "roadbed/map/commonroad/build_map.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/map/commonroad/elements.h"
 #include "roadbed/map/commonroad/values.h"
 
 namespace roadbed::map::commonroad {
@@ -93,6 +92,11 @@ Attributes kept_words(pugi::xml_node lanelet) {
   return kept;
 }
 
+/// What a `lineMarking` child of a bound says; none if nothing.
+std::optional<BorderMark> read_marking(pugi::xml_node bound) {
+  return border_mark(text_of(bound.child("lineMarking")));
+}
+
 void set_use(const XmlDocument& xml, pugi::xml_node lanelet, Lane& lane) {
   const Participants both_ways = named_users(lanelet, "userBidirectional");
   const Participants one_way = named_users(lanelet, "userOneWay");
@@ -119,7 +123,8 @@ class LaneBuilder {
     const std::string id = lanelet.attribute("id").value();
     if (id.empty() || built_.ids.contains(id)) {
       fault("import.lanelet-id", lanelet,
-            id.empty() ? "it has no id and is left out" : "another one has its id; it is left out");
+            id.empty() ? "it has no id and is left out" : "another one has its id; it is left out",
+            !id.empty());
       return;
     }
     Points left = read_points(xml_, lanelet.child("leftBound"), origin_in_source_);
@@ -127,14 +132,16 @@ class LaneBuilder {
     if (left.size() < 2 || right.size() < 2) {
       fault("import.short-border", lanelet,
             fmt::format("its borders have {} and {} points, each needs 2; it is left out",
-                        left.size(), right.size()));
+                        left.size(), right.size()),
+            true);
       return;
     }
     if (left.size() != right.size()) {
       fault("import.border-points", lanelet,
             fmt::format("its borders have {} and {} points, which should be equal; points are "
                         "added in between",
-                        left.size(), right.size()));
+                        left.size(), right.size()),
+            true);
       pair_points(left, right);
     }
     add_lane(id, lanelet, left, right);
@@ -142,9 +149,8 @@ class LaneBuilder {
 
   BuiltLanes take() {
     if (faults_ > kMostFaults) {
-      remarks_.back().element = "file";
-      remarks_.back().line = 0;
-      remarks_.back().message = fmt::format("and {} more faulty lanelets", faults_ - kMostFaults);
+      remarks_.back() = {remarks_.back().rule, true, "file", 0,
+                         fmt::format("and {} more faulty lanelets", faults_ - kMostFaults)};
     }
     return std::move(built_);
   }
@@ -152,10 +158,11 @@ class LaneBuilder {
  private:
   static constexpr std::size_t kMostFaults = 10'000;  // that are told one by one
 
-  void fault(const char* rule, pugi::xml_node lanelet, const std::string& message) {
+  void fault(const char* rule, pugi::xml_node lanelet, const std::string& message,
+             bool in_text = false) {
     if (++faults_ > kMostFaults + 1) return;
     remarks_.push_back({rule, true, fmt::format("lanelet {}", lanelet.attribute("id").value()),
-                        xml_.line_of(lanelet), message});
+                        xml_.line_of(lanelet), message, in_text});
   }
 
   void add_lane(const std::string& id, pugi::xml_node lanelet, const Points& left,
@@ -200,14 +207,10 @@ std::optional<LaneId> BuiltLanes::find(std::string_view source_id) const {
   return found->second;
 }
 
-std::optional<BorderMark> read_marking(pugi::xml_node bound) {
-  return border_mark(text_of(bound.child("lineMarking")));
-}
-
-BuiltLanes build_lanes(const XmlDocument& xml, const Eigen::Vector2d& origin_in_source,
+BuiltLanes build_lanes(const Document& document, const Eigen::Vector2d& origin_in_source,
                        std::vector<ImportDiagnostic>& remarks) {
-  LaneBuilder builder(xml, origin_in_source, remarks);
-  for (const pugi::xml_node lanelet : xml.root().children("lanelet")) builder.add(lanelet);
+  LaneBuilder builder(document.xml, origin_in_source, remarks);
+  for (const pugi::xml_node lanelet : document.lanelets()) builder.add(lanelet);
   return builder.take();
 }
 

@@ -1,12 +1,10 @@
-#include "roadbed/map/commonroad/links.h"
+#include "roadbed/map/commonroad/build_map.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
-
-#include "roadbed/map/commonroad/elements.h"
 
 namespace roadbed::map::commonroad {
 namespace {
@@ -102,15 +100,13 @@ bool may_cross(MarkType type, bool from_right) {
 
 class Linker {
  public:
-  Linker(const XmlDocument& xml, const BuiltLanes& built, std::vector<ImportDiagnostic>& remarks)
-      : xml_(xml), built_(built), remarks_(remarks), links_(built.lanes.size()) {}
+  Linker(const Document& document, const BuiltLanes& built, std::vector<ImportDiagnostic>& remarks)
+      : document_(document), built_(built), remarks_(remarks), links_(built.lanes.size()) {}
 
   std::vector<LaneLinks> link() {
     for (const Lane& lane : built_.lanes) {
-      for (const LaneId to : targets(lane, "successor")) join(lane, built_.lanes[to.index], lane);
-      for (const LaneId from : targets(lane, "predecessor")) {
-        join(built_.lanes[from.index], lane, lane);
-      }
+      for (const auto& [link, to] : targets(lane, "successor")) join(lane, to, lane, link);
+      for (const auto& [link, from] : targets(lane, "predecessor")) join(from, lane, lane, link);
       put_beside(lane, Side::left, "adjacentLeft");
       put_beside(lane, Side::right, "adjacentRight");
     }
@@ -125,8 +121,9 @@ class Linker {
  private:
   pugi::xml_node element(const Lane& lane) const { return built_.elements[lane.id.index]; }
 
-  void fault(const char* rule, const Lane& lane, const std::string& message) {
-    remarks_.push_back({rule, true, "lanelet " + lane.name, xml_.line_of(element(lane)), message});
+  void fault(const char* rule, const Lane& lane, const std::string& message, bool in_text) {
+    remarks_.push_back({rule, true, "lanelet " + lane.name, document_.xml.line_of(element(lane)),
+                        message, in_text});
   }
 
   static void tidy(std::vector<LaneId>& list) {
@@ -138,26 +135,34 @@ class Linker {
     const std::optional<LaneId> found = built_.find(id);
     if (!found) {
       fault("import.link", lane,
-            fmt::format("its {} {} is not there; the link is left out", child, id));
+            fmt::format("its {} {} is not there; the link is left out", child, id),
+            !document_.lanelet_by_id.contains(id));
     }
     return found;
   }
 
-  std::vector<LaneId> targets(const Lane& lane, const char* child) {
-    std::vector<LaneId> found;
-    for (const std::string& id : references(element(lane), child)) {
-      if (const auto other = target(lane, child, id)) found.push_back(*other);
+  struct Target {
+    pugi::xml_node link;
+    const Lane& lane;
+  };
+
+  std::vector<Target> targets(const Lane& lane, const char* child) {
+    std::vector<Target> found;
+    for (const pugi::xml_node link : element(lane).children(child)) {
+      const auto other = target(lane, child, link.attribute("ref").value());
+      if (other) found.push_back({link, built_.lanes[other->index]});
     }
     return found;
   }
 
-  void join(const Lane& from, const Lane& to, const Lane& speaker) {
+  void join(const Lane& from, const Lane& to, const Lane& speaker, pugi::xml_node link) {
     const double gap_m = end_gap_m(from, to);
     if (gap_m > kJoinedM) {
       fault("import.link-geometry", speaker,
             fmt::format("lanelet {} is said to lead to {}, but their ends are {:.2f} m apart; the "
                         "link is left out",
-                        from.name, to.name, gap_m));
+                        from.name, to.name, gap_m),
+            !is_answered(element(speaker), link, element(&speaker == &from ? to : from)));
       return;
     }
     links_[from.id.index].successors.push_back(to.id);
@@ -180,7 +185,8 @@ class Linker {
       fault("import.one-sided-link", lane,
             fmt::format("is the {} of lanelet {} but does not name it as its {}; name each other "
                         "in both",
-                        back, id, child));
+                        back, id, child),
+            true);
     }
   }
 
@@ -190,13 +196,14 @@ class Linker {
     const auto found = target(lane, child, adjacent.attribute("ref").value());
     if (!found || *found == lane.id) return;
     const Lane& other = built_.lanes[found->index];
-    const bool same = std::string_view(adjacent.attribute("drivingDir").value()) == "same";
+    const bool same = is_same_direction(adjacent);
     std::vector<StationRange> joined = joined_ranges(lane, side, other, same);
     if (joined.empty()) {
       fault("import.link-geometry", lane,
             fmt::format("its {} {} runs nowhere along that border in the {} direction; lanes "
                         "cannot be changed there",
-                        child, other.name, same ? "same" : "opposite"));
+                        child, other.name, same ? "same" : "opposite"),
+            !is_answered(element(lane), adjacent, element(other)));
     }
     if (!may_change(lane, side, other, same)) joined.clear();
     neighbour(links_[lane.id.index], side) = Neighbour{other.id, same, std::move(joined)};
@@ -217,7 +224,7 @@ class Linker {
     return same_direction;
   }
 
-  const XmlDocument& xml_;
+  const Document& document_;
   const BuiltLanes& built_;
   std::vector<ImportDiagnostic>& remarks_;
   std::vector<LaneLinks> links_;
@@ -225,9 +232,9 @@ class Linker {
 
 }  // namespace
 
-std::vector<LaneLinks> link_lanes(const XmlDocument& xml, const BuiltLanes& built,
+std::vector<LaneLinks> link_lanes(const Document& document, const BuiltLanes& built,
                                   std::vector<ImportDiagnostic>& remarks) {
-  return Linker(xml, built, remarks).link();
+  return Linker(document, built, remarks).link();
 }
 
 }  // namespace roadbed::map::commonroad

@@ -6,10 +6,7 @@
 #include <array>
 #include <map>
 
-#include "roadbed/map/commonroad/elements.h"
-#include "roadbed/map/commonroad/lanes.h"
-#include "roadbed/map/commonroad/links.h"
-#include "roadbed/map/commonroad/traffic_rules.h"
+#include "roadbed/map/commonroad/build_map.h"
 #include "roadbed/map/commonroad/values.h"
 
 namespace roadbed::map::commonroad {
@@ -83,7 +80,8 @@ std::string format_name(const XmlDocument& xml) {
 
 }  // namespace
 
-RoadMapParts read(const XmlDocument& xml) {
+RoadMapParts read(const Document& document) {
+  const XmlDocument& xml = document.xml;
   RoadMapParts parts;
   parts.format = format_name(xml);
   parts.origin_in_source = find_origin(xml);
@@ -91,13 +89,13 @@ RoadMapParts read(const XmlDocument& xml) {
   parts.crs =
       text_of(xml.root().child("location").child("geoTransformation").child("geoReference"));
   parts.unused = unused_content(xml.root());
-  BuiltLanes built = build_lanes(xml, parts.origin_in_source, parts.remarks);
+  BuiltLanes built = build_lanes(document, parts.origin_in_source, parts.remarks);
   if (built.lanes.empty()) {
     xml.refuse(xml.root(), "no usable lanelet", "at least one", "check whether it holds a map");
   }
   const std::string country = country_of(xml.root().attribute("benchmarkID").value());
-  add_rules(xml, country, built, parts);
-  parts.links = link_lanes(xml, built, parts.remarks);
+  add_rules(document, country, built, parts);
+  parts.links = link_lanes(document, built, parts.remarks);
   parts.lanes = std::move(built.lanes);
   return parts;
 }

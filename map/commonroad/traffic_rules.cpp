@@ -1,4 +1,4 @@
-#include "roadbed/map/commonroad/traffic_rules.h"
+#include "roadbed/map/commonroad/build_map.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,12 @@
 #include <charconv>
 #include <cmath>
 
-#include "roadbed/map/commonroad/elements.h"
 #include "roadbed/map/commonroad/values.h"
 
 namespace roadbed::map::commonroad {
 namespace {
+
+constexpr std::string_view kCrossing = "crossing";
 
 /// Lanes by the sign or light that they refer to.
 using LanesByReference = std::map<std::string, std::vector<LaneId>, std::less<>>;
@@ -42,9 +43,9 @@ std::string joined(const std::vector<std::string>& words) {
 
 class RuleReader {
  public:
-  RuleReader(const XmlDocument& xml, const std::string& country, BuiltLanes& built,
+  RuleReader(const Document& document, const std::string& country, BuiltLanes& built,
              RoadMapParts& parts)
-      : xml_(xml), country_(country), built_(built), parts_(parts) {}
+      : document_(document), xml_(document.xml), country_(country), built_(built), parts_(parts) {}
 
   void read() {
     LanesByReference lanes = lanes_by_reference(built_, "trafficSignRef");
@@ -58,10 +59,11 @@ class RuleReader {
   }
 
  private:
-  void fault(const char* rule, pugi::xml_node node, const std::string& message) {
+  void fault(const char* rule, pugi::xml_node node, const std::string& message,
+             bool in_text = false) {
     parts_.remarks.push_back({rule, true,
                               fmt::format("{} {}", node.name(), node.attribute("id").value()),
-                              xml_.line_of(node), message});
+                              xml_.line_of(node), message, in_text});
   }
 
   /// What signs and lights share. Takes the lanes that refer to it from the map.
@@ -154,7 +156,7 @@ class RuleReader {
   void remark_missing(const LanesByReference& lanes, const char* kind) {
     for (const auto& [id, referring] : lanes) {
       fault("import.reference", built_.elements[referring.front().index],
-            fmt::format("refers to {} {}, which is not there", kind, id));
+            fmt::format("refers to {} {}, which is not there", kind, id), true);
     }
   }
 
@@ -187,7 +189,7 @@ class RuleReader {
       add_incoming(node, incoming, rule);
     }
     for (const std::string& id : references(node.child("crossing"), "crossingLanelet")) {
-      add_member(node, "crossing", id, {}, rule);
+      add_member(node, kCrossing, id, {}, rule);
     }
     const JunctionId junction{static_cast<std::uint32_t>(parts_.junctions.size())};
     parts_.junctions.push_back({junction, rule.source_id, {}, JunctionKind::common, {}});
@@ -220,17 +222,19 @@ class RuleReader {
     }
   }
 
-  void add_member(pugi::xml_node intersection, const char* role, const std::string& lanelet,
+  void add_member(pugi::xml_node intersection, std::string_view role, const std::string& lanelet,
                   const Attributes& attributes, Regulation& rule) {
     const std::optional<LaneId> lane = built_.find(lanelet);
     if (!lane) {
       fault("import.reference", intersection,
-            fmt::format("names lanelet {}, which is not there", lanelet));
+            fmt::format("names lanelet {}, which is not there", lanelet),
+            role != kCrossing && !document_.lanelet_by_id.contains(lanelet));
       return;
     }
-    rule.members.push_back({role, lanelet, lane, {}, attributes});
+    rule.members.push_back({std::string(role), lanelet, lane, {}, attributes});
   }
 
+  const Document& document_;
   const XmlDocument& xml_;
   const std::string& country_;
   BuiltLanes& built_;
@@ -239,9 +243,9 @@ class RuleReader {
 
 }  // namespace
 
-void add_rules(const XmlDocument& xml, const std::string& country, BuiltLanes& built,
+void add_rules(const Document& document, const std::string& country, BuiltLanes& built,
                RoadMapParts& parts) {
-  RuleReader(xml, country, built, parts).read();
+  RuleReader(document, country, built, parts).read();
 }
 
 }  // namespace roadbed::map::commonroad

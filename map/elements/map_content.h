@@ -20,6 +20,7 @@ struct ImportDiagnostic {
   std::string element;    ///< "road 12"
   long line = 0;          ///< in the source file, 0 if unknown
   std::string message;
+  bool in_text = false;  ///< a rule about the file's text finds the same; compiled maps forget it
 };
 
 /// Elements that the file holds and roadbed does not use.

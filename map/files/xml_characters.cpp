@@ -172,10 +172,11 @@ bool is_other_encoding(std::string_view bytes) {
          declaration.find("latin1") != std::string::npos;
 }
 
-std::string to_utf8(const std::string& bytes) {
+std::string in_utf8(std::string bytes) {
+  if (!is_other_encoding(bytes)) return bytes;
   pugi::xml_document document;
   constexpr unsigned all = pugi::parse_full | pugi::parse_ws_pcdata;
-  if (!document.load_buffer(bytes.data(), bytes.size(), all)) return {};
+  if (!document.load_buffer(bytes.data(), bytes.size(), all)) return bytes;
   std::ostringstream text;
   document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
   return std::move(text).str();

@@ -23,7 +23,7 @@ bool looks_like_xml(const std::string& bytes);
 /// Whether XML says, by its first bytes or its declaration, that it is not UTF-8.
 bool is_other_encoding(std::string_view bytes);
 
-/// The same document in UTF-8, its elements on the same lines; empty if it is not well-formed.
-std::string to_utf8(const std::string& bytes);
+/// XML in UTF-8, its elements on the same lines; as it stands if it is not well-formed.
+std::string in_utf8(std::string bytes);
 
 }  // namespace roadbed::map::files

@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/areas.h"
+#include "roadbed/map/lanelet2/build_map.h"
 
 #include <fmt/format.h>
 
@@ -75,7 +75,8 @@ class AreaBuilder {
       const auto way =
           member.kind == MemberKind::way ? document_.way_index.find(member.id) : std::nullopt;
       if (!way || document_.ways[*way].nodes.empty()) {
-        return open_ring(relation, fmt::format("its {} way {} is not there", role, member.id));
+        return open_ring(relation, fmt::format("its {} way {} is not there", role, member.id),
+                         member.kind == MemberKind::way && !way);
       }
       document_.ways[*way].used = true;
       const std::size_t points = document_.ways[*way].nodes.size();
@@ -106,8 +107,10 @@ class AreaBuilder {
     return rings;
   }
 
-  std::nullopt_t open_ring(const Relation& relation, const std::string& reason) {
-    document_.fault(relation.at, "import.area", reason + "; the area is left out");
+  std::nullopt_t open_ring(const Relation& relation, const std::string& reason,
+                           bool in_text = false) {
+    document_.fault(relation.at, "import.area", reason + "; the area is left out").in_text =
+        in_text;
     return std::nullopt;
   }
 

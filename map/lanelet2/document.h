@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "roadbed/map/files/line_starts.h"
 #include "roadbed/map/files/xml_scanner.h"
+#include "roadbed/map/lanelet2/frame.h"
 #include "roadbed/map/lanelet2/ids.h"
 #include "roadbed/map/model/road_map.h"
 
@@ -35,8 +37,11 @@ struct Way {
   std::span<const std::uint32_t> nodes;
   std::string_view type, subtype;
   Tags tags;
-  std::size_t at = 0;  ///< where its start tag is in the text
-  bool used = false;   ///< the map holds what it says
+  std::size_t at = 0;               ///< where its start tag is in the text
+  bool used = false;                ///< the map holds what it says
+  std::uint32_t references = 0;     ///< to nodes, as the text has them
+  std::uint32_t missing = 0;        ///< of these, to nodes that are not in the file
+  std::uint32_t first_missing = 0;  ///< which one of the references
 };
 
 enum class MemberKind { node, way, relation };
@@ -56,17 +61,18 @@ struct Relation {
   std::size_t at = 0;  ///< where its start tag is in the text
 };
 
-/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of the text, and
+/// A Lanelet2 file element by element, nodes in one coordinate system. Holds views of its text, and
 /// elements hold views of its lists.
 struct Document {
-  Document(const std::string& bytes, std::string file)
-      : text(bytes), name(std::move(file)), scanner(text, name) {}
+  Document(std::string bytes, std::string file);
   Document(Document&&) = default;
 
+  std::unique_ptr<const std::string> utf8;
   std::string_view text;
   std::string name;
   XmlScanner scanner;  ///< holds what it decoded
   std::vector<Node> nodes;
+  std::vector<NodePlace> places;  ///< of the nodes, as they say it
   std::vector<Way> ways;
   std::vector<Relation> relations;
   std::vector<std::uint32_t> way_nodes;  ///< of all ways, one after the other
@@ -84,21 +90,31 @@ struct Document {
   /// All tags of the element that begins at a place of the text.
   Attributes tags_of(std::size_t at) const;
 
+  /// How the text names a node of a way.
+  std::string written_reference(const Way& way, std::size_t index) const;
+
+  /// Line of a place in the text, from 1.
+  long line_of(std::size_t at) const;
+
   /// Remarks a fault of the file at the element that begins there.
-  void fault(std::size_t at, const char* rule, std::string message);
+  /// @returns the remark, until the next one.
+  ImportDiagnostic& fault(std::size_t at, const char* rule, std::string message);
 
  private:
-  std::optional<LineStarts> line_starts_;  // made for the first fault
+  mutable std::optional<LineStarts> line_starts_;  // made for the first line
 };
 
-/// @param bytes  UTF-8; must outlive the document.
-/// @throws InputError if they are not well-formed XML, or hold more elements than a map of their
+/// @throws InputError if the bytes are not well-formed XML, or hold more elements than a map of
+/// their
 ///         size does.
-Document read_document(const std::string& bytes, const std::string& name);
+Document read_document(std::string bytes, const std::string& name);
 
 /// Tags as text of its own, and views of such text.
 Attributes attributes_of(Tags tags);
 std::vector<Tag> views_of(const Attributes& tags);
+
+/// The whole number that a text is; none if it is something else.
+std::optional<std::int64_t> id_in(std::string_view text);
 
 /// A finite number that a text begins and ends with; NaN if it is none.
 double number_in(std::string_view text);

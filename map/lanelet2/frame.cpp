@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace roadbed::map::lanelet2 {
 namespace {
@@ -11,14 +14,10 @@ namespace {
 constexpr double kFarthest_m = 1e8;  // no coordinate of a map is larger
 constexpr double kAgreement_m = 0.01;
 
-bool is_local_place(const NodePlace& node) {
-  return std::abs(node.local_x_m) <= kFarthest_m && std::abs(node.local_y_m) <= kFarthest_m;
-}
-
 // Autoware writes zeros where it knows local coordinates only.
 bool is_geographic(const NodePlace& node) {
-  return std::abs(node.latitude_deg) <= 90.0 && std::abs(node.longitude_deg) <= 360.0 &&
-         !(is_local_place(node) && node.latitude_deg == 0.0 && node.longitude_deg == 0.0);
+  return node.is_on_earth() &&
+         !(node.is_local() && node.latitude_deg == 0.0 && node.longitude_deg == 0.0);
 }
 
 GeographicPoint geographic(const NodePlace& node) {
@@ -45,12 +44,69 @@ std::string text_of(const TransverseMercator& grid) {
       longitude_deg, grid.false_easting_m, grid.false_northing_m);
 }
 
+// "+key=value +flag …" as keys and values; a flag has an empty value.
+using Parameters = std::map<std::string, std::string, std::less<>>;
+
+Parameters parameters_of(std::string_view crs) {
+  Parameters parameters;
+  while (!crs.empty()) {
+    const std::size_t space = crs.find_first_of(" \t\r\n");
+    std::string_view word = crs.substr(0, space);
+    crs = space == crs.npos ? std::string_view() : crs.substr(space + 1);
+    if (!word.starts_with('+')) continue;
+    word.remove_prefix(1);
+    const std::size_t equals = word.find('=');
+    parameters.emplace(word.substr(0, equals),
+                       equals == word.npos ? std::string_view() : word.substr(equals + 1));
+  }
+  return parameters;
+}
+
+std::optional<double> number(const Parameters& parameters, std::string_view key, double fallback) {
+  const auto found = parameters.find(key);
+  if (found == parameters.end()) return fallback;
+  const std::string& text = found->second;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+bool says(const Parameters& parameters, std::string_view key, std::string_view value) {
+  const auto found = parameters.find(key);
+  return found != parameters.end() && found->second == value;
+}
+
+bool is_on_wgs84(const Parameters& parameters) {
+  const bool named = says(parameters, "datum", "WGS84") || says(parameters, "ellps", "WGS84") ||
+                     says(parameters, "ellps", "GRS80");
+  return named || (!parameters.contains("datum") && !parameters.contains("ellps") &&
+                   !parameters.contains("a"));
+}
+
+std::optional<TransverseMercator> grid_of_epsg(std::string_view digits) {
+  int code = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
+  if (error != std::errc() || end != digits.data() + digits.size()) return {};
+  const int zone = code % 100;
+  if ((code / 100 != 326 && code / 100 != 327) || zone < 1 || zone > 60) return {};
+  return utm_grid(zone, code / 100 == 327);
+}
+
 }  // namespace
 
+bool NodePlace::is_local() const {
+  return std::abs(local_x_m) <= kFarthest_m && std::abs(local_y_m) <= kFarthest_m;
+}
+
+bool NodePlace::is_on_earth() const {
+  return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
+}
+
 Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
-  const auto locals = std::count_if(nodes.begin(), nodes.end(), is_local_place);
+  const auto locals = std::ranges::count_if(nodes, &NodePlace::is_local);
   const auto others = std::count_if(nodes.begin(), nodes.end(), [](const NodePlace& node) {
-    return !is_local_place(node) && is_geographic(node);
+    return !node.is_local() && is_geographic(node);
   });
   local_ = locals > 0 && locals >= others;
   if (local_) {
@@ -66,7 +122,7 @@ Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
 }
 
 void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
-  const auto has_both = [](const NodePlace& n) { return is_local_place(n) && is_geographic(n); };
+  const auto has_both = [](const NodePlace& n) { return n.is_local() && is_geographic(n); };
   const auto first = std::find_if(nodes.begin(), nodes.end(), has_both);
   TransverseMercator grid;
   if (first == nodes.end()) {
@@ -101,7 +157,7 @@ void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view m
 }
 
 std::optional<Eigen::Vector2d> Frame::place(const NodePlace& node) const {
-  if (local_ && is_local_place(node)) return Eigen::Vector2d(node.local_x_m, node.local_y_m);
+  if (local_ && node.is_local()) return Eigen::Vector2d(node.local_x_m, node.local_y_m);
   if (!grid_ || !is_geographic(node)) return {};
   const double from_meridian_deg =
       std::remainder(node.longitude_deg - grid_->central_meridian_deg, 360.0);
@@ -132,6 +188,28 @@ std::optional<MgrsSquare> mgrs_square(std::string_view code) {
   const double first_m = 1e5 * static_cast<double>(row);
   const double turns = std::round((middle_m - first_m - 5e4) / 2e6);
   return MgrsSquare{zone, south, {1e5 * static_cast<double>(column + 1), first_m + 2e6 * turns}};
+}
+
+std::optional<TransverseMercator> transverse_mercator_of(std::string_view crs) {
+  if (crs.starts_with("EPSG:") || crs.starts_with("epsg:")) return grid_of_epsg(crs.substr(5));
+  const Parameters parameters = parameters_of(crs);
+  if (!is_on_wgs84(parameters) ||
+      (parameters.contains("units") && !says(parameters, "units", "m"))) {
+    return {};
+  }
+  if (says(parameters, "proj", "utm")) {
+    const auto zone = number(parameters, "zone", 0.0);
+    if (!zone || !(*zone >= 1.0 && *zone <= 60.0)) return {};
+    return utm_grid(static_cast<int>(*zone), parameters.contains("south"));
+  }
+  if (!says(parameters, "proj", "tmerc")) return {};
+  const auto meridian = number(parameters, "lon_0", 0.0);
+  const auto latitude = number(parameters, "lat_0", 0.0);
+  const auto scale = number(parameters, parameters.contains("k_0") ? "k_0" : "k", 1.0);
+  const auto east_m = number(parameters, "x_0", 0.0), north_m = number(parameters, "y_0", 0.0);
+  if (!meridian || !latitude || !scale || !east_m || !north_m) return {};
+  if (!(*scale > 0.0) || !(std::abs(*latitude) <= 90.0)) return {};
+  return TransverseMercator{*meridian, *latitude, *scale, *east_m, *north_m};
 }
 
 }  // namespace roadbed::map::lanelet2

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "roadbed/map/files/transverse_mercator.h"
 
@@ -13,6 +14,9 @@ namespace roadbed::map::lanelet2 {
 struct NodePlace {
   double latitude_deg, longitude_deg;
   double local_x_m, local_y_m;  ///< Autoware's tags
+
+  bool is_local() const;     ///< has usable local coordinates
+  bool is_on_earth() const;  ///< has a latitude and a longitude that exist
 };
 
 /// The one coordinate system of a file: Autoware's `local_x/local_y` where most nodes have them,
@@ -49,5 +53,10 @@ struct MgrsSquare {
   Eigen::Vector2d corner_m{0, 0};
 };
 std::optional<MgrsSquare> mgrs_square(std::string_view code);
+
+/// The grid that a CRS text names, where it is a transverse Mercator one on WGS 84 or GRS 80 (their
+/// grids differ by less than 0.1 mm): "EPSG:326zz", "EPSG:327zz", "+proj=utm …", "+proj=tmerc …".
+/// None for everything else; needs no PROJ.
+std::optional<TransverseMercator> transverse_mercator_of(std::string_view crs);
 
 }  // namespace roadbed::map::lanelet2

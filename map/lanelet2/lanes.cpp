@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/lanes.h"
+#include "roadbed/map/lanelet2/build_map.h"
 
 #include <fmt/format.h>
 
@@ -59,16 +59,20 @@ class LaneBuilder {
   std::optional<std::uint32_t> only_way(const Relation& relation, std::string_view role) {
     std::optional<std::uint32_t> way;
     std::size_t count = 0;
+    bool is_missing = false;
     for (const Member& member : relation.members) {
       if (member.role != role) continue;
       ++count;
-      if (member.kind == MemberKind::way) way = document_.way_index.find(member.id);
+      if (member.kind != MemberKind::way) continue;
+      way = document_.way_index.find(member.id);
+      is_missing = is_missing || !way;
     }
     if (count == 1 && way && document_.ways[*way].nodes.size() >= 2) return way;
     std::string reason = fmt::format("{} ways have the role {}, it needs one", count, role);
     if (count == 1 && !way) reason = fmt::format("its {} way is not in the file", role);
     if (count == 1 && way) reason = fmt::format("its {} way has fewer than 2 points", role);
-    document_.fault(relation.at, "import.lanelet-border", reason + "; " + consequence(role));
+    document_.fault(relation.at, "import.lanelet-border", reason + "; " + consequence(role))
+        .in_text = count == 0 || (count == 1 && is_missing);
     return {};
   }
 

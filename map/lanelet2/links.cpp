@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/links.h"
+#include "roadbed/map/lanelet2/build_map.h"
 
 #include <algorithm>
 #include <array>

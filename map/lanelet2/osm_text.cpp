@@ -3,30 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/lanelet2/document.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
 
-std::optional<std::int64_t> id_in(const std::string& text) {
+std::optional<std::int64_t> writable_id(const std::string& text) {
   constexpr std::int64_t largest = 9'200'000'000'000'000'000;  // and 2·10¹⁶ fresh ones beyond
-  std::int64_t id = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, id);
-  if (error != std::errc() || stop != end || id <= 0 || id > largest) return {};
-  return id;
+  const std::optional<std::int64_t> id = id_in(text);
+  return id && *id > 0 && *id <= largest ? id : std::nullopt;
 }
 
 // Larger than every number that the map's things are named by.
 std::int64_t beyond_all_ids(const RoadMap& road_map) {
   std::int64_t largest = 0;
   const auto see = [&](const std::string& text) {
-    largest = std::max(largest, id_in(text).value_or(0));
+    largest = std::max(largest, writable_id(text).value_or(0));
   };
   for (const Lane& lane : road_map.lanes()) see(lane.name);
   for (const Regulation& regulation : road_map.regulations()) {
@@ -58,7 +55,7 @@ OsmText::OsmText(const RoadMap& road_map, std::string crs, const CrsOffset& offs
       next_(beyond_all_ids(road_map)) {}
 
 std::int64_t OsmText::keep(const std::string& source_id) {
-  const std::optional<std::int64_t> id = id_in(source_id);
+  const std::optional<std::int64_t> id = writable_id(source_id);
   return id && taken_.insert(*id).second ? *id : fresh();
 }
 

@@ -4,12 +4,6 @@
 
 #include <algorithm>
 
-#include "roadbed/map/lanelet2/areas.h"
-#include "roadbed/map/lanelet2/document.h"
-#include "roadbed/map/lanelet2/lanes.h"
-#include "roadbed/map/lanelet2/links.h"
-#include "roadbed/map/lanelet2/regulations.h"
-
 namespace roadbed::map::lanelet2 {
 namespace {
 
@@ -39,9 +33,14 @@ void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportDia
 
 }  // namespace
 
-RoadMapParts read(const std::string& bytes, const std::string& file) {
-  Document document = read_document(bytes, file);
+RoadMapParts read(std::string bytes, const std::string& file) {
+  Document document = read_document(std::move(bytes), file);
+  document.places = {};  // only rules about the text ask for them
   BuiltLanes built = build_lanes(document);
+  return read(std::move(document), std::move(built));
+}
+
+RoadMapParts read(Document document, BuiltLanes built) {
   RoadMapParts parts;
   parts.format = "Lanelet2";
   parts.crs = document.crs;

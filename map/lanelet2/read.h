@@ -2,14 +2,17 @@
 
 #include <string>
 
+#include "roadbed/map/lanelet2/build_map.h"
 #include "roadbed/map/model/road_map.h"
 
 namespace roadbed::map::lanelet2 {
 
 /// Everything of a Lanelet2 map that a RoadMap holds; its lines are kept as they are, whatever the
 /// chord error asked for.
-/// @param bytes  UTF-8.
 /// @throws InputError with the place in the file if it is unusable.
-RoadMapParts read(const std::string& bytes, const std::string& file);
+RoadMapParts read(std::string bytes, const std::string& file);
+
+/// The same of a document whose lanes are built.
+RoadMapParts read(Document document, BuiltLanes built);
 
 }  // namespace roadbed::map::lanelet2

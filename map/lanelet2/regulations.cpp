@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/regulations.h"
+#include "roadbed/map/lanelet2/build_map.h"
 
 #include <fmt/format.h>
 
@@ -84,8 +84,10 @@ class RegulationBuilder {
         if (member.role != "regulatory_element") continue;
         const auto found = document_.relation_index.find(member.id);
         if (!found || document_.relations[*found].type != "regulatory_element") {
-          document_.fault(relation.at, "import.reference",
-                          fmt::format("its regulatory element {} is not in the file", member.id));
+          document_
+              .fault(relation.at, "import.reference",
+                     fmt::format("its regulatory element {} is not in the file", member.id))
+              .in_text = member.kind == MemberKind::relation && !found;
           continue;
         }
         std::vector<LaneId>& lanes = lanes_of_relation_[*found];
@@ -102,8 +104,10 @@ class RegulationBuilder {
     regulation.lanes = lanes_of_relation_[index];
     regulation.attributes = attributes_of(relation.tags);
     if (relation.subtype.empty()) {
-      document_.fault(relation.at, "import.regulation-type",
-                      "has no subtype; it is kept, but says nothing");
+      document_
+          .fault(relation.at, "import.regulation-type",
+                 "has no subtype; it is kept, but says nothing")
+          .in_text = true;
     }
     for (const Member& member : relation.members) {
       regulation.members.push_back(resolved(relation, member));
@@ -116,7 +120,7 @@ class RegulationBuilder {
 
   RegulationMember resolved(const Relation& relation, const Member& member) {
     RegulationMember found{std::string(member.role), std::to_string(member.id), {}, {}, {}};
-    bool there = false;
+    bool there = false, in_file = false;
     if (member.kind == MemberKind::way) {
       if (const auto way = document_.way_index.find(member.id)) {
         there = true;
@@ -128,6 +132,7 @@ class RegulationBuilder {
       }
     } else if (member.kind == MemberKind::node) {
       const auto node = document_.node_index.find(member.id);
+      in_file = node.has_value();
       if (node && document_.nodes[*node].placed) {
         there = true;
         found.attributes = copied(document_.tags_of(document_.nodes[*node].at));
@@ -138,8 +143,10 @@ class RegulationBuilder {
       found.lane = built_.lane_of_relation[*other];
     }
     if (!there) {
-      document_.fault(relation.at, "import.reference",
-                      fmt::format("its {} {} is not in the file", member.role, member.id));
+      document_
+          .fault(relation.at, "import.reference",
+                 fmt::format("its {} {} is not in the file", member.role, member.id))
+          .in_text = !in_file;
     }
     return found;
   }

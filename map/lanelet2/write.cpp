@@ -9,7 +9,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/centreline.h"
-#include "roadbed/map/lanelet2/crs_text.h"
+#include "roadbed/map/lanelet2/frame.h"
 #include "roadbed/map/lanelet2/osm_text.h"
 #include "roadbed/map/lanelet2/shared_borders.h"
 #include "roadbed/map/lanelet2/tags.h"

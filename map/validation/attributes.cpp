@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {

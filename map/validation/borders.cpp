@@ -7,7 +7,7 @@
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/polygons/ring.h"
 #include "roadbed/map/validation/lane_folds.h"
-#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/validation/lane_folds.h"
-#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "roadbed/map/derived/components.h"
-#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "roadbed/map/validation/lane_folds.h"
-#include "roadbed/map/validation/rules.h"
+#include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
 namespace {

@@ -9,9 +9,21 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/map/validation/finding.h"
-
 namespace roadbed::map::validation {
+
+enum class Severity { info, warning, error };
+std::string_view name(Severity severity);
+
+/// One fault of a map: what, where, and what to do.
+struct Finding {
+  std::string rule;       ///< "geometry.gap"
+  std::string asam_rule;  ///< "asam.net:xodr:1.7.0:…", empty where there is none
+  Severity severity = Severity::warning;
+  std::string element;  ///< "road 12", "lane 12/0/-1"
+  long line = 0;        ///< in the source file, 0 if unknown
+  std::optional<Eigen::Vector2d> in_map;
+  std::string message;  ///< with what to do
+};
 
 /// Above these a rule speaks up.
 struct ValidateOptions {
@@ -62,5 +74,18 @@ class Report {
   std::size_t count_ = 0;
   Finding uncounted_;  ///< stands for those past the most
 };
+
+/// What a list of rules finds: each has an `info`, and a `check` of what they all look at.
+template <typename Rules, typename Source>
+std::vector<Finding> findings_of(const Rules& rules, const Source& source,
+                                 const ValidateOptions& options) {
+  std::vector<Finding> findings;
+  for (const auto& rule : rules) {
+    Report report(rule.info, findings);
+    rule.check(source, options, report);
+    report.finish();
+  }
+  return findings;
+}
 
 }  // namespace roadbed::map::validation

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/commonroad/write.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"

@@ -2,7 +2,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 

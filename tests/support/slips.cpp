@@ -1,6 +1,7 @@
 #include "roadbed/tests/support/slips.h"
 
 #include "roadbed/map/formats.h"
+#include "roadbed/map/validate_file.h"
 
 namespace roadbed::tests {
 
@@ -30,6 +31,24 @@ void expect_each_is_found(const std::vector<Slip>& slips, const std::string& fau
       EXPECT_FALSE(finding.element.empty());
       EXPECT_GT(finding.line, 0);
       EXPECT_GT(finding.message.size(), 20u);
+    }
+  }
+}
+
+void expect_each_is_found_once(const std::set<std::string>& rules, const std::vector<Slip>& slips,
+                               const std::string& faultless, const std::string& file) {
+  const auto remarks_of = [&](const std::string& text) {
+    std::set<std::string> remarks;
+    for (const auto& finding : map::validate_bytes(text, file).findings) {
+      if (finding.rule.starts_with("import.")) remarks.insert(finding.message);
+    }
+    return remarks;
+  };
+  const std::set<std::string> usual = remarks_of(faultless);
+  for (const Slip& slip : slips) {
+    if (!rules.contains(slip.rule)) continue;
+    for (const std::string& remark : remarks_of(with_slip(faultless, slip))) {
+      EXPECT_TRUE(usual.contains(remark)) << slip.rule << ": " << remark;
     }
   }
 }

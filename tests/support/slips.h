@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/validation/finding.h"
+#include "roadbed/map/validation/rule.h"
 
 namespace roadbed::tests {
 
@@ -27,6 +27,10 @@ std::vector<map::validation::Finding> source_findings(const std::string& text,
 /// element, on which line and what.
 void expect_each_is_found(const std::vector<Slip>& slips, const std::string& faultless,
                           const std::string& file);
+
+/// Fails where the reader remarks what one of these rules finds, too.
+void expect_each_is_found_once(const std::set<std::string>& rules, const std::vector<Slip>& slips,
+                               const std::string& faultless, const std::string& file);
 
 /// Fails for every rule that no slip is about.
 template <class Slips, class Rules>

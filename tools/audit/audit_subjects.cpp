@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/audit/swept_drive.h"

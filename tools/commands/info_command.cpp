@@ -7,7 +7,7 @@
 #include <iostream>
 #include <string>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/derived/surface.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/formats.h"

@@ -5,7 +5,7 @@
 #include <set>
 #include <unordered_set>
 
-#include "roadbed/map/commonroad/rules/source.h"
+#include "roadbed/map/commonroad/rules/rules.h"
 
 namespace roadbed::map::commonroad::rules {
 namespace {
@@ -25,116 +25,94 @@ std::optional<Eigen::Vector2d> place_of(pugi::xml_node lanelet) {
   return Eigen::Vector2d(x, y);
 }
 
-validation::Finding& add(validation::Report& report, const Source& source, pugi::xml_node node,
+validation::Finding& add(validation::Report& report, const Document& document, pugi::xml_node node,
                          std::string message) {
   validation::Finding& finding = report.add(element_of(node), place_of(node), std::move(message));
-  finding.line = source.xml.line_of(node);
+  finding.line = document.xml.line_of(node);
   return finding;
 }
 
-template <typename Check>
-void for_each_lanelet(const Source& source, const Check& check) {
-  for (const auto lanelet : source.xml.root().children("lanelet")) check(lanelet);
-}
-
-void unknown_versions(const Source& source, const validation::ValidateOptions&,
+void unknown_versions(const Document& document, const validation::ValidateOptions&,
                       validation::Report& report) {
-  const std::string_view version = source.xml.root().attribute("commonRoadVersion").value();
+  const std::string_view version = document.xml.root().attribute("commonRoadVersion").value();
   if (version == "2018b" || version == "2020a") return;
   report
       .add("file", std::nullopt,
            fmt::format("commonRoadVersion=\"{}\" is not 2018b or 2020a; convert the file or "
                        "correct it",
                        version))
-      .line = source.xml.line_of(source.xml.root());
+      .line = document.xml.line_of(document.xml.root());
 }
 
-void duplicate_ids(const Source& source, const validation::ValidateOptions&,
+void duplicate_ids(const Document& document, const validation::ValidateOptions&,
                    validation::Report& report) {
   std::unordered_map<std::string_view, long> seen;
-  for (const auto node : source.xml.root().children()) {
+  for (const auto node : document.xml.root().children()) {
     if (!node.attribute("id")) continue;
-    const auto [first, is_new] = seen.emplace(id_of(node), source.xml.line_of(node));
+    const auto [first, is_new] = seen.emplace(id_of(node), document.xml.line_of(node));
     if (is_new) continue;
-    add(report, source, node,
+    add(report, document, node,
         fmt::format("has the id of the element in line {}; ids must differ in the whole file",
                     first->second));
   }
 }
 
-void dangling_references(const Source& source, const validation::ValidateOptions&,
+void dangling_references(const Document& document, const validation::ValidateOptions&,
                          validation::Report& report) {
   struct Reference {
     const char* name;
-    const ById& targets;
+    const ElementsById& targets;
   };
   const Reference references[] = {
-      {"predecessor", source.lanelets},  {"successor", source.lanelets},
-      {"adjacentLeft", source.lanelets}, {"adjacentRight", source.lanelets},
-      {"trafficSignRef", source.signs},  {"trafficLightRef", source.lights},
+      {"predecessor", document.lanelet_by_id},  {"successor", document.lanelet_by_id},
+      {"adjacentLeft", document.lanelet_by_id}, {"adjacentRight", document.lanelet_by_id},
+      {"trafficSignRef", document.sign_by_id},  {"trafficLightRef", document.light_by_id},
   };
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     for (const auto& [name, targets] : references) {
       for (const auto reference : lanelet.children(name)) {
         if (targets.contains(reference.attribute("ref").value())) continue;
-        add(report, source, lanelet,
+        add(report, document, lanelet,
             fmt::format("its {} {} is not in the file; add or remove it", name,
                         reference.attribute("ref").value()));
       }
     }
-  });
+  }
 }
 
-bool refers(pugi::xml_node from, const char* name, std::string_view to) {
-  const auto references = from.children(name);
-  return std::any_of(references.begin(), references.end(), [&](pugi::xml_node reference) {
-    return to == reference.attribute("ref").value();
-  });
-}
-
-void one_sided_successors(const Source& source, const validation::ValidateOptions&,
+void one_sided_successors(const Document& document, const validation::ValidateOptions&,
                           validation::Report& report) {
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
-    for (const auto& [name, back] :
-         {std::pair{"successor", "predecessor"}, {"predecessor", "successor"}}) {
-      for (const auto reference : lanelet.children(name)) {
-        const auto other = source.lanelets.find(reference.attribute("ref").value());
-        if (other == source.lanelets.end() || refers(other->second, back, id_of(lanelet))) continue;
-        add(report, source, lanelet,
+  for (const pugi::xml_node lanelet : document.lanelets()) {
+    for (const char* name : {"successor", "predecessor"}) {
+      for (const auto link : lanelet.children(name)) {
+        const auto other = document.lanelet_by_id.find(link.attribute("ref").value());
+        if (other == document.lanelet_by_id.end() || is_answered(lanelet, link, other->second)) {
+          continue;
+        }
+        add(report, document, lanelet,
             fmt::format("its {} {} does not name it as {}; make both name each other", name,
-                        other->first, back));
+                        other->first, counterpart(link)));
       }
     }
-  });
+  }
 }
 
-/// The adjacency that should answer another one.
-const char* answer(std::string_view name, bool same) {
-  return (name == "adjacentLeft") == same ? "adjacentRight" : "adjacentLeft";
-}
-
-bool same_direction(pugi::xml_node adjacency) {
-  return std::string_view(adjacency.attribute("drivingDir").value()) == "same";
-}
-
-void one_sided_adjacencies(const Source& source, const validation::ValidateOptions&,
+void one_sided_adjacencies(const Document& document, const validation::ValidateOptions&,
                            validation::Report& report) {
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     for (const char* name : {"adjacentLeft", "adjacentRight"}) {
-      const auto adjacency = lanelet.child(name);
-      const auto other = source.lanelets.find(adjacency.attribute("ref").value());
-      if (!adjacency || other == source.lanelets.end()) continue;
-      const auto back = other->second.child(answer(name, same_direction(adjacency)));
-      if (std::string_view(back.attribute("ref").value()) == id_of(lanelet) &&
-          same_direction(back) == same_direction(adjacency)) {
+      const auto link = lanelet.child(name);
+      const auto other = document.lanelet_by_id.find(link.attribute("ref").value());
+      if (!link || other == document.lanelet_by_id.end() ||
+          is_answered(lanelet, link, other->second)) {
         continue;
       }
-      add(report, source, lanelet,
+      add(report, document, lanelet,
           fmt::format("its {} {} ({}) does not name it as {}; make both name each other", name,
-                      other->first, same_direction(adjacency) ? "same" : "opposite",
-                      answer(name, same_direction(adjacency))));
+                      other->first, is_same_direction(link) ? "same" : "opposite",
+                      counterpart(link)));
     }
-  });
+  }
 }
 
 long count_points(pugi::xml_node bound) {
@@ -142,49 +120,49 @@ long count_points(pugi::xml_node bound) {
   return std::distance(points.begin(), points.end());
 }
 
-void uneven_borders(const Source& source, const validation::ValidateOptions&,
+void uneven_borders(const Document& document, const validation::ValidateOptions&,
                     validation::Report& report) {
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     const long left = count_points(lanelet.child("leftBound"));
     const long right = count_points(lanelet.child("rightBound"));
-    if (left == right && left >= 2) return;
-    add(report, source, lanelet,
+    if (left == right && left >= 2) continue;
+    add(report, document, lanelet,
         fmt::format("its left bound has {} points and its right one {}; it needs two or more of "
                     "each, as many on both sides",
                     left, right));
-  });
+  }
 }
 
-void stop_lines_without_reference(const Source& source, const validation::ValidateOptions&,
+void stop_lines_without_reference(const Document& document, const validation::ValidateOptions&,
                                   validation::Report& report) {
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     const auto line = lanelet.child("stopLine");
-    if (!line) return;
+    if (!line) continue;
     const bool lanes_own = line.child("trafficSignRef") || line.child("trafficLightRef") ||
                            lanelet.child("trafficSignRef") || lanelet.child("trafficLightRef");
-    if (lanes_own) return;
-    add(report, source, lanelet,
+    if (lanes_own) continue;
+    add(report, document, lanelet,
         "its stop line has no traffic sign or light that says when to stop; refer to one");
-  });
+  }
 }
 
-void dangling_stop_lines(const Source& source, const validation::ValidateOptions&,
+void dangling_stop_lines(const Document& document, const validation::ValidateOptions&,
                          validation::Report& report) {
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     const auto line = lanelet.child("stopLine");
-    for (const auto& [name, targets] :
-         {std::pair{"trafficSignRef", &source.signs}, {"trafficLightRef", &source.lights}}) {
+    for (const auto& [name, targets] : {std::pair{"trafficSignRef", &document.sign_by_id},
+                                        {"trafficLightRef", &document.light_by_id}}) {
       for (const auto reference : line.children(name)) {
         if (targets->contains(reference.attribute("ref").value())) continue;
-        add(report, source, lanelet,
+        add(report, document, lanelet,
             fmt::format("the {} {} of its stop line is not in the file; add or remove it", name,
                         reference.attribute("ref").value()));
       }
     }
-  });
+  }
 }
 
-void unused_signs(const Source& source, const validation::ValidateOptions&,
+void unused_signs(const Document& document, const validation::ValidateOptions&,
                   validation::Report& report) {
   std::unordered_set<std::string_view> used;
   const auto use = [&](pugi::xml_node holder) {
@@ -194,30 +172,30 @@ void unused_signs(const Source& source, const validation::ValidateOptions&,
       }
     }
   };
-  for_each_lanelet(source, [&](pugi::xml_node lanelet) {
+  for (const pugi::xml_node lanelet : document.lanelets()) {
     use(lanelet);
     use(lanelet.child("stopLine"));
-  });
+  }
   for (const char* kind : {"trafficSign", "trafficLight"}) {
-    for (const auto sign : source.xml.root().children(kind)) {
+    for (const auto sign : document.xml.root().children(kind)) {
       if (used.contains(id_of(sign))) continue;
-      add(report, source, sign, "no lanelet refers to it, so that it holds for nobody; add it");
+      add(report, document, sign, "no lanelet refers to it, so that it holds for nobody; add it");
     }
   }
 }
 
-void broken_intersections(const Source& source, const validation::ValidateOptions&,
+void broken_intersections(const Document& document, const validation::ValidateOptions&,
                           validation::Report& report) {
-  for (const auto intersection : source.xml.root().children("intersection")) {
+  for (const auto intersection : document.xml.root().children("intersection")) {
     for (const auto incoming : intersection.children("incoming")) {
       if (!incoming.child("incomingLanelet")) {
-        add(report, source, intersection, "has an incoming without incomingLanelet; add one");
+        add(report, document, intersection, "has an incoming without incomingLanelet; add one");
       }
       for (const char* name :
            {"incomingLanelet", "successorsRight", "successorsStraight", "successorsLeft"}) {
         for (const auto reference : incoming.children(name)) {
-          if (source.lanelets.contains(reference.attribute("ref").value())) continue;
-          add(report, source, intersection,
+          if (document.lanelet_by_id.contains(reference.attribute("ref").value())) continue;
+          add(report, document, intersection,
               fmt::format("its {} {} is not in the file; add or remove it", name,
                           reference.attribute("ref").value()));
         }
@@ -278,21 +256,17 @@ constexpr std::array<SourceRule, 10> kSourceRules = {{
 
 }  // namespace
 
-Source::Source(const XmlDocument& document) : xml(document) {
-  for (const auto node : xml.root().children()) {
-    const std::string_view kind = node.name();
-    if (kind == "lanelet") lanelets.emplace(id_of(node), node);
-    if (kind == "trafficSign") signs.emplace(id_of(node), node);
-    if (kind == "trafficLight") lights.emplace(id_of(node), node);
-  }
-}
-
 std::span<const SourceRule> source_rules() { return kSourceRules; }
 
-validation::ElementLines element_lines(const XmlDocument& xml) {
+std::vector<validation::Finding> check(const Document& document,
+                                       const validation::ValidateOptions& options) {
+  return validation::findings_of(source_rules(), document, options);
+}
+
+validation::ElementLines element_lines(const Document& document) {
   validation::ElementLines lines;
-  for (const auto node : xml.root().children()) {
-    if (node.attribute("id")) lines.emplace(element_of(node), xml.line_of(node));
+  for (const auto node : document.xml.root().children()) {
+    if (node.attribute("id")) lines.emplace(element_of(node), document.xml.line_of(node));
   }
   return lines;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <unordered_set>
 
 #include "roadbed/map/lanelet2/rules/source.h"
 
@@ -17,10 +16,10 @@ void unknown_regulations(const Source& source, const validation::ValidateOptions
       "all_way_stop",  "crosswalk",      "road_marking",    "no_stopping_area",
       "speed_bump",    "detection_area", "no_parking_area", "virtual_traffic_light",
       "roundabout",    "bus_stop_area"};
-  for (const auto regulation : source.regulations) {
-    const std::string_view subtype = tag(regulation, "subtype");
+  for (const Relation* regulation : source.regulations) {
+    const std::string_view subtype = regulation->subtype;
     if (kKnown.contains(subtype)) continue;
-    add_at(report, source, regulation,
+    add_at(report, source, *regulation,
            fmt::format("its subtype \"{}\" is no regulatory element that is known; correct it, or "
                        "see to it that who uses the map knows it",
                        subtype));
@@ -29,17 +28,15 @@ void unknown_regulations(const Source& source, const validation::ValidateOptions
 
 void regulations_without_refers(const Source& source, const validation::ValidateOptions&,
                                 validation::Report& report) {
-  for (const auto regulation : source.regulations) {
-    const std::string_view subtype = tag(regulation, "subtype");
+  for (const Relation* regulation : source.regulations) {
+    const std::string_view subtype = regulation->subtype;
     const bool of_lanes = subtype == "right_of_way" || subtype == "all_way_stop";
-    const auto members = regulation.children("member");
-    if (std::any_of(members.begin(), members.end(), [&](pugi::xml_node member) {
-          const std::string_view role = member.attribute("role").value();
-          return role == "refers" || (of_lanes && (role == "yield" || role == "right_of_way"));
-        })) {
-      continue;
-    }
-    add_at(report, source, regulation,
+    const auto says_what = [&](const Member& member) {
+      return member.role == "refers" ||
+             (of_lanes && (member.role == "yield" || member.role == "right_of_way"));
+    };
+    if (std::ranges::any_of(regulation->members, says_what)) continue;
+    add_at(report, source, *regulation,
            of_lanes ? "names no lanelet that yields or has the right of way; add them"
                     : "refers to nothing; add its sign, light or line as member \"refers\"");
   }
@@ -47,17 +44,14 @@ void regulations_without_refers(const Source& source, const validation::Validate
 
 void unused_regulations(const Source& source, const validation::ValidateOptions&,
                         validation::Report& report) {
-  std::unordered_set<std::string_view> used;
-  for (const auto relation : source.relation_list) {
-    for (const auto member : relation.children("member")) {
-      if (std::string_view(member.attribute("role").value()) == "regulatory_element") {
-        used.insert(member.attribute("ref").value());
-      }
-    }
+  std::set<std::int64_t> used;
+  for (const Member& member : source.document.members) {
+    if (member.role == "regulatory_element") used.insert(member.id);
   }
-  for (const auto regulation : source.regulations) {
-    if (used.contains(regulation.attribute("id").value())) continue;
-    add_at(report, source, regulation, "no lanelet or area names it; add it to those it holds for");
+  for (const Relation* regulation : source.regulations) {
+    if (used.contains(regulation->id)) continue;
+    add_at(report, source, *regulation,
+           "no lanelet or area names it; add it to those it holds for");
   }
 }
 

@@ -1,57 +1,44 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <compare>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
-#include "roadbed/map/files/xml.h"
+#include "roadbed/map/lanelet2/build_map.h"
 #include "roadbed/map/validation/rule.h"
-
-// A Lanelet2 file (OSM XML) as it stands, faults and all.
 
 namespace roadbed::map::lanelet2::rules {
 
-using ById = std::unordered_map<std::string_view, pugi::xml_node>;
-using Nodes = std::vector<std::string_view>;  ///< ids
-
-/// The value of a tag of an element, empty if it has none.
-std::string_view tag(pugi::xml_node element, std::string_view key);
-
-/// A relation of type lanelet with its borders in driving direction.
-struct Lanelet {
-  pugi::xml_node node;
-  Nodes left, right;  ///< empty if a border is missing or broken
-
-  std::string element() const;
+/// Where a lanelet begins, or where it ends: the nodes of its two borders.
+struct Edge {
+  std::uint32_t left = 0, right = 0;  ///< places in Document::nodes
+  auto operator<=>(const Edge&) const = default;
 };
 
+/// A relation of type lanelet, with its ends in driving direction where a lane is made of it.
+struct Lanelet {
+  const Relation& relation;
+  std::optional<Edge> start, end;
+
+  std::string_view tag(std::string_view key) const;
+};
+
+/// A document, with what rules look up in it.
 struct Source {
-  explicit Source(const XmlDocument& document);
+  /// @param built  of the document; without lanes where none could be built.
+  Source(const Document& document, const BuiltLanes& built);
 
-  const XmlDocument& xml;
-  /// In the order of the file; what an editor marked as deleted is left out.
-  std::vector<pugi::xml_node> node_list, way_list, relation_list;
-  ById nodes, ways, relations;  ///< the first of each id
+  const Document& document;
   std::vector<Lanelet> lanelets;
-  std::vector<pugi::xml_node> regulations;
+  std::vector<const Relation*> regulations;
 
-  /// In local_x and local_y where the node has them, else metres about the first node's latitude:
-  /// good for comparing places, but not the map's coordinates.
-  std::optional<Eigen::Vector2d> place(std::string_view node) const;
-  /// The map's coordinates; none without local_x and local_y.
-  std::optional<Eigen::Vector2d> local_place(std::string_view node) const;
-
- private:
-  void read(pugi::xml_node element);
-  Nodes border(pugi::xml_node relation, std::string_view role);
-  Lanelet lanelet(pugi::xml_node relation);
-
-  double first_latitude_rad_ = 0.0;
-  std::size_t nodes_left_;  // that borders may repeat: many lanelets may name one long way
+  /// In the source's coordinates; none without local_x and local_y.
+  std::optional<Eigen::Vector2d> local_place(std::uint32_t node) const;
 };
 
 struct SourceRule {
@@ -60,18 +47,28 @@ struct SourceRule {
                 validation::Report& report);
 };
 
-std::span<const SourceRule> lanelet_rules();     ///< lanelets, their borders, nodes and ways
+std::span<const SourceRule> element_rules();  ///< nodes, ways, relations: ids, references, places
+std::span<const SourceRule> lanelet_rules();  ///< lanelets and their borders
 std::span<const SourceRule> regulation_rules();  ///< regulatory elements
 
 /// All of the above.
 std::vector<SourceRule> source_rules();
 
-/// A finding about a lanelet, or about any other element, with its line.
+/// What all rules find in a document.
+std::vector<validation::Finding> check(const Document& document, const BuiltLanes& built,
+                                       const validation::ValidateOptions& options);
+
+validation::ElementLines element_lines(const Document& document);
+
+/// A finding about an element of the file, with its line.
+validation::Finding& add_at(validation::Report& report, const Source& source, const Node& node,
+                            std::string message);
+validation::Finding& add_at(validation::Report& report, const Source& source, const Way& way,
+                            std::string message);
+validation::Finding& add_at(validation::Report& report, const Source& source,
+                            const Relation& relation, std::string message);
+/// The same about the lane that a lanelet is.
 validation::Finding& add_at(validation::Report& report, const Source& source,
                             const Lanelet& lanelet, std::string message);
-validation::Finding& add_at(validation::Report& report, const Source& source,
-                            pugi::xml_node element, std::string message);
-
-validation::ElementLines element_lines(const XmlDocument& xml);
 
 }  // namespace roadbed::map::lanelet2::rules

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace roadbed::map::opendrive::rules {
@@ -34,6 +35,17 @@ RoadSource road_source(const RoadRecord& record) {
 
 std::string element_name(const char* kind, pugi::xml_node node) {
   return fmt::format("{} {}", kind, node.attribute("id").value());
+}
+
+/// "12" of "road 12" and of "lane 12/0/-1".
+std::string road_of(const std::string& element) {
+  const std::size_t from = element.find(' ') + 1;
+  return element.substr(from, element.find('/', from) - from);
+}
+
+bool is_about_links(const validation::Finding& finding) {
+  return finding.rule.starts_with("link.") || finding.rule.starts_with("id.dangling") ||
+         finding.rule.starts_with("junction.");
 }
 
 }  // namespace
@@ -121,16 +133,25 @@ validation::ElementLines element_lines(const XmlDocument& xml, const Document& d
   return lines;
 }
 
+void mark_told(std::vector<ImportDiagnostic>& remarks,
+               const std::vector<validation::Finding>& findings) {
+  std::set<long> lines;
+  std::set<std::string> badly_linked;
+  for (const validation::Finding& finding : findings) {
+    lines.insert(finding.line);
+    if (is_about_links(finding)) badly_linked.insert(road_of(finding.element));
+  }
+  for (ImportDiagnostic& remark : remarks) {
+    const bool same_line = remark.is_fault && remark.line > 0 && lines.contains(remark.line);
+    const bool same_link =
+        remark.rule == "import.link" && badly_linked.contains(road_of(remark.element));
+    remark.in_text = same_line || same_link;
+  }
+}
+
 std::vector<validation::Finding> check(const XmlDocument& xml, const Document& document,
                                        const validation::ValidateOptions& options) {
-  std::vector<validation::Finding> findings;
-  const Source source(xml, document);
-  for (const SourceRule& rule : source_rules()) {
-    validation::Report report(rule.info, findings);
-    rule.check(source, options, report);
-    report.finish();
-  }
-  return findings;
+  return validation::findings_of(source_rules(), Source(xml, document), options);
 }
 
 std::vector<SourceRule> source_rules() {

@@ -88,6 +88,11 @@ std::vector<SourceRule> source_rules();
 std::vector<validation::Finding> check(const XmlDocument& xml, const Document& document,
                                        const validation::ValidateOptions& options);
 
+/// Marks the remarks of the reader that say what the text's rules found: about a line that has a
+/// finding, or about links of a road whose links have one.
+void mark_told(std::vector<ImportDiagnostic>& remarks,
+               const std::vector<validation::Finding>& findings);
+
 validation::ElementLines element_lines(const XmlDocument& xml, const Document& document);
 
 /// "lane 12/0/-1": road, index of the section, lane.

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/commonroad/write.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"

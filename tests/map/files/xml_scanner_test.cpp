@@ -161,14 +161,14 @@ TEST(XmlScanner, NamesTheRootElementWhereThereIsOne) {
 TEST(XmlCharacters, OtherEncodingsBecomeUtf8OnTheSameLines) {
   const std::string latin = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n\n<a b=\"\xe4\"/>";
   ASSERT_TRUE(is_other_encoding(latin));
-  const std::string text = to_utf8(latin);
+  const std::string text = in_utf8(latin);
   XmlScanner scanner(text, "f.osm");
   scanner.next();
   EXPECT_EQ(scanner.value("b"), "ä");
   std::string wide;
   for (const char c : std::string("<a b=\"1\"/>")) wide += {c, '\0'};
   EXPECT_TRUE(is_other_encoding(wide));
-  EXPECT_THAT(to_utf8(wide), HasSubstr("<a b=\"1\""));
+  EXPECT_THAT(in_utf8(wide), HasSubstr("<a b=\"1\""));
   EXPECT_FALSE(is_other_encoding("<?xml version='1.0' encoding='UTF-8'?><a/>"));
 }
 

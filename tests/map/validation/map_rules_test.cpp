@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 
-#include "roadbed/map/validation/rules.h"
 #include "roadbed/map/validation/validate.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/slips.h"

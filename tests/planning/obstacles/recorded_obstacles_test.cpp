@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 
 namespace roadbed::planning {

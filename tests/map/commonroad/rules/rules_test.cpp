@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/commonroad/rules/source.h"
+#include "roadbed/map/commonroad/rules/rules.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/tests/support/slips.h"
@@ -69,6 +69,13 @@ TEST(CommonRoadRules, FindNothingInAFaultlessFile) {
 
 TEST(CommonRoadRules, FindEverySlipAndSayWhereItIs) {
   tests::expect_each_is_found(slips(), clean_file(), "file.xml");
+}
+
+TEST(CommonRoadRules, SayOnceWhatTheReaderSeesToo) {
+  tests::expect_each_is_found_once(
+      {"common-road.duplicate-id", "common-road.dangling-reference",
+       "common-road.successor-one-sided", "common-road.uneven-borders", "common-road.intersection"},
+      slips(), clean_file(), "file.xml");
 }
 
 TEST(CommonRoadRules, AreAllTried) {

@@ -1,13 +1,54 @@
-#include "roadbed/map/commonroad/elements.h"
+#include "roadbed/map/commonroad/document.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace roadbed::map::commonroad {
 namespace {
 
 constexpr double kFarthestM = 1e8, kHighestM = 1e5;  // beyond any road: a slip
 
+std::string_view reference(pugi::xml_node node) { return node.attribute("ref").value(); }
+
+ElementsById by_id(const XmlDocument& xml, const char* kind) {
+  ElementsById elements;
+  for (const pugi::xml_node node : xml.root().children(kind)) {
+    elements.emplace(node.attribute("id").value(), node);
+  }
+  return elements;
+}
+
 }  // namespace
+
+Document::Document(std::string bytes, std::string name)
+    : xml(std::move(bytes), std::move(name)),
+      lanelet_by_id(by_id(xml, "lanelet")),
+      sign_by_id(by_id(xml, "trafficSign")),
+      light_by_id(by_id(xml, "trafficLight")) {}
+
+bool is_same_direction(pugi::xml_node adjacent) {
+  return std::string_view(adjacent.attribute("drivingDir").value()) == "same";
+}
+
+const char* counterpart(pugi::xml_node link) {
+  const std::string_view name = link.name();
+  if (name == "successor") return "predecessor";
+  if (name == "predecessor") return "successor";
+  return (name == "adjacentLeft") == is_same_direction(link) ? "adjacentRight" : "adjacentLeft";
+}
+
+bool is_answered(pugi::xml_node lanelet, pugi::xml_node link, pugi::xml_node other) {
+  const std::string_view id = lanelet.attribute("id").value();
+  const char* name = counterpart(link);
+  if (std::string_view(name).starts_with("adjacent")) {
+    const pugi::xml_node back = other.child(name);
+    return reference(back) == id && is_same_direction(back) == is_same_direction(link);
+  }
+  const auto links = other.children(name);
+  return std::any_of(links.begin(), links.end(),
+                     [&](pugi::xml_node back) { return reference(back) == id; });
+}
 
 Eigen::Vector2d find_origin(const XmlDocument& xml) {
   constexpr double far_m = 20'000.0, grid_m = 1'000.0;

@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/crs_text.h"
+#include "roadbed/map/lanelet2/frame.h"
 
 #include <gtest/gtest.h>
 

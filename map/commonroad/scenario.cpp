@@ -1,11 +1,11 @@
-#include "roadbed/map/commonroad/scenario_reader.h"
+#include "roadbed/map/commonroad/scenario.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string_view>
 
-#include "roadbed/map/commonroad/elements.h"
+#include "roadbed/map/commonroad/document.h"
 #include "roadbed/map/files/xml.h"
 
 namespace roadbed::map::commonroad {
