@@ -97,12 +97,12 @@ geometry::Pose2 SampledPath::at(double s_m) const {
   const double inside_m = std::clamp(s_m, 0.0, length_m());
   const auto after = std::upper_bound(stations_m_.begin() + 1, stations_m_.end() - 1, inside_m);
   const auto i = static_cast<std::size_t>(after - stations_m_.begin());
-  const double share = (inside_m - stations_m_[i - 1]) / (stations_m_[i] - stations_m_[i - 1]);
+  const double fraction = (inside_m - stations_m_[i - 1]) / (stations_m_[i] - stations_m_[i - 1]);
   const geometry::Pose2 &a = poses_[i - 1], &b = poses_[i];
-  const double heading = a.heading_rad + share * (b.heading_rad - a.heading_rad);
+  const double heading = a.heading_rad + fraction * (b.heading_rad - a.heading_rad);
   const double beyond_m = s_m - inside_m;
-  return {a.x_m + share * (b.x_m - a.x_m) + beyond_m * std::cos(heading),
-          a.y_m + share * (b.y_m - a.y_m) + beyond_m * std::sin(heading), heading};
+  return {a.x_m + fraction * (b.x_m - a.x_m) + beyond_m * std::cos(heading),
+          a.y_m + fraction * (b.y_m - a.y_m) + beyond_m * std::sin(heading), heading};
 }
 
 double SampledPath::nearest_s_m(const Eigen::Vector2d& point, double near_s_m,

@@ -65,8 +65,8 @@ template <typename Gain>
 StringGain largest_gain(double least_radps, double most_radps, int count, const Gain& gain_of) {
   StringGain largest;
   for (int i = 0; i <= count; ++i) {
-    const double share = static_cast<double>(i) / count;
-    const double radps = least_radps * std::pow(most_radps / least_radps, share);
+    const double fraction = static_cast<double>(i) / count;
+    const double radps = least_radps * std::pow(most_radps / least_radps, fraction);
     const double gain = gain_of(radps);
     if (gain > largest.gain) largest = {gain, radps};
   }

@@ -15,7 +15,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/cli/build_id.h"
-#include "roadbed/tools/cli/help_format.h"
+#include "roadbed/tools/cli/help_text.h"
 #include "roadbed/tools/cli/standard_output.h"
 #include "roadbed/tools/commands/commands.h"
 
@@ -84,7 +84,7 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
 int run_command_line(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
-  app.formatter(make_help_format());
+  app.formatter(make_help_formatter());
   app.set_version_flag("--version",
                        name_and_version() + " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
   app.require_subcommand(1);

@@ -44,8 +44,8 @@ std::vector<double> solve_cyclic(Tridiagonal system, const std::vector<double>& 
   u[n - 1] = bottom;
   std::vector<double> m = solve(system, right);
   const std::vector<double> z = solve(system, u);
-  const double share = (m[0] + top / gamma * m[n - 1]) / (1.0 + z[0] + top / gamma * z[n - 1]);
-  for (std::size_t i = 0; i < n; ++i) m[i] -= share * z[i];
+  const double fraction = (m[0] + top / gamma * m[n - 1]) / (1.0 + z[0] + top / gamma * z[n - 1]);
+  for (std::size_t i = 0; i < n; ++i) m[i] -= fraction * z[i];
   return m;
 }
 

@@ -167,11 +167,11 @@ FittedCurve fit_curve(std::span<const Eigen::Vector2d> points, const FitOptions&
     throw std::invalid_argument("fit_curve: needs at least two distinct points");
   }
   FittedCurve best;
-  for (const double share : kScales) {
-    FittedCurve fitted = Fit(line, share * options.scale_m, options).refined();
+  for (const double fraction : kScales) {
+    FittedCurve fitted = Fit(line, fraction * options.scale_m, options).refined();
     fitted.peak_curvature_per_m = peak_curvature(fitted.curve, 0.25 * options.knot_distance_m);
     const bool straighter = fitted.peak_curvature_per_m < best.peak_curvature_per_m;
-    if (share == kScales[0] || straighter) best = std::move(fitted);
+    if (fraction == kScales[0] || straighter) best = std::move(fitted);
     if (best.peak_curvature_per_m <= options.max_curvature_per_m) break;
   }
   return best;

@@ -22,8 +22,8 @@ std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
 
 std::uint32_t hilbert_key(const Eigen::AlignedBox2d& all, const Eigen::Vector2d& point) {
   const auto cell = [](double offset, double size) {
-    const double share = size > 0.0 ? offset / size : 0.0;
-    return static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * 65535.0);
+    const double fraction = size > 0.0 ? offset / size : 0.0;
+    return static_cast<std::uint32_t>(std::clamp(fraction, 0.0, 1.0) * 65535.0);
   };
   const Eigen::Vector2d offset = point - all.min(), size = all.sizes();
   return hilbert_index(cell(offset.x(), size.x()), cell(offset.y(), size.y()));

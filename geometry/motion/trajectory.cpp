@@ -20,8 +20,8 @@ bool is_finite(const TrajectoryPoint& p) {
 
 }  // namespace
 
-TrajectoryPoint interpolate(const TrajectoryPoint& a, const TrajectoryPoint& b, double share) {
-  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+TrajectoryPoint interpolate(const TrajectoryPoint& a, const TrajectoryPoint& b, double fraction) {
+  const auto mix = [fraction](double from, double to) { return from + fraction * (to - from); };
   return {mix(a.t_s, b.t_s),
           mix(a.x_m, b.x_m),
           mix(a.y_m, b.y_m),

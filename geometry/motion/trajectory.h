@@ -42,7 +42,7 @@ class Trajectory {
   std::vector<TrajectoryPoint> points_;
 };
 
-/// State between two: `share` 0 is `a`, 1 is `b`; every field is linear.
-TrajectoryPoint interpolate(const TrajectoryPoint& a, const TrajectoryPoint& b, double share);
+/// State between two: `fraction` 0 is `a`, 1 is `b`; every field is linear.
+TrajectoryPoint interpolate(const TrajectoryPoint& a, const TrajectoryPoint& b, double fraction);
 
 }  // namespace roadbed::geometry::motion

@@ -22,8 +22,8 @@ Vector2d from_cgal(const Kernel::Point_2& point) { return {point.x(), point.y()}
 double distance_m(const Site& site, const Vector2d& point) {
   if (site.is_point()) return (point - from_cgal(site.point())).norm();
   const Vector2d a = from_cgal(site.source()), b = from_cgal(site.target());
-  const double share = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (point - a - share * (b - a)).norm();
+  const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (point - a - fraction * (b - a)).norm();
 }
 
 bool ends_at(const Site& segment, const Site& point) {

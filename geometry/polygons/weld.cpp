@@ -116,12 +116,12 @@ double even_cell_m(const std::vector<Vector2d>& points, double least_m) {
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  const double share = 1.0 / std::sqrt(static_cast<double>(points.size()));
-  return std::max(4.0 * least_m, (high - low).norm() * share);
+  const double fraction = 1.0 / std::sqrt(static_cast<double>(points.size()));
+  return std::max(4.0 * least_m, (high - low).norm() * fraction);
 }
 
 struct OnEdge {
-  double share;  ///< of the edge's length from its start
+  double fraction;  ///< of the edge's length from its start
   Vector2d point;
   double off_m;  ///< from the edge
 };
@@ -142,8 +142,8 @@ std::pair<double, double> y_range(const Vector2d& a, const Vector2d& b, double f
                                   double to_x) {
   if (a.x() == b.x()) return std::minmax(a.y(), b.y());
   const auto y_at = [&](double x) {
-    const double share = std::clamp((x - a.x()) / (b.x() - a.x()), 0.0, 1.0);
-    return a.y() + share * (b.y() - a.y());
+    const double fraction = std::clamp((x - a.x()) / (b.x() - a.x()), 0.0, 1.0);
+    return a.y() + fraction * (b.y() - a.y());
   };
   return std::minmax(y_at(from_x), y_at(to_x));
 }
@@ -184,8 +184,8 @@ class EdgeSplitter {
       }
     }
     std::sort(found.begin(), found.end(), [](const OnEdge& one, const OnEdge& other) {
-      return one.share < other.share ||
-             (one.share == other.share && before(one.point, other.point));
+      return one.fraction < other.fraction ||
+             (one.fraction == other.fraction && before(one.point, other.point));
     });
     return found;
   }
@@ -194,10 +194,10 @@ class EdgeSplitter {
                    std::vector<OnEdge>& found) const {
     if (point == a || point == b) return;
     const Vector2d along = b - a;
-    const double share = (point - a).dot(along) / along.squaredNorm();
-    if (!(share > 0.0 && share < 1.0)) return;
-    const double off_m = (a + share * along - point).norm();
-    if (off_m <= weld_m_) found.push_back({share, point, off_m});
+    const double fraction = (point - a).dot(along) / along.squaredNorm();
+    if (!(fraction > 0.0 && fraction < 1.0)) return;
+    const double off_m = (a + fraction * along - point).norm();
+    if (off_m <= weld_m_) found.push_back({fraction, point, off_m});
   }
 
   double weld_m_;

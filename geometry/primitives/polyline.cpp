@@ -69,8 +69,8 @@ Eigen::Vector2d Polyline::at(double s_m) const {
   const std::size_t i = segment_at(stations_m_, s);
   const double length_m = stations_m_[i + 1] - stations_m_[i];
   if (length_m <= 0.0) return points_[i];
-  const double share = (s - stations_m_[i]) / length_m;
-  return points_[i] + share * (points_[i + 1] - points_[i]);
+  const double fraction = (s - stations_m_[i]) / length_m;
+  return points_[i] + fraction * (points_[i + 1] - points_[i]);
 }
 
 Pose2 Polyline::pose_at(double s_m) const {
@@ -88,12 +88,12 @@ LinePosition Polyline::project(const Eigen::Vector2d& point) const {
     const double squared = along.squaredNorm();
     if (squared <= 0.0) continue;
     const Eigen::Vector2d to_point = point - points_[i];
-    const double share = std::clamp(to_point.dot(along) / squared, 0.0, 1.0);
-    const double distance_squared = (to_point - share * along).squaredNorm();
+    const double fraction = std::clamp(to_point.dot(along) / squared, 0.0, 1.0);
+    const double distance_squared = (to_point - fraction * along).squaredNorm();
     if (distance_squared < nearest_squared) {
       nearest_squared = distance_squared;
       const double side = cross(along, to_point) < 0.0 ? -1.0 : 1.0;
-      best = {stations_m_[i] + share * (stations_m_[i + 1] - stations_m_[i]),
+      best = {stations_m_[i] + fraction * (stations_m_[i + 1] - stations_m_[i]),
               side * std::sqrt(distance_squared)};
     }
   }

@@ -13,42 +13,42 @@ namespace {
 using Points = std::vector<Eigen::Vector3d>;
 
 /// Per point how far along the line it is, from 0 to 1.
-std::vector<double> shares(const Points& line) {
+std::vector<double> fractions(const Points& line) {
   std::vector<double> along{0.0};
   for (std::size_t i = 1; i < line.size(); ++i) {
     along.push_back(along.back() + (line[i] - line[i - 1]).head<2>().norm());
   }
   if (along.back() > 0.0) {
-    for (double& share : along) share /= along.back();
+    for (double& fraction : along) fraction /= along.back();
   }
   along.back() = 1.0;
   return along;
 }
 
-/// The line with a point at each of `wanted`, which holds all of its own shares.
+/// The line with a point at each of `wanted`, which holds all of its own fractions.
 Points with_points_at(const Points& line, const std::vector<double>& own,
                       const std::vector<double>& wanted) {
   Points result;
   std::size_t i = 0;
-  for (const double share : wanted) {
-    while (i + 2 < line.size() && own[i + 1] <= share) ++i;
+  for (const double fraction : wanted) {
+    while (i + 2 < line.size() && own[i + 1] <= fraction) ++i;
     const double step = own[i + 1] - own[i];
-    const double part = step > 0.0 ? std::clamp((share - own[i]) / step, 0.0, 1.0) : 1.0;
+    const double part = step > 0.0 ? std::clamp((fraction - own[i]) / step, 0.0, 1.0) : 1.0;
     result.push_back(line[i] + part * (line[i + 1] - line[i]));
   }
   return result;
 }
 
 /// Gives two borders of different numbers of points the same number: each gets a point where the
-/// other has one, by the share of its length.
+/// other has one, by the fraction of its length.
 void pair_points(Points& left, Points& right) {
-  const std::vector<double> left_shares = shares(left), right_shares = shares(right);
+  const std::vector<double> left_fractions = fractions(left), right_fractions = fractions(right);
   std::vector<double> all;
-  std::merge(left_shares.begin(), left_shares.end(), right_shares.begin(), right_shares.end(),
-             std::back_inserter(all));
+  std::merge(left_fractions.begin(), left_fractions.end(), right_fractions.begin(),
+             right_fractions.end(), std::back_inserter(all));
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  left = with_points_at(left, left_shares, all);
-  right = with_points_at(right, right_shares, all);
+  left = with_points_at(left, left_fractions, all);
+  right = with_points_at(right, right_fractions, all);
 }
 
 LaneLine lane_line(const Points& points, const std::vector<double>& station_m) {

@@ -39,8 +39,9 @@ double end_gap_m(const Lane& from, const Lane& to) {
 double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
                            const Eigen::Vector2d& b) {
   const double squared = (b - a).squaredNorm();
-  const double share = squared > 0.0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return (point - a - share * (b - a)).norm();
+  const double fraction =
+      squared > 0.0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
+  return (point - a - fraction * (b - a)).norm();
 }
 
 /// Distance of each point of a line to another line that runs beside it in the same direction; the

@@ -30,8 +30,8 @@ Eigen::Vector3d point_at(const LaneLine& line, double station_m) {
   if (after == stations.begin()) return at(0);
   if (after == stations.end()) return at(points.size() - 1);
   const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return at(i - 1) + share * (at(i) - at(i - 1));
+  const double fraction = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return at(i - 1) + fraction * (at(i) - at(i - 1));
 }
 
 /// The marking along most of a lane; without any, what the right to change lanes says.

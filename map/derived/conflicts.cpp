@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 using geometry::Box;
 using geometry::Ring;
 
-/// Station of the cross-section through a point of the piece: the share u of the way with
+/// Station of the cross-section through a point of the piece: the fraction u of the way with
 /// (p − l(u)) × (r(u) − l(u)) = 0, where l and r go straight along the borders.
 double station_of(const LanePiece& piece, const Vector2d& point) {
   const Vector2d to_point = point - piece.left_from, along = piece.left_to - piece.left_from;
@@ -31,8 +31,8 @@ double station_of(const LanePiece& piece, const Vector2d& point) {
   const double q = -0.5 * (b + std::copysign(root, b));  // without cancellation
   const double one = a != 0.0 ? q / a : 0.5, other = q != 0.0 ? c / q : 0.5;
   const auto outside = [](double u) { return std::max({-u, u - 1.0, 0.0}); };
-  const double share = std::clamp(outside(other) <= outside(one) ? other : one, 0.0, 1.0);
-  return piece.range.from_s_m + share * (piece.range.to_s_m - piece.range.from_s_m);
+  const double fraction = std::clamp(outside(other) <= outside(one) ? other : one, 0.0, 1.0);
+  return piece.range.from_s_m + fraction * (piece.range.to_s_m - piece.range.from_s_m);
 }
 
 using Triangle = std::array<Vector2d, 3>;

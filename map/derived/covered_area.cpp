@@ -61,18 +61,18 @@ class Slab {
     if (budget.is_spent) return {};
     sort(edges);
     constexpr int kDeepest = 40;
-    const std::optional<double> share = crossing(edges);
-    if (!share || depth == kDeepest) {
+    const std::optional<double> fraction = crossing(edges);
+    if (!fraction || depth == kDeepest) {
       const CoveredArea width = width_m(edges);
       return {width.all_m2 * height_m, width.groups_m2 * height_m};
     }
     std::vector<Passage> upper = edges;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      const double x = edges[i].low_x + *share * (edges[i].high_x - edges[i].low_x);
+      const double x = edges[i].low_x + *fraction * (edges[i].high_x - edges[i].low_x);
       edges[i].high_x = upper[i].low_x = x;
     }
-    const CoveredArea below = area(edges, *share * height_m, depth + 1, budget);
-    const CoveredArea above = area(upper, (1.0 - *share) * height_m, depth + 1, budget);
+    const CoveredArea below = area(edges, *fraction * height_m, depth + 1, budget);
+    const CoveredArea above = area(upper, (1.0 - *fraction) * height_m, depth + 1, budget);
     return {below.all_m2 + above.all_m2, below.groups_m2 + above.groups_m2};
   }
 
@@ -100,9 +100,9 @@ class Slab {
       const double low = edges[i + 1].low_x - edges[i].low_x;
       const double high = edges[i + 1].high_x - edges[i].high_x;
       if (low >= 0.0 && high >= 0.0) continue;
-      const double share = low / (low - high);
-      if (!(share > kLeast && share < 1.0 - kLeast)) continue;
-      if (!most_even || std::abs(share - 0.5) < std::abs(*most_even - 0.5)) most_even = share;
+      const double fraction = low / (low - high);
+      if (!(fraction > kLeast && fraction < 1.0 - kLeast)) continue;
+      if (!most_even || std::abs(fraction - 0.5) < std::abs(*most_even - 0.5)) most_even = fraction;
     }
     return most_even;
   }

@@ -15,8 +15,8 @@ constexpr double kFar_m = std::numeric_limits<double>::infinity();
 
 double distance_to_m(const Vector2d& from, const Vector2d& to, const Vector2d& point) {
   const Vector2d along = to - from;
-  const double share = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (point - from - share * along).norm();
+  const double fraction = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (point - from - fraction * along).norm();
 }
 
 }  // namespace

@@ -71,9 +71,10 @@ Eigen::Vector2d reference_at(const Road& road, double s_m) {
   const auto after = std::upper_bound(stations.begin() + 1, stations.end() - 1, s_m);
   const auto i = static_cast<std::size_t>(after - stations.begin());
   const double step_m = stations[i] - stations[i - 1];
-  const double share = step_m > 0.0 ? std::clamp((s_m - stations[i - 1]) / step_m, 0.0, 1.0) : 0.0;
+  const double fraction =
+      step_m > 0.0 ? std::clamp((s_m - stations[i - 1]) / step_m, 0.0, 1.0) : 0.0;
   const auto& points = road.reference_in_map.points();
-  return points[i - 1] + share * (points[i] - points[i - 1]);
+  return points[i - 1] + fraction * (points[i] - points[i - 1]);
 }
 
 Piece piece_between(const Road& road, double from_m, double to_m) {
@@ -98,9 +99,9 @@ Vector2d LaneFrame::direction(double s_m) const {
   const auto after = std::upper_bound(station_m_.begin() + 1, station_m_.end() - 1, s_m);
   const auto i = static_cast<std::size_t>(after - station_m_.begin());
   const double length_m = station_m_[i] - station_m_[i - 1];
-  const double share =
+  const double fraction =
       length_m > 0.0 ? std::clamp((s_m - station_m_[i - 1]) / length_m, 0.0, 1.0) : 0.0;
-  return unit_or((1.0 - share) * tangents_[i - 1] + share * tangents_[i], tangents_[i]);
+  return unit_or((1.0 - fraction) * tangents_[i - 1] + fraction * tangents_[i], tangents_[i]);
 }
 
 double LaneFrame::heading_rad(double s_m) const {
@@ -156,8 +157,8 @@ std::optional<RoadPlace> road_place(const RoadMap& road_map, LaneId lane_id,
   const auto after = std::upper_bound(along.begin() + 1, along.end() - 1, beside.s_m);
   const auto i = static_cast<std::size_t>(after - along.begin());
   const double step_m = along[i] - along[i - 1];
-  const double share = step_m > 0.0 ? (beside.s_m - along[i - 1]) / step_m : 0.0;
-  return RoadPlace{*lane.road, std::lerp(piece.road_s_m[i - 1], piece.road_s_m[i], share),
+  const double fraction = step_m > 0.0 ? (beside.s_m - along[i - 1]) / step_m : 0.0;
+  return RoadPlace{*lane.road, std::lerp(piece.road_s_m[i - 1], piece.road_s_m[i], fraction),
                    beside.d_m};
 }
 

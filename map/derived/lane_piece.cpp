@@ -12,8 +12,8 @@ double height_at(const LaneLine& line, double station_m) {
   if (after == stations.begin()) return line.z_m.front();
   if (after == stations.end()) return line.z_m.back();
   const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return line.z_m[i - 1] + share * (line.z_m[i] - line.z_m[i - 1]);
+  const double fraction = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return line.z_m[i - 1] + fraction * (line.z_m[i] - line.z_m[i - 1]);
 }
 
 std::vector<double> cross_section_stations(const Lane& lane) {

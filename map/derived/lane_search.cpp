@@ -40,31 +40,32 @@ bool meets(const Ring& ring, const geometry::Box& box) {
 
 /// Shares of the way at which it crosses the ring, in order, with both its ends.
 std::vector<double> cuts(const Ring& ring, const Vector2d& from, const Vector2d& way) {
-  std::vector<double> shares{0.0, 1.0};
+  std::vector<double> fractions{0.0, 1.0};
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Vector2d edge = ring[(i + 1) % ring.size()] - ring[i], to_edge = ring[i] - from;
     const double turn = geometry::cross(way, edge);
     if (turn == 0.0) continue;
     const double on_way = geometry::cross(to_edge, edge) / turn,
                  on_edge = geometry::cross(to_edge, way) / turn;
-    if (on_way > 0.0 && on_way < 1.0 && on_edge >= 0.0 && on_edge <= 1.0) shares.push_back(on_way);
+    if (on_way > 0.0 && on_way < 1.0 && on_edge >= 0.0 && on_edge <= 1.0)
+      fractions.push_back(on_way);
   }
-  std::sort(shares.begin(), shares.end());
-  return shares;
+  std::sort(fractions.begin(), fractions.end());
+  return fractions;
 }
 
 void add_passages(const Lane& lane, const Vector2d& from, const Vector2d& way,
                   std::vector<LaneOnRay>& passages) {
   const double length_m = way.norm();
-  const std::vector<double> shares = cuts(lane.polygon, from, way);
+  const std::vector<double> fractions = cuts(lane.polygon, from, way);
   bool goes_on = false;
-  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
-    if (shares[i] == shares[i + 1]) continue;
-    const double middle = 0.5 * (shares[i] + shares[i + 1]);
+  for (std::size_t i = 0; i + 1 < fractions.size(); ++i) {
+    if (fractions[i] == fractions[i + 1]) continue;
+    const double middle = 0.5 * (fractions[i] + fractions[i + 1]);
     const bool inside = geometry::contains(lane.polygon, from + middle * way);
-    if (inside && goes_on) passages.back().to_m = shares[i + 1] * length_m;
+    if (inside && goes_on) passages.back().to_m = fractions[i + 1] * length_m;
     if (inside && !goes_on) {
-      passages.push_back({lane.id, shares[i] * length_m, shares[i + 1] * length_m});
+      passages.push_back({lane.id, fractions[i] * length_m, fractions[i + 1] * length_m});
     }
     goes_on = inside;
   }

@@ -86,7 +86,7 @@ std::string place_of(const RoadMap& map, const Eigen::Vector2d& in_map, double z
 }
 
 std::vector<Facet> facets(const RoadMap& map, const Lane& lane) {
-  return {{"type", std::string(name(lane.type))},
+  return {{"type", std::string(to_string(lane.type))},
           {"direction", lane.one_way ? "one way" : "both"},
           {"participants", std::to_string(lane.participants.bits())},
           {"marks", bytes_of_list(map, fields::mark, lane.left_marks) +
@@ -283,8 +283,8 @@ class Comparison {
     if (!change.facets.empty()) changes_.push_back(std::move(change));
   }
 
-  static double height_at(const LaneLine& line, double share) {
-    const double s_m = share * line.station_m.back();
+  static double height_at(const LaneLine& line, double fraction) {
+    const double s_m = fraction * line.station_m.back();
     const auto after = std::upper_bound(line.station_m.begin(), line.station_m.end(), s_m);
     if (after == line.station_m.end()) return line.z_m.back();
     if (after == line.station_m.begin()) return line.z_m.front();
@@ -293,12 +293,12 @@ class Comparison {
     return std::lerp(line.z_m[i - 1], line.z_m[i], (s_m - line.station_m[i - 1]) / step_m);
   }
 
-  // Heights at the same shares of the lanes' lengths, at the vertices of both.
+  // Heights at the same fractions of the lanes' lengths, at the vertices of both.
   bool heights_differ(const LaneLine& a, const LaneLine& b) const {
     const auto differ = [&](const LaneLine& line) {
       return std::any_of(line.station_m.begin(), line.station_m.end(), [&](double s_m) {
-        const double share = line.station_m.back() > 0.0 ? s_m / line.station_m.back() : 0.0;
-        return std::abs(height_at(a, share) - height_at(b, share)) > options_.tolerance_m;
+        const double fraction = line.station_m.back() > 0.0 ? s_m / line.station_m.back() : 0.0;
+        return std::abs(height_at(a, fraction) - height_at(b, fraction)) > options_.tolerance_m;
       });
     };
     return differ(a) || differ(b);
@@ -348,7 +348,7 @@ class Comparison {
 
 }  // namespace
 
-std::string_view name(MapChange::Kind kind) {
+std::string_view to_string(MapChange::Kind kind) {
   switch (kind) {
     case MapChange::Kind::added:
       return "added";

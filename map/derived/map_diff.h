@@ -28,7 +28,7 @@ struct MapChange {
 };
 
 /// "added", "removed", "changed"
-std::string_view name(MapChange::Kind kind);
+std::string_view to_string(MapChange::Kind kind);
 
 /// What changed from one version to another, by theme and then in the order of the map's lists.
 /// Things are the same if they have the same name (lanes) or source id and road; of several with

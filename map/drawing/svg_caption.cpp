@@ -77,7 +77,7 @@ std::vector<LegendItem> legend_of(const Drawing& drawing) {
   std::sort(ground.begin(), ground.end());
   for (const LaneType type : ground) {
     items.push_back({std::string(ground_colour(type)),
-                     type == LaneType::none ? "verge" : std::string(name(type))});
+                     type == LaneType::none ? "verge" : std::string(to_string(type))});
   }
   if (shown.stop_lines) items.push_back({kStop, "stop line"});
   if (shown.lights) items.push_back({kInk, "traffic light"});

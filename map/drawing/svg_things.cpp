@@ -128,7 +128,7 @@ void draw_names(Drawing& drawing) {
     const std::string data = drawing.canvas.ring(lane.polygon);
     if (data.empty()) continue;
     drawing.canvas.add(fmt::format("<path d=\"{}\"><title>{} · {} · {:.1f} m</title></path>", data,
-                                   xml_text(lane.name), name(lane.type), lane.length_m()));
+                                   xml_text(lane.name), to_string(lane.type), lane.length_m()));
   }
   drawing.canvas.add("</g>");
 }

@@ -7,7 +7,7 @@
 
 namespace roadbed::map::inline elements {
 
-std::string_view name(LaneType type) {
+std::string_view to_string(LaneType type) {
   static constexpr std::array<std::string_view, 23> names = {
       "none",    "driving",        "bidirectional", "entry",  "exit",       "onRamp",
       "offRamp", "connectingRamp", "shoulder",      "stop",   "parking",    "border",
@@ -68,8 +68,8 @@ Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
   if (after == stations.begin()) return points.front();
   if (after == stations.end()) return points.back();
   const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double share = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return points[i - 1] + share * (points[i] - points[i - 1]);
+  const double fraction = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return points[i - 1] + fraction * (points[i] - points[i - 1]);
 }
 
 geometry::Pose2 Lane::pose_at(double s_m) const {

@@ -42,7 +42,7 @@ enum class LaneType {
 };
 
 /// The source's own word: "driving", "onRamp", …
-std::string_view name(LaneType type);
+std::string_view to_string(LaneType type);
 
 /// Whether a car may plan to drive along the lane.
 bool is_drivable(LaneType type);

@@ -175,7 +175,8 @@ bool is_other_encoding(std::string_view bytes) {
 std::string in_utf8(std::string bytes) {
   if (!is_other_encoding(bytes)) return bytes;
   pugi::xml_document document;
-  constexpr unsigned all = pugi::parse_full | pugi::parse_ws_pcdata;
+  // Of a fragment the breaks before the root are kept, too.
+  constexpr unsigned all = pugi::parse_full | pugi::parse_ws_pcdata | pugi::parse_fragment;
   if (!document.load_buffer(bytes.data(), bytes.size(), all)) return bytes;
   std::ostringstream text;
   document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);

@@ -103,7 +103,7 @@ std::vector<Value> lane_values(const RoadMap& road_map, const Lane& lane) {
           road_id(road_map, lane.road),
           std::int64_t{lane.origin.section},
           junction_id(road_map, lane.junction),
-          std::string(name(lane.type)),
+          std::string(to_string(lane.type)),
           lane.length_m(),
           value_of(lane.least_speed_limit_mps())};
 }
@@ -148,7 +148,7 @@ Layer centrelines_layer(const RoadMap& road_map) {
   return layer;
 }
 
-std::string_view name(MarkType type) {
+std::string_view to_string(MarkType type) {
   static constexpr std::array<std::string_view, 12> names = {
       "none",          "solid",      "broken", "solid_solid", "solid_broken", "broken_solid",
       "broken_broken", "botts_dots", "curb",   "grass",       "edge",         "other"};
@@ -156,7 +156,7 @@ std::string_view name(MarkType type) {
 }
 
 Value first_mark(const std::vector<BorderMark>& marks) {
-  return marks.empty() ? Value() : Value(std::string(name(marks.front().type)));
+  return marks.empty() ? Value() : Value(std::string(to_string(marks.front().type)));
 }
 
 Layer borders_layer(const RoadMap& road_map) {
@@ -309,7 +309,7 @@ Layer findings_layer(const RoadMap& road_map) {
     layer.features.push_back(
         {finding.in_map ? point_shape(*finding.in_map, 0.0) : Shape{},
          {finding.rule, finding.asam_rule.empty() ? Value() : Value(finding.asam_rule),
-          std::string(name(finding.severity)), finding.element,
+          std::string(to_string(finding.severity)), finding.element,
           finding.line > 0 ? Value(std::int64_t{finding.line}) : Value(), finding.message}});
   }
   return layer;

@@ -23,7 +23,7 @@ std::string quoted(const std::string& field) {
 std::string lane_columns(const RoadMap& road_map, const Lane& lane) {
   const std::string road = lane.road ? road_map.road(*lane.road).source_id : "";
   return fmt::format("{},{},{},{}", quoted(road), lane.origin.section,
-                     quoted(lane.origin.source_id), name(lane.type));
+                     quoted(lane.origin.source_id), to_string(lane.type));
 }
 
 void add_line(const RoadMap& road_map, const std::string& columns, std::string_view which,
@@ -36,14 +36,14 @@ void add_line(const RoadMap& road_map, const std::string& columns, std::string_v
   }
 }
 
-/// Points beside a line, `share` of the width to its left.
-geometry::Polyline beside(const geometry::MedialBranch& branch, double share) {
+/// Points beside a line, `fraction` of the width to its left.
+geometry::Polyline beside(const geometry::MedialBranch& branch, double fraction) {
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < branch.width_m.size(); ++i) {
     const double s_m = branch.line.stations_m()[i];
     const Eigen::Vector2d along = branch.line.at(s_m + 0.05) - branch.line.at(s_m - 0.05);
     const Eigen::Vector2d left = Eigen::Vector2d(-along.y(), along.x()).normalized();
-    points.emplace_back(branch.line.points()[i] + share * branch.width_m[i] * left);
+    points.emplace_back(branch.line.points()[i] + fraction * branch.width_m[i] * left);
   }
   return geometry::Polyline(std::move(points));
 }

@@ -40,11 +40,11 @@ std::vector<std::uint32_t> along_hilbert_curve(std::span<const Eigen::Vector2d> 
   std::vector<std::uint32_t> keys;
   keys.reserve(points.size());
   for (const Eigen::Vector2d& point : points) {
-    const Eigen::Vector2d share = (point - low).cwiseQuotient((high - low).cwiseMax(1e-9));
+    const Eigen::Vector2d fraction = (point - low).cwiseQuotient((high - low).cwiseMax(1e-9));
     const auto scaled = [](double value) {  // what is not finite goes anywhere
       return static_cast<std::uint32_t>(std::min(std::max(0.0, value), 1.0) * 65535.0);
     };
-    keys.push_back(geometry::hilbert_index(scaled(share.x()), scaled(share.y())));
+    keys.push_back(geometry::hilbert_index(scaled(fraction.x()), scaled(fraction.y())));
   }
   return geometry::order_of_keys(keys);
 }

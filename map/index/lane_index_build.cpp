@@ -69,8 +69,8 @@ std::vector<std::uint32_t> cuts(std::size_t count, std::size_t pieces, const Poi
   for (std::size_t i = 1; i < count; ++i) along_m[i] = along_m[i - 1] + (at(i) - at(i - 1)).norm();
   std::vector<std::uint32_t> made;
   for (std::size_t piece = 0; piece <= pieces; ++piece) {
-    const double share = static_cast<double>(piece) / static_cast<double>(pieces);
-    const auto cut = std::lower_bound(along_m.begin(), along_m.end(), share * along_m.back());
+    const double fraction = static_cast<double>(piece) / static_cast<double>(pieces);
+    const auto cut = std::lower_bound(along_m.begin(), along_m.end(), fraction * along_m.back());
     const auto at_cut = static_cast<std::size_t>(cut - along_m.begin());
     made.push_back(
         static_cast<std::uint32_t>(piece == pieces ? count - 1 : std::min(at_cut, count - 1)));
@@ -83,8 +83,8 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Box>& boxes) {
   Box whole = kNothing;
   for (const Box& box : boxes) extend(whole, box);
   const auto scaled = [](float low, float high, float from, float to) {
-    const float share = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
-    return static_cast<std::uint32_t>(std::min(std::max(0.0F, share), 1.0F) * 65535.0F);
+    const float fraction = to > from ? (0.5F * (low + high) - from) / (to - from) : 0.0F;
+    return static_cast<std::uint32_t>(std::min(std::max(0.0F, fraction), 1.0F) * 65535.0F);
   };
   std::vector<std::uint32_t> keys;
   keys.reserve(boxes.size());

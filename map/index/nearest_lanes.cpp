@@ -19,22 +19,23 @@ constexpr double kOnBorder_m2 = 1e-18;
 struct Foot {
   double squared_m2 = kNoBound_m;
   std::uint64_t segment = 0;
-  double share = 0.0;
+  double fraction = 0.0;
 };
 
-double squared_distance(const Point& a, const Point& b, const Eigen::Vector2d& p, double& share) {
+double squared_distance(const Point& a, const Point& b, const Eigen::Vector2d& p,
+                        double& fraction) {
   const double x = b.x - a.x, y = b.y - a.y;
   const double squared = x * x + y * y;
   const double along = (p.x() - a.x) * x + (p.y() - a.y) * y;
-  share = squared > 0.0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
-  const double off_x = p.x() - a.x - share * x, off_y = p.y() - a.y - share * y;
+  fraction = squared > 0.0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
+  const double off_x = p.x() - a.x - fraction * x, off_y = p.y() - a.y - fraction * y;
   return off_x * off_x + off_y * off_y;
 }
 
 double squared_distance(const Point* points, std::uint64_t count, const Eigen::Vector2d& p) {
-  double least = kNoBound_m, share = 0.0;
+  double least = kNoBound_m, fraction = 0.0;
   for (std::uint64_t i = 1; i < count; ++i) {
-    least = std::min(least, squared_distance(points[i - 1], points[i], p, share));
+    least = std::min(least, squared_distance(points[i - 1], points[i], p, fraction));
   }
   return least;
 }
@@ -273,14 +274,14 @@ class Search {
     if (ring.right_count == 0 || ring.left_count == 0) return;
     double squared = std::min(squared_distance(ring.right, ring.right_count, point_),
                               squared_distance(ring.left, ring.left_count, point_));
-    double share = 0.0;
+    double fraction = 0.0;
     if ((cell.ends & 1U) != 0) {
-      squared = std::min(
-          squared, squared_distance(ring.left[ring.left_count - 1], ring.right[0], point_, share));
+      squared = std::min(squared, squared_distance(ring.left[ring.left_count - 1], ring.right[0],
+                                                   point_, fraction));
     }
     if ((cell.ends & 2U) != 0) {
-      squared = std::min(
-          squared, squared_distance(ring.right[ring.right_count - 1], ring.left[0], point_, share));
+      squared = std::min(squared, squared_distance(ring.right[ring.right_count - 1], ring.left[0],
+                                                   point_, fraction));
     }
     if (squared <= kOnBorder_m2) squared = 0.0;
     if (!(squared <= bound_m2_)) return;
@@ -323,7 +324,7 @@ class Search {
         data_.centre_points.span(lane.first_centre_point + cell.centre_from, count);
     for (std::uint64_t i = 0; i + 1 < count; ++i) {
       Foot foot{0.0, cell.centre_from + i, 0.0};
-      foot.squared_m2 = squared_distance(points[i], points[i + 1], point_, foot.share);
+      foot.squared_m2 = squared_distance(points[i], points[i + 1], point_, foot.fraction);
       if (std::tie(foot.squared_m2, foot.segment) < std::tie(best.squared_m2, best.segment)) {
         best = foot;
       }
@@ -340,7 +341,7 @@ class Search {
     const double x = points[1].x - points[0].x, y = points[1].y - points[0].y;
     const double side =
         x * (point_.y() - points[0].y) - y * (point_.x() - points[0].x) < 0.0 ? -1.0 : 1.0;
-    const double s_m = stations_m[0] + nearest.share * (stations_m[1] - stations_m[0]);
+    const double s_m = stations_m[0] + nearest.fraction * (stations_m[1] - stations_m[0]);
     return {{LaneId{found.lane}, s_m, side * std::sqrt(nearest.squared_m2)},
             std::sqrt(found.squared_m2),
             std::atan2(y, x)};

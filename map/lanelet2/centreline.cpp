@@ -232,7 +232,8 @@ class Ladder {
     return !rail.is_met(rung, at_candidate) && !opposite.is_met(rung, at_foot);
   }
 
-  // Fills in the vertices without a rung, by their share of the border between those that have one.
+  // Fills in the vertices without a rung, by their fraction of the border between those that have
+  // one.
   std::vector<double> stations(const Rail& rail) const {
     std::vector<double> station_m = rail.station_m;
     const std::vector<double> arc_m = arc_lengths(rail.line);
@@ -243,8 +244,8 @@ class Ladder {
       if (std::isnan(station_m[i])) continue;
       for (std::size_t k = known + 1; k < i; ++k) {
         const double span_m = arc_m[i] - arc_m[known];
-        const double share = span_m > 0.0 ? (arc_m[k] - arc_m[known]) / span_m : 0.0;
-        station_m[k] = station_m[known] + share * (station_m[i] - station_m[known]);
+        const double fraction = span_m > 0.0 ? (arc_m[k] - arc_m[known]) / span_m : 0.0;
+        station_m[k] = station_m[known] + fraction * (station_m[i] - station_m[known]);
       }
       known = i;
     }
@@ -265,13 +266,13 @@ bool is_left_of(const Line3& line, const Eigen::Vector3d& point) {
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const Eigen::Vector3d along = line[i + 1] - line[i];
     const double squared = along.squaredNorm();
-    const double share =
+    const double fraction =
         squared > 0.0 ? std::clamp((point - line[i]).dot(along) / squared, 0.0, 1.0) : 0.0;
-    const double distance = (point - line[i] - share * along).squaredNorm();
+    const double distance = (point - line[i] - fraction * along).squaredNorm();
     if (distance < nearest) {
       nearest = distance;
       segment = i;
-      at_its_end = share >= 1.0;
+      at_its_end = fraction >= 1.0;
     }
   }
   const auto plan = [&](std::size_t i) { return Eigen::Vector2d(line[i].head<2>()); };
@@ -304,13 +305,13 @@ class NearestAhead {
       const Eigen::Vector2d from = centre_[i].head<2>();
       const Eigen::Vector2d along = centre_[i + 1].head<2>() - from;
       const double squared = along.squaredNorm();
-      const double share =
+      const double fraction =
           squared > 0.0 ? std::clamp((point - from).dot(along) / squared, 0.0, 1.0) : 0.0;
-      const double distance = (point - from - share * along).squaredNorm();
+      const double distance = (point - from - fraction * along).squaredNorm();
       if (distance < nearest) {
         nearest = distance;
         segment_ = i;
-        station_m_ = std::max(last_m_, arc_m_[i] + share * (arc_m_[i + 1] - arc_m_[i]));
+        station_m_ = std::max(last_m_, arc_m_[i] + fraction * (arc_m_[i + 1] - arc_m_[i]));
       }
     }
     return last_m_ = station_m_;

@@ -97,7 +97,7 @@ class Sharer {
     }
   }
 
-  SharedBorders share() {
+  SharedBorders fraction() {
     unite_equal_lines();
     unite_neighbours();
     number_lines();
@@ -257,7 +257,7 @@ class Sharer {
 }  // namespace
 
 SharedBorders share_borders(const RoadMap& road_map, const SharingOptions& options) {
-  return Sharer(road_map, options).share();
+  return Sharer(road_map, options).fraction();
 }
 
 }  // namespace roadbed::map::lanelet2

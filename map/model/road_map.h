@@ -57,7 +57,7 @@ class RoadMap {
   const LazyList<MapObject>& objects() const { return content_.objects; }
   const LazyList<Area>& areas() const { return content_.areas; }
   const LazyList<UnusedContent>& unused() const { return content_.unused; }
-  const LazyList<ImportDiagnostic>& remarks() const { return content_.remarks; }
+  const LazyList<ImportDiagnostic>& import_diagnostics() const { return content_.remarks; }
   const LaneGraph& graph() const { return graph_; }
   const LazyMapContent& content() const { return content_; }
   const RoadMapIndex& index() const { return *index_; }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "roadbed/map/opendrive/lane_borders.h"
+#include "roadbed/map/opendrive/sample_borders.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -178,8 +178,8 @@ double BuiltLanes::station_m(LaneId lane, double road_s_m) const {
   if (after == rows.begin()) return at(0);
   if (after == rows.end()) return at(rows.size() - 1);
   const auto i = static_cast<std::size_t>(after - rows.begin());
-  const double share = (road_s_m - rows[i - 1]) / (rows[i] - rows[i - 1]);
-  return at(i - 1) + share * (at(i) - at(i - 1));
+  const double fraction = (road_s_m - rows[i - 1]) / (rows[i] - rows[i - 1]);
+  return at(i - 1) + fraction * (at(i) - at(i - 1));
 }
 
 BuiltLanes build_lanes(const Document& document, const std::vector<geometry::PlanView>& plan_views,

@@ -15,7 +15,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/map/opendrive/shape.h"
+#include "roadbed/map/opendrive/lateral_shape.h"
 
 /// What an OpenDRIVE file says, element by element. Names follow the standard (ASAM OpenDRIVE
 /// 1.4–1.8). Stations are those of the road everywhere: offsets from a lane section's start are

@@ -34,9 +34,12 @@ inline constexpr double kShortestPieceM = 1e-9;
 /// Longest road that is taken for one [m].
 inline constexpr double kLongestRoadM = 1e6;
 
+/// The records of <laneOffset>, as listed.
+void read_lane_offset(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road);
+
 /// All lane sections of a road, as listed; none if it has more lanes than memory is granted for,
 /// which is a fault.
-void read_sections(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Document& document);
+void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Document& document);
 
 /// Puts the records of a road and of its lanes in order of their stations, and makes its profiles.
 /// Sections in order of s; repeated lanes are left out.

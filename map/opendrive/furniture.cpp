@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/map/opendrive/lane_borders.h"
+#include "roadbed/map/opendrive/sample_borders.h"
 
 namespace roadbed::map::opendrive {
 namespace {

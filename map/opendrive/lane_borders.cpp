@@ -1,170 +1,249 @@
 #include "roadbed/map/opendrive/lane_borders.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace roadbed::map::opendrive {
 namespace {
 
-// Shorter stretches hold no curve worth a point.
-constexpr double kShortestStretchM = 1e-9;
-// Records of real files meet within fractions of a millimetre, sometimes stepping back: rows this
-// near to each other, as a share of the allowed error, are one. The chord takes the rest of it:
-// (1 − u)(0.11 + 4 · 0.94 u) < 1 for every place u along a chord with one end moved.
-constexpr double kSameRowShare = 0.11, kChordShare = 0.94;
-// A step that just fits must not fail by its rounding.
-constexpr double kAlmost = 1.0 - 1e-9;
-// A bound that is no use (a curve that stands still) must not ask for endless points.
-constexpr double kShortestStepM = 1e-3;
+using geometry::CubicRecord;
+using geometry::CubicValue;
 
-class SideSampler {
- public:
-  SideSampler(const RoadRecord& road, std::size_t road_index, const geometry::PlanView& plan_view,
-              const SectionSide& side, double max_error_m, PointBudget& budget)
-      : road_(road),
-        road_index_(road_index),
-        plan_view_(plan_view),
-        side_(side),
-        stretch_(road, plan_view, side),
-        max_error_m_(max_error_m),
-        budget_(budget) {
-    lines_.borders.resize(side.lanes.size() + 1);
-  }
+// Crossfalls beyond it are slips; their bound must not be infinite.
+constexpr double kSteepestRad = 1.4;
 
-  SideLines sample() {
-    const std::vector<double> breaks = breakpoints();
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-      stretch_.enter(breaks[i], breaks[i + 1]);
-      set_stations(breaks[i], breaks[i + 1]);
-      for (const double s_m : stations_m_) {
-        stretch_.evaluate(s_m, row_);
-        check(row_);
-        const bool is_end = i + 2 == breaks.size() && s_m == breaks.back();
-        if (lines_.s_m.empty() || !is_same_as_last()) {
-          add_row();
-        } else if (is_end && lines_.s_m.size() > 1) {  // ends stay where they are
-          remove_row();
-          add_row();
-        }
-      }
-    }
-    return std::move(lines_);
-  }
+// Values that are not given are 0.
+double value_at(const CubicRecord* record, double s_m) {
+  return record == nullptr ? 0.0 : geometry::cubic_at(*record, s_m).value;
+}
 
- private:
-  // Stations at which some record begins: between two of them everything is smooth.
-  std::vector<double> breakpoints() const {
-    std::vector<double> breaks{side_.from_s_m, side_.to_s_m};
-    const auto add = [&](const auto& records) {
-      auto record = std::lower_bound(records.begin(), records.end(), side_.from_s_m,
-                                     [](const auto& r, double s_m) { return r.s_m < s_m; });
-      for (; record != records.end() && record->s_m < side_.to_s_m; ++record) {
-        breaks.push_back(record->s_m);
-      }
+CubicValue bounds(const CubicRecord* record, double from_s_m, double to_s_m) {
+  return record == nullptr ? CubicValue{} : geometry::cubic_bounds(*record, from_s_m, to_s_m);
+}
+
+void add_bounds(const CubicValue& more, CubicValue& sum) {
+  sum.value += more.value;
+  sum.d1 += more.d1;
+  sum.d2 += more.d2;
+}
+
+// Of f·cos(roll) or f·sin(roll): bounds of its first two derivatives.
+CubicValue rolled(const CubicValue& f, const CubicValue& roll) {
+  return {f.value, f.d1 + f.value * roll.d1,
+          f.d2 + 2.0 * f.d1 * roll.d1 + f.value * (roll.d2 + roll.d1 * roll.d1)};
+}
+
+double bound_by_curvature(const geometry::PlanBounds& plan, const CubicValue& side, double low_m,
+                          double high_m) {
+  const auto [low, high] = *plan.curvature;
+  double across = 0.0;
+  for (const double t_m : {low_m, high_m}) {
+    const auto bend = [t_m](double curvature) {
+      return std::abs(curvature * (1.0 - curvature * t_m));
     };
-    add(plan_view_.pieces());
-    add(road_.elevation.cubic.records());
-    add(road_.superelevation.cubic.records());
-    add(road_.lane_offset.cubic.records());
-    add(road_.shape.profiles());
-    add((side_.sign > 0 ? road_.crossfall_left : road_.crossfall_right).records());
-    for (const LaneRecord* lane : side_.lanes) {
-      add(lane->width.cubic.records());
-      add(lane->border.cubic.records());
-      add(lane->heights);
-    }
-    std::sort(breaks.begin(), breaks.end());
-    std::vector<double> kept;
-    for (const double s_m : breaks) {
-      const bool inside = s_m >= side_.from_s_m && s_m <= side_.to_s_m;
-      if (inside && (kept.empty() || s_m - kept.back() > kShortestStretchM)) kept.push_back(s_m);
-    }
-    if (kept.size() > 1) kept.back() = side_.to_s_m;
-    return kept;
+    across = std::max({across, bend(low), bend(high)});
+    const double extreme = t_m == 0.0 ? low : 0.5 / t_m;  // of κ − κ² t
+    if (extreme > low && extreme < high) across = std::max(across, bend(extreme));
   }
+  const double along = plan.heading_d2_per_m2 * side.value + 2.0 * plan.heading_d1_per_m * side.d1;
+  return std::hypot(across + side.d2, along);
+}
 
-  // Stations along a stretch, as far apart as the error allows.
-  void set_stations(double from_s_m, double to_s_m) {
-    const double chord_error_m = kChordShare * max_error_m_;
-    stations_m_.assign(1, from_s_m);
-    double step_m = to_s_m - from_s_m;
-    while (stations_m_.back() < to_s_m) {
-      const double s_m = stations_m_.back();
-      step_m = std::min(to_s_m - s_m, 2.0 * step_m);
-      while (step_m > kShortestStepM) {
-        const double bound = stretch_.second_derivative_bound(s_m, s_m + step_m);
-        if (step_m * step_m * bound <= 8.0 * chord_error_m) break;
-        step_m = std::max(0.5 * step_m, kAlmost * std::sqrt(8.0 * chord_error_m / bound));
-        step_m = std::max(step_m, kShortestStepM);
-      }
-      const bool at_end = to_s_m - s_m - step_m < kShortestStretchM;
-      stations_m_.push_back(at_end ? to_s_m : s_m + step_m);
-      budget_.spend(side_.lanes.size() + 1, road_index_);
-    }
-  }
-
-  void check(const CrossSection& row) const {
-    constexpr double farthest_m = 1e8;
-    for (std::size_t i = 0; i < row.border_in_map.size(); ++i) {
-      // Written so that a value that is no number fails too.
-      if (!(row.border_in_map[i].cwiseAbs().maxCoeff() < farthest_m) ||
-          !(std::abs(row.z_m[i]) < farthest_m)) {
-        throw RoadFault(road_index_,
-                        fmt::format("at s = {} m a border lies more than 100,000 km off", row.s_m),
-                        "check its widths, offsets and elevations");
-      }
-    }
-  }
-
-  bool is_same_as_last() const {
-    const double near_m = kSameRowShare * max_error_m_;
-    for (std::size_t i = 0; i < row_.border_in_map.size(); ++i) {
-      const BorderLine& line = lines_.borders[i];
-      if ((line.points.back() - row_.border_in_map[i]).norm() > near_m) return false;
-      if (std::abs(line.z_m.back() - row_.z_m[i]) > near_m) return false;
-    }
-    return lines_.raised.empty() || lines_.raised.back() == stretch_.raised();
-  }
-
-  void add_row() {
-    if (!stretch_.raised().empty()) lines_.raised.push_back(stretch_.raised());
-    lines_.s_m.push_back(row_.s_m);
-    for (std::size_t i = 0; i < row_.border_in_map.size(); ++i) {
-      lines_.borders[i].points.push_back(row_.border_in_map[i]);
-      lines_.borders[i].z_m.push_back(row_.z_m[i]);
-    }
-  }
-
-  void remove_row() {
-    if (!lines_.raised.empty()) lines_.raised.pop_back();
-    lines_.s_m.pop_back();
-    for (BorderLine& line : lines_.borders) {
-      line.points.pop_back();
-      line.z_m.pop_back();
-    }
-  }
-
-  const RoadRecord& road_;
-  std::size_t road_index_;
-  const geometry::PlanView& plan_view_;
-  const SectionSide& side_;
-  SideStretch stretch_;
-  double max_error_m_;
-  PointBudget& budget_;
-  std::vector<double> stations_m_;  // of the stretch that is being sampled
-  CrossSection row_;
-  SideLines lines_;
-};
+// Where s runs unevenly along the road, a chord is off the border by what of the second derivative
+// is across the chord; what is along it moves places along the chord only, and counts a tenth so
+// that they stay near theirs. The chord points where the border points somewhere along the stretch,
+// so the angle between it and the road is at most the road's turn and the border's slant to it. On
+// a slope, a place moved along the chord is at another height.
+double bound_by_parts(const geometry::PlanBounds& plan, const CubicValue& side, double length_m,
+                      std::optional<double> slope, double height_d2) {
+  constexpr double kUnseenFraction = 0.1;
+  const double turn = plan.heading_d1_per_m;
+  const double across = plan.across_per_m + side.d2 + side.value * turn * turn;
+  const double along =
+      plan.second_derivative_per_m + 2.0 * side.d1 * turn + side.value * plan.heading_d2_per_m2;
+  const double forward = plan.slowest - side.value * turn;
+  const double whole = std::hypot(across, along, height_d2);
+  const double slant = length_m * turn + std::atan2(side.d1, forward);
+  if (!slope || forward <= 0.0 || slant > 1.0) return whole;
+  const double grade = *slope / (forward * std::cos(slant));
+  const double seen =
+      std::hypot(across + along * std::sin(slant), height_d2 + grade * (along + across));
+  return std::min(whole, std::max(seen, kUnseenFraction * along));
+}
 
 }  // namespace
 
-SideLines sample_side(const RoadRecord& road, std::size_t road_index,
-                      const geometry::PlanView& plan_view, const SectionSide& side,
-                      double max_error_m, PointBudget& budget) {
-  if (side.lanes.empty() || !(side.to_s_m - side.from_s_m > kShortestStretchM)) return {};
-  return SideSampler(road, road_index, plan_view, side, max_error_m, budget).sample();
+SideBorders::SideBorders(const RoadRecord& road, const geometry::PlanView& plan_view,
+                         const SectionSide& side)
+    : road_(road), plan_view_(plan_view), side_(side), outer_(side.lanes.size()) {}
+
+void SideBorders::enter(double from_s_m, double to_s_m) {
+  const double middle_s_m = 0.5 * (from_s_m + to_s_m);
+  piece_ = &plan_view_.piece_at(middle_s_m);
+  elevation_ = road_.elevation.cubic.record_at(middle_s_m);
+  roll_ = road_.superelevation.cubic.record_at(middle_s_m);
+  fall_ = (side_.sign > 0 ? road_.crossfall_left : road_.crossfall_right).record_at(middle_s_m);
+  offset_ = road_.lane_offset.cubic.record_at(middle_s_m);
+  for (std::size_t i = 0; i < outer_.size(); ++i) {
+    const LaneRecord& lane = *side_.lanes[i];
+    outer_[i] = {lane.outer().record_at(middle_s_m), lane.goes_by_width()};
+  }
+  enter_raised(middle_s_m);
+}
+
+void SideBorders::enter_raised(double s_m) {
+  raised_.clear();
+  for (std::size_t i = 0; i < side_.lanes.size(); ++i) {
+    const auto& heights = side_.lanes[i]->heights;
+    if (heights.empty()) continue;
+    const auto after =
+        std::upper_bound(heights.begin(), heights.end(), s_m,
+                         [](double s, const LaneHeight& height) { return s < height.s_m; });
+    raised_.resize(side_.lanes.size());
+    if (after != heights.begin()) raised_[i] = *(after - 1);
+  }
+}
+
+// With τ = t·cos(roll) − h·sin(roll), |(R + τ N)″| ≤ R″ + τ″ + 2 τ′θ′ + τ (θ″ + θ′²); where s is
+// the arc length, its parts across and along the road are τ″ + κ(1 − κτ) and κ′τ + 2κτ′. A kink k
+// counts as 2 k over the stretch: a chord over it is off by a quarter of the stretch times k.
+double SideBorders::second_derivative_bound(double from_s_m, double to_s_m) const {
+  const geometry::PlanBounds plan = geometry::plan_bounds(*piece_, from_s_m, to_s_m);
+  const CubicValue roll = bounds(roll_, from_s_m, to_s_m);
+  const CubicValue t = offset_bounds(from_s_m, to_s_m);
+  const LateralShape::Bounds shape = shape_bounds(from_s_m, to_s_m);
+  const CubicValue rolled_t = rolled(t, roll), rolled_h = rolled(shape.height, roll);
+  const double fraction = std::min(1.0, roll.value);
+  const CubicValue side{t.value + fraction * shape.height.value, rolled_t.d1 + rolled_h.d1,
+                        rolled_t.d2 + rolled_h.d2};
+  const double height = bounds(elevation_, from_s_m, to_s_m).d2 + rolled_t.d2 - t.d2 +
+                        fraction * t.d2 + rolled_h.d2 + fall_d2(t, from_s_m, to_s_m);
+  const double kink = 2.0 * shape.kinks / (to_s_m - from_s_m);
+  if (plan.curvature) {
+    const Range range = sideways_range(from_s_m, to_s_m, t, fraction, shape.height.value);
+    return std::hypot(bound_by_curvature(plan, side, range.low_m, range.high_m), height) + kink;
+  }
+  return bound_by_parts(plan, side, to_s_m - from_s_m, slope(t, from_s_m, to_s_m), height) + kink;
+}
+
+// Of the height along s; none where the cross-section leans, or falls off changingly.
+std::optional<double> SideBorders::slope(const CubicValue& t, double from_s_m,
+                                         double to_s_m) const {
+  const bool leans = roll_ != nullptr || !road_.shape.empty();
+  if (leans || bounds(fall_, from_s_m, to_s_m).d1 != 0.0) return {};
+  const double fall = std::abs(std::tan(value_at(fall_, from_s_m)));
+  return bounds(elevation_, from_s_m, to_s_m).d1 + t.d1 * fall;
+}
+
+// Least and greatest τ of any border along the stretch.
+SideBorders::Range SideBorders::sideways_range(double from_s_m, double to_s_m, const CubicValue& t,
+                                               double roll_fraction, double height_m) const {
+  const double middle_s_m = 0.5 * (from_s_m + to_s_m);
+  const double offset_m = value_at(offset_, middle_s_m);
+  double t_m = offset_m;
+  Range range{t_m, t_m};
+  for (const Outer& outer : outer_) {
+    t_m = outer_offset_m(outer, t_m, offset_m, middle_s_m);
+    range = {std::min(range.low_m, t_m), std::max(range.high_m, t_m)};
+  }
+  // Leaning brings a border nearer to the reference line, by at most 1 − cos ≤ the fraction.
+  const double reach_m = 0.5 * (to_s_m - from_s_m) * t.d1 + roll_fraction * (t.value + height_m);
+  return {range.low_m - reach_m, range.high_m + reach_m};
+}
+
+// Of |t|·tan(crossfall).
+double SideBorders::fall_d2(const CubicValue& t, double from_s_m, double to_s_m) const {
+  if (fall_ == nullptr) return 0.0;
+  const CubicValue fall = bounds(fall_, from_s_m, to_s_m);
+  const double slope = std::tan(std::min(fall.value, kSteepestRad));
+  const double gain = 1.0 + slope * slope;
+  return t.d2 * slope + 2.0 * t.d1 * gain * fall.d1 +
+         t.value * gain * (fall.d2 + 2.0 * slope * fall.d1 * fall.d1);
+}
+
+LateralShape::Bounds SideBorders::shape_bounds(double from_s_m, double to_s_m) const {
+  LateralShape::Bounds worst;
+  if (road_.shape.empty()) return worst;
+  const double middle_s_m = 0.5 * (from_s_m + to_s_m);
+  const double offset_m = value_at(offset_, middle_s_m);
+  double t_m = offset_m;
+  CubicValue t = bounds(offset_, from_s_m, to_s_m);
+  for (std::size_t i = 0; i <= outer_.size(); ++i) {
+    if (i > 0) {
+      t_m = outer_offset_m(outer_[i - 1], t_m, offset_m, middle_s_m);
+      add_bounds(bounds(outer_[i - 1].record, from_s_m, to_s_m), t);
+    }
+    const LateralShape::Bounds here = road_.shape.bounds(from_s_m, to_s_m, t_m, t);
+    worst.height.value = std::max(worst.height.value, here.height.value);
+    worst.height.d1 = std::max(worst.height.d1, here.height.d1);
+    worst.height.d2 = std::max(worst.height.d2, here.height.d2);
+    worst.kinks = std::max(worst.kinks, here.kinks);
+  }
+  return worst;
+}
+
+CubicValue SideBorders::offset_bounds(double from_s_m, double to_s_m) const {
+  CubicValue sum = bounds(offset_, from_s_m, to_s_m);
+  for (const Outer& outer : outer_) add_bounds(bounds(outer.record, from_s_m, to_s_m), sum);
+  return sum;
+}
+
+double SideBorders::outer_offset_m(const Outer& outer, double inner_m, double offset_m,
+                                   double s_m) const {
+  const double value_m = value_at(outer.record, s_m);
+  return outer.by_width ? inner_m + side_.sign * value_m : offset_m + value_m;
+}
+
+void SideBorders::evaluate(double s_m, CrossSection& row) const {
+  const geometry::Pose2 pose = geometry::plan_point(*piece_, s_m).pose;
+  const double elevation_m = value_at(elevation_, s_m), roll_rad = value_at(roll_, s_m);
+  const double fall = std::tan(value_at(fall_, s_m));
+  const double cos_roll = std::cos(roll_rad), sin_roll = std::sin(roll_rad);
+  const Eigen::Vector2d normal(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
+  // Sideways and upward from the reference line.
+  const auto on_surface = [&](double t) {
+    const double h_m = road_.shape.height_m(s_m, t);
+    return Eigen::Vector2d(t * cos_roll - h_m * sin_roll,
+                           t * sin_roll + h_m * cos_roll - std::abs(t) * fall);
+  };
+  const double offset_m = value_at(offset_, s_m);
+  double t_m = offset_m;
+  Eigen::Vector2d before = on_surface(t_m), place = before;
+  row.s_m = s_m;
+  row.border_in_map.assign(1, pose.position() + place.x() * normal);
+  row.z_m.assign(1, elevation_m + place.y());
+  for (std::size_t i = 0; i < outer_.size(); ++i) {
+    const double inner_m = t_m;
+    t_m = outer_offset_m(outer_[i], inner_m, offset_m, s_m);
+    const Eigen::Vector2d here = on_surface(t_m);
+    const bool level = side_.lanes[i]->level;
+    place += level ? Eigen::Vector2d(t_m - inner_m, 0.0) : here - before;
+    before = here;
+    row.border_in_map.emplace_back(pose.position() + place.x() * normal);
+    row.z_m.push_back(elevation_m + place.y());
+  }
+}
+
+std::size_t next_section(const RoadRecord& road, std::size_t section, int sign) {
+  return sign > 0 ? road.sections[section].next_left : road.sections[section].next_right;
+}
+
+SectionSide section_side(const RoadRecord& road, std::size_t section, int sign) {
+  const std::size_t next = next_section(road, section, sign);
+  SectionSide side{road.sections[section].s_m,
+                   next < road.sections.size() ? road.sections[next].s_m : road.length_m,
+                   sign,
+                   {}};
+  const auto& lanes = road.sections[section].lanes;
+  if (sign > 0) {
+    for (auto it = lanes.upper_bound(0); it != lanes.end(); ++it) side.lanes.push_back(&it->second);
+  } else {
+    for (auto it = std::make_reverse_iterator(lanes.lower_bound(0)); it != lanes.rend(); ++it) {
+      side.lanes.push_back(&it->second);
+    }
+  }
+  return side;
 }
 
 }  // namespace roadbed::map::opendrive

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "roadbed/map/opendrive/element_readers.h"
-#include "roadbed/map/opendrive/lane_borders.h"
+#include "roadbed/map/opendrive/sample_borders.h"
 
 namespace roadbed::map::opendrive {
 namespace {

@@ -81,12 +81,12 @@ class ObjectPlacer {
   void add_copies(std::size_t road, const ObjectRecord& record, const Repeat& repeat) {
     const double count = std::floor(std::max(0.0, repeat.length_m) / repeat.distance_m + 1e-9);
     for (double i = 0; i <= count; ++i) {
-      const double share = repeat.length_m > 0.0 ? i * repeat.distance_m / repeat.length_m : 0.0;
+      const double fraction = repeat.length_m > 0.0 ? i * repeat.distance_m / repeat.length_m : 0.0;
       ObjectRecord copy = record;
       copy.s_m = repeat.s_m + i * repeat.distance_m;
-      copy.t_m = std::lerp(repeat.t_start_m, repeat.t_end_m, share);
-      copy.z_offset_m = std::lerp(repeat.z_start_m, repeat.z_end_m, share);
-      copy.width_m = std::lerp(repeat.width_start_m, repeat.width_end_m, share);
+      copy.t_m = std::lerp(repeat.t_start_m, repeat.t_end_m, fraction);
+      copy.z_offset_m = std::lerp(repeat.z_start_m, repeat.z_end_m, fraction);
+      copy.width_m = std::lerp(repeat.width_start_m, repeat.width_end_m, fraction);
       copy.height_m = repeat.height_m;
       if (!add_copy(road, copy)) return;
     }
@@ -116,11 +116,11 @@ class ObjectPlacer {
     if (!(steps < 1e6)) return remark_left_out(road, record, "is too long");
     std::vector<Eigen::Vector3d> left, right;
     for (double i = 0; i <= steps; ++i) {
-      const double share = steps > 0.0 ? i / steps : 0.0;
-      const double s_m = repeat.s_m + share * repeat.length_m;
-      const double t_m = std::lerp(repeat.t_start_m, repeat.t_end_m, share);
-      const double z_m = std::lerp(repeat.z_start_m, repeat.z_end_m, share);
-      const double half_m = 0.5 * std::lerp(repeat.width_start_m, repeat.width_end_m, share);
+      const double fraction = steps > 0.0 ? i / steps : 0.0;
+      const double s_m = repeat.s_m + fraction * repeat.length_m;
+      const double t_m = std::lerp(repeat.t_start_m, repeat.t_end_m, fraction);
+      const double z_m = std::lerp(repeat.z_start_m, repeat.z_end_m, fraction);
+      const double half_m = 0.5 * std::lerp(repeat.width_start_m, repeat.width_end_m, fraction);
       left.push_back(frames_[road].at(s_m, t_m + half_m, z_m));
       right.push_back(frames_[road].at(s_m, t_m - half_m, z_m));
     }

@@ -56,7 +56,7 @@ void read_profiles(AttributeReader& in, pugi::xml_node node, RoadRecord& road) {
   const auto lateral = node.child("lateralProfile");
   road.elevation.listed = read_cubics(in, node.child("elevationProfile"), "elevation", "s", 0.0);
   road.superelevation.listed = read_cubics(in, lateral, "superelevation", "s", 0.0);
-  road.lane_offset.listed = read_cubics(in, node.child("lanes"), "laneOffset", "s", 0.0);
+  read_lane_offset(in, node.child("lanes"), road);
   read_crossfall(in, lateral, road);
   road.shape = read_shape(in, lateral);
 }
@@ -90,7 +90,7 @@ void read_road(AttributeReader& in, RoadRecord& road, Document& document) {
   read_speeds(in, node, road, document.remarks);
   read_plan_view(in, road, document);
   read_profiles(in, node, road);
-  read_sections(in, node.child("lanes"), road, document);
+  read_lanes(in, node.child("lanes"), road, document);
   read_signals(in, node.child("signals"), road, document.remarks);
   read_objects(in, node.child("objects"), road, document.remarks);
 }

@@ -145,8 +145,8 @@ class StopLineFinder {
     for (const LaneId id : candidates) {
       const Lane& lane = built_.lanes[id.index];
       const Eigen::Vector2d middle = Lane::point_at(lane.centre, built_.station_m(id, s_m)) - from;
-      const double share = middle.dot(along) / along.squaredNorm();
-      if (share >= 0.0 && share <= 1.0) lanes.push_back(id);
+      const double fraction = middle.dot(along) / along.squaredNorm();
+      if (fraction >= 0.0 && fraction <= 1.0) lanes.push_back(id);
     }
     return lanes;
   }

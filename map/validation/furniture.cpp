@@ -11,8 +11,8 @@ namespace {
 
 /// Whether a lane is within a distance; near ones are looked for first, as most things have one.
 bool near_a_lane(const RoadMap& road_map, const Eigen::Vector2d& in_map, double distance_m) {
-  for (const double share : {0.1, 0.3, 1.0}) {
-    if (!road_map.locate(in_map, share * distance_m, false).empty()) return true;
+  for (const double fraction : {0.1, 0.3, 1.0}) {
+    if (!road_map.locate(in_map, fraction * distance_m, false).empty()) return true;
   }
   return false;
 }

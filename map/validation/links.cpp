@@ -100,7 +100,7 @@ void lanes_off_the_road(const RoadMap& road_map, const ValidateOptions&, Report&
     const Lane& next = road_map.lane(successors.front());
     report.add("lane " + lane.name, lane.centre.in_map.points().back(),
                fmt::format("leads to lane {} of type {} only; check the types and the link",
-                           next.name, name(next.type)));
+                           next.name, to_string(next.type)));
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace roadbed::map::validation {
 
-std::string_view name(Severity severity) {
+std::string_view to_string(Severity severity) {
   switch (severity) {
     case Severity::info:
       return "info";

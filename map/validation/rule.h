@@ -12,7 +12,7 @@
 namespace roadbed::map::validation {
 
 enum class Severity { info, warning, error };
-std::string_view name(Severity severity);
+std::string_view to_string(Severity severity);
 
 /// One fault of a map: what, where, and what to do.
 struct Finding {

@@ -30,7 +30,8 @@ Finding finding_of(const ImportDiagnostic& remark) {
 
 std::vector<Finding> validate(const RoadMap& road_map, const ValidateOptions& options) {
   std::vector<Finding> findings = findings_of(map_rules(), road_map, options);
-  for (const ImportDiagnostic& remark : road_map.remarks()) findings.push_back(finding_of(remark));
+  for (const ImportDiagnostic& remark : road_map.import_diagnostics())
+    findings.push_back(finding_of(remark));
   std::ranges::stable_sort(findings, {}, &Finding::rule);
   return findings;
 }

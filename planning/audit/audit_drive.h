@@ -9,8 +9,8 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/audit/ground_under.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 

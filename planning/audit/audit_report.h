@@ -9,16 +9,14 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/polygons/convex_overlap.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/planning/audit/verdict.h"
 
 namespace roadbed::planning::inline audit {
 
 /// What space that was never measured counts as. `report`: it is no obstacle, but a drive near it
 /// is not clear.
 enum class UnknownPolicy { free, occupied, report };
-std::string_view name(UnknownPolicy policy);
-
-enum class Verdict { clear, conflict, unknown, undecided };
-std::string_view name(Verdict verdict);
+std::string_view to_string(UnknownPolicy policy);
 
 struct AuditOptions {
   double clearance_m = 0.0;  ///< less than this is a conflict, an overlap always; < horizon / 2
@@ -100,9 +98,6 @@ struct AuditReport {
 
   bool is_measured_enough() const { return 1.0 - unknown_fraction >= least_measured; }
 };
-
-/// The verdict that conflicts, unknown and undecided stretches lead to.
-Verdict judge(const AuditReport& report);
 
 /// The report of a drive, judged: all of it is unknown where too little was measured.
 AuditReport judged(AuditReport report, const geometry::Trajectory& drive);

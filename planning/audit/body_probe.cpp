@@ -26,7 +26,7 @@ geometry::CoveringCircles circles_over(const geometry::BodyPart& part) {
 
 BodyProbe::BodyProbe(const map::ClearanceField& field, const geometry::Trajectory& drive,
                      const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds)
-    : Probe(drive, part.reach_m()),
+    : ClearanceProbe(drive, part.reach_m()),
       field_(field),
       part_(part),
       kinds_(std::move(kinds)),
@@ -56,7 +56,7 @@ double BodyProbe::lower_bound_m(const Span& span, double enough_m) const {
   return std::max({0.0, around_m, least_m - circles_.radius_m});
 }
 
-std::optional<Probe::Near> BodyProbe::nearest(const Span& span, double within_m) const {
+std::optional<ClearanceProbe::Near> BodyProbe::nearest(const Span& span, double within_m) const {
   const geometry::Rectangle core = part_.core_at(middle_pose_of(span));
   std::optional<Near> least;
   for (const map::ObstacleKind kind : kinds_) {

@@ -8,12 +8,12 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 
 namespace roadbed::planning::inline audit {
 
 /// Distances from a part of a vehicle that drives along a trajectory to obstacles of given kinds.
-class BodyProbe : public Probe {
+class BodyProbe : public ClearanceProbe {
  public:
   BodyProbe(const map::ClearanceField& field, const geometry::Trajectory& drive,
             const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds);

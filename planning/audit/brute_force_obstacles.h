@@ -13,7 +13,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/planning/audit/body_outline.h"
-#include "roadbed/planning/audit/box_buckets.h"
+#include "roadbed/planning/audit/box_grid.h"
 
 namespace roadbed::planning::inline audit {
 
@@ -78,7 +78,7 @@ class BruteForceObstacles {
   BodyOutline body_;
   Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();  // of some cell
   double whole_ = 0.0;  // height of the band: in layers over level ground, else in metres
-  BoxBuckets occupied_, unknown_;
+  BoxGrid occupied_, unknown_;
   /// Of the ground's places: those that may be the nearest of a point in a tile.
   std::unordered_map<std::int64_t, std::vector<std::size_t>> places_near_;
   std::size_t marked_tiles_ = 0;

@@ -25,7 +25,7 @@ struct Cover {
 
 class Prover {
  public:
-  Prover(const Probe& probe, double goal_m, const std::vector<Stretch>& left_out)
+  Prover(const ClearanceProbe& probe, double goal_m, const std::vector<Stretch>& left_out)
       : probe_(probe), goal_m_(goal_m), left_out_(left_out) {}
 
   Cover run() {
@@ -95,7 +95,7 @@ class Prover {
     return true;
   }
 
-  const Probe& probe_;
+  const ClearanceProbe& probe_;
   double goal_m_;
   const std::vector<Stretch>& left_out_;  // in order of time
   std::size_t next_ = 0;
@@ -125,7 +125,7 @@ double least_of(const std::vector<Span>& spans) {
   return least_m;
 }
 
-std::vector<ProvenTime> in_time(const Probe& probe, const std::vector<ProvenSpan>& spans) {
+std::vector<ProvenTime> in_time(const ClearanceProbe& probe, const std::vector<ProvenSpan>& spans) {
   std::vector<ProvenTime> times;
   for (const ProvenSpan& span : spans) {
     times.push_back({probe.time_at(span.segment, span.from), probe.time_at(span.segment, span.to),
@@ -137,12 +137,6 @@ std::vector<ProvenTime> in_time(const Probe& probe, const std::vector<ProvenSpan
 void add_to(std::vector<Stretch>& stretches, const std::vector<Stretch>& more) {
   stretches.insert(stretches.end(), more.begin(), more.end());
   stretches = in_order(std::move(stretches));
-}
-
-Verdict verdict_of(const AuditCertificate& certificate) {
-  if (!certificate.conflicts.empty()) return Verdict::conflict;
-  if (!certificate.unknown.empty()) return Verdict::unknown;
-  return certificate.undecided.empty() ? Verdict::clear : Verdict::undecided;
 }
 
 }  // namespace

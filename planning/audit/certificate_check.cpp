@@ -146,7 +146,7 @@ class Check {
     if (!certificate_.conflicts.empty()) verdict = Verdict::conflict;
     if (verdict != certificate_.verdict) {
       fault(fmt::format("the verdict is \"{}\", its stretches say \"{}\"",
-                        name(certificate_.verdict), name(verdict)));
+                        to_string(certificate_.verdict), to_string(verdict)));
     }
   }
 

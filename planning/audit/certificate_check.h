@@ -6,8 +6,8 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/map/occupancy/ground/drive_ground.h"
+#include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/planning/audit/certificate.h"

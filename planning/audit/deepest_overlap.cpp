@@ -30,7 +30,8 @@ const ObstacleInSource* find_mover(std::span<const ObstacleInSource> moving,
   return found == moving.end() ? nullptr : &*found;
 }
 
-DeepestOverlapSearch::DeepestOverlapSearch(const map::ClearanceField& field, const Probe& probe,
+DeepestOverlapSearch::DeepestOverlapSearch(const map::ClearanceField& field,
+                                           const ClearanceProbe& probe,
                                            const geometry::BodyPart& part,
                                            std::vector<map::ObstacleKind> kinds,
                                            std::span<const ObstacleInSource> moving,

@@ -11,7 +11,7 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit_report.h"
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
@@ -21,7 +21,7 @@ class DeepestOverlapSearch {
  public:
   /// @param part       inflated; what is given has to outlive this.
   /// @param conflicts  how many there are: of very many, fewer moments each are looked at.
-  DeepestOverlapSearch(const map::ClearanceField& field, const Probe& probe,
+  DeepestOverlapSearch(const map::ClearanceField& field, const ClearanceProbe& probe,
                        const geometry::BodyPart& part, std::vector<map::ObstacleKind> kinds,
                        std::span<const ObstacleInSource> moving, std::size_t conflicts);
 
@@ -35,7 +35,7 @@ class DeepestOverlapSearch {
                          const geometry::TrajectoryPoint& state) const;
 
   const map::ClearanceField& field_;
-  const Probe& probe_;
+  const ClearanceProbe& probe_;
   const geometry::BodyPart& part_;
   std::vector<map::ObstacleKind> kinds_;
   std::span<const ObstacleInSource> moving_;

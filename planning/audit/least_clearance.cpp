@@ -5,7 +5,7 @@
 
 namespace roadbed::planning::inline audit {
 
-LeastClearanceSearch::LeastClearanceSearch(const Probe& probe, double tolerance_m)
+LeastClearanceSearch::LeastClearanceSearch(const ClearanceProbe& probe, double tolerance_m)
     : probe_(probe), tolerance_m_(tolerance_m), first_bound_m_(probe.horizon_m()) {
   best_.found_m = best_.proven_m = probe.horizon_m();
   best_.at = probe.state_at(0, 0.0);

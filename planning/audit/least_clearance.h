@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 
 namespace roadbed::planning::inline audit {
 
@@ -27,7 +27,7 @@ struct LeastClearance {
 /// doi:10.1016/0041-5553(72)90115-2], and no less than from all that the body sweeps over.
 class LeastClearanceSearch {
  public:
-  LeastClearanceSearch(const Probe& probe, double tolerance_m);
+  LeastClearanceSearch(const ClearanceProbe& probe, double tolerance_m);
 
   /// Seeds the search with a segment: it begins where the least room is found so, as a low distance
   /// to begin with puts most others aside at once.
@@ -55,7 +55,7 @@ class LeastClearanceSearch {
   void open(const Span& span, double known_lower_m);
   void examine(const Open& lowest);
 
-  const Probe& probe_;
+  const ClearanceProbe& probe_;
   double tolerance_m_;
   LeastClearance best_;
   std::optional<Span> first_;  // where to begin

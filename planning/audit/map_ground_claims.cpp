@@ -22,13 +22,13 @@ constexpr double kHalfStep_m = 0.5;                        // over which a lane'
 
 double cross_of(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-double share_along(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
+double fraction_along(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
   const double squared = (to - from).squaredNorm();
   return squared > 0.0 ? std::clamp((point - from).dot(to - from) / squared, 0.0, 1.0) : 0.0;
 }
 
 double away_from_edge_m(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
-  return (point - from - share_along(point, from, to) * (to - from)).norm();
+  return (point - from - fraction_along(point, from, to) * (to - from)).norm();
 }
 
 /// Distance from a polygon, 0 inside.
@@ -74,7 +74,7 @@ Surface surface_of(const map::Lane& lane, const Vector2d& in_map) {
   const Vector2d &a = centre[nearest], &b = centre[nearest + 1];
   const auto& stations_m = lane.centre.station_m;
   const double s_m = stations_m[nearest] +
-                     share_along(in_map, a, b) * (stations_m[nearest + 1] - stations_m[nearest]);
+                     fraction_along(in_map, a, b) * (stations_m[nearest + 1] - stations_m[nearest]);
   const Vector2d ahead = (b - a).normalized(), left(-ahead.y(), ahead.x());
   const double d_m = cross_of(b - a, in_map - a) < 0.0 ? -least_m : least_m;
   const auto height_m = [&](const map::LaneLine& line, double at_m) {

@@ -54,7 +54,7 @@ geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
 
 MovingProbe::MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,
                          std::span<const ObstacleInSource> obstacles, double horizon_m)
-    : Probe(drive, part.reach_m()),
+    : ClearanceProbe(drive, part.reach_m()),
       part_(part),
       horizon_m_(horizon_m),
       body_radius_m_(part.circumradius_m()) {
@@ -100,8 +100,8 @@ std::vector<std::size_t> MovingProbe::near_segment(std::size_t segment) const {
     const Mover& mover = movers_[i];
     if (!is_there(mover, segment)) continue;
     const auto place = mover.from->motion.at(middle.t_s).pose().position();
-    const double moved_m =
-        Probe::motion_bound_m(whole) + way_until_m(mover, end_s) - way_until_m(mover, start_s);
+    const double moved_m = ClearanceProbe::motion_bound_m(whole) + way_until_m(mover, end_s) -
+                           way_until_m(mover, start_s);
     const double away_m = (place - centre).norm() - body_radius_m_ - mover.radius_m - moved_m;
     if (away_m < horizon_m_) near.push_back(i);
   }
@@ -118,7 +118,7 @@ double MovingProbe::motion_bound_m(const Span& span) const {
     most_m = std::max(
         {most_m, half_m - way_until_m(movers_[i], from_s), way_until_m(movers_[i], to_s) - half_m});
   }
-  return Probe::motion_bound_m(span) + most_m;
+  return ClearanceProbe::motion_bound_m(span) + most_m;
 }
 
 double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
@@ -133,7 +133,7 @@ double MovingProbe::lower_bound_m(const Span& span, double /*enough_m*/) const {
 }
 
 // Of obstacles equally near the first counts, so that reports do not depend on the search's order.
-std::optional<Probe::Near> MovingProbe::nearest(const Span& span, double within_m) const {
+std::optional<ClearanceProbe::Near> MovingProbe::nearest(const Span& span, double within_m) const {
   const geometry::TrajectoryPoint state = middle_of(span);
   const geometry::Rectangle body = part_.core_at(state.pose());
   double least_m = std::min(within_m, horizon_m_);

@@ -9,7 +9,7 @@
 
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
@@ -22,7 +22,7 @@ geometry::Trajectory with_samples_at_changes(const geometry::Trajectory& drive,
 
 /// Distances from a part of a vehicle that drives along a trajectory to rectangles that move:
 /// linear between their samples, at rest before the first and after the last.
-class MovingProbe : public Probe {
+class MovingProbe : public ClearanceProbe {
  public:
   /// @param drive  of `with_samples_at_changes`.
   MovingProbe(const geometry::Trajectory& drive, const geometry::BodyPart& part,

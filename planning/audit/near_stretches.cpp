@@ -23,7 +23,8 @@ void add(std::vector<Conflict>& conflicts, const Conflict& next) {
 
 }  // namespace
 
-NearStretchSearch::NearStretchSearch(const Probe& probe, double clearance_m, double tolerance_m)
+NearStretchSearch::NearStretchSearch(const ClearanceProbe& probe, double clearance_m,
+                                     double tolerance_m)
     : probe_(probe), clearance_m_(clearance_m), tolerance_m_(tolerance_m) {
   double whole_m = 0.0;
   for (std::size_t i = 0; i < probe.segments(); ++i) whole_m += probe.motion_bound_m({i, 0.0, 1.0});

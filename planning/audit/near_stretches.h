@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "roadbed/planning/audit/audit_report.h"
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 
 namespace roadbed::planning::inline audit {
 
@@ -28,7 +28,7 @@ struct NearStretches {
 class NearStretchSearch {
  public:
   /// @pre clearance_m is less than the field's horizon.
-  NearStretchSearch(const Probe& probe, double clearance_m, double tolerance_m);
+  NearStretchSearch(const ClearanceProbe& probe, double clearance_m, double tolerance_m);
 
   /// From where it stopped on up to a segment, without that one; it may go farther.
   void search(std::size_t to);
@@ -51,7 +51,7 @@ class NearStretchSearch {
   bool settle(const Span& span);
   bool append(const Span& span, Label label, const std::optional<Conflict>& worst = std::nullopt);
 
-  const Probe& probe_;
+  const ClearanceProbe& probe_;
   double clearance_m_, tolerance_m_;
   std::size_t next_ = 0;  // segment
   double spare_m_ = 0.0;  // of the segment that is being labelled, where it is clear as a whole

@@ -59,7 +59,7 @@ HeightRange heights_of(const map::HeightBand& band, const geometry::Trajectory& 
 
 }  // namespace
 
-ObservedSearch::ObservedSearch(const map::ClearanceField& field, const Probe& probe,
+ObservedSearch::ObservedSearch(const map::ClearanceField& field, const ClearanceProbe& probe,
                                const geometry::BodyPart& part)
     : field_(field),
       probe_(probe),

@@ -10,7 +10,7 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit_report.h"
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 
 namespace roadbed::planning::inline audit {
 
@@ -22,7 +22,7 @@ class ObservedSearch {
  public:
   /// @param probe  of the part on its drive. What is given has to outlive it.
   /// @param part   of the vehicle, without a margin.
-  ObservedSearch(const map::ClearanceField& field, const Probe& probe,
+  ObservedSearch(const map::ClearanceField& field, const ClearanceProbe& probe,
                  const geometry::BodyPart& part);
 
   /// From where it stopped on up to a segment, without that one; it may go farther.
@@ -40,7 +40,7 @@ class ObservedSearch {
   double time_moved_s(double moved_m) const;
 
   const map::ClearanceField& field_;
-  const Probe& probe_;
+  const ClearanceProbe& probe_;
   const geometry::BodyPart& part_;
   double step_m_;
   double at_m_ = 0.0;                // of motion

@@ -4,14 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/planning/audit/audit_report.h"
+#include "roadbed/planning/audit/body_probe.h"
+#include "roadbed/planning/audit/deepest_overlap.h"
+#include "roadbed/planning/audit/least_clearance.h"
 #include "roadbed/planning/audit/moving_probe.h"
+#include "roadbed/planning/audit/near_stretches.h"
+#include "roadbed/planning/audit/observed_space.h"
 
 namespace roadbed::planning::inline audit {
 namespace {
@@ -43,7 +49,7 @@ geometry::BodyPart checked(const map::ClearanceField& field, const geometry::Tra
   if (!(options.tolerance_m >= 1e-4)) refuse("tolerance_m", options.tolerance_m);
   if (!(options.least_measured >= 0.0 && options.least_measured <= 1.0)) {
     throw std::invalid_argument(
-        fmt::format("audit: least_measured is no share, got {}", options.least_measured));
+        fmt::format("audit: least_measured is no fraction, got {}", options.least_measured));
   }
   return body;
 }
@@ -54,7 +60,7 @@ std::vector<ObstacleKind> obstacles(UnknownPolicy policy) {
 }
 
 // A sample is the start of its segment; the last one the end of the last.
-Span at_sample(const Probe& probe, std::size_t sample) {
+Span at_sample(const ClearanceProbe& probe, std::size_t sample) {
   if (sample < probe.segments()) return {sample, 0.0, 0.0};
   return {probe.segments() - 1, 1.0, 1.0};
 }
@@ -72,7 +78,7 @@ std::size_t stretch_end(const std::vector<double>& moved_m, std::size_t from) {
   return static_cast<std::size_t>(end - moved_m.begin());
 }
 
-double clearance_at(const Probe& probe, std::size_t sample) {
+double clearance_at(const ClearanceProbe& probe, std::size_t sample) {
   constexpr double exact_below_m = 5.0;
   const Span at = at_sample(probe, sample);
   const double bound_m = probe.lower_bound_m(at, exact_below_m);
@@ -82,7 +88,7 @@ double clearance_at(const Probe& probe, std::size_t sample) {
 }
 
 // Poses half a metre of motion apart, or farther on a long drive.
-double poses_apart_m(const Probe& probe) {
+double poses_apart_m(const ClearanceProbe& probe) {
   constexpr double least_apart_m = 0.5, most_poses = 20'000;
   return std::max(least_apart_m, probe.moved_m().back() / most_poses);
 }
@@ -111,7 +117,49 @@ std::string part_of(const geometry::TrajectoryPoint& at, const map::Box2& witnes
   return std::string(side_towards(thing_at(at.t_s, witness, id, moving), body.core_at(at.pose())));
 }
 
-}  // namespace
+/// The audit of one part of a vehicle, stretch by stretch along the drive.
+class PartAudit {
+ public:
+  /// What is given has to outlive it.
+  PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
+            const geometry::BodyPart& part, const AuditOptions& options,
+            std::span<const ObstacleInSource> moving_in_source);
+  PartAudit(const PartAudit&) = delete;
+  PartAudit& operator=(const PartAudit&) = delete;
+
+  void seed(std::size_t segment) { least_.seed(segment); }
+  void advance(std::size_t from, std::size_t to);
+
+  /// @pre it has advanced to the end of the drive
+  AuditReport report() &&;
+
+  const BodyProbe& probe() const { return probe_; }
+
+ private:
+  void take_samples(std::size_t to);
+  void take_unknown_fractions(std::size_t to);
+  void take_least(const LeastClearance& least);
+  bool is_near(const LeastClearance& least) const;
+  void collect_conflicts(const ClearanceProbe& probe);
+  void audit_moving();
+  void collect_unobserved();
+  void describe_conflicts();
+
+  const map::ClearanceField& field_;
+  const AuditOptions& options_;
+  std::span<const ObstacleInSource> moving_;
+  geometry::BodyPart part_;  // of the vehicle
+  geometry::BodyPart body_;  // inflated
+  const geometry::Trajectory& drive_;
+  BodyProbe probe_;
+  LeastClearanceSearch least_;
+  std::optional<BodyProbe> unknown_probe_;  // where unknown space is reported
+  std::optional<NearStretchSearch> unknown_;
+  ObservedSearch observed_;
+  std::size_t poses_ = 0;
+  double unknown_sum_ = 0.0;  // of the poses' fractions
+  AuditReport report_;
+};
 
 PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajectory& drive_in_source,
                      const geometry::BodyPart& part, const AuditOptions& options,
@@ -128,20 +176,6 @@ PartAudit::PartAudit(const map::ClearanceField& field, const geometry::Trajector
   if (options.unknown != UnknownPolicy::report) return;
   unknown_probe_.emplace(field, drive_, body_, std::vector{ObstacleKind::unknown});
   unknown_.emplace(*unknown_probe_, options.clearance_m, options.tolerance_m);
-}
-
-void PartAudit::sweep(std::span<const std::unique_ptr<PartAudit>> parts) {
-  if (parts.empty()) return;
-  const std::size_t segments = parts.front()->probe_.segments();
-  for (std::size_t segment = 0; segment < segments; segment += seeds_apart(segments)) {
-    for (const auto& part : parts) part->least_.seed(segment);
-  }
-  const std::vector<double>& moved_m = parts.front()->probe_.moved_m();
-  for (std::size_t from = 0; from < segments;) {
-    const std::size_t to = stretch_end(moved_m, from);
-    for (const auto& part : parts) part->advance(from, to);
-    from = to;
-  }
 }
 
 void PartAudit::advance(std::size_t from, std::size_t to) {
@@ -185,7 +219,7 @@ bool PartAudit::is_near(const LeastClearance& least) const {
   return least.proven_m < options_.clearance_m + kLeastTold_m;
 }
 
-void PartAudit::collect_conflicts(const Probe& probe) {
+void PartAudit::collect_conflicts(const ClearanceProbe& probe) {
   NearStretchSearch search(probe, options_.clearance_m, options_.tolerance_m);
   search.search(probe.segments());
   const NearStretches found = search.found();
@@ -235,7 +269,7 @@ void PartAudit::describe_conflicts() {
   }
 }
 
-AuditReport PartAudit::report() {
+AuditReport PartAudit::report() && {
   const LeastClearance least = least_.found();
   take_least(least);
   report_.proven_clearance_m = least.proven_m;
@@ -251,8 +285,35 @@ AuditReport PartAudit::report() {
   collect_unobserved();
   report_.unknown_fraction = unknown_sum_ / static_cast<double>(poses_);
   report_.least_measured = options_.least_measured;
-  report_.verdict = judge(report_);
+  report_.verdict = verdict_of(report_);
   return std::move(report_);
+}
+
+}  // namespace
+
+std::vector<AuditReport> audit_parts(std::span<const PartInField> parts,
+                                     const geometry::Trajectory& drive_in_source,
+                                     const AuditOptions& options,
+                                     std::span<const ObstacleInSource> moving_in_source) {
+  if (parts.empty()) return {};
+  std::vector<std::unique_ptr<PartAudit>> audits;
+  for (const auto& [field, part] : parts) {
+    audits.push_back(
+        std::make_unique<PartAudit>(field, drive_in_source, part, options, moving_in_source));
+  }
+  const std::vector<double>& moved_m = audits.front()->probe().moved_m();
+  const std::size_t segments = audits.front()->probe().segments();
+  for (std::size_t segment = 0; segment < segments; segment += seeds_apart(segments)) {
+    for (const auto& audit : audits) audit->seed(segment);
+  }
+  for (std::size_t from = 0; from < segments;) {
+    const std::size_t to = stretch_end(moved_m, from);
+    for (const auto& audit : audits) audit->advance(from, to);
+    from = to;
+  }
+  std::vector<AuditReport> reports;
+  for (const auto& audit : audits) reports.push_back(std::move(*audit).report());
+  return reports;
 }
 
 }  // namespace roadbed::planning::audit

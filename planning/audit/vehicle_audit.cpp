@@ -131,16 +131,14 @@ VehicleAudit audit_vehicle(const VehicleSurroundings& around,
   if (!moving_in_source.empty())
     changed = with_samples_at_changes(drive_in_source, moving_in_source);
   const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
-  std::vector<std::unique_ptr<PartAudit>> audits;
+  std::vector<PartInField> parts;
   for (std::size_t i = 0; i < around.parts().size(); ++i) {
-    audits.push_back(std::make_unique<PartAudit>(around.field_of(i), drive, around.parts()[i],
-                                                 options, moving_in_source));
+    parts.push_back({around.field_of(i), around.parts()[i]});
   }
-  PartAudit::sweep(audits);
   VehicleAudit result;
-  for (std::size_t i = 0; i < audits.size(); ++i) {
-    result.of_parts.push_back(audits[i]->report());
-    around.explain(drive, i, result.of_parts.back().unobserved);
+  result.of_parts = audit_parts(parts, drive, options, moving_in_source);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    around.explain(drive, i, result.of_parts[i].unobserved);
   }
   result.whole = judged(merged(around.parts(), result.of_parts), drive);
   return result;

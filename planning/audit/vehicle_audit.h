@@ -7,8 +7,8 @@
 #include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/audit/ground_under.h"
 
 namespace roadbed::planning::inline audit {

@@ -14,7 +14,7 @@ enum class Behaviour {
   stop,       ///< comes to rest: at the goal, or because no candidate is left
   emergency,  ///< the safety layer brakes harder than the cruise control may
 };
-inline std::string_view name(Behaviour behaviour) {
+inline std::string_view to_string(Behaviour behaviour) {
   switch (behaviour) {
     case Behaviour::cruise:
       return "cruise";

@@ -146,8 +146,8 @@ bool Overtaking::is_no_matter(const Mover& mover, const State& now, double pass_
   return is_behind && (mover.speed_mps < 0.0 || !in_way);
 }
 
-/// Metres by which the gap to one of the others is too short until the vehicle is back in its lane; 0 or less:
-/// none.
+/// Metres by which the gap to one of the others is too short until the vehicle is back in its lane;
+/// 0 or less: none.
 double Overtaking::missing_m(const Mover& mover, double now_s_m, const State& past,
                              const State& back, double limit_mps) const {
   const geometry::VehicleShape& vehicle = vehicle_;
@@ -183,7 +183,8 @@ std::optional<std::string> Overtaking::why_not(const State& from, const Mover& l
     if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
     const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
     if (missing <= 0.0) continue;
-    return fmt::format("{} is {}, the gap is {:.0f} m too short", task_.obstacles[mover.obstacle].id,
+    return fmt::format("{} is {}, the gap is {:.0f} m too short",
+                       task_.obstacles[mover.obstacle].id,
                        mover.speed_mps < 0.0 ? "oncoming" : "in the other lane", missing);
   }
   return std::nullopt;

@@ -18,9 +18,9 @@ constexpr double kBeforeLine_m = 0.5;  // kept from a line
 constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
 constexpr double kLookAhead_m = 80.0;
 constexpr double kSameHalt_m = 0.5;
-constexpr double kShareOfBrakes = 0.9;  // the rest is left to the cruise control
-constexpr double kStopsShort_m = 0.1;   // of a line, at the latest
-constexpr double kRedSlack_s = 0.2;     // before red, to be past the line
+constexpr double kFractionOfBrakes = 0.9;  // the rest is left to the cruise control
+constexpr double kStopsShort_m = 0.1;      // of a line, at the latest
+constexpr double kRedSlack_s = 0.2;        // before red, to be past the line
 constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
 constexpr double kStartsWithin_mps2 = 1.0;  // as the cruise control does
 constexpr double kJoining_m = 40.0;         // beyond a junction, to be as fast as others
@@ -115,7 +115,7 @@ void RightOfWay::pass_places(const View& view) {
 /// lets the vehicle drive on for a while at the speed that its acceleration still leads to.
 std::optional<double> RightOfWay::stops_with_mps2(const StopPoint& place, const View& view) const {
   if (kept_ && std::abs(kept_->s_m - place.s_m) < kSameHalt_m) return kept_->deceleration_mps2;
-  const double hardest = kShareOfBrakes * kMostCommand_mps2;
+  const double hardest = kFractionOfBrakes * kMostCommand_mps2;
   const double comfortable = comfort_deceleration_mps2_;
   const double speed = std::max(0.0, view.speed_mps + view.acceleration_mps2 * kActuatorLag_s);
   const double left = left_m(place, view) - view.speed_mps * kActuatorLag_s;
@@ -161,7 +161,7 @@ std::optional<StopConstraint> RightOfWay::look(const View& view) {
     if (auto why = why_wait(places[i], view)) {
       kept_ = {places[i].s_m, *deceleration};
       return StopConstraint{places[i].s_m - vehicle_.front_m() - kBeforeLine_m, *std::move(why),
-                            *deceleration, *deceleration > kShareOfBrakes * kMostCommand_mps2};
+                            *deceleration, *deceleration > kFractionOfBrakes * kMostCommand_mps2};
     }
   }
   kept_.reset();

@@ -151,7 +151,7 @@ class TimedPilot : public Pilot {
   }
 
   void add_other_lines(const PilotView& view, const LateralReplanner::Question& question,
-                         std::vector<ManeuverHypothesis>& all, ManeuverHypothesis& best) {
+                       std::vector<ManeuverHypothesis>& all, ManeuverHypothesis& best) {
     for (GoalLine& other : goal_lines_) {
       if (&other == &goal_line()) continue;
       other.replanner.locate(view.measured);

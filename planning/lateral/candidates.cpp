@@ -68,7 +68,7 @@ geometry::TrajectoryPoint trajectory_point(const Station& station, double d_m,
 
 }  // namespace
 
-std::string_view name(Rejection rejection) {
+std::string_view to_string(Rejection rejection) {
   constexpr std::array<std::string_view, kRejections> kNames = {
       "none", "off_road", "beyond_curvature", "lateral_acceleration", "steering_rate", "collision"};
   return kNames.at(static_cast<std::size_t>(rejection));

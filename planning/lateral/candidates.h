@@ -10,7 +10,7 @@
 #include "roadbed/geometry/curves/quintic.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/lateral/cost.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/lateral/planned_speed.h"
 #include "roadbed/planning/reference/reference_line.h"
 
@@ -34,7 +34,7 @@ enum class Rejection {
   collision,
 };
 inline constexpr int kRejections = 6;
-std::string_view name(Rejection rejection);
+std::string_view to_string(Rejection rejection);
 
 /// A quintic d(l) over [0, l_e] ahead of the start (paper eq. 13–22).
 struct Candidate {

@@ -11,7 +11,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/lateral/candidates.h"
-#include "roadbed/planning/lateral/cost.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/lateral/planned_speed.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/obstacles/prediction.h"

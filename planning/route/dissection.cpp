@@ -12,7 +12,7 @@ namespace {
 
 using Node = std::uint32_t;
 constexpr Node kNone = 0xffffffffU;
-constexpr double kLeastShare = 0.25;
+constexpr double kLeastFraction = 0.25;
 constexpr std::size_t kSmall = 3;
 
 /// Neighbours without direction, each once.
@@ -108,7 +108,7 @@ class Dissection {
   void improve(std::span<const Node> nodes, std::size_t direction, Cut& best) {
     count_touching(nodes);
     const auto low =
-        static_cast<std::size_t>(std::max(1.0, kLeastShare * static_cast<double>(nodes.size())));
+        static_cast<std::size_t>(std::max(1.0, kLeastFraction * static_cast<double>(nodes.size())));
     const std::size_t high = nodes.size() - low;
     std::int32_t left = 0, right = 0;
     for (std::size_t i = 0; i < high; ++i) {

@@ -66,7 +66,7 @@ std::vector<PlaceCandidate> nearest(const map::RoadMap& road_map, const Eigen::V
 
 }  // namespace
 
-std::string_view name(MatchVerdict verdict) {
+std::string_view to_string(MatchVerdict verdict) {
   static constexpr std::array<std::string_view, 5> names = {"chosen", "possible", "against_heading",
                                                             "not_for_participant", "too_far"};
   return names.at(static_cast<std::size_t>(verdict));

@@ -12,7 +12,7 @@ namespace roadbed::planning::inline route {
 
 /// What speaks for or against a lane as the place that a point means.
 enum class MatchVerdict { chosen, possible, against_heading, not_for_participant, too_far };
-std::string_view name(MatchVerdict verdict);
+std::string_view to_string(MatchVerdict verdict);
 
 struct PlaceCandidate {
   map::LanePlace place;

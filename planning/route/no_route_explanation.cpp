@@ -99,7 +99,7 @@ std::string cause(const map::RoadMap& road_map, const NoRouteExplanation& explan
 
 }  // namespace
 
-std::string_view name(BlockingRule rule) {
+std::string_view to_string(BlockingRule rule) {
   switch (rule) {
     case BlockingRule::closed:
       return "closed";

@@ -16,7 +16,7 @@ class RouteSolver;
 
 /// What keeps a route from being found.
 enum class BlockingRule { closed, length, marking, participant, one_way, map_gap };
-std::string_view name(BlockingRule rule);
+std::string_view to_string(BlockingRule rule);
 
 /// What stands between a start and a goal that no route connects.
 struct NoRouteExplanation {

@@ -77,7 +77,7 @@ double default_speed_mps(map::LaneType type) {
   }
 }
 
-std::string_view name(map::Participant kind) {
+std::string_view to_string(map::Participant kind) {
   static constexpr std::array<std::string_view, 10> names = {
       "pedestrian", "bicycle", "motorcycle", "car",  "taxi",
       "bus",        "truck",   "emergency",  "tram", "train"};

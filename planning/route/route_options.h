@@ -42,7 +42,7 @@ double enough_room_m(const RouteOptions& options);
 double default_speed_mps(map::LaneType type);
 
 /// "car", "truck", …
-std::string_view name(map::Participant kind);
+std::string_view to_string(map::Participant kind);
 
 /// Lanes whose area has a point in common with the region, in order of id: a closed region closes
 /// them as a whole. O(lanes · points).

@@ -224,7 +224,7 @@ class Builder {
     if (std::abs(step_m) < kStep_m || std::abs(step_m) > kMostStep_m) return;
     step_ = step_m * left;
     const double wanted_m = std::sqrt(6.0 * std::abs(step_m) / kStepCurvature_per_m);
-    step_share_ = std::min(1.0, wanted_m / length_m(lane));
+    step_fraction_ = std::min(1.0, wanted_m / length_m(lane));
   }
 
   void sample(const Stretch& stretch, double from, double to) {
@@ -233,7 +233,7 @@ class Builder {
     for (int i = 0; i <= count; ++i) {
       const double fraction = std::lerp(from, to, static_cast<double>(i) / count);
       RoutePathPoint point = place(stretch, fraction);
-      point.in_map += (1.0 - smooth_step(fraction / step_share_)) * step_;
+      point.in_map += (1.0 - smooth_step(fraction / step_fraction_)) * step_;
       add(point, direction({point.lane, point.reversed}, fraction));
     }
   }
@@ -264,7 +264,7 @@ class Builder {
   RoutePath path_;
   double length_m_ = 0.0;
   Eigen::Vector2d step_{0.0, 0.0};
-  double step_share_ = 1.0;
+  double step_fraction_ = 1.0;
 };
 
 }  // namespace

@@ -211,7 +211,7 @@ std::string Router::unfit(const map::LanePlace& place, const std::string& what) 
   const RoutingCostModel& model = solver_->model();
   if (!model.may_be_used(place.lane.index)) {
     return fmt::format("the {} is on lane {}, where a {} may not drive: its type is {}", what,
-                       lane.name, name(options_.participant), map::name(lane.type));
+                       lane.name, to_string(options_.participant), map::to_string(lane.type));
   }
   if (model.is_closed(place.lane.index)) {
     return fmt::format("the {} is on lane {}, which is closed", what, lane.name);

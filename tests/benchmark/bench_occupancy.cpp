@@ -23,9 +23,9 @@
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "street_scene.h"
 
 namespace roadbed {
@@ -297,7 +297,7 @@ void bench_audit(const std::vector<map::PointCloud>& scans, int reps,
   bench_peers(scene, reps);
 #endif
   if (!dump_folder.empty()) dump(dump_folder, scene);
-  fmt::print("\nverdict {}, least clearance {:.3f} m\n", name(report.verdict),
+  fmt::print("\nverdict {}, least clearance {:.3f} m\n", to_string(report.verdict),
              report.least_clearance_m);
 }
 

@@ -114,7 +114,7 @@ ordered_json terms_json(const planning::CostTerms& terms) {
   ordered_json json = ordered_json::object();
   for (int i = 0; i < planning::kCostTerms; ++i) {
     const auto term = static_cast<planning::CostTerm>(i);
-    json[std::string(planning::name(term))] = planning::of(terms, term);
+    json[std::string(planning::to_string(term))] = planning::of(terms, term);
   }
   return json;
 }
@@ -124,7 +124,7 @@ ordered_json candidate_json(const planning::Candidate& candidate) {
           {"l_e_m", candidate.end_l_m},
           {"terms", terms_json(candidate.terms)},
           {"cost", candidate.cost},
-          {"rejection", std::string(planning::name(candidate.rejection))}};
+          {"rejection", std::string(planning::to_string(candidate.rejection))}};
 }
 
 ordered_json line_json(const planning::LineView& line, double from_s_m, double to_s_m) {

@@ -30,11 +30,11 @@ BENCHMARK(open_compiled_town)->Unit(benchmark::kMillisecond);
 void locate_on_town(benchmark::State& state) {
   const RoadMap town = load_map(tests::data_folder() / "town.xodr");
   std::mt19937 random(20261121);
-  std::uniform_real_distribution<double> share(0.0, 1.0), aside(-20.0, 20.0);
+  std::uniform_real_distribution<double> fraction(0.0, 1.0), aside(-20.0, 20.0);
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i < 1000; ++i) {
     const Lane& lane = town.lanes()[random() % town.lanes().size()];
-    points.emplace_back(lane.pose_at(share(random) * lane.length_m()) *
+    points.emplace_back(lane.pose_at(fraction(random) * lane.length_m()) *
                         Eigen::Vector2d(0.0, aside(random)));
   }
   for (auto _ : state) {

@@ -88,9 +88,9 @@ double ms_since(std::chrono::steady_clock::time_point start) {
 
 void survey_pair(const map::RoadMap& road_map, const map::Lane& from, const map::Lane& to,
                  std::mt19937& random, Row& row) {
-  std::uniform_real_distribution<double> share(0.0, 1.0);
-  const map::LanePlace start{from.id, share(random) * from.length_m(), 0.0};
-  const map::LanePlace goal{to.id, share(random) * to.length_m(), 0.0};
+  std::uniform_real_distribution<double> fraction(0.0, 1.0);
+  const map::LanePlace start{from.id, fraction(random) * from.length_m(), 0.0};
+  const map::LanePlace goal{to.id, fraction(random) * to.length_m(), 0.0};
   const auto begin = std::chrono::steady_clock::now();
   const planning::RouteAnswer answer = planning::find_route(road_map, start, goal);
   row.slowest_route_ms = std::max(row.slowest_route_ms, ms_since(begin));

@@ -50,11 +50,11 @@ const RoadMap& town() {
 const std::vector<Eigen::Vector2d>& points() {
   static const std::vector<Eigen::Vector2d> made = [] {
     std::mt19937 random(20261121);
-    std::uniform_real_distribution<double> share(0.0, 1.0), aside(-50.0, 50.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0), aside(-50.0, 50.0);
     std::vector<Eigen::Vector2d> drawn;
     for (int i = 0; i < 200'000; ++i) {
       const Lane& lane = town().lanes()[random() % town().lanes().size()];
-      drawn.emplace_back(lane.pose_at(share(random) * lane.length_m()) *
+      drawn.emplace_back(lane.pose_at(fraction(random) * lane.length_m()) *
                          Eigen::Vector2d(0.0, aside(random)));
     }
     return drawn;

@@ -8,7 +8,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/audit/certificate_check.h"
-#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

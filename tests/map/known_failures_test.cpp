@@ -23,8 +23,8 @@ std::string with_reference(const std::string& crs) {
 void expect_wide_m(const RoadMap& road_map, double width_m, double within_m) {
   ASSERT_GT(road_map.lanes().size(), 0u);
   for (const Lane& lane : road_map.lanes()) {
-    for (const double share : {0.0, 0.3, 1.0}) {
-      EXPECT_NEAR(lane.width_m(share * lane.length_m()), width_m, within_m) << lane.name;
+    for (const double fraction : {0.0, 0.3, 1.0}) {
+      EXPECT_NEAR(lane.width_m(fraction * lane.length_m()), width_m, within_m) << lane.name;
     }
   }
 }

@@ -160,9 +160,9 @@ double least_slack_m(const Scene& scene, const SlowCandidate& slow) {
     const double within = (scene.options.horizon_s - a.t_s) / (b.t_s - a.t_s);
     for (const double part : {1.0, std::clamp(within, 0.0, 1.0)}) {
       for (int k = 0; k <= kSamples; ++k) {
-        const double share = part * k / kSamples;
-        slack_m = std::min(
-            slack_m, slack_at_m(scene, interpolate(a, b, share), driven_m + length_m * share));
+        const double fraction = part * k / kSamples;
+        slack_m = std::min(slack_m, slack_at_m(scene, interpolate(a, b, fraction),
+                                               driven_m + length_m * fraction));
       }
     }
     driven_m += length_m;
@@ -346,7 +346,7 @@ TEST(PlanPath, TermsAreThoseOfTheSlowEvaluation) {
       EXPECT_NEAR(candidate.cost, slow.cost, 1e-9 * slow.cost);
       for (std::size_t term = 0; term < slow.terms.size(); ++term) {
         EXPECT_NEAR(candidate.terms[term], slow.terms[term], 1e-9 * (1e-3 + slow.terms[term]))
-            << name(static_cast<CostTerm>(term));
+            << to_string(static_cast<CostTerm>(term));
       }
     }
   }

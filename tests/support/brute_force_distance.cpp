@@ -13,8 +13,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 double point_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                         const Eigen::Vector2d& b) {
   const Eigen::Vector2d along = b - a;
-  const double share = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - share * along).norm();
+  const double fraction = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - fraction * along).norm();
 }
 
 bool cross_each_other(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,

@@ -60,7 +60,7 @@ std::vector<std::string> successors_of(const map::RoadMap& road_map, const std::
 
 std::vector<std::string> remarks_of(const map::RoadMap& road_map, const std::string& rule) {
   std::vector<std::string> messages;
-  for (const map::ImportDiagnostic& remark : road_map.remarks()) {
+  for (const map::ImportDiagnostic& remark : road_map.import_diagnostics()) {
     if (remark.rule == rule) messages.push_back(remark.element + ": " + remark.message);
   }
   return messages;

@@ -117,8 +117,8 @@ Real shape_height(pugi::xml_node lateral, Real s, Real t) {
   }
   if (before == -far) return shape_at(lateral, after, t);
   if (after == far) return shape_at(lateral, before, t);
-  const Real share = (s - before) / (after - before);
-  return (1 - share) * shape_at(lateral, before, t) + share * shape_at(lateral, after, t);
+  const Real fraction = (s - before) / (after - before);
+  return (1 - fraction) * shape_at(lateral, before, t) + fraction * shape_at(lateral, after, t);
 }
 
 // The crossfall in force on a side.

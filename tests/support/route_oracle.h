@@ -160,8 +160,8 @@ class RouteOracle {
       for (const map::LaneId lane : span[i]) {
         if (!usable(lane)) return {};
       }
-      const double share = (i + 1 == span.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
-      parts_m.push_back(share * road_map_.lane(span[i].front()).length_m());
+      const double fraction = (i + 1 == span.size() ? end : 1.0) - (i == 0 ? begin : 0.0);
+      parts_m.push_back(fraction * road_map_.lane(span[i].front()).length_m());
       all_m += parts_m.back();
     }
     const std::size_t changes = span.front().size() - 1;
@@ -188,7 +188,7 @@ class RouteOracle {
   }
 
   // Lanes that a chain of changes leads to within a share of the lane group, and what it costs.
-  std::vector<std::pair<map::LaneId, double>> changes(map::LaneId from, double share) const {
+  std::vector<std::pair<map::LaneId, double>> changes(map::LaneId from, double fraction) const {
     std::vector<std::pair<map::LaneId, double>> reached{{from, 0.0}};
     for (const bool leftwards : {true, false}) {
       double least_m = std::numeric_limits<double>::infinity();
@@ -197,7 +197,7 @@ class RouteOracle {
         const map::LaneLinks& links = road_map_.graph().of(lane);
         const auto& next = leftwards ? links.left : links.right;
         if (!next || !next->same_direction || !next->change_allowed() || !usable(next->lane)) break;
-        least_m = std::min(least_m, share * road_map_.lane(lane).length_m());
+        least_m = std::min(least_m, fraction * road_map_.lane(lane).length_m());
         const double room_m = least_m / count;
         if (room_m < options_.least_lane_change_m - 1e-9) break;
         const double price = options_.cost == planning::RouteCost::distance

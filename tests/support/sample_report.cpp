@@ -63,8 +63,8 @@ tools::ReportLane lane_between(const char* name, map::LaneType type, double left
 
 // A smooth bump of height 1 around `middle`, `half` to each side.
 double bump(double s_m, double middle_m, double half_m) {
-  const double share = (s_m - middle_m) / half_m;
-  return std::abs(share) < 1.0 ? std::pow(std::cos(0.5 * M_PI * share), 2) : 0.0;
+  const double fraction = (s_m - middle_m) / half_m;
+  return std::abs(fraction) < 1.0 ? std::pow(std::cos(0.5 * M_PI * fraction), 2) : 0.0;
 }
 
 double offset_of_ego_m(double s_m) { return -1.75 + 2.2 * bump(s_m, kParkedAt_m, 38.0); }

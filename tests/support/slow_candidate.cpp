@@ -82,26 +82,26 @@ struct Sums {
        consistency = 0, duration = 0;
 };
 
-void add_sample(Sums& sums, Real share, const Motion& m, Real d, Real previous_d,
+void add_sample(Sums& sums, Real fraction, const Motion& m, Real d, Real previous_d,
                 const planning::PlannedSpeed::State& speed) {
   const Real v = speed.speed_mps, a = speed.acceleration_mps2;
   const Real jerk = 2 * v * a * m.k + v * v * v * m.k1;
-  sums.k += share * m.k * m.k;
-  sums.k1 += share * m.k1 * m.k1;
-  sums.k2 += share * m.k2 * m.k2;
-  sums.k3 += share * m.k3 * m.k3;
-  sums.d += share * d * d;
-  sums.a_lat += share * v * v * m.k * v * v * m.k;
-  sums.a_lon += share * a * a;
-  sums.j_lat += share * jerk * jerk;
-  sums.j_lon += share * Real(speed.jerk_mps3) * Real(speed.jerk_mps3);
-  sums.consistency += share * (d - previous_d) * (d - previous_d);
-  sums.duration += share * m.stretch / std::max(v, Real(1));
+  sums.k += fraction * m.k * m.k;
+  sums.k1 += fraction * m.k1 * m.k1;
+  sums.k2 += fraction * m.k2 * m.k2;
+  sums.k3 += fraction * m.k3 * m.k3;
+  sums.d += fraction * d * d;
+  sums.a_lat += fraction * v * v * m.k * v * v * m.k;
+  sums.a_lon += fraction * a * a;
+  sums.j_lat += fraction * jerk * jerk;
+  sums.j_lon += fraction * Real(speed.jerk_mps3) * Real(speed.jerk_mps3);
+  sums.consistency += fraction * (d - previous_d) * (d - previous_d);
+  sums.duration += fraction * m.stretch / std::max(v, Real(1));
 }
 
 planning::CostTerms terms_of(const Sums& sums, double end_l, double max_l, double v0) {
   const Real missing = 1 - Real(end_l) / max_l;
-  const Real share = sums.duration * end_l * std::max(v0, 1.0) / max_l;
+  const Real fraction = sums.duration * end_l * std::max(v0, 1.0) / max_l;
   const auto in = [](Real sum, Real scale) { return static_cast<double>(sum / (scale * scale)); };
   return {static_cast<double>(missing * missing),
           in(sums.k, 0.05L),
@@ -114,7 +114,7 @@ planning::CostTerms terms_of(const Sums& sums, double end_l, double max_l, doubl
           in(sums.j_lat, 2.0L),
           in(sums.j_lon, 2.0L),
           in(sums.consistency, 0.5L),
-          static_cast<double>(share * share)};
+          static_cast<double>(fraction * fraction)};
 }
 
 // Adds a pose, with the time that the way from the last one takes.
@@ -142,7 +142,7 @@ SlowCandidate slow_candidate(const PlanInput& input, const PlanOptions& options,
   Sums sums;
   Real last_stretch = 0;
   double last_l = 0.0;
-  const auto visit = [&](double l, Real share) {
+  const auto visit = [&](double l, Real fraction) {
     const double s_m = input.start.s_m + l;
     const planning::ReferencePoint line = input.line.at(s_m);
     PowerSeries d;
@@ -157,9 +157,9 @@ SlowCandidate slow_candidate(const PlanInput& input, const PlanOptions& options,
     drive_to(slow, s_m, line, static_cast<double>(d[0]), motion, state.speed_mps, driven_m);
     last_stretch = motion.stretch;
     last_l = l;
-    if (share == 0) return true;
+    if (fraction == 0) return true;
     const Real previous_d = input.previous_d_m ? Real(input.previous_d_m(s_m)) : d[0];
-    add_sample(sums, share, motion, d[0], previous_d, state);
+    add_sample(sums, fraction, motion, d[0], previous_d, state);
     const double k = static_cast<double>(std::abs(motion.k));
     slow.worst_curvature_per_m = std::max(slow.worst_curvature_per_m, k);
     slow.worst_lateral_mps2 =

@@ -217,9 +217,9 @@ TEST(BadInput, DamagedCompiledMapIsRefusedWhereverItIsCutOrChanged) {
   const std::string town = data_folder() / "town.xodr";
   ASSERT_EQ(run_roadbed({"import", town, "-o", good, "--quiet"}).status, 0);
   const std::string bytes = bytes_of(good);
-  for (const double share : {0.0, 0.001, 0.3, 0.7, 0.999}) {
-    SCOPED_TRACE(share);
-    const auto at = static_cast<std::size_t>(share * static_cast<double>(bytes.size()));
+  for (const double fraction : {0.0, 0.001, 0.3, 0.7, 0.999}) {
+    SCOPED_TRACE(fraction);
+    const auto at = static_cast<std::size_t>(fraction * static_cast<double>(bytes.size()));
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     for (const std::string& damaged : {bytes.substr(0, at), changed}) {

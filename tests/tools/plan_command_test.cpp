@@ -44,11 +44,11 @@ TEST(PlanCommand, ExplainsTheSharesOfTheChosenAndTheRunnerUp) {
     if (line.size() < 2 || line.substr(line.size() - 2) != " %") continue;
     std::istringstream words(line);
     std::string name, percent;
-    double weight = 0.0, cost = 0.0, share = 0.0;
-    words >> name >> weight >> cost >> share >> percent;
-    chosen += share;
-    words >> cost >> share;
-    second += share;
+    double weight = 0.0, cost = 0.0, fraction = 0.0;
+    words >> name >> weight >> cost >> fraction >> percent;
+    chosen += fraction;
+    words >> cost >> fraction;
+    second += fraction;
   }
   EXPECT_NEAR(chosen, 100.0, 0.7);
   EXPECT_NEAR(second, 100.0, 0.7);

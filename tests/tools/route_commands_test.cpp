@@ -125,7 +125,7 @@ TEST(RouteCommand, GivesAlternativesWithTheirShare) {
   const json route = json::parse(run.out);
   ASSERT_GE(route["alternatives"].size(), 1U);
   for (const json& other : route["alternatives"]) {
-    EXPECT_LE(other["shared_length_share"].get<double>(), 0.7);
+    EXPECT_LE(other["shared_length_fraction"].get<double>(), 0.7);
     EXPECT_GE(other["cost_s"].get<double>(), route["cost_s"].get<double>());
   }
 }
@@ -179,7 +179,7 @@ TEST(RouteCommand, ABatchAsJsonExplainsRowsWithoutARouteAsSingleQuestionsDo) {
   expected.erase("to");
   expected["row"] = 2;
   EXPECT_EQ(answers[0], expected);
-  EXPECT_EQ(answers[0]["barriers"], json::parse(R"(["closed"])"));
+  EXPECT_EQ(answers[0]["blocking_rules"], json::parse(R"(["closed"])"));
   EXPECT_EQ(answers[1]["found"], true);
   EXPECT_EQ(run.out, run_roadbed({"route", kTown, "--batch", pairs, "--avoid", "road:20", "--json",
                                   "--threads", "2"})

@@ -69,7 +69,7 @@ TEST(TwoWayCommands, AHeadingDecidesWhichWayALaneIsDriven) {
     EXPECT_EQ(answer["found"], back) << "ahead there is no place to turn round";
     EXPECT_EQ(run.status, back ? 0 : 1);
     if (!back) {
-      EXPECT_EQ(answer["barriers"], json::array({"one_way"}));
+      EXPECT_EQ(answer["blocking_rules"], json::array({"one_way"}));
     }
   }
 }

@@ -35,7 +35,7 @@ struct AuditedDrive {
   bool is_clear() const { return fault.empty() && audit.is_clear(); }
   /// "clear", "conflict", …, or "unusable".
   std::string_view outcome() const {
-    return fault.empty() ? planning::name(audit.report.verdict) : "unusable";
+    return fault.empty() ? planning::to_string(audit.report.verdict) : "unusable";
   }
 };
 

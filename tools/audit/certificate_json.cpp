@@ -152,7 +152,7 @@ template <class Value, std::size_t N>
 Value one_of(const JsonNode& node, const std::array<Value, N>& values) {
   const std::string text = node.text();
   for (const Value value : values) {
-    if (planning::name(value) == text) return value;
+    if (planning::to_string(value) == text) return value;
   }
   node.refuse(fmt::format("is \"{}\"", text), "a word that roadbed writes",
               "write the certificate anew");
@@ -290,7 +290,7 @@ std::vector<Conflict> read_conflicts(const JsonNode& node) {
 }
 
 void add_claims(Json& json, const AuditCertificate& audit, bool has_moving) {
-  json["verdict"] = planning::name(audit.verdict);
+  json["verdict"] = planning::to_string(audit.verdict);
   json["certified_clearance_m"] = audit.certified_clearance_m;
   json["conflicts"] = conflicts_json(audit.conflicts);
   json["unknown"] = stretches_json(audit.unknown);
@@ -372,7 +372,7 @@ std::string write_certificate_json(const CertificateFile& file) {
   add_ground(json, file.ground);
   json["clearance_m"] = body.clearance_m;
   json["inflate_m"] = body.inflate_m;
-  json["unknown_counts_as"] = planning::name(body.unknown_policy);
+  json["unknown_counts_as"] = planning::to_string(body.unknown_policy);
   json["least_measured"] = file.least_measured;
   add_claims(json, body, has_moving);
   for (std::size_t i = 1; i < file.parts.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_file_check.h"
 
 #include <fmt/format.h>
 

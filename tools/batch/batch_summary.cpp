@@ -23,7 +23,7 @@ bool is_worse(const WorstCase& a, const WorstCase& b) {
 
 JobStatus status_of(const json& result) {
   for (const JobStatus status : {JobStatus::done, JobStatus::no, JobStatus::failed}) {
-    if (result.at("status") == name(status)) return status;
+    if (result.at("status") == to_string(status)) return status;
   }
   throw std::invalid_argument("BatchSummary: the line has no status");
 }
@@ -59,7 +59,7 @@ ordered_json counts_json(std::size_t all, std::size_t done, std::size_t no, std:
 }
 
 ordered_json worst_json(const WorstCase& job) {
-  return {{"line", job.line},   {"hash", job.hash}, {"status", name(job.status)},
+  return {{"line", job.line},   {"hash", job.hash}, {"status", to_string(job.status)},
           {"about", job.about}, {"text", job.text}, {"files", job.files}};
 }
 

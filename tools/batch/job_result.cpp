@@ -24,10 +24,10 @@ std::string json_text(const json& value) {
 // Members in this order, so that a reader sees first what became of the job.
 std::string line(const JobResult& result, const json& kind, const std::string& rest) {
   return "{\"hash\":" + json_text(result.hash) + ",\"job\":" + json_text(kind) +
-         ",\"status\":" + json_text(name(result.status)) +
+         ",\"status\":" + json_text(to_string(result.status)) +
          ",\"exit\":" + (result.exit ? std::to_string(*result.exit) : "null") +
          ",\"reason\":" + json_text(result.reason) +
-         ",\"cause\":" + (result.cause ? json_text(name(*result.cause)) : "null") + rest +
+         ",\"cause\":" + (result.cause ? json_text(to_string(*result.cause)) : "null") + rest +
          ",\"result\":" + (result.document.empty() ? "null" : result.document) +
          ",\"files\":" + json_text(result.files) + "}";
 }
@@ -57,7 +57,7 @@ json parse_without_documents(std::string_view line) {
 template <typename Value, typename... Values>
 std::optional<Value> by_name(const json& text, Values... values) {
   for (const Value value : {values...}) {
-    if (text == name(value)) return value;
+    if (text == to_string(value)) return value;
   }
   return {};
 }
@@ -80,12 +80,12 @@ bool read_files(const json& head, std::vector<std::string>& files) {
 
 }  // namespace
 
-std::string_view name(JobStatus status) {
+std::string_view to_string(JobStatus status) {
   constexpr std::array<std::string_view, 3> names{"done", "no", "failed"};
   return names.at(static_cast<std::size_t>(status));
 }
 
-std::string_view name(Cause cause) {
+std::string_view to_string(Cause cause) {
   constexpr std::array<std::string_view, 8> names{"line", "input",  "changed", "crash",
                                                   "time", "memory", "disk",    "internal"};
   return names.at(static_cast<std::size_t>(cause));

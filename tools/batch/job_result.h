@@ -19,7 +19,7 @@ enum class JobStatus {
   failed,  ///< there is no answer
 };
 
-std::string_view name(JobStatus status);
+std::string_view to_string(JobStatus status);
 
 /// Why a job has no answer. Some of it is the job's own fault, so that it fails again.
 enum class Cause {
@@ -33,7 +33,7 @@ enum class Cause {
   internal,  ///< a fault of the program
 };
 
-std::string_view name(Cause cause);
+std::string_view to_string(Cause cause);
 
 /// Whether the same job may have an answer another time.
 bool may_pass(Cause cause);

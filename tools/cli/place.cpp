@@ -85,7 +85,7 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
     const map::Lane& lane = road_map.lane(candidate.place.lane);
     if (candidate.verdict == planning::MatchVerdict::not_for_participant) {
       found = fmt::format("is on lane {}, where a {} may not drive: its type is {}", lane.name,
-                          planning::name(participant), map::name(lane.type));
+                          planning::to_string(participant), map::to_string(lane.type));
       break;
     }
     const Eigen::Vector2d on_lane =

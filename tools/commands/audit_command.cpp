@@ -18,7 +18,7 @@
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
-#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/cli/progress_bar.h"

@@ -58,7 +58,7 @@ Json stretch_feature(const AuditedDrive& audited, const planning::JudgedStretch&
   return feature({{"type", "LineString"}, {"coordinates", std::move(line)}},
                  {{"drive", audited.name},
                   {"kind", "stretch"},
-                  {"verdict", planning::name(stretch.verdict)},
+                  {"verdict", planning::to_string(stretch.verdict)},
                   {"from_s", stretch.from_s},
                   {"to_s", stretch.to_s}});
 }

@@ -66,7 +66,7 @@ Json judged_json(const AuditedDrive& audited) {
        judged_stretches(audited.audit.report, drive.start_s(), drive.end_s())) {
     json.push_back({{"from_s", stretch.from_s},
                     {"to_s", stretch.to_s},
-                    {"verdict", planning::name(stretch.verdict)}});
+                    {"verdict", planning::to_string(stretch.verdict)}});
   }
   return json;
 }
@@ -175,7 +175,7 @@ std::string table_row(const AuditedDrive& audited, std::size_t width) {
 Json audit_json(const AuditedDrive& audited) {
   const planning::AuditReport& report = audited.audit.report;
   Json json;
-  json["verdict"] = std::string(name(report.verdict));
+  json["verdict"] = std::string(to_string(report.verdict));
   json["least_clearance_m"] = report.least_clearance_m;
   json["proven_clearance_m"] = report.proven_clearance_m;
   json["least_clearance_at_s"] = report.least_clearance_at_s;
@@ -197,7 +197,7 @@ Json audit_json(const AuditedDrive& audited) {
 }
 
 std::string audit_text(const planning::AuditReport& report) {
-  std::string text = fmt::format("{:<17}{}\n", "verdict", name(report.verdict));
+  std::string text = fmt::format("{:<17}{}\n", "verdict", to_string(report.verdict));
   text += fmt::format("{:<17}", "least clearance") + least_text(report);
   text += fmt::format("{:<17}{:.1f} % of the space that the vehicle takes{}\n", "not measured",
                       100.0 * report.unknown_fraction, demand_text(report));

@@ -28,9 +28,10 @@ std::string memory_fault(const std::string& text) {
 }
 
 std::uint64_t default_memory() {
-  constexpr double share = 0.8;
+  constexpr double fraction = 0.8;
   const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
-  return static_cast<std::uint64_t>(share * pages * static_cast<double>(::sysconf(_SC_PAGESIZE)));
+  return static_cast<std::uint64_t>(fraction * pages *
+                                    static_cast<double>(::sysconf(_SC_PAGESIZE)));
 }
 
 // There may be one such process for each core.

@@ -24,7 +24,7 @@ std::string document_text(const Json& json) {
 Json finding_json(const Validation& validation, const Finding& finding) {
   Json json = {{"rule", finding.rule}};
   json["asam_rule"] = finding.asam_rule.empty() ? Json() : Json(finding.asam_rule);
-  json["severity"] = name(finding.severity);
+  json["severity"] = to_string(finding.severity);
   json["element"] = finding.element;
   json["line"] = finding.line > 0 ? Json(finding.line) : Json();
   const Eigen::Vector2d in_source =
@@ -51,7 +51,7 @@ long findings_counted(const Validation& validation, map::validation::Severity se
 
 std::string line_of(const Validation& validation, const Finding& finding) {
   return fmt::format("{}{}: {}: {}", finding.element, place_text(validation, finding),
-                     name(finding.severity), finding.message);
+                     to_string(finding.severity), finding.message);
 }
 
 /// Findings by rule, in order of rule.
@@ -158,8 +158,9 @@ const char* colour(map::validation::Severity severity) {
 std::string findings_text(const Validation& validation, const std::string& file) {
   std::string text;
   for (const Finding& finding : validation.findings) {
-    text += fmt::format("{}{}: {}: {}: {} [{}]\n", file, place_text(validation, finding),
-                        name(finding.severity), finding.element, finding.message, finding.rule);
+    text +=
+        fmt::format("{}{}: {}: {}: {} [{}]\n", file, place_text(validation, finding),
+                    to_string(finding.severity), finding.element, finding.message, finding.rule);
   }
   return text + fmt::format("{} errors, {} warnings, {} notes\n",
                             findings_counted(validation, map::validation::Severity::error),
@@ -243,8 +244,8 @@ std::string rules_table() {
   for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
     const std::string asam =
         rule.asam_rule.empty() ? "" : fmt::format("`{}`", rule.asam_rule.substr(14));
-    table +=
-        fmt::format("| `{}` | {} | {} | {} |\n", rule.id, name(rule.severity), asam, rule.meaning);
+    table += fmt::format("| `{}` | {} | {} | {} |\n", rule.id, to_string(rule.severity), asam,
+                         rule.meaning);
   }
   return table;
 }

@@ -96,7 +96,7 @@ class ImportCommand : public Command {
 
  private:
   static std::ptrdiff_t faults_of(const map::RoadMap& road_map) {
-    return std::ranges::count_if(road_map.remarks(), &map::ImportDiagnostic::is_fault);
+    return std::ranges::count_if(road_map.import_diagnostics(), &map::ImportDiagnostic::is_fault);
   }
 
   static void print_json(std::ostream& out, const map::RoadMap& road_map) {

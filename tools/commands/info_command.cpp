@@ -30,7 +30,7 @@ Json lane_counts(const map::MapTotals& totals) {
   Json json = Json::object();
   for (std::size_t i = 0; i < totals.lanes_of_type.size(); ++i) {
     const std::uint64_t count = totals.lanes_of_type[i];
-    if (count > 0) json[std::string(name(static_cast<map::LaneType>(i)))] = count;
+    if (count > 0) json[std::string(to_string(static_cast<map::LaneType>(i)))] = count;
   }
   return json;
 }

@@ -51,7 +51,7 @@ Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
   json["road"] = lane.road ? Json(road_map.road(*lane.road).source_id) : Json();
   json["section"] = lane.origin.section;
   json["lane_id"] = lane.origin.source_id;
-  json["type"] = name(lane.type);
+  json["type"] = to_string(lane.type);
   json["one_way"] = lane.one_way;
   json["s_m"] = match.place.s_m;
   json["d_m"] = match.place.d_m;

@@ -18,7 +18,7 @@ namespace {
 Json change_json(const map::MapChange& change) {
   Json json = {{"theme", change.theme},
                {"element", change.element},
-               {"change", name(change.kind)},
+               {"change", to_string(change.kind)},
                {"facets", change.facets}};
   if (change.in_source) {
     json["moved_m"] = change.moved_m;
@@ -34,7 +34,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 void print_differences(std::ostream& out, const map::MapChange& change) {
-  fmt::print(out, "{:<12}{}: {}", change.theme, change.element, name(change.kind));
+  fmt::print(out, "{:<12}{}: {}", change.theme, change.element, to_string(change.kind));
   if (!change.facets.empty()) fmt::print(out, " ({})", joined(change.facets));
   if (change.in_source) {
     fmt::print(out, ", by up to {:.3f} m near {:.3f},{:.3f}", change.moved_m, change.in_source->x(),

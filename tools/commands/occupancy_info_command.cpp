@@ -99,7 +99,7 @@ Json cloud_info(const map::PointCloud& cloud) {
   info["kind"] = "cloud";
   info["format"] = cloud.format;
   info["crs"] = crs_json(cloud.crs);
-  info["unit"] = std::string(name(cloud.unit));
+  info["unit"] = std::string(to_string(cloud.unit));
   info["points"] = cloud.points.size();
   info["not_finite"] = cloud.dropped_not_finite;
   info["bounds"] = bounds_json(bounds(cloud));

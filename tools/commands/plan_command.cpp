@@ -60,13 +60,13 @@ bool is_chosen(const Plan& plan, const Candidate& candidate) {
 std::string candidates_csv(const Plan& plan) {
   std::string csv = "d_e_m,l_e_m";
   for (int i = 0; i < planning::kCostTerms; ++i) {
-    csv += fmt::format(",{}", planning::name(static_cast<CostTerm>(i)));
+    csv += fmt::format(",{}", planning::to_string(static_cast<CostTerm>(i)));
   }
   csv += ",cost,rejection,chosen\n";
   for (const Candidate& candidate : plan.candidates) {
     csv += fmt::format("{},{}", candidate.end_d_m, candidate.end_l_m);
     for (const double term : candidate.terms) csv += fmt::format(",{}", term);
-    csv += fmt::format(",{},{},{}\n", candidate.cost, planning::name(candidate.rejection),
+    csv += fmt::format(",{},{},{}\n", candidate.cost, planning::to_string(candidate.rejection),
                        is_chosen(plan, candidate) ? 1 : 0);
   }
   return csv;
@@ -103,7 +103,7 @@ ordered_json plan_json(const Candidate& candidate) {
   ordered_json terms;
   for (int i = 0; i < planning::kCostTerms; ++i) {
     const auto term = static_cast<CostTerm>(i);
-    terms[std::string(planning::name(term))] = planning::of(candidate.terms, term);
+    terms[std::string(planning::to_string(term))] = planning::of(candidate.terms, term);
   }
   return {{"d_e_m", candidate.end_d_m},
           {"l_e_m", candidate.end_l_m},
@@ -115,7 +115,7 @@ ordered_json plan_json(const Plan& plan) {
   const auto counts = verdicts(plan);
   ordered_json rejected;
   for (int i = 1; i < planning::kRejections; ++i) {
-    rejected[std::string(planning::name(static_cast<planning::Rejection>(i)))] =
+    rejected[std::string(planning::to_string(static_cast<planning::Rejection>(i)))] =
         counts[static_cast<std::size_t>(i)];
   }
   const auto second = runner_up(plan);
@@ -130,26 +130,27 @@ ordered_json plan_json(const Plan& plan) {
 
 // The weighted terms of a candidate, and with --explain the share of its cost that each one has.
 std::string term_columns(const Candidate& candidate, CostTerm term, const CostTerms& weights,
-                         bool with_share) {
+                         bool with_fraction) {
   const double cost = planning::of(weights, term) * planning::of(candidate.terms, term);
-  const double share = candidate.cost > 0.0 ? 100.0 * cost / candidate.cost : 0.0;
-  return with_share ? fmt::format("{:>12.6f}{:>7.1f} %", cost, share)
-                    : fmt::format("{:>12.6f}", cost);
+  const double fraction = candidate.cost > 0.0 ? 100.0 * cost / candidate.cost : 0.0;
+  return with_fraction ? fmt::format("{:>12.6f}{:>7.1f} %", cost, fraction)
+                       : fmt::format("{:>12.6f}", cost);
 }
 
-void print_terms(std::ostream& out, const Plan& plan, const CostTerms& weights, bool with_share) {
+void print_terms(std::ostream& out, const Plan& plan, const CostTerms& weights,
+                 bool with_fraction) {
   const auto second = runner_up(plan);
-  const int width = with_share ? 21 : 12;
+  const int width = with_fraction ? 21 : 12;
   fmt::print(out, "{:<26}{:>8}{:>{}}{:>{}}\n", "weighted term", "weight", "chosen", width,
              "runner-up", width);
   for (int i = 0; i < planning::kCostTerms; ++i) {
     const auto term = static_cast<CostTerm>(i);
-    fmt::print(out, "{:<26}{:>8g}{}{}\n", planning::name(term), planning::of(weights, term),
-               term_columns(*plan.chosen, term, weights, with_share),
-               second ? term_columns(*second, term, weights, with_share) : "");
+    fmt::print(out, "{:<26}{:>8g}{}{}\n", planning::to_string(term), planning::of(weights, term),
+               term_columns(*plan.chosen, term, weights, with_fraction),
+               second ? term_columns(*second, term, weights, with_fraction) : "");
   }
   fmt::print(out, "{:<34}{:>12.6f}{}{:>12}\n", "cost", plan.chosen->cost,
-             with_share ? "         " : "", second ? fmt::format("{:.6f}", second->cost) : "");
+             with_fraction ? "         " : "", second ? fmt::format("{:.6f}", second->cost) : "");
 }
 
 void print_plan(std::ostream& out, const Plan& plan, const CostTerms& weights, bool explain) {

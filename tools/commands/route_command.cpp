@@ -137,7 +137,7 @@ class RouteCommand : public Command {
       json["to"] = place_json(road_map, asked.to);
       for (std::size_t i = 1; i < routes.size(); ++i) {
         Json other = route_json(road_map, routes[i]);
-        other["shared_length_share"] = shared[i];
+        other["shared_length_fraction"] = shared[i];
         json["alternatives"].push_back(std::move(other));
       }
       fmt::print(streams.out, "{}\n", text_of(json, 2));

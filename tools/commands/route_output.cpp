@@ -185,9 +185,9 @@ Json no_route_json(const map::RoadMap& road_map, const planning::RouteAnswer& an
   json["gap_m"] = explanation.gap_from ? Json(explanation.gap_m) : Json();
   json["gap_from_lane"] = lane_name(explanation.gap_from);
   json["gap_to_lane"] = lane_name(explanation.gap_to);
-  json["barriers"] = Json::array();
-  for (const auto barrier : explanation.blocking_rules)
-    json["barriers"].push_back(planning::name(barrier));
+  json["blocking_rules"] = Json::array();
+  for (const auto rule : explanation.blocking_rules)
+    json["blocking_rules"].push_back(planning::to_string(rule));
   json["blocked_from_lane"] = lane_name(explanation.blocked_from);
   json["blocked_to_lane"] = lane_name(explanation.blocked_to);
   return json;
@@ -203,7 +203,7 @@ Json place_json(const map::RoadMap& road_map, const Place& place) {
                           {"heading_rad", candidate.heading_rad},
                           {"sense", word(candidate.sense)},
                           {"misfit_m", candidate.misfit_m},
-                          {"verdict", planning::name(candidate.verdict)}});
+                          {"verdict", planning::to_string(candidate.verdict)}});
   }
   return {{"lane", road_map.lane(place.on_lane.lane).name},
           {"s_m", place.on_lane.s_m},

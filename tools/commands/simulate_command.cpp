@@ -10,7 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
@@ -94,7 +94,7 @@ void drive_row(const DriveOptions& options, ScenarioRow& row) {
     const fs::path folder = options.output / row.file.stem();
     map::make_output_folder(folder, true);
     write_files(driven, folder);
-    row.outcome = name(driven.verdict.outcome);
+    row.outcome = to_string(driven.verdict.outcome);
     row.text = driven.verdict.text;
     row.at_s = driven.verdict.at_s;
     row.is_good = driven.verdict.outcome == Outcome::goal_reached;
@@ -211,7 +211,7 @@ class SimulateCommand : public Command {
     }
     fmt::print(out, "{}: {}\n", driven.name, driven.verdict.text);
     if (driven.audit) {
-      fmt::print(out, "occupancy: {}\n", planning::name(driven.audit->verdict));
+      fmt::print(out, "occupancy: {}\n", planning::to_string(driven.audit->verdict));
     }
   }
 

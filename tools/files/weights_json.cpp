@@ -16,7 +16,7 @@ std::string known_terms() {
   std::string names;
   for (int i = 0; i < planning::kCostTerms; ++i) {
     if (i > 0) names += ", ";
-    names += planning::name(static_cast<CostTerm>(i));
+    names += planning::to_string(static_cast<CostTerm>(i));
   }
   return names;
 }
@@ -24,7 +24,7 @@ std::string known_terms() {
 CostTerm find_term(const std::string& key, const JsonNode& node) {
   for (int i = 0; i < planning::kCostTerms; ++i) {
     const auto term = static_cast<CostTerm>(i);
-    if (planning::name(term) == key) return term;
+    if (planning::to_string(term) == key) return term;
   }
   node.refuse("is no term of the cost", "one of " + known_terms(), "correct or remove the key");
 }

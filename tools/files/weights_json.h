@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "roadbed/planning/lateral/cost.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 
 namespace roadbed::tools::inline files {
 

@@ -5,7 +5,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/report/report.h"
 

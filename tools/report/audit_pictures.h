@@ -7,7 +7,7 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/report/report.h"
 

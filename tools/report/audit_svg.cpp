@@ -166,7 +166,7 @@ std::string conflicts_svg(const AuditPicture& picture, const map::PictureFrame& 
 std::string header_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   const planning::AuditReport& report = picture.report;
   const std::string text = fmt::format(
-      "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", name(report.verdict),
+      "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", to_string(report.verdict),
       report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
       100.0 * report.unknown_fraction);
   const double bar_m = map::round_length_m(160.0 / frame.px_per_m);

@@ -38,8 +38,8 @@ struct ChartView {
   double top_px = kTop_px;
 
   Vector2d to_px(const Vector2d& point) const {
-    const Vector2d share = (point - box.min()).cwiseQuotient(box.sizes());
-    return {kLeft_px + share.x() * width_px, top_px + (1.0 - share.y()) * height_px};
+    const Vector2d fraction = (point - box.min()).cwiseQuotient(box.sizes());
+    return {kLeft_px + fraction.x() * width_px, top_px + (1.0 - fraction.y()) * height_px};
   }
 };
 

@@ -69,10 +69,10 @@ const BodyPart& part_of(const Meeting& meeting, const CloseUpScene& scene) {
 
 Vector2d nearest_on_edge(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
   const Vector2d along = b - a;
-  const double share = along.squaredNorm() > 0.0
-                           ? std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0)
-                           : 0.0;
-  return a + share * along;
+  const double fraction = along.squaredNorm() > 0.0
+                              ? std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0)
+                              : 0.0;
+  return a + fraction * along;
 }
 
 /// A point of each of two rings, such that no two are nearer to each other.

@@ -166,8 +166,8 @@ double audited_m(const std::vector<planning::AuditReport::Sample>& profile, doub
   if (after == profile.end()) return kGap;
   if (after == profile.begin()) return after->t_s > t_s ? kGap : after->clearance_m;
   const auto before = after - 1;
-  const double share = (t_s - before->t_s) / (after->t_s - before->t_s);
-  return before->clearance_m + share * (after->clearance_m - before->clearance_m);
+  const double fraction = (t_s - before->t_s) / (after->t_s - before->t_s);
+  return before->clearance_m + fraction * (after->clearance_m - before->clearance_m);
 }
 
 ReportPlot speed_plot(const Drive& drive) {

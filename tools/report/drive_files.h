@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"

@@ -23,13 +23,14 @@ std::string thing_of(const std::string& obstacle) {
 
 ReportVerdict verdict_of(const AuditReport& report) {
   if (report.beyond_horizon) {
-    return {tone_of(report.verdict), fmt::format("{}: nothing within {:.0f} m",
-                                                 name(report.verdict), report.least_clearance_m)};
+    return {tone_of(report.verdict),
+            fmt::format("{}: nothing within {:.0f} m", to_string(report.verdict),
+                        report.least_clearance_m)};
   }
   return {tone_of(report.verdict),
-          fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}", name(report.verdict),
-                      report.least_clearance_m, report.least_clearance_at_s, report.part,
-                      thing_of(report.obstacle))};
+          fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}",
+                      to_string(report.verdict), report.least_clearance_m,
+                      report.least_clearance_at_s, report.part, thing_of(report.obstacle))};
 }
 
 ReportPlot clearance_by_row(const AuditReport& report, double clearance_m) {
@@ -156,7 +157,8 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   input.plots = {clearance_by_row(report, around.clearance_m), speed_by_row(drive)};
   input.drive.events = events_of_audit(report);
   for (const auto& stretch : judged_stretches(report, drive.start_s(), drive.end_s())) {
-    input.decisions.push_back({stretch.from_s, stretch.to_s, std::string(name(stretch.verdict)),
+    input.decisions.push_back({stretch.from_s, stretch.to_s,
+                               std::string(to_string(stretch.verdict)),
                                reason_of(stretch.verdict)});
   }
   input.checks = checks_of(report, around.clearance_m);

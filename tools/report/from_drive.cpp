@@ -46,7 +46,8 @@ std::string clearance_text(const planning::AuditReport& audit) {
 
 std::optional<ReportVerdict> audit_verdict(const std::optional<planning::AuditReport>& audit) {
   if (!audit) return std::nullopt;
-  std::string text = fmt::format("{}, {}", planning::name(audit->verdict), clearance_text(*audit));
+  std::string text =
+      fmt::format("{}, {}", planning::to_string(audit->verdict), clearance_text(*audit));
   if (audit->unknown_fraction >= 0.005) {
     text += fmt::format("; {:.0f} % of the swept area was never measured",
                         100.0 * audit->unknown_fraction);
@@ -82,7 +83,7 @@ ReportScene scene_of(const Scenario& scenario, const World& world, const Drive& 
 std::vector<ReportDecision> decisions_of(const Drive& drive) {
   std::vector<ReportDecision> decisions;
   for (const DriveCycle& cycle : drive.cycles) {
-    const std::string_view state = name(cycle.behaviour);
+    const std::string_view state = to_string(cycle.behaviour);
     if (decisions.empty() || decisions.back().state != state) {
       if (!decisions.empty()) decisions.back().to_s = cycle.t_s;
       decisions.push_back({cycle.t_s, cycle.t_s, std::string(state), cycle.reason});

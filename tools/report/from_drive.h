@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"

@@ -144,18 +144,6 @@ Json coded_plot(const ReportPlot& plot) {
            })}};
 }
 
-std::string_view name_of(EventLevel level) {
-  switch (level) {
-    case EventLevel::info:
-      return "info";
-    case EventLevel::warning:
-      return "warning";
-    case EventLevel::fault:
-      return "fault";
-  }
-  return "info";
-}
-
 Json coded_vehicle(const ReportInput& input) {
   const geometry::VehicleShape& vehicle = input.scene.vehicle;
   Json parts = Json::array();
@@ -238,7 +226,7 @@ template <typename Enum>
 Json names_of(const Drive& drive, int count) {
   Json names = Json::array();
   if (drive.cycles.empty()) return names;
-  for (int i = 0; i < count; ++i) names.push_back(planning::name(static_cast<Enum>(i)));
+  for (int i = 0; i < count; ++i) names.push_back(planning::to_string(static_cast<Enum>(i)));
   return names;
 }
 
@@ -285,7 +273,7 @@ std::string page_data_json(const ReportInput& input) {
       {"events", list_of(input.drive.events,
                          [](const DriveEvent& event) {
                            return Json{{"t", event.t_s},
-                                       {"severity", name_of(event.level)},
+                                       {"severity", to_string(event.level)},
                                        {"text", event.text}};
                          })},
       {"decisions", list_of(input.decisions,

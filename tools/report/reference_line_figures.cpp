@@ -21,10 +21,10 @@ using Points = std::vector<Vector2d>;
 // A bending road as it is measured: every 3 to 8 m, each point up to 0.5 m off along and across.
 Points measured_centreline() {
   std::mt19937 random(2);
-  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  const auto fraction = [&] { return static_cast<double>(random()) / 4294967296.0; };
   Points points;
-  for (double x_m = 0.0; x_m <= 70.0; x_m += 3.0 + 5.0 * share()) {
-    const Vector2d noise(share() - 0.5, share() - 0.5);
+  for (double x_m = 0.0; x_m <= 70.0; x_m += 3.0 + 5.0 * fraction()) {
+    const Vector2d noise(fraction() - 0.5, fraction() - 0.5);
     points.push_back(Vector2d(x_m, 6.0 * std::sin(x_m / 12.0)) + noise);
   }
   return points;

@@ -9,7 +9,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/map/elements/lane.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/drive.h"
 

@@ -20,8 +20,8 @@ constexpr double kLetter_px = 7.0;  // of a 12 px font, on average and a little 
 
 }  // namespace
 
-std::string speed_colour(double share) {
-  const double place = std::clamp(share, 0.0, 1.0) * (kStops.size() - 1);
+std::string speed_colour(double fraction) {
+  const double place = std::clamp(fraction, 0.0, 1.0) * (kStops.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
   const double part = place - static_cast<double>(below);
   Colour mixed{};

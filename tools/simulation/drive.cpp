@@ -23,7 +23,19 @@ std::optional<Candidate> runner_up_of(const planning::Plan& plan) {
 
 }  // namespace
 
-std::string_view name(Outcome outcome) {
+std::string_view to_string(EventLevel level) {
+  switch (level) {
+    case EventLevel::info:
+      return "info";
+    case EventLevel::warning:
+      return "warning";
+    case EventLevel::fault:
+      return "fault";
+  }
+  return "";
+}
+
+std::string_view to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::goal_reached:
       return "goal reached";

@@ -70,7 +70,8 @@ struct DriveEvent {
 };
 
 enum class Outcome { goal_reached, stopped, collision, timed_out };
-std::string_view name(Outcome outcome);
+std::string_view to_string(Outcome outcome);
+std::string_view to_string(EventLevel level);
 
 struct DriveVerdict {
   Outcome outcome = Outcome::timed_out;

@@ -126,7 +126,8 @@ ordered_json cycles(const Drive& drive) {
         planning::Behaviour::yield, planning::Behaviour::stop, planning::Behaviour::emergency}) {
     const std::size_t cycles =
         count(drive.cycles, [&](const DriveCycle& cycle) { return cycle.behaviour == behaviour; });
-    per_behaviour[std::string(name(behaviour)) + "_s"] = kCycle_s * static_cast<double>(cycles);
+    per_behaviour[std::string(to_string(behaviour)) + "_s"] =
+        kCycle_s * static_cast<double>(cycles);
   }
   return {{"cycles", drive.cycles.size()},
           {"cycles_without_candidate",
@@ -137,22 +138,10 @@ ordered_json cycles(const Drive& drive) {
           {"behaviour", per_behaviour}};
 }
 
-std::string_view name(EventLevel level) {
-  switch (level) {
-    case EventLevel::info:
-      return "info";
-    case EventLevel::warning:
-      return "warning";
-    case EventLevel::fault:
-      return "fault";
-  }
-  return "";
-}
-
 ordered_json events(const Drive& drive) {
   ordered_json list = ordered_json::array();
   for (const DriveEvent& event : drive.events) {
-    list.push_back({{"t_s", event.t_s}, {"level", name(event.level)}, {"text", event.text}});
+    list.push_back({{"t_s", event.t_s}, {"level", to_string(event.level)}, {"text", event.text}});
   }
   return list;
 }
@@ -164,7 +153,7 @@ ordered_json decisions(const Drive& drive) {
   for (const DriveCycle& cycle : drive.cycles) {
     if (!last || last->behaviour != cycle.behaviour) {
       list.push_back({{"t_s", cycle.t_s},
-                      {"behaviour", planning::name(cycle.behaviour)},
+                      {"behaviour", planning::to_string(cycle.behaviour)},
                       {"reason", cycle.reason}});
     }
     last = &cycle;
@@ -189,7 +178,7 @@ ordered_json pedals(const Scenario& scenario, const Drive& drive) {
 
 ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
   if (!audit) return nullptr;
-  return {{"verdict", std::string(planning::name(audit->verdict))},
+  return {{"verdict", std::string(planning::to_string(audit->verdict))},
           {"least_clearance_m", audit->least_clearance_m},
           {"least_clearance_at_s", audit->least_clearance_at_s},
           {"beyond_horizon", audit->beyond_horizon},
@@ -235,7 +224,7 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
   ordered_json metrics = {
       {"scenario", scenario.name},
       {"seed", scenario.seed},
-      {"outcome", std::string(name(drive.verdict.outcome))},
+      {"outcome", std::string(to_string(drive.verdict.outcome))},
       {"text", drive.verdict.text},
       {"goal_reached", drive.verdict.outcome == Outcome::goal_reached},
       {"collision", drive.verdict.outcome == Outcome::collision},

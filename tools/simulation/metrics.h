@@ -6,7 +6,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"

@@ -68,8 +68,8 @@ double wanted_speed_mps(const std::vector<TimedSpeed>& speeds, double t_s) {
   if (after == speeds.begin()) return speeds.front().speed_mps;
   if (after == speeds.end()) return speeds.back().speed_mps;
   const TimedSpeed& before = *std::prev(after);
-  const double share = (t_s - before.t_s) / (after->t_s - before.t_s);
-  return before.speed_mps + share * (after->speed_mps - before.speed_mps);
+  const double fraction = (t_s - before.t_s) / (after->t_s - before.t_s);
+  return before.speed_mps + fraction * (after->speed_mps - before.speed_mps);
 }
 
 double travelled_m(const std::vector<TimedSpeed>& speeds, double t_s) {

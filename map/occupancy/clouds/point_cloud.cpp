@@ -8,7 +8,7 @@
 
 namespace roadbed::map::inline occupancy::inline clouds {
 
-std::string_view name(LengthUnit unit) {
+std::string_view to_string(LengthUnit unit) {
   constexpr std::array<std::string_view, 5> names{"unknown", "metres", "feet", "US survey feet",
                                                   "degrees"};
   return names[static_cast<std::size_t>(unit)];
@@ -28,7 +28,7 @@ void check_is_in_metres(const PointCloud& cloud) {
   if (cloud.unit == LengthUnit::unknown || cloud.unit == LengthUnit::metre) return;
   throw InputError({.file = cloud.name,
                     .element = cloud.crs,
-                    .found = fmt::format("coordinates are in {}", name(cloud.unit)),
+                    .found = fmt::format("coordinates are in {}", to_string(cloud.unit)),
                     .needed = "metres",
                     .remedy = cloud.unit == LengthUnit::degree
                                   ? "project the cloud first"

@@ -10,7 +10,7 @@ namespace roadbed::map::inline occupancy::inline clouds {
 
 /// What one step of a coordinate means, as far as the file says it.
 enum class LengthUnit { unknown, metre, foot, us_survey_foot, degree };
-std::string_view name(LengthUnit unit);
+std::string_view to_string(LengthUnit unit);
 
 /// Points from `first` on were measured from here, until the next one of these.
 struct ScanStart {

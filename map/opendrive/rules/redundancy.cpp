@@ -19,8 +19,8 @@ constexpr double kNothing = 1e-6;  // [m], [rad] a difference that no road has
 /// four stations are the same.
 bool goes_on(const geometry::CubicRecord& before, const geometry::CubicRecord& record,
              double length_m) {
-  for (const double share : {0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0}) {
-    const double ds_m = share * length_m;
+  for (const double fraction : {0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0}) {
+    const double ds_m = fraction * length_m;
     const double old = value_at(before, record.s_m - before.s_m + ds_m);
     if (!(std::abs(value_at(record, ds_m) - old) <= kNothing)) return false;
   }

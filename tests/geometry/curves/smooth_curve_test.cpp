@@ -37,9 +37,9 @@ Eigen::Vector2d de_boor(const Points& control, int degree, double t) {
   for (int r = 1; r <= degree; ++r) {
     for (int j = degree; j >= r; --j) {
       const double knot = span - degree + j;
-      const double share = (t - knot) / (degree - r + 1);
-      d[static_cast<std::size_t>(j)] = (1.0 - share) * d[static_cast<std::size_t>(j - 1)] +
-                                       share * d[static_cast<std::size_t>(j)];
+      const double fraction = (t - knot) / (degree - r + 1);
+      d[static_cast<std::size_t>(j)] = (1.0 - fraction) * d[static_cast<std::size_t>(j - 1)] +
+                                       fraction * d[static_cast<std::size_t>(j)];
     }
   }
   return d.back();

@@ -10,14 +10,14 @@ namespace {
 
 TEST(VehicleShape, CirclesCoverTheWholeRectangle) {
   std::mt19937 random(20261121);
-  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::uniform_real_distribution<double> fraction(0.0, 1.0);
   for (int count = 1; count <= 6; ++count) {
     const VehicleShape shape;
     const CoveringCircles circles = covering_circles(shape, count);
     double farthest = 0.0;
     for (int i = 0; i < 20'000; ++i) {
-      const Eigen::Vector2d point(-shape.rear_overhang_m + share(random) * shape.length_m,
-                                  (share(random) - 0.5) * shape.width_m);
+      const Eigen::Vector2d point(-shape.rear_overhang_m + fraction(random) * shape.length_m,
+                                  (fraction(random) - 0.5) * shape.width_m);
       double nearest = 1e9;
       for (const double x_m : circles.centres_x_m) {
         nearest = std::min(nearest, (point - Eigen::Vector2d(x_m, 0.0)).norm());

@@ -16,8 +16,8 @@ double distance_to_ring_m(const Ring& ring, const Vector2d& point) {
   double least = 1e300;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Vector2d a = ring[i], b = ring[(i + 1) % ring.size()];
-    const double share = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (point - a - share * (b - a)).norm());
+    const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (point - a - fraction * (b - a)).norm());
   }
   return least;
 }

@@ -35,7 +35,7 @@ const LaneLinks& links(const RoadMap& road_map, const std::string& name) {
 
 std::vector<std::string> rules(const RoadMap& road_map) {
   std::vector<std::string> found;
-  for (const ImportDiagnostic& remark : road_map.remarks()) {
+  for (const ImportDiagnostic& remark : road_map.import_diagnostics()) {
     if (remark.is_fault) found.push_back(remark.rule);
   }
   return found;

@@ -49,7 +49,7 @@ TEST(LaneFrame, HasNoPlaceBeforeTheStartOrBeyondTheEnd) {
 TEST(LaneFrame, ComesBackToThePlaceOnEveryLaneOfRealTowns) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   std::mt19937 random(20261121);
-  std::uniform_real_distribution<double> share(0.001, 0.999), offset_m(-2.0, 2.0);
+  std::uniform_real_distribution<double> fraction(0.001, 0.999), offset_m(-2.0, 2.0);
   int places = 0, ambiguous = 0;
   for (const std::string town : {"Town01", "Town04"}) {
     const RoadMap road_map =
@@ -58,7 +58,7 @@ TEST(LaneFrame, ComesBackToThePlaceOnEveryLaneOfRealTowns) {
       if (!is_drivable(lane.type) || lane.length_m() < 1.0) continue;
       const LaneFrame frame(lane);
       for (int i = 0; i < 5; ++i) {
-        const double s = share(random) * lane.length_m(), d = offset_m(random);
+        const double s = fraction(random) * lane.length_m(), d = offset_m(random);
         const Vector2d point = frame.to_map(s, d);
         const auto back = frame.to_lane(point);
         ++places;

@@ -26,8 +26,9 @@ TEST(LanesInBox, AreThoseWithAPointInIt) {
       bool sampled = false;  // dense sampling finds all but the slightest overlaps
       for (int x = 0; x <= 40 && !sampled; ++x) {
         for (int y = 0; y <= 40 && !sampled; ++y) {
-          const Vector2d share(x / 40.0, y / 40.0);
-          sampled = geometry::contains(lane.polygon, box.min() + share.cwiseProduct(box.sizes()));
+          const Vector2d fraction(x / 40.0, y / 40.0);
+          sampled =
+              geometry::contains(lane.polygon, box.min() + fraction.cwiseProduct(box.sizes()));
         }
       }
       const bool listed = std::find(lanes.begin(), lanes.end(), lane.id) != lanes.end();

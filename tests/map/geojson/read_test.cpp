@@ -106,11 +106,11 @@ TEST(GeoJsonSurface, ThePolygonWithABadRingIsLeftOutAndTheRingNamed) {
                 polygon("[[[0,0],[100,0],[100,90],[0,90],[0,0]],[[1,1],[2,1],[2,2],[1,1]],"
                         "[[200,1],[210,1],[210,2],[200,1]]]")));
   EXPECT_THAT(road_map.areas(), SizeIs(1));
-  ASSERT_THAT(road_map.remarks(), SizeIs(2));
-  EXPECT_EQ(road_map.remarks()[0].element, "feature 2, polygon 1");
-  EXPECT_THAT(road_map.remarks()[0].message, HasSubstr("outer ring: its edges cross"));
-  EXPECT_EQ(road_map.remarks()[1].element, "feature 3, polygon 1");
-  EXPECT_THAT(road_map.remarks()[1].message, HasSubstr("hole 2: it lies outside"));
+  ASSERT_THAT(road_map.import_diagnostics(), SizeIs(2));
+  EXPECT_EQ(road_map.import_diagnostics()[0].element, "feature 2, polygon 1");
+  EXPECT_THAT(road_map.import_diagnostics()[0].message, HasSubstr("outer ring: its edges cross"));
+  EXPECT_EQ(road_map.import_diagnostics()[1].element, "feature 3, polygon 1");
+  EXPECT_THAT(road_map.import_diagnostics()[1].message, HasSubstr("hole 2: it lies outside"));
 }
 
 TEST(GeoJsonSurface, OtherGeometriesAreCounted) {

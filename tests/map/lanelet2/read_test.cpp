@@ -31,7 +31,7 @@ std::vector<std::int64_t> names(const RoadMap& road_map, const std::vector<LaneI
 }
 
 bool has_remark(const RoadMap& road_map, const std::string& rule) {
-  return std::any_of(road_map.remarks().begin(), road_map.remarks().end(),
+  return std::any_of(road_map.import_diagnostics().begin(), road_map.import_diagnostics().end(),
                      [&](const ImportDiagnostic& remark) { return remark.rule == rule; });
 }
 

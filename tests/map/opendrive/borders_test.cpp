@@ -29,8 +29,9 @@ std::vector<Vector3d> points_of(const LaneLine& line) {
 double distance_m(const Vector3d& point, const Vector3d& a, const Vector3d& b) {
   const Vector3d along = b - a;
   const double length2 = along.squaredNorm();
-  const double share = length2 > 0.0 ? std::clamp((point - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (point - a - share * along).norm();
+  const double fraction =
+      length2 > 0.0 ? std::clamp((point - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return (point - a - fraction * along).norm();
 }
 
 double distance_m(const Vector3d& point, const std::vector<Vector3d>& line) {

@@ -35,7 +35,7 @@ TEST(OpenDriveHeader, ACrsWithoutAProjectionIsKeptAndSaid) {
 
 TEST(OpenDriveHeader, AWholeFileLeavesNoRemark) {
   const RoadMap road_map = made_map(made_road({}));
-  EXPECT_TRUE(road_map.remarks().empty());
+  EXPECT_TRUE(road_map.import_diagnostics().empty());
   EXPECT_TRUE(road_map.unused().empty());
 }
 

@@ -140,9 +140,10 @@ TEST(OpenDrive, ALanesOwnSpeedLimitOverridesTheRoads) {
 TEST(OpenDrive, ALinkToAMissingRoadIsRemarkedNotRefused) {
   const RoadMap road_map = parse(straight_road(
       "A", 0, R"(<successor elementType="road" elementId="99" contactPoint="start"/>)"));
-  const auto fault = std::find_if(road_map.remarks().begin(), road_map.remarks().end(),
-                                  [](const ImportDiagnostic& r) { return r.is_fault; });
-  ASSERT_NE(fault, road_map.remarks().end());
+  const auto fault =
+      std::find_if(road_map.import_diagnostics().begin(), road_map.import_diagnostics().end(),
+                   [](const ImportDiagnostic& r) { return r.is_fault; });
+  ASSERT_NE(fault, road_map.import_diagnostics().end());
   EXPECT_THAT(fault->message, HasSubstr("road 99"));
   EXPECT_EQ(fault->element, "road A");
 }
@@ -229,7 +230,7 @@ TEST(OpenDrive, PrefixesOfTheNamespaceChangeNothing) {
 
 std::vector<std::string> remarked(const RoadMap& road_map) {
   std::vector<std::string> rules;
-  for (const ImportDiagnostic& remark : road_map.remarks()) {
+  for (const ImportDiagnostic& remark : road_map.import_diagnostics()) {
     if (remark.is_fault) rules.push_back(remark.rule);
   }
   return rules;

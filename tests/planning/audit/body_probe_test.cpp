@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tests/support/part_distance.h"
 #include "roadbed/tests/support/random_drive.h"
 

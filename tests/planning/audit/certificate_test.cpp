@@ -6,8 +6,8 @@
 #include <random>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tests/support/random_drive.h"
 
 namespace roadbed::planning {

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tests/support/brute_force_distance.h"
 #include "roadbed/tests/support/random_drive.h"
 
@@ -36,7 +36,7 @@ map::OccupancyMap far_post() {
 // That nothing was measured near the drive is not what these tests are about.
 Verdict among_what_moves(AuditReport report) {
   report.unknown.clear();
-  return judge(report);
+  return verdict_of(report);
 }
 
 Trajectory any_motion(std::mt19937& random, double spread_m, std::size_t rows, double from_s) {

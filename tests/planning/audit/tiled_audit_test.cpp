@@ -4,9 +4,9 @@
 #include <random>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/audit/audit.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/certificate_check.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 
 namespace roadbed::planning {
 namespace {

@@ -55,9 +55,9 @@ class PlainSearch {
     std::map<Cell, PlainState> kept;
     for (const PlainState& from : states) {
       std::vector<double> commands;
-      for (const double share : {1.0, 0.7, 0.45, 0.25, 0.1}) {
-        commands.push_back(share * options_.least_mps2);
-        commands.push_back(share * options_.most_mps2);
+      for (const double fraction : {1.0, 0.7, 0.45, 0.25, 0.1}) {
+        commands.push_back(fraction * options_.least_mps2);
+        commands.push_back(fraction * options_.most_mps2);
       }
       commands.push_back(0.0);
       const double hold = std::clamp(0.8 * (wanted(from) - from.speed), -1.2, 1.2);

@@ -160,8 +160,8 @@ CornerRing corners_of(const Vector2d& at, double heading_rad, double back_m, dou
 }
 
 double to_segment_m(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
-  const double share = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (a + share * (b - a) - point).norm();
+  const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (a + fraction * (b - a) - point).norm();
 }
 
 bool ring_holds(const CornerRing& ring, const Vector2d& point) {

@@ -125,8 +125,8 @@ TEST(Corridor, CoversEveryPlaceOfTheRoute) {
   ASSERT_TRUE(answer.route);
   const auto area = area_of(town(), corridor_of(town(), *answer.route));
   for (const RouteLeg& leg : answer.route->legs) {
-    for (const double share : {0.01, 0.5, 0.99}) {
-      const double s_m = leg.from_s_m + share * (leg.to_s_m - leg.from_s_m);
+    for (const double fraction : {0.01, 0.5, 0.99}) {
+      const double s_m = leg.from_s_m + fraction * (leg.to_s_m - leg.from_s_m);
       const Eigen::Vector2d point = town().lane(leg.lane).pose_at(s_m).position();
       EXPECT_TRUE(std::any_of(area.begin(), area.end(), [&](const geometry::Polygon& part) {
         return geometry::contains(part, point);

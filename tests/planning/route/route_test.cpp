@@ -72,10 +72,10 @@ RoadMap random_grid(std::mt19937& random, int columns, int rows) {
 
 LanePlace random_place(std::mt19937& random, const RoadMap& road_map) {
   std::uniform_int_distribution<std::size_t> lane(0, road_map.lanes().size() - 1);
-  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::uniform_real_distribution<double> fraction(0.0, 1.0);
   for (;;) {
     const map::Lane& chosen = road_map.lanes()[lane(random)];
-    if (is_drivable(chosen.type)) return {chosen.id, share(random) * chosen.length_m(), 0.0};
+    if (is_drivable(chosen.type)) return {chosen.id, fraction(random) * chosen.length_m(), 0.0};
   }
 }
 

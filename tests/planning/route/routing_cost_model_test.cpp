@@ -35,10 +35,11 @@ RouteNetwork lane_group(const std::vector<double>& lengths_m,
 }
 
 // Whether changes of that room fit, tried at every start on a fine raster.
-bool fits(const RouteNetwork& network, std::size_t change, double share, double to, double room_m) {
+bool fits(const RouteNetwork& network, std::size_t change, double fraction, double to,
+          double room_m) {
   if (change + 1 == network.lanes.size()) return true;
   const double length_m = network.lanes[change].length_m;
-  for (double at = share; at <= to; at += 0.002) {
+  for (double at = fraction; at <= to; at += 0.002) {
     const double end = at + room_m / length_m;
     if (end > to + 1e-9) return false;
     for (const auto& window : network.right_windows.of(change)) {

@@ -243,8 +243,8 @@ int compare(const map::RoadMap& road_map, map::Participant user, int queries,
     const auto any_place = [&] {
       for (;;) {
         const LaneId lane{static_cast<std::uint32_t>(random() % road_map.lanes().size())};
-        const double share = 0.1 * static_cast<double>(random() % 11);
-        const map::LanePlace place{lane, share * road_map.lane(lane).length_m(), 0.0};
+        const double fraction = 0.1 * static_cast<double>(random() % 11);
+        const map::LanePlace place{lane, fraction * road_map.lane(lane).length_m(), 0.0};
         if (router.is_fit(place)) return place;
       }
     };

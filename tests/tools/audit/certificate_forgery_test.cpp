@@ -26,7 +26,7 @@
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
-#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/cli/inputs.h"

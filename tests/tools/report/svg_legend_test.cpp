@@ -13,8 +13,8 @@ int brightness(const std::string& colour) {
 }
 
 TEST(SpeedColour, IsBrighterTheFasterItIs) {
-  for (double share = 0.0; share < 0.99; share += 0.02) {
-    EXPECT_LT(brightness(speed_colour(share)), brightness(speed_colour(share + 0.02)));
+  for (double fraction = 0.0; fraction < 0.99; fraction += 0.02) {
+    EXPECT_LT(brightness(speed_colour(fraction)), brightness(speed_colour(fraction + 0.02)));
   }
   EXPECT_EQ(speed_colour(-1.0), "#440154");
   EXPECT_EQ(speed_colour(2.0), "#fde725");

@@ -38,8 +38,8 @@ map::LanePlace random_place(const map::RoadMap& road_map, std::mt19937& random) 
     if (map::is_drivable(lane.type) && !lane.polygon.empty()) drivable.push_back(lane.id);
   }
   const map::LaneId lane = drivable[random() % drivable.size()];
-  const double share = static_cast<double>(1 + random() % 998) / 1000.0;
-  return {.lane = lane, .s_m = share * road_map.lane(lane).length_m()};
+  const double fraction = static_cast<double>(1 + random() % 998) / 1000.0;
+  return {.lane = lane, .s_m = fraction * road_map.lane(lane).length_m()};
 }
 
 std::string text_of(const map::RoadMap& road_map, const map::LanePlace& place) {

@@ -9,7 +9,7 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/files/vehicle_json.h"

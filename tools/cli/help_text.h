@@ -10,6 +10,6 @@ namespace roadbed::tools::inline cli {
 
 /// How helps look: lines of at most 100 columns, values named by what they are, limits and default
 /// in words behind the explanation.
-std::shared_ptr<CLI::FormatterBase> make_help_format();
+std::shared_ptr<CLI::FormatterBase> make_help_formatter();
 
 }  // namespace roadbed::tools::cli

@@ -1,4 +1,4 @@
-#include "roadbed/map/opendrive/shape.h"
+#include "roadbed/map/opendrive/lateral_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,8 +45,8 @@ double LateralShape::height_m(double s_m, double t_m) const {
   const std::size_t i = profile_at(s_m);
   const double here_m = profiles_[i].over_t.at(t_m).value;
   if (i + 1 == profiles_.size() || s_m <= profiles_[i].s_m) return here_m;
-  const double share = (s_m - profiles_[i].s_m) / (profiles_[i + 1].s_m - profiles_[i].s_m);
-  return (1.0 - share) * here_m + share * profiles_[i + 1].over_t.at(t_m).value;
+  const double fraction = (s_m - profiles_[i].s_m) / (profiles_[i + 1].s_m - profiles_[i].s_m);
+  return (1.0 - fraction) * here_m + fraction * profiles_[i + 1].over_t.at(t_m).value;
 }
 
 LateralShape::Bounds LateralShape::bounds(double from_s_m, double to_s_m, double t_m,

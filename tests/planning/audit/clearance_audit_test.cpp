@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 
 #include <gtest/gtest.h>
 

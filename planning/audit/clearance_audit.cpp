@@ -1,8 +1,7 @@
-#include "roadbed/planning/audit/audit.h"
+#include "roadbed/planning/audit/clearance_audit.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "roadbed/planning/audit/moving_probe.h"
 #include "roadbed/planning/audit/part_audit.h"
@@ -44,9 +43,9 @@ AuditReport audit_clearance(const map::ClearanceField& field,
   if (!moving_in_source.empty())
     changed = with_samples_at_changes(drive_in_source, moving_in_source);
   const geometry::Trajectory& drive = changed ? *changed : drive_in_source;
-  const auto whole = std::make_unique<PartAudit>(field, drive, part, options, moving_in_source);
-  PartAudit::sweep({&whole, 1});
-  return judged(whole->report(), drive_in_source);
+  const PartInField whole{field, part};
+  return judged(audit_parts({&whole, 1}, drive, options, moving_in_source).front(),
+                drive_in_source);
 }
 
 }  // namespace roadbed::planning::audit

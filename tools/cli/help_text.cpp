@@ -1,4 +1,4 @@
-#include "roadbed/tools/cli/help_format.h"
+#include "roadbed/tools/cli/help_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -104,7 +104,7 @@ std::string narrowing(const CLI::Option& option) {
   return notes.empty() ? "" : fmt::format(" ({})", fmt::join(notes, "; "));
 }
 
-class HelpFormat : public CLI::Formatter {
+class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
@@ -129,6 +129,8 @@ class HelpFormat : public CLI::Formatter {
 
 }  // namespace
 
-std::shared_ptr<CLI::FormatterBase> make_help_format() { return std::make_shared<HelpFormat>(); }
+std::shared_ptr<CLI::FormatterBase> make_help_formatter() {
+  return std::make_shared<HelpFormatter>();
+}
 
 }  // namespace roadbed::tools::cli

@@ -205,8 +205,11 @@ std::vector<std::reference_wrapper<const LaneRecord>> LaneSection::listed() cons
   return list;
 }
 
-void read_sections(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road,
-                   Document& document) {
+void read_lane_offset(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road) {
+  road.lane_offset.listed = read_cubics(in, lanes, "laneOffset", "s", 0.0);
+}
+
+void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Document& document) {
   if (const auto beyond = first_lane_beyond(document.lanes_left, lanes)) {
     in.refuse(beyond, "more lanes than a map of this size can hold", "fewer lane sections",
               "check whether the file is whole");

@@ -1,4 +1,4 @@
-#include "roadbed/planning/lateral/cost.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 
 #include <gtest/gtest.h>
 
@@ -190,8 +190,8 @@ TEST(Cost, TimeIsTheDurationAgainstTheLongestAtThePresentSpeed) {
     };
     duration += (slowness(i) + slowness(i + 1)) / 2 * Real(c.s(i + 1) - c.s(i));
   }
-  const double share = static_cast<double>(duration) * 9.0 / 30.0;
-  EXPECT_NEAR(time_term(c.points, frame), share * share, 1e-9);
+  const double fraction = static_cast<double>(duration) * 9.0 / 30.0;
+  EXPECT_NEAR(time_term(c.points, frame), fraction * fraction, 1e-9);
 }
 
 TEST(Cost, LengthPrefersTheLongestCandidate) {
@@ -214,7 +214,7 @@ TEST(Cost, KeepsItsMeaningWhenThereAreMorePoints) {
   const CostTerms few = cost_terms(cost_points(stations_over(context, 20.0, 31), quintic), frame);
   const CostTerms many = cost_terms(cost_points(stations_over(context, 20.0, 601), quintic), frame);
   for (std::size_t i = 0; i < few.size(); ++i) {
-    EXPECT_NEAR(few[i], many[i], 0.02 * (many[i] + 0.01)) << name(static_cast<CostTerm>(i));
+    EXPECT_NEAR(few[i], many[i], 0.02 * (many[i] + 0.01)) << to_string(static_cast<CostTerm>(i));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/probe.h"
+#include "roadbed/planning/audit/clearance_probe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace roadbed::planning::inline audit {
 
-Probe::Probe(const geometry::Trajectory& drive, double reach_m)
+ClearanceProbe::ClearanceProbe(const geometry::Trajectory& drive, double reach_m)
     : drive_(drive), reach_m_(reach_m), moved_m_(segments() + 1) {
   for (std::size_t segment = 0; segment < segments(); ++segment) {
     moved_m_[segment + 1] = moved_m_[segment] + segment_motion_m(segment) + 2.0 * kRounding_m;
@@ -15,21 +15,23 @@ Probe::Probe(const geometry::Trajectory& drive, double reach_m)
       std::numeric_limits<double>::epsilon() * static_cast<double>(segments()) * moved_m_.back();
 }
 
-std::size_t Probe::segments() const { return std::max<std::size_t>(1, drive_.points().size() - 1); }
+std::size_t ClearanceProbe::segments() const {
+  return std::max<std::size_t>(1, drive_.points().size() - 1);
+}
 
-geometry::TrajectoryPoint Probe::state_at(std::size_t segment, double fraction) const {
+geometry::TrajectoryPoint ClearanceProbe::state_at(std::size_t segment, double fraction) const {
   const auto& samples = drive_.points();
   return geometry::interpolate(samples[segment], samples[std::min(segment + 1, samples.size() - 1)],
                                fraction);
 }
 
-double Probe::time_at(std::size_t segment, double fraction) const {
+double ClearanceProbe::time_at(std::size_t segment, double fraction) const {
   const auto& samples = drive_.points();
   const double from_s = samples[segment].t_s;
   return from_s + fraction * (samples[std::min(segment + 1, samples.size() - 1)].t_s - from_s);
 }
 
-std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
+std::size_t ClearanceProbe::next_after(std::size_t segment, double spare_m) const {
   ++segment;
   if (!is_continuous() || !(spare_m >= 0.0) || !std::isfinite(moved_m_.back())) return segment;
   const auto after = moved_m_.begin() + static_cast<std::ptrdiff_t>(segment) + 1;
@@ -38,7 +40,7 @@ std::size_t Probe::next_after(std::size_t segment, double spare_m) const {
   return static_cast<std::size_t>(beyond - moved_m_.begin()) - 1;
 }
 
-Probe::Place Probe::place_moved(double moved_m) const {
+ClearanceProbe::Place ClearanceProbe::place_moved(double moved_m) const {
   const auto after = std::upper_bound(moved_m_.begin() + 1, moved_m_.end() - 1, moved_m);
   const auto segment = static_cast<std::size_t>(after - moved_m_.begin()) - 1;
   const double fraction =
@@ -46,7 +48,7 @@ Probe::Place Probe::place_moved(double moved_m) const {
   return {segment, std::clamp(fraction, 0.0, 1.0)};
 }
 
-double Probe::moved_at_m(double t_s) const {
+double ClearanceProbe::moved_at_m(double t_s) const {
   const auto& samples = drive_.points();
   if (samples.size() == 1) return 0.0;
   const auto after = std::upper_bound(
@@ -58,7 +60,7 @@ double Probe::moved_at_m(double t_s) const {
   return moved_m_[segment] + fraction * (moved_m_[segment + 1] - moved_m_[segment]);
 }
 
-geometry::Pose2 Probe::pose_at(std::size_t segment, double fraction) const {
+geometry::Pose2 ClearanceProbe::pose_at(std::size_t segment, double fraction) const {
   const auto& samples = drive_.points();
   const geometry::TrajectoryPoint& a = samples[segment];
   const geometry::TrajectoryPoint& b = samples[std::min(segment + 1, samples.size() - 1)];
@@ -66,7 +68,7 @@ geometry::Pose2 Probe::pose_at(std::size_t segment, double fraction) const {
           a.heading_rad + fraction * (b.heading_rad - a.heading_rad)};
 }
 
-double Probe::segment_motion_m(std::size_t segment) const {
+double ClearanceProbe::segment_motion_m(std::size_t segment) const {
   const auto& samples = drive_.points();
   const geometry::TrajectoryPoint& a = samples[segment];
   const geometry::TrajectoryPoint& b = samples[std::min(segment + 1, samples.size() - 1)];
@@ -75,7 +77,7 @@ double Probe::segment_motion_m(std::size_t segment) const {
   return way_m + reach_m_ * std::abs(b.heading_rad - a.heading_rad);
 }
 
-double Probe::motion_bound_m(const Span& span) const {
+double ClearanceProbe::motion_bound_m(const Span& span) const {
   if (span.segments == 1) {
     return 0.5 * (span.to - span.from) * segment_motion_m(span.segment) + kRounding_m;
   }

@@ -22,9 +22,9 @@ inline constexpr auto kTooMuchToCheck =
 std::int64_t tile_key(std::int64_t tile_x, std::int64_t tile_y);
 
 /// Axis-aligned boxes in plan view, each kept in the squares of a coarse grid that it meets.
-class BoxBuckets {
+class BoxGrid {
  public:
-  explicit BoxBuckets(double side_m) : side_m_(side_m) {}
+  explicit BoxGrid(double side_m) : side_m_(side_m) {}
 
   void add(const map::Box2& box);
 

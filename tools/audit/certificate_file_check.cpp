@@ -1,4 +1,4 @@
-#include "roadbed/tools/audit/certificate_check.h"
+#include "roadbed/tools/audit/certificate_file_check.h"
 
 #include <fmt/format.h>
 
@@ -108,8 +108,8 @@ class CertificateCheck {
     demand("a measured share of at least", demands_.least_measured, file_.least_measured, "");
     if (demands_.unknown && *demands_.unknown != question.unknown_policy) {
       faults_.push_back(fmt::format("unknown space counts as {}, not {}",
-                                    planning::name(question.unknown_policy),
-                                    planning::name(*demands_.unknown)));
+                                    planning::to_string(question.unknown_policy),
+                                    planning::to_string(*demands_.unknown)));
     }
     if (!demands_.ground.empty() && ground_text() != demands_.ground) compare_ground();
   }
@@ -218,7 +218,7 @@ std::string CertificateCheck::question() const {
   }
   return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
                             audit.inflate_m, audit.clearance_m,
-                            planning::name(audit.unknown_policy),
+                            planning::to_string(audit.unknown_policy),
                             file_.obstacles ? "what moves is that of " + file_.obstacles->name
                                             : "nothing moves");
 }
@@ -228,7 +228,7 @@ void CertificateCheck::print(std::ostream& out) const {
     out << fmt::format("{:<17}{}\n", head, text);
   };
   line("certificate", faults_.empty() ? "holds" : "does not hold");
-  line("verdict", fmt::format("{}, as written by {}", name(file_.verdict()), file_.program));
+  line("verdict", fmt::format("{}, as written by {}", to_string(file_.verdict()), file_.program));
   line("question", question());
   for (const CheckedFile& checked : files_) {
     line(checked.role, fmt::format("{}, SHA-256 {}", checked.file.name, checked.file.sha256));
@@ -257,7 +257,7 @@ Json CertificateCheck::json() const {
   }
   return {{"holds", faults_.empty()},
           {"question", question()},
-          {"verdict", name(file_.verdict())},
+          {"verdict", to_string(file_.verdict())},
           {"certified_clearance_m", file_.certified_clearance_m()},
           {"measured_share", file_.measured_fraction()},
           {"least_measured", file_.least_measured},

@@ -1,4 +1,4 @@
-#include "roadbed/planning/lateral/cost.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ double counted_speed_mps(double speed_mps) { return std::max(speed_mps, kSlowest
 
 }  // namespace
 
-std::string_view name(CostTerm term) { return kNames.at(static_cast<std::size_t>(term)); }
+std::string_view to_string(CostTerm term) { return kNames.at(static_cast<std::size_t>(term)); }
 
 double length_term(const CostFrame& frame) {
   const double missing = 1.0 - frame.end_l_m / frame.max_l_m;

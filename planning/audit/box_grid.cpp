@@ -1,4 +1,4 @@
-#include "roadbed/planning/audit/box_buckets.h"
+#include "roadbed/planning/audit/box_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +23,12 @@ std::int64_t tile_key(std::int64_t tile_x, std::int64_t tile_y) {
                                    static_cast<std::uint32_t>(tile_y));
 }
 
-std::int64_t BoxBuckets::bucket(double at_m) const {
+std::int64_t BoxGrid::bucket(double at_m) const {
   return static_cast<std::int64_t>(
       std::floor(std::clamp(at_m, -kFarthest_m, kFarthest_m) / side_m_));
 }
 
-void BoxBuckets::add(const map::Box2& box) {
+void BoxGrid::add(const map::Box2& box) {
   constexpr std::int64_t most_buckets = 10'000;
   if (boxes_.size() >= kMostBoxes) throw std::length_error(kTooMuchToCheck);
   const auto number = static_cast<std::uint32_t>(boxes_.size());
@@ -41,8 +41,8 @@ void BoxBuckets::add(const map::Box2& box) {
   }
 }
 
-double BoxBuckets::least_of(const Bucket& bucket, const BodyOutline::Place& body,
-                            const map::Box2& around, double least_m) const {
+double BoxGrid::least_of(const Bucket& bucket, const BodyOutline::Place& body,
+                         const map::Box2& around, double least_m) const {
   for (const std::uint32_t i : bucket) {
     if (squared_gap_m2(around, boxes_[i]) >= least_m * least_m) continue;
     least_m = std::min(least_m, body.distance_m(corners_of(boxes_[i])));
@@ -51,13 +51,13 @@ double BoxBuckets::least_of(const Bucket& bucket, const BodyOutline::Place& body
 }
 
 // As a square, which holds what its boxes have in it; what sticks out is in other buckets as well.
-map::Box2 BoxBuckets::square(std::int64_t x, std::int64_t y) const {
+map::Box2 BoxGrid::square(std::int64_t x, std::int64_t y) const {
   const Eigen::Vector2d least =
       side_m_ * Eigen::Vector2d(static_cast<double>(x), static_cast<double>(y));
   return {least, least.array() + side_m_};
 }
 
-double BoxBuckets::distance_m(const BodyOutline::Place& body, double limit_m) const {
+double BoxGrid::distance_m(const BodyOutline::Place& body, double limit_m) const {
   const map::Box2 around = body.around();
   double least_m = least_of(wide_, body, around, limit_m);
   const std::int64_t from_x = bucket(around.min_in_source.x() - limit_m),
@@ -80,7 +80,7 @@ double BoxBuckets::distance_m(const BodyOutline::Place& body, double limit_m) co
   return least_m;
 }
 
-bool BoxBuckets::holds(const Eigen::Vector2d& point) const {
+bool BoxGrid::holds(const Eigen::Vector2d& point) const {
   const auto in = [&](std::uint32_t i) {
     return (boxes_[i].min_in_source.array() < point.array()).all() &&
            (point.array() < boxes_[i].max_in_source.array()).all();

@@ -35,13 +35,13 @@ struct Span {
 
 /// What the audit asks of the things around a drive: how far the body is from them in the middle of
 /// a span, and how much that may change within it.
-class Probe {
+class ClearanceProbe {
  public:
   /// O(samples).
-  Probe(const geometry::Trajectory& drive, double reach_m);
-  virtual ~Probe() = default;
-  Probe(const Probe&) = delete;
-  Probe& operator=(const Probe&) = delete;
+  ClearanceProbe(const geometry::Trajectory& drive, double reach_m);
+  virtual ~ClearanceProbe() = default;
+  ClearanceProbe(const ClearanceProbe&) = delete;
+  ClearanceProbe& operator=(const ClearanceProbe&) = delete;
 
   std::size_t segments() const;  ///< at least one: a single sample is a segment without motion
   geometry::TrajectoryPoint state_at(std::size_t segment, double fraction) const;

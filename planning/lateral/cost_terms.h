@@ -6,7 +6,9 @@
 
 namespace roadbed::planning::inline lateral {
 
-/// The twelve terms of the paper's Table 1, in its order.
+/// The twelve terms of the paper's Table 1, in its order: one candidate at a time, as the equations
+/// say. The search ranks all candidates by the same numbers, many at once (CandidateBatch,
+/// batch_cost_kernel.h); tests hold the two together.
 enum class CostTerm {
   length,
   curvature,
@@ -22,7 +24,7 @@ enum class CostTerm {
   time,
 };
 inline constexpr int kCostTerms = 12;
-std::string_view name(CostTerm term);
+std::string_view to_string(CostTerm term);
 
 /// One number per term, in the order of CostTerm; `of(terms, CostTerm::time)` reads better.
 using CostTerms = std::array<double, kCostTerms>;
