@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <utility>
 
 namespace roadbed::geometry::inline polygons {
 namespace {
@@ -75,6 +77,31 @@ Graph graph_of(const Polygon& polygon) {
   return graph;
 }
 
+// CGAL tells faces and edges in an order that hangs on where they lie in memory, and a ring without
+// a fork begins at the first: nodes by place, edges by nodes.
+VoronoiGraph in_order(VoronoiGraph graph) {
+  std::vector<std::size_t> by_place(graph.nodes.size()), rank(graph.nodes.size());
+  std::iota(by_place.begin(), by_place.end(), std::size_t{0});
+  std::ranges::stable_sort(by_place, {}, [&](std::size_t node) {
+    return std::pair(graph.nodes[node].at.x(), graph.nodes[node].at.y());
+  });
+  VoronoiGraph ordered;
+  for (std::size_t i = 0; i < by_place.size(); ++i) {
+    rank[by_place[i]] = i;
+    ordered.nodes.push_back(graph.nodes[by_place[i]]);
+  }
+  for (VoronoiGraph::Edge edge : graph.edges) {
+    const auto [from, to] = std::minmax(rank[edge.from], rank[edge.to]);
+    edge.from = from;
+    edge.to = to;
+    ordered.edges.push_back(edge);
+  }
+  std::ranges::stable_sort(ordered.edges, {}, [](const VoronoiGraph::Edge& edge) {
+    return std::pair(edge.from, edge.to);
+  });
+  return ordered;
+}
+
 }  // namespace
 
 VoronoiGraph interior_voronoi(const Polygon& polygon) {
@@ -101,7 +128,7 @@ VoronoiGraph interior_voronoi(const Polygon& polygon) {
     if (touch(a, b)) continue;
     found.edges.push_back({from->second, to->second, parabola(a, b)});
   }
-  return found;
+  return in_order(std::move(found));
 }
 
 }  // namespace roadbed::geometry::polygons

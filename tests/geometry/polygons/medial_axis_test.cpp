@@ -136,6 +136,22 @@ TEST(MedialAxis, EveryPlaceIsHalfItsWidthFromTheBoundary) {
   }
 }
 
+TEST(MedialAxis, OfARingRoadBeginsAtTheSamePlaceWhereverItsRingsBegin) {
+  const Polygon ring{circle({5, 5}, 20, 90), {circle({5.5, 5.3}, 14, 90, true)}};
+  const Polyline first = medial_axis(ring).front().line;
+  for (const int turned : {1, 17, 40, 71}) {
+    Polygon other = ring;
+    std::rotate(other.outer.begin(), other.outer.begin() + turned, other.outer.end());
+    std::rotate(other.holes[0].begin(), other.holes[0].begin() + 2 * turned % 90,
+                other.holes[0].end());
+    const Polyline line = medial_axis(other).front().line;
+    ASSERT_EQ(line.points().size(), first.points().size()) << turned;
+    for (std::size_t i = 0; i < line.points().size(); ++i) {
+      ASSERT_LT((line.points()[i] - first.points()[i]).norm(), 1e-6) << turned << ", point " << i;
+    }
+  }
+}
+
 TEST(MedialAxis, IsTheSameFromRunToRun) {
   const auto one = medial_axis(winding_road(100, 6)), two = medial_axis(winding_road(100, 6));
   ASSERT_EQ(one.size(), two.size());
