@@ -20,10 +20,26 @@ double turn_of(const map::Lane& lane) {
   return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
 }
 
+// Lanes that join do so but for rounding, in real files within centimetres: a point that is not
+// ahead of the last one would turn whoever drives along by up to 180°.
+bool repeats_joint(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& next) {
+  constexpr double kJoint_m = 0.1, kLeastStep_m = 0.01;
+  if (points.empty()) return false;
+  const Eigen::Vector2d step = next - points.back();
+  if (points.size() < 2 || step.norm() > kJoint_m) return step.norm() < kLeastStep_m;
+  const Eigen::Vector2d along = points.back() - points[points.size() - 2];
+  return step.dot(along.normalized()) < kLeastStep_m;
+}
+
 void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line, double from_m) {
-  points.push_back(line.at(from_m));
+  bool at_joint = true;
+  const auto add = [&](const Eigen::Vector2d& point) {
+    at_joint = at_joint && repeats_joint(points, point);
+    if (!at_joint) points.push_back(point);
+  };
+  add(line.at(from_m));
   for (std::size_t i = 0; i < line.points().size(); ++i) {
-    if (line.stations_m()[i] > from_m) points.push_back(line.points()[i]);
+    if (line.stations_m()[i] > from_m) add(line.points()[i]);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_maps.h"
+#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tools {
 namespace {
@@ -52,6 +54,20 @@ TEST(ObstacleMotion, GoesStraightOnFromLaneToLane) {
   EXPECT_NEAR(way.at(75.0).y(), 0.0, 1e-9);
   const geometry::Polyline all = straight_on(road_map, {.lane = first, .s_m = 10.0}, 1e6);
   EXPECT_NEAR(all.length_m(), 140.0, 1e-9);  // the lanes end
+}
+
+TEST(ObstacleMotion, NobodyTurnsRoundWhereLanesJoin) {
+  const map::RoadMap road_map = map::load_map(tests::data_folder() / "town.xodr");
+  for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
+    const map::LaneId lane{i};
+    if (!map::is_drivable(road_map.lane(lane).type)) continue;
+    const geometry::Polyline way = straight_on(road_map, {.lane = lane, .s_m = 0.0}, 300.0);
+    for (std::size_t k = 2; k < way.points().size(); ++k) {
+      const Eigen::Vector2d before = way.points()[k - 1] - way.points()[k - 2];
+      const Eigen::Vector2d after = way.points()[k] - way.points()[k - 1];
+      ASSERT_GT(before.dot(after), 0.0) << road_map.lane(lane).name << ", point " << k;
+    }
+  }
 }
 
 TEST(ObstacleMotion, ScriptedPosesAreMetAtTheirTimes) {
