@@ -13,28 +13,42 @@ constexpr double kMostInnovation = 30.66;  // χ², three degrees of freedom, 10
 CruiseControl::CruiseControl(const CruiseOptions& options)
     : options_(options), design_(design_cruise(options)), innovation_weight_(design_.S.inverse()) {}
 
-double CruiseControl::update(double speed_mps, double acceleration_mps2, const SetSpeed& set,
-                             const std::optional<LeadMeasurement>& lead) {
+double CruiseControl::desired_gap_m() const {
+  return options_.headway_s * speed_mps_ + options_.standstill_gap_m;
+}
+
+void CruiseControl::observe(double speed_mps, double acceleration_mps2,
+                            const std::optional<LeadMeasurement>& lead) {
   restarted_ = false;
   blind_s_ = 0.0;
+  speed_mps_ = speed_mps;
   if (lead) {
-    const double desired_gap_m = options_.headway_s * speed_mps + options_.standstill_gap_m;
-    filter({desired_gap_m - lead->gap_m, lead->relative_speed_mps, acceleration_mps2});
+    filter({desired_gap_m() - lead->gap_m, lead->relative_speed_mps, acceleration_mps2});
   } else {
     estimate_.reset();
   }
-  return command(speed_mps, acceleration_mps2, set);
 }
 
-double CruiseControl::update_blind(double speed_mps, double acceleration_mps2,
-                                   const SetSpeed& set) {
+void CruiseControl::observe_blind(double speed_mps) {
   restarted_ = false;
   blind_s_ += options_.step_s;
+  speed_mps_ = speed_mps;
   if (estimate_ && blind_s_ <= options_.bridged_s) {
     estimate_ = predicted();
   } else {
     estimate_.reset();
   }
+}
+
+std::optional<LeadMeasurement> CruiseControl::lead() const {
+  if (!estimate_) return std::nullopt;
+  return LeadMeasurement{.gap_m = desired_gap_m() - (*estimate_)[0],
+                         .relative_speed_mps = (*estimate_)[1]};
+}
+
+double CruiseControl::update(double speed_mps, double acceleration_mps2, const SetSpeed& set,
+                             const std::optional<LeadMeasurement>& lead) {
+  observe(speed_mps, acceleration_mps2, lead);
   return command(speed_mps, acceleration_mps2, set);
 }
 

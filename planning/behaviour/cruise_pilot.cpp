@@ -5,10 +5,13 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
+#include "roadbed/planning/behaviour/lane_passing.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/overtaking.h"
+#include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/planning/behaviour/pilot.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
+#include "roadbed/planning/behaviour/st_graph.h"
 #include "roadbed/planning/behaviour/traffic.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
@@ -22,6 +25,7 @@ constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kPassOffset_m = 0.5;      // off the reference line this far is passing
 constexpr double kChange_s = 3.0;          // to change lanes in, to overtake
+constexpr double kDrivesOn_mps2 = 1.0;     // as the cruise control does
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0, kFallsBehind_mps = 3.0;  // overtaking given up
 
@@ -49,7 +53,8 @@ class CruisePilot : public Pilot {
                     .margin_levels = margin_levels(setup.driving.clearance_m),
                     .keeps_candidates = setup.pilot.keeps_candidates}),
         right_of_way_(vehicle_, setup.driving, task_),
-        overtaking_(vehicle_, task_, ceiling_) {
+        overtaking_(vehicle_, task_, ceiling_),
+        lane_passing_(vehicle_, task_, ceiling_) {
     decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
   }
 
@@ -62,45 +67,68 @@ class CruisePilot : public Pilot {
     if (predicts_) predicted_.emplace(true_traffic(task_), view.t_s);
     replanner_.locate(view.measured);
     const Overtaking::Decision passing = look_at_passing(view);
-    plan_path(view, passing);
+    const LanePassing::Decision lane =
+        passing.overtaken ? LanePassing::Decision{} : look_at_next_lane(view);
+    plan_path(view, passing, lane);
+    passes_in_lane_ = lane.offset_m.has_value();
     const std::optional<StopConstraint> halt = halt_ahead(view);
     const std::optional<Lead> truth = lead_ahead(view, halt);
-    const bool is_blind = truth && !view.speed_controller.sees_lead(view.t_s);
-    const std::optional<Lead> lead = is_blind ? remembered(view) : truth;
-    if (!is_blind) last_seen_ = {view.t_s, lead};
+    std::optional<Lead> lead = view.speed_controller.observe(view.measured, truth, view.t_s);
+    if (lead || !truth) {
+      last_seen_ = {view.t_s, lead};
+    } else {
+      lead = remembered(view);
+    }
     const SpeedAnswer answer = choose_speed(question(view.measured, lead, halt), decision_options_);
     PilotCommand command;
-    command.acceleration_mps2 = view.speed_controller.acceleration_mps2(
-        {.measured = view.measured, .set = answer.set, .lead = truth, .is_blind = is_blind});
+    command.acceleration_mps2 = view.speed_controller.acceleration_mps2(view.measured, answer.set);
     command.saturated = std::abs(command.acceleration_mps2) >= kMostCommand_mps2;
     if (answer.hold) {
       command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
     }
     command.set_speed_mps = set_speed_mps_ = answer.set.speed_mps;
-    if (lead) {
-      command.lead = {task_.obstacles[lead->obstacle].id, lead->gap_m, lead->speed_mps};
+    if (truth) {
+      command.lead = {task_.obstacles[truth->obstacle].id, truth->gap_m, truth->speed_mps};
     }
     explain(answer, lead, speed, command);
     if (halt && halt->is_hard) brake_for(*halt, speed, command);
     if (passing.overtaken) overtake(passing, speed, command);
-    if (!passing.overtaken && !passing.reason.empty() && command.behaviour == Behaviour::follow) {
-      command.reason += "; " + passing.reason;
+    if (lane.offset_m &&
+        (command.behaviour == Behaviour::cruise || command.behaviour == Behaviour::pass)) {
+      command.behaviour = Behaviour::pass;
+      command.reason = lane.reason;
     }
+    const std::string& why_not = lane.reason.empty() ? passing.reason : lane.reason;
+    if (!passing.overtaken && !why_not.empty() && command.behaviour == Behaviour::follow) {
+      command.reason += "; " + why_not;
+    }
+    view.speed_controller.sent(command.acceleration_mps2);
     return command;
   }
 
  private:
+  geometry::LinePosition place_of(const PilotView& view) const {
+    return task_.line.project(view.measured.map_from_vehicle.position(), replanner_.s_m());
+  }
+
   Overtaking::Decision look_at_passing(const PilotView& view) {
-    const double s_m = replanner_.s_m();
-    const geometry::LinePosition at =
-        task_.line.project(view.measured.map_from_vehicle.position(), s_m);
-    return overtaking_.look(
-        {.t_s = view.t_s, .at = at, .speed_mps = view.measured.speed_mps, .traffic = traffic()});
+    return overtaking_.look({.t_s = view.t_s,
+                             .at = place_of(view),
+                             .speed_mps = view.measured.speed_mps,
+                             .traffic = traffic()});
+  }
+
+  LanePassing::Decision look_at_next_lane(const PilotView& view) {
+    return lane_passing_.look({.t_s = view.t_s,
+                               .at = place_of(view),
+                               .speed_mps = view.measured.speed_mps,
+                               .traffic = traffic()});
   }
 
   /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
   /// lane of oncoming traffic while somebody drives ahead.
-  void plan_path(const PilotView& view, const Overtaking::Decision& passing) {
+  void plan_path(const PilotView& view, const Overtaking::Decision& passing,
+                 const LanePassing::Decision& lane) {
     const double speed = view.measured.speed_mps;
     const std::vector<Obstacle> ahead = obstacles_to_plan_for(view);
     LateralReplanner::Question question{
@@ -121,12 +149,36 @@ class CruisePilot : public Pilot {
           beside, {*passing.pass_at_m - kPassTolerance_m, *passing.pass_at_m + kPassTolerance_m});
       if (proposal.plan.chosen) return replanner_.take(proposal);
     }
+    if (lane.offset_m && changes_lane(question, *lane.offset_m)) return;
     LateralReplanner::Offsets offsets;
-    if (passing.keep_within_m) {
-      (passing.side > 0.0 ? offsets.most_m : offsets.least_m) =
-          passing.side * *passing.keep_within_m;
-    }
+    keep_within(passing.keep_within_m, passing.side, offsets);
+    keep_within(lane.keep_within_m, lane.side, offsets);
     replanner_.take(replanner_.propose(question, offsets));
+  }
+
+  static void keep_within(const std::optional<double>& offset_m, double side,
+                          LateralReplanner::Offsets& offsets) {
+    if (!offset_m) return;
+    if (side > 0.0) {
+      offsets.most_m = std::min(offsets.most_m, *offset_m);
+    } else {
+      offsets.least_m = std::max(offsets.least_m, -*offset_m);
+    }
+  }
+
+  /// To the middle of the next lane, at the speed of the free road; false: nothing leads there.
+  bool changes_lane(const LateralReplanner::Question& question, double offset_m) {
+    LateralReplanner::Question beside = question;
+    const double speed = question.speed.speed_mps;
+    beside.speed.target_mps = ceiling_.at(replanner_.s_m()).speed_mps;
+    beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
+    beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
+    beside.checks_completion = false;
+    const LateralReplanner::Proposal proposal =
+        replanner_.propose(beside, {offset_m - kPassTolerance_m, offset_m + kPassTolerance_m});
+    if (!proposal.plan.chosen) return false;
+    replanner_.take(proposal);
+    return true;
   }
 
   void overtake(const Overtaking::Decision& passing, double speed_mps,
@@ -163,6 +215,41 @@ class CruisePilot : public Pilot {
                                .acceleration_mps2 = view.measured.acceleration_mps2});
   }
 
+  /// Who crosses, and who drives on the path now but will have left it, or the path its lane, when
+  /// the vehicle comes there at the speed of the free road.
+  std::vector<bool> ignored_on(const PlannedPath& path, const PilotView& view) const {
+    std::vector<bool> ignored = right_of_way_.crossing();
+    if (!passes_in_lane_) return ignored;
+    constexpr double kAhead_m = 80.0, kMargin_m = 0.3;
+    constexpr int kSteps = 60;
+    const PathProfile profile =
+        sample_path_profile(path, replanner_.s_m(), kAhead_m, ceiling_, vehicle_);
+    const StGraph occupancy(profile, traffic(), view.t_s, kSteps, kMargin_m);
+    std::vector<bool> met(ignored.size(), false);
+    double ahead_m = 0.0, speed_mps = view.measured.speed_mps;
+    for (int k = 0; k <= kSteps; ++k) {
+      for (const StInterval& part : occupancy.at(k)) {
+        if (part.obstacle != StInterval::kNoObstacle && ahead_m >= part.from_m &&
+            ahead_m <= part.to_m)
+          met[part.obstacle] = true;
+      }
+      const double most = profile.wanted_mps[profile.before(ahead_m)];
+      speed_mps =
+          std::min(std::max(speed_mps, most), speed_mps + kDrivesOn_mps2 * StGraph::kStep_s);
+      ahead_m += speed_mps * StGraph::kStep_s;
+    }
+    for (const StInterval& part : occupancy.at(kSteps)) {
+      const double near_m =
+          decision_options_.standstill_gap_m + decision_options_.headway_s * speed_mps;
+      if (part.obstacle != StInterval::kNoObstacle && part.from_m - ahead_m < near_m)
+        met[part.obstacle] = true;
+    }
+    for (std::size_t i = 0; i < ignored.size(); ++i) {
+      ignored[i] = ignored[i] || (!task_.obstacles[i].is_static() && !met[i]);
+    }
+    return ignored;
+  }
+
   /// Who is beyond the place to halt at is none.
   std::optional<Lead> lead_ahead(const PilotView& view,
                                  const std::optional<StopConstraint>& halt) const {
@@ -170,9 +257,9 @@ class CruisePilot : public Pilot {
     const double to_goal_m = task_.line.goal_s_m() - replanner_.s_m();
     const double look_m = std::min(look_ahead_m(speed, decision_options_),
                                    std::max(0.0, to_goal_m) + vehicle_.front_m());
-    std::optional<Lead> lead =
-        find_lead(replanner_.expected_path(), replanner_.s_m(), look_m, task_.obstacles, view.t_s,
-                  vehicle_, kSideMargin_m, right_of_way_.crossing());
+    const PlannedPath path = passes_in_lane_ ? replanner_.path() : replanner_.expected_path();
+    std::optional<Lead> lead = find_lead(path, replanner_.s_m(), look_m, task_.obstacles, view.t_s,
+                                         vehicle_, kSideMargin_m, ignored_on(path, view));
     if (lead && halt && lead->gap_m > halt->s_m - replanner_.s_m() + kBeyondHalt_m) lead.reset();
     return lead;
   }
@@ -256,6 +343,8 @@ class CruisePilot : public Pilot {
   LateralReplanner replanner_;
   RightOfWay right_of_way_;
   Overtaking overtaking_;
+  LanePassing lane_passing_;
+  bool passes_in_lane_ = false;
   struct {
     double t_s = 0.0;
     std::optional<Lead> lead;

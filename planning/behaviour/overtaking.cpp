@@ -17,7 +17,7 @@ constexpr double kBackInLane_s = 3.5;  // from beside to back in the lane
 constexpr double kSpeedsUp_mps2 = 1.0, kAboveLimit = 1.1;
 constexpr double kMargin_s = 1.5;     // of the way on which two come towards each other
 constexpr double kBeside_m = 1.0;     // kept from who is overtaken
-constexpr double kNotInLane_m = 0.3;  // between sides that do not matter to each other
+constexpr double kNotInLane_m = 0.3;  // as MoverOnLine::shares_way
 constexpr double kReturnGap_m = 4.0, kReturnGap_s = 0.4;  // before who was overtaken
 constexpr double kGapAhead_m = 5.0, kGapAhead_s = 1.0;    // to who drives ahead of that one
 constexpr double kBehindRear_m = 3.0;                     // of who is not overtaken after all
@@ -27,30 +27,23 @@ constexpr double kBeforeEnd_m = 10.0;  // of the stretch, to be back in the lane
 constexpr double kBehind_m = 3.0;      // kept from traffic that comes up behind in the other lane
 constexpr double kRelease_mps2 = 2.0;  // at which a faster vehicle closes up comfortably
 
+/// Where one is at worst after some time, for who is to be met or followed in its lane.
+double at_worst_m(const MoverOnLine& mover, double after_s, double limit_mps) {
+  const double speed_mps = std::abs(mover.speed_mps);
+  const double most = std::max(speed_mps, kAboveLimit * limit_mps);
+  const double up_s = std::min(after_s, (most - speed_mps) / kSpeedsUp_mps2);
+  const double way_m = speed_mps * after_s + 0.5 * kSpeedsUp_mps2 * up_s * up_s +
+                       kSpeedsUp_mps2 * up_s * (after_s - up_s);
+  return mover.s_m + (mover.speed_mps < 0.0 ? -way_m : way_m);
+}
+
+double worst_speed_mps(const MoverOnLine& mover, double after_s, double limit_mps) {
+  const double speed_mps = std::abs(mover.speed_mps);
+  return std::max(speed_mps,
+                  std::min(speed_mps + kSpeedsUp_mps2 * after_s, kAboveLimit * limit_mps));
+}
+
 }  // namespace
-
-/// One of the others, along the line and beside it.
-struct Overtaking::Mover {
-  std::size_t obstacle;
-  double s_m, d_m, half_length_m, half_width_m;
-  double speed_mps;  ///< along the line; less than 0 if it is oncoming
-
-  double rear_m() const { return s_m - half_length_m; }
-  double front_m() const { return s_m + half_length_m; }
-
-  /// Where it is at worst after some time, for who is to be met or followed in its lane.
-  double at_worst_m(double after_s, double limit_mps) const {
-    const double most = std::max(std::abs(speed_mps), kAboveLimit * limit_mps);
-    const double up_s = std::min(after_s, (most - std::abs(speed_mps)) / kSpeedsUp_mps2);
-    const double way_m = std::abs(speed_mps) * after_s + 0.5 * kSpeedsUp_mps2 * up_s * up_s +
-                         kSpeedsUp_mps2 * up_s * (after_s - up_s);
-    return s_m + (speed_mps < 0.0 ? -way_m : way_m);
-  }
-  double worst_speed_mps(double after_s, double limit_mps) const {
-    return std::max(std::abs(speed_mps), std::min(std::abs(speed_mps) + kSpeedsUp_mps2 * after_s,
-                                                  kAboveLimit * limit_mps));
-  }
-};
 
 /// Of the vehicle, as it is planned; station of the rear axle.
 struct Overtaking::State {
@@ -64,33 +57,13 @@ Overtaking::Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask&
       ceiling_(ceiling),
       stretches_(oncoming_lane_segments(task.road_map, task.route, task.line)) {}
 
-std::vector<Overtaking::Mover> Overtaking::movers_of(const View& view) const {
-  std::vector<Mover> movers;
-  for (std::size_t i = 0; i < view.traffic.obstacles.size(); ++i) {
-    const Obstacle& obstacle = view.traffic.obstacles[i];
-    if (obstacle.is_static() || !obstacle.is_there(view.t_s)) continue;
-    const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
-    const geometry::LinePosition at = task_.line.project(now.pose().position());
-    const double turned = now.heading_rad - task_.line.at(at.s_m).heading_rad;
-    const double along = std::abs(std::cos(turned)), across = std::abs(std::sin(turned));
-    movers.push_back(
-        {.obstacle = i,
-         .s_m = at.s_m,
-         .d_m = at.d_m,
-         .half_length_m = 0.5 * (obstacle.length_m * along + obstacle.width_m * across),
-         .half_width_m = 0.5 * (obstacle.width_m * along + obstacle.length_m * across),
-         .speed_mps = now.speed_mps * std::cos(turned)});
-  }
-  return movers;
-}
-
 /// The nearest one ahead in the vehicle's lane, if it moves.
-const Overtaking::Mover* Overtaking::slower_ahead(const std::vector<Mover>& movers,
-                                                  const View& view) const {
-  const Mover* nearest = nullptr;
+const MoverOnLine* Overtaking::slower_ahead(const std::vector<MoverOnLine>& movers,
+                                            const View& view) const {
+  const MoverOnLine* nearest = nullptr;
   const double front_m = view.at.s_m + vehicle_.front_m();
-  for (const Mover& mover : movers) {
-    if (!shares_way(mover, 0.0) || mover.s_m < view.at.s_m ||
+  for (const MoverOnLine& mover : movers) {
+    if (!mover.shares_way(0.0, vehicle_) || mover.s_m < view.at.s_m ||
         mover.rear_m() > front_m + kLeadWithin_m)
       continue;
     if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
@@ -98,7 +71,7 @@ const Overtaking::Mover* Overtaking::slower_ahead(const std::vector<Mover>& move
   return nearest && nearest->speed_mps > kMoves_mps ? nearest : nullptr;
 }
 
-double Overtaking::pass_at_m(const Mover& lead, const OncomingLaneSegment& stretch) const {
+double Overtaking::pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const {
   return lead.d_m + stretch.side * (lead.half_width_m + 0.5 * vehicle_.width_m + kBeside_m);
 }
 
@@ -118,7 +91,7 @@ Overtaking::State Overtaking::step(State state) const {
 }
 
 /// Where the vehicle is when it is past the one that is overtaken; none: that takes too long.
-std::optional<Overtaking::State> Overtaking::past(State state, const Mover& lead) const {
+std::optional<Overtaking::State> Overtaking::past(State state, const MoverOnLine& lead) const {
   const double gap_m = kReturnGap_m + kReturnGap_s * lead.speed_mps;
   const auto is_past = [&] {
     return state.s_m - vehicle_.rear_overhang_m >
@@ -131,16 +104,11 @@ std::optional<Overtaking::State> Overtaking::past(State state, const Mover& lead
   return state;
 }
 
-/// Whether two bodies beside the line, `at_m` the vehicle's middle, would get into each other's
-/// way.
-bool Overtaking::shares_way(const Mover& mover, double at_m) const {
-  return std::abs(mover.d_m - at_m) < mover.half_width_m + 0.5 * vehicle_.width_m + kNotInLane_m;
-}
-
 /// Whether somebody drives neither where the vehicle overtakes nor in its lane, or is past already,
 /// or follows in its lane.
-bool Overtaking::is_no_matter(const Mover& mover, const State& now, double pass_at_m) const {
-  const bool in_lane = shares_way(mover, 0.0), in_way = shares_way(mover, pass_at_m);
+bool Overtaking::is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const {
+  const bool in_lane = mover.shares_way(0.0, vehicle_),
+             in_way = mover.shares_way(pass_at_m, vehicle_);
   if (!in_lane && !in_way) return true;
   const bool is_behind = mover.front_m() < now.s_m;
   return is_behind && (mover.speed_mps < 0.0 || !in_way);
@@ -148,16 +116,16 @@ bool Overtaking::is_no_matter(const Mover& mover, const State& now, double pass_
 
 /// Metres by which the gap to one of the others is too short until the vehicle is back in its lane;
 /// 0 or less: none.
-double Overtaking::missing_m(const Mover& mover, double now_s_m, const State& past,
+double Overtaking::missing_m(const MoverOnLine& mover, double now_s_m, const State& past,
                              const State& back, double limit_mps) const {
   const geometry::VehicleShape& vehicle = vehicle_;
   if (mover.speed_mps < 0.0) {
-    const double closing_mps = back.speed_mps + mover.worst_speed_mps(back.after_s, limit_mps);
-    const double nearest_m = mover.at_worst_m(back.after_s, limit_mps) - mover.half_length_m;
+    const double closing_mps = back.speed_mps + worst_speed_mps(mover, back.after_s, limit_mps);
+    const double nearest_m = at_worst_m(mover, back.after_s, limit_mps) - mover.half_length_m;
     return back.s_m + vehicle.front_m() + kMargin_s * closing_mps - nearest_m;
   }
   if (mover.s_m < now_s_m) {  // comes up behind in the other lane
-    const double front_m = mover.at_worst_m(past.after_s, limit_mps) + mover.half_length_m;
+    const double front_m = at_worst_m(mover, past.after_s, limit_mps) + mover.half_length_m;
     return front_m + kBehind_m - past.s_m + vehicle.rear_overhang_m;
   }
   const double closing_mps = std::max(0.0, back.speed_mps - mover.speed_mps);
@@ -167,8 +135,8 @@ double Overtaking::missing_m(const Mover& mover, double now_s_m, const State& pa
 }
 
 /// Why overtaking would not end in time; none: it does.
-std::optional<std::string> Overtaking::why_not(const State& from, const Mover& lead,
-                                               const std::vector<Mover>& movers,
+std::optional<std::string> Overtaking::why_not(const State& from, const MoverOnLine& lead,
+                                               const std::vector<MoverOnLine>& movers,
                                                const OncomingLaneSegment& stretch) const {
   const std::optional<State> past = this->past(from, lead);
   if (!past) return fmt::format("it would take more than {:.0f} s", kLongest_s);
@@ -179,7 +147,7 @@ std::optional<std::string> Overtaking::why_not(const State& from, const Mover& l
     return fmt::format("it would end {:.0f} m past where it has to", kBeforeEnd_m - to_end_m);
   }
   const double pass_m = pass_at_m(lead, stretch);
-  for (const Mover& mover : movers) {
+  for (const MoverOnLine& mover : movers) {
     if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
     const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
     if (missing <= 0.0) continue;
@@ -191,7 +159,7 @@ std::optional<std::string> Overtaking::why_not(const State& from, const Mover& l
 }
 
 /// Where the vehicle is when its front is beside the rear of the one that is overtaken.
-Overtaking::State Overtaking::beside_rear(State state, const Mover& lead) const {
+Overtaking::State Overtaking::beside_rear(State state, const MoverOnLine& lead) const {
   const auto is_behind = [&] {
     return state.s_m + vehicle_.front_m() < lead.rear_m() + lead.speed_mps * state.after_s;
   };
@@ -201,8 +169,8 @@ Overtaking::State Overtaking::beside_rear(State state, const Mover& lead) const 
 
 /// Whether braking leads behind the one that was to be overtaken, and back into the lane, before
 /// anybody comes.
-bool Overtaking::can_fall_back(const State& from, const Mover& lead,
-                               const std::vector<Mover>& movers,
+bool Overtaking::can_fall_back(const State& from, const MoverOnLine& lead,
+                               const std::vector<MoverOnLine>& movers,
                                const OncomingLaneSegment& stretch) const {
   const geometry::VehicleShape& vehicle = vehicle_;
   State state = from;
@@ -216,24 +184,24 @@ bool Overtaking::can_fall_back(const State& from, const Mover& lead,
   state.after_s += kBackInLane_s;
   state.s_m += std::max(state.speed_mps, lead.speed_mps) * kBackInLane_s;
   const double pass_m = pass_at_m(lead, stretch);
-  return std::ranges::none_of(movers, [&](const Mover& mover) {
+  return std::ranges::none_of(movers, [&](const MoverOnLine& mover) {
     if (mover.obstacle == lead.obstacle || mover.speed_mps >= 0.0) return false;
-    if (!shares_way(mover, pass_m) || mover.front_m() < from.s_m) return false;
-    return mover.at_worst_m(state.after_s, stretch.limit_mps) - mover.half_length_m <
+    if (!mover.shares_way(pass_m, vehicle_) || mover.front_m() < from.s_m) return false;
+    return at_worst_m(mover, state.after_s, stretch.limit_mps) - mover.half_length_m <
            state.s_m + vehicle.front_m();
   });
 }
 
 /// The one that is being overtaken, or else a slower one ahead.
-const Overtaking::Mover* Overtaking::lead_of(const std::vector<Mover>& movers,
-                                             const View& view) const {
+const MoverOnLine* Overtaking::lead_of(const std::vector<MoverOnLine>& movers,
+                                       const View& view) const {
   const auto found = std::ranges::find_if(
-      movers, [&](const Mover& mover) { return overtaken_ == mover.obstacle; });
+      movers, [&](const MoverOnLine& mover) { return overtaken_ == mover.obstacle; });
   return found != movers.end() ? &*found : slower_ahead(movers, view);
 }
 
 /// Whether it is over: past the other one, or behind it again.
-bool Overtaking::has_ended(const View& view, const Mover& lead) const {
+bool Overtaking::has_ended(const View& view, const MoverOnLine& lead) const {
   const geometry::VehicleShape& vehicle = vehicle_;
   const double past_m = lead.front_m() + kReturnGap_m + kReturnGap_s * lead.speed_mps;
   const double front_m = view.at.s_m + vehicle.front_m();
@@ -243,8 +211,9 @@ bool Overtaking::has_ended(const View& view, const Mover& lead) const {
 
 Overtaking::Decision Overtaking::look(const View& view) {
   const OncomingLaneSegment* stretch = stretch_at(view.at.s_m);
-  const std::vector<Mover> movers = stretch ? movers_of(view) : std::vector<Mover>{};
-  const Mover* lead = lead_of(movers, view);
+  const std::vector<MoverOnLine> movers =
+      stretch ? movers_on_line(task_.line, view.traffic, view.t_s) : std::vector<MoverOnLine>{};
+  const MoverOnLine* lead = lead_of(movers, view);
   const geometry::VehicleShape& vehicle = vehicle_;
   const double within_m = stretch ? stretch->own_edge_m - 0.5 * vehicle.width_m : 0.0;
   if (!lead || stretch->side * pass_at_m(*lead, *stretch) <= within_m + kNotInLane_m) {

@@ -6,6 +6,7 @@
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/movers_on_line.h"
 #include "roadbed/planning/behaviour/traffic.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -70,25 +71,23 @@ class Overtaking {
   Decision look(const View& view);
 
  private:
-  struct Mover;
   struct State;
-  std::vector<Mover> movers_of(const View& view) const;
-  const Mover* slower_ahead(const std::vector<Mover>& movers, const View& view) const;
-  double pass_at_m(const Mover& lead, const OncomingLaneSegment& stretch) const;
+  const MoverOnLine* slower_ahead(const std::vector<MoverOnLine>& movers, const View& view) const;
+  double pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const;
   const OncomingLaneSegment* stretch_at(double s_m) const;
-  std::optional<std::string> why_not(const State& from, const Mover& lead,
-                                     const std::vector<Mover>& movers,
+  std::optional<std::string> why_not(const State& from, const MoverOnLine& lead,
+                                     const std::vector<MoverOnLine>& movers,
                                      const OncomingLaneSegment& stretch) const;
-  bool can_fall_back(const State& from, const Mover& lead, const std::vector<Mover>& movers,
+  bool can_fall_back(const State& from, const MoverOnLine& lead,
+                     const std::vector<MoverOnLine>& movers,
                      const OncomingLaneSegment& stretch) const;
-  std::optional<State> past(State state, const Mover& lead) const;
-  State beside_rear(State state, const Mover& lead) const;
-  bool shares_way(const Mover& mover, double at_m) const;
-  bool is_no_matter(const Mover& mover, const State& now, double pass_at_m) const;
-  double missing_m(const Mover& mover, double now_s_m, const State& past, const State& back,
+  std::optional<State> past(State state, const MoverOnLine& lead) const;
+  State beside_rear(State state, const MoverOnLine& lead) const;
+  bool is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const;
+  double missing_m(const MoverOnLine& mover, double now_s_m, const State& past, const State& back,
                    double limit_mps) const;
-  const Mover* lead_of(const std::vector<Mover>& movers, const View& view) const;
-  bool has_ended(const View& view, const Mover& lead) const;
+  const MoverOnLine* lead_of(const std::vector<MoverOnLine>& movers, const View& view) const;
+  bool has_ended(const View& view, const MoverOnLine& lead) const;
   State step(State state) const;
 
   const geometry::VehicleShape& vehicle_;

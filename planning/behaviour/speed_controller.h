@@ -12,23 +12,22 @@ namespace roadbed::planning::inline behaviour {
 inline constexpr double kActuatorLag_s = 0.45;
 inline constexpr double kMostCommand_mps2 = 0.25 * 9.81;  // paper: ±0.25 g
 
-/// Turns set speed and lead into the acceleration to ask for: a cruise control behind sensors.
+/// A cruise control behind sensors: what is known of the lead is what it measures and filters.
 class SpeedController {
  public:
   virtual ~SpeedController() = default;
 
-  /// Whether a lead is measured at a time at all; to be asked once per time.
-  virtual bool sees_lead(double t_s) = 0;
+  /// The lead as it is known at this time; to be asked once a cycle, before acceleration_mps2().
+  /// None: nobody is ahead, or has been measured for too long.
+  /// @param truth  to be measured; none: no vehicle is ahead.
+  virtual std::optional<Lead> observe(const VehicleState& measured,
+                                      const std::optional<Lead>& truth, double t_s) = 0;
 
-  struct Question {
-    const VehicleState& measured;
-    SpeedTarget set;
-    std::optional<Lead> lead;  ///< true one, to be measured; none: no vehicle is ahead
-    bool is_blind = false;     ///< there is a lead, but it is not measured now
-  };
+  /// Desired acceleration, within ±kMostCommand_mps2: to the set speed, or behind the lead.
+  virtual double acceleration_mps2(const VehicleState& measured, const SpeedTarget& set) = 0;
 
-  /// Desired acceleration, within ±kMostCommand_mps2.
-  virtual double acceleration_mps2(const Question& question) = 0;
+  /// What the actuator was asked for in the end.
+  virtual void sent(double acceleration_mps2) = 0;
 };
 
 }  // namespace roadbed::planning::behaviour

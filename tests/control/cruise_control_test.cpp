@@ -146,5 +146,38 @@ TEST(CruiseControl, StartsAnewOnAnotherLeadAndForgetsALostOne) {
   EXPECT_TRUE(follow(11.0));
 }
 
+// A vehicle that is braked at 6 m/s² by another layer, behind a lead that drives on.
+int restarts_while_braked(bool tells) {
+  CruiseControl control({});
+  double speed_mps = 25.0, acceleration_mps2 = 0.0, gap_m = 30.0;
+  int restarts = 0;
+  for (int k = 0; k < 20; ++k) {
+    control.observe(speed_mps, acceleration_mps2,
+                    LeadMeasurement{.gap_m = gap_m, .relative_speed_mps = 25.0 - speed_mps});
+    restarts += k > 0 && control.restarted() ? 1 : 0;
+    control.command(speed_mps, acceleration_mps2, {.speed_mps = 25.0});
+    if (tells) control.sent(-6.0);
+    for (int i = 0; i < 10; ++i) {
+      acceleration_mps2 = actuate(acceleration_mps2, -6.0, 0.01);
+      gap_m += 0.01 * (25.0 - speed_mps);
+      speed_mps += 0.01 * acceleration_mps2;
+    }
+  }
+  return restarts;
+}
+
+TEST(CruiseControl, FilterPredictsWithTheCommandThatWasSent) {
+  EXPECT_EQ(restarts_while_braked(true), 0);
+  EXPECT_GT(restarts_while_braked(false), 5);
+}
+
+TEST(CruiseControl, EstimatedLeadIsTheOneThatStartedTheFilter) {
+  CruiseControl control({});
+  EXPECT_FALSE(control.lead());
+  control.observe(13.0, 0.5, LeadMeasurement{.gap_m = 31.0, .relative_speed_mps = -2.0});
+  EXPECT_NEAR(control.lead()->gap_m, 31.0, 1e-12);
+  EXPECT_NEAR(control.lead()->relative_speed_mps, -2.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace roadbed::control

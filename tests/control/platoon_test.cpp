@@ -171,9 +171,12 @@ TEST(CruiseControl, RidesThroughMeasurementsThatDropOut) {
     const bool is_seen = random() % 10 >= 3;  // three of ten are lost
     const LeadMeasurement seen{.gap_m = lead_m - car.position_m,
                                .relative_speed_mps = 20.0 - car.speed_mps};
-    const double command =
-        is_seen ? car.control.update(car.speed_mps, car.acceleration_mps2, kNoLimit, seen)
-                : car.control.update_blind(car.speed_mps, car.acceleration_mps2, kNoLimit);
+    if (is_seen) {
+      car.control.observe(car.speed_mps, car.acceleration_mps2, seen);
+    } else {
+      car.control.observe_blind(car.speed_mps);
+    }
+    const double command = car.control.command(car.speed_mps, car.acceleration_mps2, kNoLimit);
     ASSERT_TRUE(car.control.estimate()) << "after " << k << " steps";
     EXPECT_FALSE(k > 0 && car.control.restarted());
     worst_mps2 = std::max(worst_mps2, std::abs(command));
@@ -192,10 +195,11 @@ TEST(CruiseControl, ForgetsALeadThatStaysOutOfSightAndTakesItUpAgain) {
   const LeadMeasurement near{.gap_m = 20.0};
   control.update(10.0, 0.0, kNoLimit, near);
   for (int k = 0; k < 5; ++k) {
-    control.update_blind(10.0, 0.0, kNoLimit);
+    control.observe_blind(10.0);
+    control.command(10.0, 0.0, kNoLimit);
     EXPECT_TRUE(control.estimate()) << k;
   }
-  control.update_blind(10.0, 0.0, kNoLimit);
+  control.observe_blind(10.0);
   EXPECT_FALSE(control.estimate());
   control.update(10.0, 0.0, kNoLimit, near);
   EXPECT_TRUE(control.restarted());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -38,24 +39,46 @@ class MeasuredCruise : public planning::SpeedController {
   MeasuredCruise(Sensors& sensors, const planning::VehicleState& truth)
       : sensors_(sensors), truth_(truth) {}
 
-  bool sees_lead(double t_s) override { return sensors_.sees(t_s); }
-
-  double acceleration_mps2(const Question& question) override {
-    const double speed = question.measured.speed_mps;
-    const double acceleration = question.measured.acceleration_mps2;
-    const control::SetSpeed set{question.set.speed_mps, question.set.acceleration_mps2};
-    if (question.is_blind) return cruise_.update_blind(speed, acceleration, set);
-    std::optional<control::LeadMeasurement> seen;
-    if (question.lead) seen = sensors_.measure(*question.lead, truth_.speed_mps);
-    return cruise_.update(speed, acceleration, set, seen);
+  std::optional<planning::Lead> observe(const planning::VehicleState& measured,
+                                        const std::optional<planning::Lead>& truth,
+                                        double t_s) override {
+    const double speed = measured.speed_mps;
+    if (truth && !sensors_.sees(t_s)) {
+      cruise_.observe_blind(speed);
+    } else {
+      std::optional<control::LeadMeasurement> seen;
+      if (truth) seen = sensors_.measure(*truth, truth_.speed_mps);
+      cruise_.observe(speed, measured.acceleration_mps2, seen);
+    }
+    const std::optional<control::LeadMeasurement> known = cruise_.lead();
+    if (cruise_.restarted() || !known) lead_speeds_mps_.clear();
+    if (!known || !truth) return std::nullopt;
+    const double lead_mps = speed + known->relative_speed_mps;
+    lead_speeds_mps_.push_back(lead_mps);
+    if (lead_speeds_mps_.size() > kLeadCycles + 1) lead_speeds_mps_.pop_front();
+    return planning::Lead{.obstacle = truth->obstacle,
+                          .gap_m = known->gap_m,
+                          .speed_mps = lead_mps,
+                          .acceleration_mps2 = (lead_mps - lead_speeds_mps_.front()) /
+                                               (kLeadCycles * control::CruiseOptions{}.step_s)};
   }
+
+  double acceleration_mps2(const planning::VehicleState& measured,
+                           const planning::SpeedTarget& set) override {
+    return cruise_.command(measured.speed_mps, measured.acceleration_mps2,
+                           {set.speed_mps, set.acceleration_mps2});
+  }
+
+  void sent(double acceleration_mps2) override { cruise_.sent(acceleration_mps2); }
 
  private:
   static_assert(control::ActuatorOptions{}.lag_s == planning::kActuatorLag_s);
+  static constexpr std::size_t kLeadCycles = 4;  // over which the lead's acceleration is taken
 
   Sensors& sensors_;
   const planning::VehicleState& truth_;
   control::CruiseControl cruise_{{.max_command_mps2 = planning::kMostCommand_mps2}};
+  std::deque<double> lead_speeds_mps_;  ///< of the last cycles
 };
 
 class ClosedLoop {

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/movers_on_line.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/reference_line.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+#include "roadbed/planning/route/route.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// A lane of the own direction beside a reference line, on the side on which one passes.
+struct PassingLane {
+  double from_s_m = 0.0, to_s_m = 0.0;  ///< of the line, where the lane is beside it
+  double offset_m = 0.0;                ///< of its middle from the line, positive to the left
+  std::vector<map::StationRange> change_windows = {};  ///< of the line: the marking may be crossed
+};
+
+/// All along a route, by station; lanes that follow on one another are one. One passes on the left,
+/// unless most lanes of the map that have oncoming traffic beside them have it on the right.
+/// O(lanes + legs · length / 5 m).
+std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
+                                       const ReferenceLine& line);
+
+/// Whether to pass slower traffic in the next lane of the own direction, and when to come back.
+///
+///     ───────────────────────────────────────────────────────
+///              ╭── offset ───────────────────╮      ▭▶ behind: has to brake little at most
+///     ─ ─ ─ ─ ╱ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ─ ╲─ ─ ─ ─ ─ ─ ─
+///      ▭▶────╯          ▭▶ ▭▶ slower           ╰────▶
+///     ───────────────────────────────────────────────────────
+///
+/// It is begun if at least 4 s are gained up to the goal, at the speeds of now; if there is room to
+/// pass all who drive closely together, and to come back before the lane or the route ends; and if
+/// the next lane has a gap: who drives ahead there is not closed up to, who comes up behind need
+/// not brake harder than 2 m/s². While the own lane has not been left yet it is given up when the
+/// gap closes. Afterwards the vehicle comes back as soon as there is a gap, and nobody else to
+/// pass.
+class LanePassing {
+ public:
+  struct View {
+    double t_s;
+    geometry::LinePosition at;  ///< of the rear axle, on the task's line
+    double speed_mps;
+    Traffic traffic;  ///< only what is there now is looked at
+  };
+
+  struct Decision {
+    std::optional<double> offset_m = {};  ///< of the lane to drive in; none: that of the route
+    /// Offsets that keep to the route's lane, towards the passing lane: while somebody drives
+    /// ahead.
+    std::optional<double> keep_within_m = {};
+    double side = 1.0;                       ///< of the passing lane: 1 left, −1 right
+    std::optional<std::size_t> passed = {};  ///< obstacle that is passed
+    double lane_end_s_m = 1e9;               ///< of the lane that is driven in
+    std::string reason = {};  ///< why somebody is (not) passed; empty: there is nobody
+  };
+
+  LanePassing(const geometry::VehicleShape& vehicle, const DrivingTask& task,
+              const SpeedCeiling& ceiling);
+
+  Decision look(const View& view);
+
+ private:
+  struct Scene;
+  const PassingLane* lane_at(double s_m) const;
+  const MoverOnLine* lead_in(const Scene& scene, double d_m) const;
+  double gained_s(const Scene& scene, const MoverOnLine& lead) const;
+  std::optional<std::string> why_not(const Scene& scene, const MoverOnLine& lead) const;
+  std::optional<std::string> why_no_room(const Scene& scene, const MoverOnLine& lead) const;
+  std::optional<std::string> why_no_gap(const Scene& scene, double d_m, double lead_mps) const;
+  bool may_return(const Scene& scene) const;
+  bool has_left_lane(const Scene& scene) const;
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  const SpeedCeiling& ceiling_;
+  std::vector<PassingLane> lanes_;
+  std::optional<std::size_t> passed_;
+};
+
+}  // namespace roadbed::planning::behaviour

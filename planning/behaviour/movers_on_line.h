@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/reference_line.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// A moving obstacle, seen from a reference line at one time.
+struct MoverOnLine {
+  std::size_t obstacle;                ///< index
+  double s_m, d_m;                     ///< of its centre
+  double half_length_m, half_width_m;  ///< along the line, and across
+  double speed_mps;                    ///< along the line; less than 0 if it is oncoming
+
+  double rear_m() const { return s_m - half_length_m; }
+  double front_m() const { return s_m + half_length_m; }
+
+  /// Whether a vehicle whose middle is `d_m` beside the line would get into its way.
+  bool shares_way(double d_m, const geometry::VehicleShape& vehicle) const;
+};
+
+/// Those that are there, in the traffic's order. A projection for each.
+std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
+                                        double t_s);
+
+}  // namespace roadbed::planning::behaviour
