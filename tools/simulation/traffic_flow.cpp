@@ -13,8 +13,7 @@ namespace {
 using geometry::Rectangle;
 using geometry::TrajectoryPoint;
 
-constexpr double kForeseenFor_s = 20.0;  // longer than anybody plans
-constexpr double kNear_m = 120.0;        // beyond it nobody is followed
+constexpr double kNear_m = 120.0;  // beyond it nobody is followed
 constexpr double kLeastGap_m = 0.01;
 constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
 
@@ -43,7 +42,8 @@ TrafficFlow::TrafficFlow(const std::vector<LaneDriver>& drivers,
   for (const LaneDriver& driver : drivers) {
     const auto found = std::ranges::find(obstacles_, driver.obstacle, &planning::Obstacle::id);
     if (found == obstacles_.end()) continue;
-    found->motion = drive_along(driver.way, driver.way_length_m, driver.speeds, duration_s);
+    found->motion =
+        drive_along(driver.way, driver.way_length_m, driver.speeds, duration_s + kForeseenFor_s);
     cars_.push_back({.driver = &driver,
                      .obstacle = static_cast<std::size_t>(found - obstacles_.begin()),
                      .s_m = 0.0,

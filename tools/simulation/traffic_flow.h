@@ -46,6 +46,8 @@ class TrafficFlow {
     double hardest_mps2 = 8.0;
   };
   static constexpr double kStep_s = 0.1;
+  /// Motions last so much longer than a drive: longer than anybody plans ahead.
+  static constexpr double kForeseenFor_s = 20.0;
 
   /// Sets everybody to the start. Drivers whose obstacle is not there are left out.
   /// @param obstacles  kept by reference; the motions of drivers are replaced as they drive.

@@ -96,11 +96,11 @@ class ObstacleMaker {
 
   geometry::Trajectory motion(const TrafficObstacle& traffic) const {
     const LaneDriver driver = driver_of("", traffic);
-    return drive_along(driver.way, driver.way_length_m, driver.speeds, scenario_.duration_s);
+    return drive_along(driver.way, driver.way_length_m, driver.speeds, known_s());
   }
 
   LaneDriver along_lanes(const TrafficObstacle& traffic, const map::LanePlace& start) const {
-    const double length_m = travelled_m(traffic.speeds, scenario_.duration_s) + 1.0;
+    const double length_m = travelled_m(traffic.speeds, known_s()) + 1.0;
     const geometry::Polyline way = straight_on(road_map_, start, length_m);
     return {.obstacle = {},
             .way = [way](double distance_m) { return way.pose_at(distance_m); },
@@ -123,6 +123,8 @@ class ObstacleMaker {
             .place_of = [line](const Eigen::Vector2d& point) { return line.project(point); },
             .speeds = traffic.speeds};
   }
+
+  double known_s() const { return scenario_.duration_s + TrafficFlow::kForeseenFor_s; }
 
   const Scenario& scenario_;
   const map::RoadMap& road_map_;

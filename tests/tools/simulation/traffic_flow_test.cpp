@@ -59,6 +59,16 @@ struct Platoon {
   }
 };
 
+TEST(TrafficFlow, FutureIsKnownBeyondTheEndOfTheDrive) {
+  Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / "pass_lorry.json");
+  scenario.duration_s = 20.0;
+  const World world = make_world(scenario);
+  const geometry::Trajectory& lorry = world.obstacles.front().motion;
+  const Eigen::Vector2d at_end = lorry.at(scenario.duration_s).pose().position();
+  const Eigen::Vector2d later = lorry.at(scenario.duration_s + 8.0).pose().position();
+  EXPECT_NEAR((later - at_end).norm(), 8.0 * 4.0, 0.1);
+}
+
 TEST(TrafficFlow, CarsStopBehindTheVehicleThatStopsAndDriveOnBehindIt) {
   Platoon cars{
       .drivers = {on_x_axis("a", 160.0, {{0.0, 15.0}}), on_x_axis("b", 120.0, {{0.0, 15.0}}),
