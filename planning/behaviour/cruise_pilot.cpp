@@ -69,9 +69,8 @@ class CruisePilot : public Pilot {
     const Overtaking::Decision passing = look_at_passing(view);
     const LanePassing::Decision lane =
         passing.overtaken ? LanePassing::Decision{} : look_at_next_lane(view);
-    plan_path(view, passing, lane);
-    passes_in_lane_ = lane.offset_m.has_value();
-    const std::optional<StopConstraint> halt = halt_ahead(view);
+    passes_in_lane_ = plan_path(view, passing, lane);
+    const std::optional<StopConstraint> halt = nearer(halt_ahead(view), lane);
     const std::optional<Lead> truth = lead_ahead(view, halt);
     std::optional<Lead> lead = view.speed_controller.observe(view.measured, truth, view.t_s);
     if (lead || !truth) {
@@ -79,7 +78,10 @@ class CruisePilot : public Pilot {
     } else {
       lead = remembered(view);
     }
-    const SpeedAnswer answer = choose_speed(question(view.measured, lead, halt), decision_options_);
+    SpeedAnswer answer = choose_speed(question(view.measured, lead, halt), decision_options_);
+    if (lane.most_mps && *lane.most_mps < answer.set.speed_mps) {
+      answer.set = {.speed_mps = *lane.most_mps, .acceleration_mps2 = 0.0};
+    }
     PilotCommand command;
     command.acceleration_mps2 = view.speed_controller.acceleration_mps2(view.measured, answer.set);
     command.saturated = std::abs(command.acceleration_mps2) >= kMostCommand_mps2;
@@ -93,12 +95,16 @@ class CruisePilot : public Pilot {
     explain(answer, lead, speed, command);
     if (halt && halt->is_hard) brake_for(*halt, speed, command);
     if (passing.overtaken) overtake(passing, speed, command);
-    if (lane.offset_m &&
+    if (passes_in_lane_ &&
         (command.behaviour == Behaviour::cruise || command.behaviour == Behaviour::pass)) {
       command.behaviour = Behaviour::pass;
       command.reason = lane.reason;
     }
-    const std::string& why_not = lane.reason.empty() ? passing.reason : lane.reason;
+    std::string why_not = lane.reason.empty() ? passing.reason : lane.reason;
+    if (lane.passed && !passes_in_lane_) {
+      why_not = fmt::format("{} is not passed: no path leads to the next lane",
+                            task_.obstacles[*lane.passed].id);
+    }
     if (!passing.overtaken && !why_not.empty() && command.behaviour == Behaviour::follow) {
       command.reason += "; " + why_not;
     }
@@ -127,7 +133,8 @@ class CruisePilot : public Pilot {
 
   /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
   /// lane of oncoming traffic while somebody drives ahead.
-  void plan_path(const PilotView& view, const Overtaking::Decision& passing,
+  /// @return whether the path leads to the next lane.
+  bool plan_path(const PilotView& view, const Overtaking::Decision& passing,
                  const LanePassing::Decision& lane) {
     const double speed = view.measured.speed_mps;
     const std::vector<Obstacle> ahead = obstacles_to_plan_for(view);
@@ -147,13 +154,17 @@ class CruisePilot : public Pilot {
       beside.checks_completion = false;
       const LateralReplanner::Proposal proposal = replanner_.propose(
           beside, {*passing.pass_at_m - kPassTolerance_m, *passing.pass_at_m + kPassTolerance_m});
-      if (proposal.plan.chosen) return replanner_.take(proposal);
+      if (proposal.plan.chosen) {
+        replanner_.take(proposal);
+        return false;
+      }
     }
-    if (lane.offset_m && changes_lane(question, *lane.offset_m)) return;
+    if (lane.offset_m && changes_lane(question, *lane.offset_m)) return true;
     LateralReplanner::Offsets offsets;
     keep_within(passing.keep_within_m, passing.side, offsets);
     keep_within(lane.keep_within_m, lane.side, offsets);
     replanner_.take(replanner_.propose(question, offsets));
+    return false;
   }
 
   static void keep_within(const std::optional<double>& offset_m, double side,
@@ -202,6 +213,16 @@ class CruisePilot : public Pilot {
       return !obstacle.is_static() && is_following(obstacle, view.t_s, vehicle);
     });
     return ahead;
+  }
+
+  /// The end of the lane that somebody is passed in is not to be passed either.
+  std::optional<StopConstraint> nearer(std::optional<StopConstraint> halt,
+                                       const LanePassing::Decision& lane) const {
+    constexpr double kBeforeEnd_m = 25.0;  // to come back in
+    if (!passes_in_lane_) return halt;
+    const double end_s_m = lane.lane_end_s_m - vehicle_.front_m() - kBeforeEnd_m;
+    if (halt && halt->s_m < end_s_m) return halt;
+    return StopConstraint{.s_m = end_s_m, .reason = "the passing lane ends"};
   }
 
   std::optional<StopConstraint> halt_ahead(const PilotView& view) {

@@ -24,7 +24,10 @@ constexpr double kKeptAhead_m = 5.0,
                  kKeptAhead_s = 1.0;  // kept from who is ahead in the lane to enter
 constexpr double kKeptBehind_m = 4.0, kKeptBehind_s = 0.4;  // and from who is behind there
 constexpr double kOthersBrake_mps2 = 2.0, kOwnBrake_mps2 = 1.5;
-constexpr double kSoon_s = 8.0;  // who is closed up to within that is no gain
+constexpr double kPullOut_m = 2.0, kPullOut_s = 2.0;  // to the lead, before leaving its lane
+constexpr double kFallsBack_mps = 2.0;                // slower than who is beside
+constexpr double kLeastWidth_m = 2.6;                 // of a lane to pass in
+constexpr double kSoon_s = 8.0;                       // who is closed up to within that is no gain
 
 // 1: one drives on the right.
 double side_to_pass_on(const map::RoadMap& road_map) {
@@ -41,17 +44,25 @@ double station_of(const map::Lane& lane, double lane_s_m, const ReferenceLine& l
   return line.project(lane.pose_at(lane_s_m).position()).s_m;
 }
 
-// Mean offset of a lane's middle along the part of the line.
-double offset_of(const map::Lane& lane, double from_s_m, double to_s_m, const ReferenceLine& line) {
-  double sum = 0.0;
+// The part of a lane that is wide enough, and its mean offset from the line.
+void set_part(const map::Lane& lane, const ReferenceLine& line, PassingLane& part) {
+  double sum = 0.0, from_s_m = part.to_s_m, to_s_m = part.from_s_m;
   int count = 0;
   for (double s_m = 0.0; s_m <= lane.length_m(); s_m += kLaneStep_m) {
     const geometry::LinePosition at = line.project(lane.pose_at(s_m).position());
-    if (at.s_m < from_s_m - kLaneStep_m || at.s_m > to_s_m + kLaneStep_m) continue;
+    if (at.s_m < part.from_s_m - kLaneStep_m || at.s_m > part.to_s_m + kLaneStep_m) continue;
+    if (lane.width_m(s_m) < kLeastWidth_m) {
+      if (count > 0) break;
+      continue;
+    }
+    from_s_m = std::min(from_s_m, at.s_m - kLaneStep_m);
+    to_s_m = std::max(to_s_m, at.s_m + kLaneStep_m);
     sum += at.d_m;
     ++count;
   }
-  return count > 0 ? sum / count : 0.0;
+  part.from_s_m = std::max(part.from_s_m, from_s_m);
+  part.to_s_m = std::min(part.to_s_m, to_s_m);
+  part.offset_m = count > 0 ? sum / count : 0.0;
 }
 
 std::optional<PassingLane> beside(const map::RoadMap& road_map, const RouteLeg& leg, double side,
@@ -63,7 +74,8 @@ std::optional<PassingLane> beside(const map::RoadMap& road_map, const RouteLeg& 
   const map::Lane& own = road_map.lane(leg.lane);
   PassingLane lane{.from_s_m = station_of(own, leg.from_s_m, line),
                    .to_s_m = station_of(own, leg.to_s_m, line)};
-  lane.offset_m = offset_of(road_map.lane(next->lane), lane.from_s_m, lane.to_s_m, line);
+  set_part(road_map.lane(next->lane), line, lane);
+  if (lane.to_s_m <= lane.from_s_m) return std::nullopt;
   for (const map::StationRange& window : next->change_windows) {
     const double from_m = std::max(window.from_s_m, leg.from_s_m);
     const double to_m = std::min(window.to_s_m, leg.to_s_m);
@@ -129,7 +141,8 @@ const PassingLane* LanePassing::lane_at(double s_m) const {
 const MoverOnLine* LanePassing::lead_in(const Scene& scene, double d_m) const {
   const MoverOnLine* nearest = nullptr;
   for (const MoverOnLine& mover : scene.movers) {
-    if (!mover.shares_way(d_m, vehicle_) || mover.s_m < scene.view.at.s_m) continue;
+    if (mover.stands || !mover.shares_way(d_m, vehicle_)) continue;
+    if (mover.s_m < scene.view.at.s_m) continue;
     if (mover.rear_m() > scene.view.at.s_m + vehicle_.front_m() + kPassedWithin_m) continue;
     if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
   }
@@ -216,14 +229,44 @@ std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_
 }
 
 std::optional<std::string> LanePassing::why_not(const Scene& scene, const MoverOnLine& lead) const {
-  const bool may_cross =
-      std::ranges::any_of(scene.lane.change_windows, [&](const map::StationRange& window) {
-        return scene.view.at.s_m >= window.from_s_m &&
-               scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps <= window.to_s_m;
-      });
-  if (!may_cross) return "the marking may not be crossed here";
+  if (!may_cross(scene)) return "the marking may not be crossed here";
+  const double gap_m = lead.rear_m() - scene.view.at.s_m - vehicle_.front_m();
+  const double closing_mps = std::max(0.0, scene.view.speed_mps - lead.speed_mps);
+  if (gap_m < kPullOut_m + kPullOut_s * closing_mps) return "it is too near to pull out";
   if (auto why = why_no_room(scene, lead)) return why;
   return why_no_gap(scene, scene.lane.offset_m, lead.speed_mps);
+}
+
+/// The marking may be crossed here, and as long as a change takes.
+bool LanePassing::may_cross(const Scene& scene) const {
+  return std::ranges::any_of(scene.lane.change_windows, [&](const map::StationRange& window) {
+    return scene.view.at.s_m >= window.from_s_m &&
+           scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps <= window.to_s_m;
+  });
+}
+
+/// A lead nearer than that is caught up with soon.
+double LanePassing::soon_m(const Scene& scene, const MoverOnLine& lead) const {
+  return kKeptAhead_m + kKeptAhead_s * lead.speed_mps +
+         kSoon_s * std::max(0.0, scene.free_mps - lead.speed_mps);
+}
+
+/// The speed that lets a gap open behind who is beside, where passing is no use any more; none: it
+/// goes on.
+std::optional<double> LanePassing::falls_back_mps(const Scene& scene) const {
+  const MoverOnLine* nearest = nullptr;  // in the route's lane
+  const auto away_m = [&](const MoverOnLine& mover) {
+    return std::abs(mover.s_m - scene.view.at.s_m);
+  };
+  for (const MoverOnLine& mover : scene.movers) {
+    if (mover.stands || !mover.shares_way(0.0, vehicle_)) continue;
+    if (!nearest || away_m(mover) < away_m(*nearest)) nearest = &mover;
+  }
+  if (nearest == nullptr) return std::nullopt;
+  const bool is_no_faster = scene.free_mps < nearest->speed_mps + 0.5 * kFaster_mps;
+  const bool is_past = nearest->front_m() < scene.view.at.s_m - vehicle_.rear_overhang_m;
+  if (!is_no_faster && (is_past || !why_no_room(scene, *nearest))) return std::nullopt;
+  return std::max(0.0, nearest->speed_mps - kFallsBack_mps);
 }
 
 /// There is a gap in the route's lane, and nobody there to pass again soon.
@@ -231,11 +274,14 @@ bool LanePassing::may_return(const Scene& scene) const {
   const MoverOnLine* lead = lead_in(scene, 0.0);
   if (lead != nullptr) {
     const double gap_m = lead->rear_m() - scene.view.at.s_m - vehicle_.front_m();
-    const bool soon = gap_m < kKeptAhead_m + kKeptAhead_s * lead->speed_mps +
-                                  kSoon_s * std::max(0.0, scene.free_mps - lead->speed_mps);
+    const bool soon = gap_m < soon_m(scene, *lead);
     if (soon && gained_s(scene, *lead) >= kLeastGain_s && !why_no_room(scene, *lead)) return false;
   }
-  return !why_no_gap(scene, 0.0, -1e3);
+  const bool is_last_chance =
+      std::ranges::none_of(scene.lane.change_windows, [&](const map::StationRange& window) {
+        return window.to_s_m > scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps;
+      });
+  return (may_cross(scene) || is_last_chance) && !why_no_gap(scene, 0.0, -1e3);
 }
 
 bool LanePassing::has_left_lane(const Scene& scene) const {
@@ -248,7 +294,7 @@ LanePassing::Decision LanePassing::look(const View& view) {
     passed_.reset();
     return {};
   }
-  const Scene scene{view, *lane, movers_on_line(task_.line, view.traffic, view.t_s),
+  const Scene scene{view, *lane, movers_on_line(task_.line, view.traffic, view.t_s, true),
                     ceiling_.at(view.at.s_m).speed_mps};
   const MoverOnLine* lead = lead_in(scene, 0.0);
   Decision decision{.side = lane->offset_m < 0.0 ? -1.0 : 1.0};
@@ -257,6 +303,8 @@ LanePassing::Decision LanePassing::look(const View& view) {
   }
   if (!passed_) {
     if (lead == nullptr || gained_s(scene, *lead) < kLeastGain_s) return decision;
+    const double gap_m = lead->rear_m() - view.at.s_m - vehicle_.front_m();
+    if (gap_m > soon_m(scene, *lead)) return decision;
     const std::string& id = task_.obstacles[lead->obstacle].id;
     if (const auto why = why_not(scene, *lead)) {
       decision.reason = fmt::format("{} is not passed: {}", id, *why);
@@ -271,7 +319,9 @@ LanePassing::Decision LanePassing::look(const View& view) {
   decision.offset_m = lane->offset_m;
   decision.passed = passed_;
   decision.lane_end_s_m = lane->to_s_m;
-  decision.reason = fmt::format("passes {}", task_.obstacles[*passed_].id);
+  if (has_left_lane(scene)) decision.most_mps = falls_back_mps(scene);
+  decision.reason = fmt::format("{} {}", decision.most_mps ? "falls back behind" : "passes",
+                                task_.obstacles[*passed_].id);
   return decision;
 }
 

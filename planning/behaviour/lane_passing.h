@@ -40,7 +40,8 @@ std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route
 /// the next lane has a gap: who drives ahead there is not closed up to, who comes up behind need
 /// not brake harder than 2 m/s². While the own lane has not been left yet it is given up when the
 /// gap closes. Afterwards the vehicle comes back as soon as there is a gap, and nobody else to
-/// pass.
+/// pass. Where nothing is gained any more, or the room ahead is used up, it falls back: slower than
+/// who is beside until there is a gap, and to a stop before the lane ends at the latest.
 class LanePassing {
  public:
   struct View {
@@ -57,7 +58,8 @@ class LanePassing {
     std::optional<double> keep_within_m = {};
     double side = 1.0;                       ///< of the passing lane: 1 left, −1 right
     std::optional<std::size_t> passed = {};  ///< obstacle that is passed
-    double lane_end_s_m = 1e9;               ///< of the lane that is driven in
+    double lane_end_s_m = 1e9;               ///< of the lane that is driven in: not to be passed
+    std::optional<double> most_mps = {};     ///< to fall back with
     std::string reason = {};  ///< why somebody is (not) passed; empty: there is nobody
   };
 
@@ -74,6 +76,9 @@ class LanePassing {
   std::optional<std::string> why_not(const Scene& scene, const MoverOnLine& lead) const;
   std::optional<std::string> why_no_room(const Scene& scene, const MoverOnLine& lead) const;
   std::optional<std::string> why_no_gap(const Scene& scene, double d_m, double lead_mps) const;
+  std::optional<double> falls_back_mps(const Scene& scene) const;
+  bool may_cross(const Scene& scene) const;
+  double soon_m(const Scene& scene, const MoverOnLine& lead) const;
   bool may_return(const Scene& scene) const;
   bool has_left_lane(const Scene& scene) const;
 

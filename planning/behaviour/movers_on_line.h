@@ -9,12 +9,13 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// A moving obstacle, seen from a reference line at one time.
+/// An obstacle, seen from a reference line at one time.
 struct MoverOnLine {
   std::size_t obstacle;                ///< index
   double s_m, d_m;                     ///< of its centre
   double half_length_m, half_width_m;  ///< along the line, and across
   double speed_mps;                    ///< along the line; less than 0 if it is oncoming
+  bool stands = false;                 ///< for the whole drive
 
   double rear_m() const { return s_m - half_length_m; }
   double front_m() const { return s_m + half_length_m; }
@@ -24,7 +25,8 @@ struct MoverOnLine {
 };
 
 /// Those that are there, in the traffic's order. A projection for each.
+/// @param with_standing  those that stand for the whole drive, too.
 std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
-                                        double t_s);
+                                        double t_s, bool with_standing = false);
 
 }  // namespace roadbed::planning::behaviour

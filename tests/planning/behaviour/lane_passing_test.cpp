@@ -30,7 +30,9 @@ struct Scene {
   NextLane next_lane = NextLane::free;
   bool in_bend = false;
   bool may_cross = true;
-  std::optional<double> fast_from_m = std::nullopt;  ///< a car at 20 m/s in the next lane
+  std::optional<double> fast_from_m = std::nullopt;     ///< a car at 20 m/s in the next lane
+  std::optional<double> parked_at_m = std::nullopt;     ///< a car in the next lane
+  std::optional<double> speeds_up_at_s = std::nullopt;  ///< the lead, to the desired speed
 };
 
 std::string lane(int id, bool may_cross) {
@@ -75,6 +77,8 @@ struct Driven {
   Drive drive;
   bool passed = false;             ///< the lead, by the end
   double others_brake_mps2 = 0.0;  ///< at most, of the last obstacle
+  double beside_m = 0.0;           ///< the route's lane, in the end
+  double clearance_m = 1e9;
 };
 
 Driven drive_in(const Scene& scene) {
@@ -99,6 +103,15 @@ Driven drive_in(const Scene& scene) {
   if (scene.fast_from_m) {
     scenario.obstacles.push_back(car("fast", "-1", *scene.fast_from_m, {{0.0, 20.0}}));
   }
+  if (scene.parked_at_m) {
+    scenario.obstacles.push_back(car("parked", "-1", *scene.parked_at_m, {{0.0, 0.0}}));
+  }
+  if (scene.speeds_up_at_s) {
+    const double at_s = *scene.speeds_up_at_s;
+    scenario.obstacles.front() =
+        car("lead", own, lead_s_m,
+            {{0.0, lead_mps}, {at_s, lead_mps}, {at_s + 4.0, scene.desired_mps}});
+  }
   World world = make_world(scenario);
   Driven driven{.drive = drive(scenario, world)};
   const geometry::TrajectoryPoint last = driven.drive.trajectory.points().back();
@@ -106,6 +119,10 @@ Driven drive_in(const Scene& scene) {
     return world.line.project(in_map).s_m;
   };
   const auto own_s = station(world.road_map.to_map({last.x_m, last.y_m}));
+  driven.beside_m = std::abs(world.line.project(world.road_map.to_map({last.x_m, last.y_m})).d_m);
+  for (const DriveSample& sample : driven.drive.samples) {
+    driven.clearance_m = std::min(driven.clearance_m, sample.clearance_m);
+  }
   const auto& lead = world.obstacles.front().motion;
   driven.passed = own_s > station(lead.at(last.t_s).pose().position());
   const geometry::Trajectory& other = world.obstacles.back().motion;
@@ -202,6 +219,29 @@ TEST(LanePassing, NobodyBehindHasToBrakeHard) {
                  : 0;
   }
   EXPECT_GE(waits, 2);
+}
+
+TEST(LanePassing, FallsBackBehindALeadThatSpeedsUpMeanwhile) {
+  for (const double at_s : {1.0, 2.0, 3.0, 4.0}) {
+    SCOPED_TRACE(at_s);
+    Scene scene{4.0, 12.0};
+    scene.speeds_up_at_s = at_s;
+    const Driven driven = drive_in(scene);
+    EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
+    EXPECT_LT(driven.beside_m, 0.5);
+    EXPECT_GT(driven.clearance_m, 1.2);
+  }
+}
+
+TEST(LanePassing, CarsParkedInTheNextLaneAreInTheWay) {
+  for (const double at_m : {60.0, 75.0, 90.0, 110.0}) {
+    SCOPED_TRACE(at_m);
+    Scene scene{4.0, 12.0};
+    scene.parked_at_m = at_m;
+    const Driven driven = drive_in(scene);
+    EXPECT_EQ(driven.drive.verdict.outcome, Outcome::goal_reached) << driven.drive.verdict.text;
+    EXPECT_GT(driven.clearance_m, 1.2);
+  }
 }
 
 TEST(LanePassing, IsSmooth) {
