@@ -25,7 +25,6 @@ constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kPassOffset_m = 0.5;      // off the reference line this far is passing
 constexpr double kChange_s = 3.0;          // to change lanes in, to overtake
-constexpr double kDrivesOn_mps2 = 1.0;     // as the cruise control does
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0, kFallsBehind_mps = 3.0;  // overtaking given up
 
@@ -66,9 +65,10 @@ class CruisePilot : public Pilot {
     t_s_ = view.t_s;
     if (predicts_) predicted_.emplace(true_traffic(task_), view.t_s);
     replanner_.locate(view.measured);
-    const Overtaking::Decision passing = look_at_passing(view);
+    const ViewOnLine on_line{view.t_s, place_of(view), speed, traffic()};
+    const Overtaking::Decision passing = overtaking_.look(on_line);
     const LanePassing::Decision lane =
-        passing.overtaken ? LanePassing::Decision{} : look_at_next_lane(view);
+        passing.overtaken ? LanePassing::Decision{} : lane_passing_.look(on_line);
     passes_in_lane_ = plan_path(view, passing, lane);
     const std::optional<StopConstraint> halt = nearer(halt_ahead(view), lane);
     const std::optional<Lead> truth = lead_ahead(view, halt);
@@ -117,20 +117,6 @@ class CruisePilot : public Pilot {
     return task_.line.project(view.measured.map_from_vehicle.position(), replanner_.s_m());
   }
 
-  Overtaking::Decision look_at_passing(const PilotView& view) {
-    return overtaking_.look({.t_s = view.t_s,
-                             .at = place_of(view),
-                             .speed_mps = view.measured.speed_mps,
-                             .traffic = traffic()});
-  }
-
-  LanePassing::Decision look_at_next_lane(const PilotView& view) {
-    return lane_passing_.look({.t_s = view.t_s,
-                               .at = place_of(view),
-                               .speed_mps = view.measured.speed_mps,
-                               .traffic = traffic()});
-  }
-
   /// Where somebody is overtaken the lateral planner is told where; elsewhere it is kept off the
   /// lane of oncoming traffic while somebody drives ahead.
   /// @return whether the path leads to the next lane.
@@ -147,19 +133,12 @@ class CruisePilot : public Pilot {
         .obstacles = ahead};
     const bool stays_beside =
         passing.overtaken && (!passing.falls_back || passing.gap_m < kBehindToReturn_m);
-    if (stays_beside) {
-      LateralReplanner::Question beside = question;
-      beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
-      beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
-      beside.checks_completion = false;
-      const LateralReplanner::Proposal proposal = replanner_.propose(
-          beside, {*passing.pass_at_m - kPassTolerance_m, *passing.pass_at_m + kPassTolerance_m});
-      if (proposal.plan.chosen) {
-        replanner_.take(proposal);
-        return false;
-      }
+    if (stays_beside && takes_path_at(*passing.pass_at_m, question)) return false;
+    if (lane.offset_m) {
+      LateralReplanner::Question at_free_speed = question;
+      at_free_speed.speed.target_mps = ceiling_.at(replanner_.s_m()).speed_mps;
+      if (takes_path_at(*lane.offset_m, at_free_speed)) return true;
     }
-    if (lane.offset_m && changes_lane(question, *lane.offset_m)) return true;
     LateralReplanner::Offsets offsets;
     keep_within(passing.keep_within_m, passing.side, offsets);
     keep_within(lane.keep_within_m, lane.side, offsets);
@@ -177,19 +156,16 @@ class CruisePilot : public Pilot {
     }
   }
 
-  /// To the middle of the next lane, at the speed of the free road; false: nothing leads there.
-  bool changes_lane(const LateralReplanner::Question& question, double offset_m) {
-    LateralReplanner::Question beside = question;
+  /// A change to an offset takes a while, at any speed; false: nothing leads there.
+  bool takes_path_at(double offset_m, LateralReplanner::Question question) {
     const double speed = question.speed.speed_mps;
-    beside.speed.target_mps = ceiling_.at(replanner_.s_m()).speed_mps;
-    beside.ends.least_m = std::max(beside.ends.least_m, kChange_s * speed);
-    beside.ends.most_m = std::max(beside.ends.most_m, (kChange_s + 1.0) * speed);
-    beside.checks_completion = false;
+    question.ends.least_m = std::max(question.ends.least_m, kChange_s * speed);
+    question.ends.most_m = std::max(question.ends.most_m, (kChange_s + 1.0) * speed);
+    question.checks_completion = false;
     const LateralReplanner::Proposal proposal =
-        replanner_.propose(beside, {offset_m - kPassTolerance_m, offset_m + kPassTolerance_m});
-    if (!proposal.plan.chosen) return false;
-    replanner_.take(proposal);
-    return true;
+        replanner_.propose(question, {offset_m - kPassTolerance_m, offset_m + kPassTolerance_m});
+    if (proposal.plan.chosen) replanner_.take(proposal);
+    return proposal.plan.chosen.has_value();
   }
 
   void overtake(const Overtaking::Decision& passing, double speed_mps,
@@ -206,8 +182,7 @@ class CruisePilot : public Pilot {
   /// Who follows keeps its own distance: no path is given up for it.
   std::vector<Obstacle> obstacles_to_plan_for(const PilotView& view) const {
     std::vector<Obstacle> ahead = predicted_ ? predicted_->obstacles() : task_.obstacles;
-    const geometry::LinePosition at =
-        task_.line.project(view.measured.map_from_vehicle.position(), replanner_.s_m());
+    const geometry::LinePosition at = place_of(view);
     const VehicleOnLine vehicle{task_.line, at.s_m, at.d_m, vehicle_.width_m};
     std::erase_if(ahead, [&](const Obstacle& obstacle) {
       return !obstacle.is_static() && is_following(obstacle, view.t_s, vehicle);
@@ -242,33 +217,30 @@ class CruisePilot : public Pilot {
     std::vector<bool> ignored = right_of_way_.crossing();
     if (!passes_in_lane_) return ignored;
     constexpr double kAhead_m = 80.0, kMargin_m = 0.3;
-    constexpr int kSteps = 60;
+    constexpr std::size_t kSteps = 60;
     const PathProfile profile =
         sample_path_profile(path, replanner_.s_m(), kAhead_m, ceiling_, vehicle_);
-    const StGraph occupancy(profile, traffic(), view.t_s, kSteps, kMargin_m);
+    std::vector<double> ahead = drive_on(profile, view.measured.speed_mps, kAhead_m);
+    ahead.resize(std::min(ahead.size(), kSteps));
+    const int last = static_cast<int>(ahead.size()) - 1;
+    const StGraph occupancy(profile, traffic(), view.t_s, last, kMargin_m);
     std::vector<bool> met(ignored.size(), false);
-    double ahead_m = 0.0, speed_mps = view.measured.speed_mps;
-    for (int k = 0; k <= kSteps; ++k) {
+    for (int k = 0; k <= last; ++k) {
+      const double ahead_m = ahead[static_cast<std::size_t>(k)];
+      // In the end the gap that is kept counts, too: who is as fast is never reached.
+      const double kept_m = k < last ? 0.0 : kept_gap_m(view.measured.speed_mps);
       for (const StInterval& part : occupancy.at(k)) {
-        if (part.obstacle != StInterval::kNoObstacle && ahead_m >= part.from_m &&
-            ahead_m <= part.to_m)
-          met[part.obstacle] = true;
+        if (ahead_m + kept_m >= part.from_m && ahead_m <= part.to_m) met[part.obstacle] = true;
       }
-      const double most = profile.wanted_mps[profile.before(ahead_m)];
-      speed_mps =
-          std::min(std::max(speed_mps, most), speed_mps + kDrivesOn_mps2 * StGraph::kStep_s);
-      ahead_m += speed_mps * StGraph::kStep_s;
-    }
-    for (const StInterval& part : occupancy.at(kSteps)) {
-      const double near_m =
-          decision_options_.standstill_gap_m + decision_options_.headway_s * speed_mps;
-      if (part.obstacle != StInterval::kNoObstacle && part.from_m - ahead_m < near_m)
-        met[part.obstacle] = true;
     }
     for (std::size_t i = 0; i < ignored.size(); ++i) {
       ignored[i] = ignored[i] || (!task_.obstacles[i].is_static() && !met[i]);
     }
     return ignored;
+  }
+
+  double kept_gap_m(double speed_mps) const {
+    return decision_options_.standstill_gap_m + decision_options_.headway_s * speed_mps;
   }
 
   /// Who is beyond the place to halt at is none.

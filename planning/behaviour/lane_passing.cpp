@@ -118,7 +118,7 @@ std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route
 
 /// What is looked at in one cycle.
 struct LanePassing::Scene {
-  const View& view;
+  const ViewOnLine& view;
   const PassingLane& lane;
   std::vector<MoverOnLine> movers;
   double free_mps;  ///< at which the vehicle would drive on an empty road
@@ -137,16 +137,20 @@ const PassingLane* LanePassing::lane_at(double s_m) const {
   return found == lanes_.end() ? nullptr : &*found;
 }
 
-/// The nearest one ahead whom a vehicle would meet that drives `d_m` beside the line.
-const MoverOnLine* LanePassing::lead_in(const Scene& scene, double d_m) const {
+/// The nearest one that drives ahead in the route's lane.
+const MoverOnLine* LanePassing::lead_of(const Scene& scene) const {
   const MoverOnLine* nearest = nullptr;
   for (const MoverOnLine& mover : scene.movers) {
-    if (mover.stands || !mover.shares_way(d_m, vehicle_)) continue;
-    if (mover.s_m < scene.view.at.s_m) continue;
-    if (mover.rear_m() > scene.view.at.s_m + vehicle_.front_m() + kPassedWithin_m) continue;
+    if (mover.stands || !mover.shares_way(0.0, vehicle_)) continue;
+    if (mover.s_m < scene.view.at.s_m || gap_m(scene, mover) > kPassedWithin_m) continue;
     if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
   }
   return nearest;
+}
+
+/// Bumper to bumper.
+double LanePassing::gap_m(const Scene& scene, const MoverOnLine& lead) const {
+  return lead.rear_m() - scene.view.at.s_m - vehicle_.front_m();
 }
 
 /// Until the goal, at the speeds of now.
@@ -154,8 +158,7 @@ double LanePassing::gained_s(const Scene& scene, const MoverOnLine& lead) const 
   const double lead_mps = std::max(1.0, lead.speed_mps);
   if (scene.free_mps < lead_mps + kFaster_mps) return 0.0;
   const double left_m = task_.line.goal_s_m() - scene.view.at.s_m;
-  const double gap_m = lead.rear_m() - scene.view.at.s_m - vehicle_.front_m();
-  return (left_m - gap_m) / lead_mps - left_m / scene.free_mps;
+  return (left_m - gap_m(scene, lead)) / lead_mps - left_m / scene.free_mps;
 }
 
 /// Room ahead to pass all who drive closely together, and to come back.
@@ -189,10 +192,9 @@ std::optional<std::string> LanePassing::why_no_room(const Scene& scene,
 
 /// Whether a lane can be changed to: nobody beside, who is ahead is not closed up to, who is behind
 /// need not brake hard.
-/// @param lead_mps  of who drives ahead in the lane that is left; slower ones are no gain.
+/// @param gain_over_mps  who is no faster ahead there is in the way, too; none: that is no matter.
 std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_m,
-                                                   double lead_mps) const {
-  const double front_m = scene.view.at.s_m + vehicle_.front_m();
+                                                   std::optional<double> gain_over_mps) const {
   const double rear_m = scene.view.at.s_m - vehicle_.rear_overhang_m;
   const double speed_mps = scene.view.speed_mps;
   const double entered_mps =
@@ -204,12 +206,13 @@ std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_
       const double closing_mps = std::max(0.0, speed_mps - mover.speed_mps);
       const double needed_m = kKeptAhead_m + kKeptAhead_s * std::max(0.0, mover.speed_mps) +
                               0.5 * closing_mps * closing_mps / kOwnBrake_mps2;
-      const double gap_m = mover.rear_m() - front_m;
-      if (gap_m < needed_m) {
-        return fmt::format("{} is {:.0f} m too near in the next lane", id, needed_m - gap_m);
+      const double ahead_m = gap_m(scene, mover);
+      if (ahead_m < needed_m) {
+        return fmt::format("{} is {:.0f} m too near in the next lane", id, needed_m - ahead_m);
       }
       const double soon_m = std::max(0.0, scene.free_mps - mover.speed_mps) * kSoon_s;
-      if (mover.speed_mps < lead_mps + kFaster_mps && gap_m < needed_m + soon_m) {
+      if (gain_over_mps && mover.speed_mps < *gain_over_mps + kFaster_mps &&
+          ahead_m < needed_m + soon_m) {
         return fmt::format("{} is no faster in the next lane", id);
       }
     } else {
@@ -218,10 +221,10 @@ std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_
           std::max(0.0, mover.speed_mps - 0.5 * (speed_mps + entered_mps)) * kLaneChange_s;
       const double needed_m = kKeptBehind_m + kKeptBehind_s * std::max(0.0, mover.speed_mps) +
                               closed_m + 0.5 * closing_mps * closing_mps / kOthersBrake_mps2;
-      const double gap_m = rear_m - mover.front_m();
-      if (gap_m < needed_m) {
+      const double behind_m = rear_m - mover.front_m();
+      if (behind_m < needed_m) {
         return fmt::format("{} comes up behind in the next lane, the gap is {:.0f} m too short", id,
-                           needed_m - gap_m);
+                           needed_m - behind_m);
       }
     }
   }
@@ -230,9 +233,9 @@ std::optional<std::string> LanePassing::why_no_gap(const Scene& scene, double d_
 
 std::optional<std::string> LanePassing::why_not(const Scene& scene, const MoverOnLine& lead) const {
   if (!may_cross(scene)) return "the marking may not be crossed here";
-  const double gap_m = lead.rear_m() - scene.view.at.s_m - vehicle_.front_m();
   const double closing_mps = std::max(0.0, scene.view.speed_mps - lead.speed_mps);
-  if (gap_m < kPullOut_m + kPullOut_s * closing_mps) return "it is too near to pull out";
+  if (gap_m(scene, lead) < kPullOut_m + kPullOut_s * closing_mps)
+    return "it is too near to pull out";
   if (auto why = why_no_room(scene, lead)) return why;
   return why_no_gap(scene, scene.lane.offset_m, lead.speed_mps);
 }
@@ -271,24 +274,23 @@ std::optional<double> LanePassing::falls_back_mps(const Scene& scene) const {
 
 /// There is a gap in the route's lane, and nobody there to pass again soon.
 bool LanePassing::may_return(const Scene& scene) const {
-  const MoverOnLine* lead = lead_in(scene, 0.0);
+  const MoverOnLine* lead = lead_of(scene);
   if (lead != nullptr) {
-    const double gap_m = lead->rear_m() - scene.view.at.s_m - vehicle_.front_m();
-    const bool soon = gap_m < soon_m(scene, *lead);
+    const bool soon = gap_m(scene, *lead) < soon_m(scene, *lead);
     if (soon && gained_s(scene, *lead) >= kLeastGain_s && !why_no_room(scene, *lead)) return false;
   }
   const bool is_last_chance =
       std::ranges::none_of(scene.lane.change_windows, [&](const map::StationRange& window) {
         return window.to_s_m > scene.view.at.s_m + kLaneChange_s * scene.view.speed_mps;
       });
-  return (may_cross(scene) || is_last_chance) && !why_no_gap(scene, 0.0, -1e3);
+  return (may_cross(scene) || is_last_chance) && !why_no_gap(scene, 0.0);
 }
 
 bool LanePassing::has_left_lane(const Scene& scene) const {
   return std::abs(scene.view.at.d_m) > 0.4 * std::abs(scene.lane.offset_m);
 }
 
-LanePassing::Decision LanePassing::look(const View& view) {
+LanePassing::Decision LanePassing::look(const ViewOnLine& view) {
   const PassingLane* lane = lane_at(view.at.s_m);
   if (lane == nullptr) {
     passed_.reset();
@@ -296,15 +298,14 @@ LanePassing::Decision LanePassing::look(const View& view) {
   }
   const Scene scene{view, *lane, movers_on_line(task_.line, view.traffic, view.t_s, true),
                     ceiling_.at(view.at.s_m).speed_mps};
-  const MoverOnLine* lead = lead_in(scene, 0.0);
+  const MoverOnLine* lead = lead_of(scene);
   Decision decision{.side = lane->offset_m < 0.0 ? -1.0 : 1.0};
   if (lead != nullptr) {
     decision.keep_within_m = std::max(0.0, 0.5 * std::abs(lane->offset_m) - 0.5 * vehicle_.width_m);
   }
   if (!passed_) {
     if (lead == nullptr || gained_s(scene, *lead) < kLeastGain_s) return decision;
-    const double gap_m = lead->rear_m() - view.at.s_m - vehicle_.front_m();
-    if (gap_m > soon_m(scene, *lead)) return decision;
+    if (gap_m(scene, *lead) > soon_m(scene, *lead)) return decision;
     const std::string& id = task_.obstacles[lead->obstacle].id;
     if (const auto why = why_not(scene, *lead)) {
       decision.reason = fmt::format("{} is not passed: {}", id, *why);
@@ -312,7 +313,7 @@ LanePassing::Decision LanePassing::look(const View& view) {
     }
     passed_ = lead->obstacle;
   } else if (has_left_lane(scene) ? may_return(scene)
-                                  : why_no_gap(scene, lane->offset_m, -1e3).has_value()) {
+                                  : why_no_gap(scene, lane->offset_m).has_value()) {
     passed_.reset();
     return decision;
   }

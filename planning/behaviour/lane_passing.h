@@ -44,13 +44,6 @@ std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route
 /// who is beside until there is a gap, and to a stop before the lane ends at the latest.
 class LanePassing {
  public:
-  struct View {
-    double t_s;
-    geometry::LinePosition at;  ///< of the rear axle, on the task's line
-    double speed_mps;
-    Traffic traffic;  ///< only what is there now is looked at
-  };
-
   struct Decision {
     std::optional<double> offset_m = {};  ///< of the lane to drive in; none: that of the route
     /// Offsets that keep to the route's lane, towards the passing lane: while somebody drives
@@ -66,16 +59,18 @@ class LanePassing {
   LanePassing(const geometry::VehicleShape& vehicle, const DrivingTask& task,
               const SpeedCeiling& ceiling);
 
-  Decision look(const View& view);
+  Decision look(const ViewOnLine& view);
 
  private:
   struct Scene;
   const PassingLane* lane_at(double s_m) const;
-  const MoverOnLine* lead_in(const Scene& scene, double d_m) const;
+  const MoverOnLine* lead_of(const Scene& scene) const;
+  double gap_m(const Scene& scene, const MoverOnLine& lead) const;
   double gained_s(const Scene& scene, const MoverOnLine& lead) const;
   std::optional<std::string> why_not(const Scene& scene, const MoverOnLine& lead) const;
   std::optional<std::string> why_no_room(const Scene& scene, const MoverOnLine& lead) const;
-  std::optional<std::string> why_no_gap(const Scene& scene, double d_m, double lead_mps) const;
+  std::optional<std::string> why_no_gap(const Scene& scene, double d_m,
+                                        std::optional<double> gain_over_mps = {}) const;
   std::optional<double> falls_back_mps(const Scene& scene) const;
   bool may_cross(const Scene& scene) const;
   double soon_m(const Scene& scene, const MoverOnLine& lead) const;

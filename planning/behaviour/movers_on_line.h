@@ -9,6 +9,14 @@
 
 namespace roadbed::planning::inline behaviour {
 
+/// The vehicle on its line at one time, and who is around it.
+struct ViewOnLine {
+  double t_s;
+  geometry::LinePosition at;  ///< of the rear axle
+  double speed_mps;
+  Traffic traffic;  ///< only what is there now is looked at
+};
+
 /// An obstacle, seen from a reference line at one time.
 struct MoverOnLine {
   std::size_t obstacle;                ///< index

@@ -59,7 +59,7 @@ Overtaking::Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask&
 
 /// The nearest one ahead in the vehicle's lane, if it moves.
 const MoverOnLine* Overtaking::slower_ahead(const std::vector<MoverOnLine>& movers,
-                                            const View& view) const {
+                                            const ViewOnLine& view) const {
   const MoverOnLine* nearest = nullptr;
   const double front_m = view.at.s_m + vehicle_.front_m();
   for (const MoverOnLine& mover : movers) {
@@ -194,14 +194,14 @@ bool Overtaking::can_fall_back(const State& from, const MoverOnLine& lead,
 
 /// The one that is being overtaken, or else a slower one ahead.
 const MoverOnLine* Overtaking::lead_of(const std::vector<MoverOnLine>& movers,
-                                       const View& view) const {
+                                       const ViewOnLine& view) const {
   const auto found = std::ranges::find_if(
       movers, [&](const MoverOnLine& mover) { return overtaken_ == mover.obstacle; });
   return found != movers.end() ? &*found : slower_ahead(movers, view);
 }
 
 /// Whether it is over: past the other one, or behind it again.
-bool Overtaking::has_ended(const View& view, const MoverOnLine& lead) const {
+bool Overtaking::has_ended(const ViewOnLine& view, const MoverOnLine& lead) const {
   const geometry::VehicleShape& vehicle = vehicle_;
   const double past_m = lead.front_m() + kReturnGap_m + kReturnGap_s * lead.speed_mps;
   const double front_m = view.at.s_m + vehicle.front_m();
@@ -209,7 +209,7 @@ bool Overtaking::has_ended(const View& view, const MoverOnLine& lead) const {
          (falls_back_ && front_m < lead.rear_m() - kBehindRear_m);
 }
 
-Overtaking::Decision Overtaking::look(const View& view) {
+Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
   const OncomingLaneSegment* stretch = stretch_at(view.at.s_m);
   const std::vector<MoverOnLine> movers =
       stretch ? movers_on_line(task_.line, view.traffic, view.t_s) : std::vector<MoverOnLine>{};

@@ -47,13 +47,6 @@ std::vector<OncomingLaneSegment> oncoming_lane_segments(const map::RoadMap& road
 /// what stands is passed as the lateral planner chooses.
 class Overtaking {
  public:
-  struct View {
-    double t_s;
-    geometry::LinePosition at;  ///< of the rear axle, on the world's line
-    double speed_mps;
-    Traffic traffic;  ///< only what is there now is looked at
-  };
-
   /// What the lateral planner is asked for.
   struct Decision {
     std::optional<double> keep_within_m = {};   ///< offsets towards the other lane, up to this one
@@ -68,11 +61,12 @@ class Overtaking {
   Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,
              const SpeedCeiling& ceiling);
 
-  Decision look(const View& view);
+  Decision look(const ViewOnLine& view);
 
  private:
   struct State;
-  const MoverOnLine* slower_ahead(const std::vector<MoverOnLine>& movers, const View& view) const;
+  const MoverOnLine* slower_ahead(const std::vector<MoverOnLine>& movers,
+                                  const ViewOnLine& view) const;
   double pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const;
   const OncomingLaneSegment* stretch_at(double s_m) const;
   std::optional<std::string> why_not(const State& from, const MoverOnLine& lead,
@@ -86,8 +80,8 @@ class Overtaking {
   bool is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const;
   double missing_m(const MoverOnLine& mover, double now_s_m, const State& past, const State& back,
                    double limit_mps) const;
-  const MoverOnLine* lead_of(const std::vector<MoverOnLine>& movers, const View& view) const;
-  bool has_ended(const View& view, const MoverOnLine& lead) const;
+  const MoverOnLine* lead_of(const std::vector<MoverOnLine>& movers, const ViewOnLine& view) const;
+  bool has_ended(const ViewOnLine& view, const MoverOnLine& lead) const;
   State step(State state) const;
 
   const geometry::VehicleShape& vehicle_;

@@ -62,6 +62,18 @@ PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double
   return profile;
 }
 
+std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m) {
+  constexpr double kSpeedsUp_mps2 = 1.0, kStep_s = 0.1;
+  constexpr std::size_t kMostSteps = 150;
+  std::vector<double> ahead{0.0};
+  while (ahead.back() < until_m && ahead.size() < kMostSteps) {
+    const double most = std::max(1.0, profile.wanted_mps[profile.before(ahead.back())]);
+    speed_mps = std::min(speed_mps + kSpeedsUp_mps2 * kStep_s, most);
+    ahead.push_back(ahead.back() + kStep_s * speed_mps);
+  }
+  return ahead;
+}
+
 double on_road_m(const PathProfile& profile, const map::RoadMap& road_map) {
   std::size_t i = 0;
   while (i < profile.body.size() && !is_on_road(profile.body[i], road_map)) ++i;

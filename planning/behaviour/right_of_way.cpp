@@ -22,24 +22,11 @@ constexpr double kFractionOfBrakes = 0.9;  // the rest is left to the cruise con
 constexpr double kStopsShort_m = 0.1;      // of a line, at the latest
 constexpr double kRedSlack_s = 0.2;        // before red, to be past the line
 constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
-constexpr double kStartsWithin_mps2 = 1.0;  // as the cruise control does
-constexpr double kJoining_m = 40.0;         // beyond a junction, to be as fast as others
-constexpr int kMostSteps = 150;
+constexpr double kJoining_m = 40.0;  // beyond a junction, to be as fast as others
 constexpr double kCrossingMargin_m = 0.4;
 constexpr double kMovingOther_mps = 0.5;
 constexpr double kLeastAlong = 0.8;   // cosine of the angle up to which somebody drives along
 constexpr double kGapsFrom_m = 15.0;  // beyond the way to stop on
-
-/// Distances driven by each step, accelerating comfortably to the ceiling.
-std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m) {
-  std::vector<double> ahead{0.0};
-  while (ahead.back() < until_m && ahead.size() < kMostSteps) {
-    const double most = std::max(1.0, profile.wanted_mps[profile.before(ahead.back())]);
-    speed_mps = std::min(speed_mps + kStartsWithin_mps2 * StGraph::kStep_s, most);
-    ahead.push_back(ahead.back() + StGraph::kStep_s * speed_mps);
-  }
-  return ahead;
-}
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {

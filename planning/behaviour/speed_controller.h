@@ -18,7 +18,7 @@ class SpeedController {
   virtual ~SpeedController() = default;
 
   /// The lead as it is known at this time; to be asked once a cycle, before acceleration_mps2().
-  /// None: nobody is ahead, or has been measured for too long.
+  /// None: nobody is ahead, or was not measured for too long.
   /// @param truth  to be measured; none: no vehicle is ahead.
   virtual std::optional<Lead> observe(const VehicleState& measured,
                                       const std::optional<Lead>& truth, double t_s) = 0;
