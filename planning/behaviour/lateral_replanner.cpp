@@ -173,7 +173,15 @@ double LateralReplanner::held_until_m(const Plan& plan) const {
   return std::max(plan.start.s_m + plan.chosen->end_l_m, s_m - kReturn_m);
 }
 
+/// Before the first plan: straight on beside the line.
+PlannedPath LateralReplanner::kept_path() const {
+  if (path_) return *path_;
+  return PlannedPath(
+      reference_, [d_m = start_.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
+}
+
 PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
+  if (!proposal.plan.chosen) return kept_path();
   if (!bounds_.squeezes_past || std::abs(proposal.plan.chosen->end_d_m) < kHeldOffset_m) {
     return PlannedPath(reference_,
                        [kept = proposal.plan](double s_m) { return kept.lateral_at(s_m); });
@@ -196,17 +204,22 @@ void LateralReplanner::take(const Proposal& proposal) {
     path_.emplace(path_of(proposal));
   } else if (!path_) {
     path_end_s_m_ = checked_to_s_m_ = start_.s_m;
-    path_.emplace(reference_,
-                  [d_m = start_.d_m](double s_m) { return LateralState{.s_m = s_m, .d_m = d_m}; });
+    path_.emplace(kept_path());
   }
 }
 
 bool LateralReplanner::something_is_in_the_way() const { return plan_.meets_something(); }
 
-PlannedPath LateralReplanner::expected_path() const {
-  return PlannedPath(reference_, [path = *path_, end_m = path_end_s_m_](double s_m) {
+PlannedPath LateralReplanner::expected_path_of(const Proposal& proposal) const {
+  const Plan& plan = proposal.plan;
+  const double end_s_m = plan.chosen ? plan.start.s_m + plan.chosen->end_l_m : path_end_s_m_;
+  return led_back(path_of(proposal), end_s_m);
+}
+
+PlannedPath LateralReplanner::led_back(const PlannedPath& path, double end_s_m) const {
+  return PlannedPath(reference_, [path, end_s_m](double s_m) {
     LateralState lateral = path.lateral_at(s_m);
-    lateral.d_m *= fade(s_m, end_m);  // its slope is small enough to leave the heading alone
+    lateral.d_m *= fade(s_m, end_s_m);  // its slope is small enough to leave the heading alone
     return lateral;
   });
 }

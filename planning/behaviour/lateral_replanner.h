@@ -70,8 +70,11 @@ class LateralReplanner {
   Proposal propose(const Question& question, const Offsets& offsets,
                    bool may_leave_lanes = true) const;
   void take(const Proposal& proposal);
-  /// The path of a proposal. @pre it has a candidate
+  /// The path of a proposal; without a candidate the one that is kept.
   PlannedPath path_of(const Proposal& proposal) const;
+  /// The same, led back to the reference line beyond the plan's end: where the vehicle is expected
+  /// to drive later on.
+  PlannedPath expected_path_of(const Proposal& proposal) const;
 
   /// Of the last cycle; `chosen` is empty if nothing was feasible.
   const Plan& last_plan() const { return plan_; }
@@ -92,9 +95,8 @@ class LateralReplanner {
   /// The path to drive.
   const PlannedPath& path() const { return *path_; }
 
-  /// The same, led back to the reference line beyond the plan's end: where the vehicle is expected
-  /// to drive later on.
-  PlannedPath expected_path() const;
+  /// As expected_path_of(), of what was taken.
+  PlannedPath expected_path() const { return led_back(kept_path(), path_end_s_m_); }
 
  private:
   /// One of the attempts to find a feasible candidate, from what is asked for on to less and less.
@@ -112,6 +114,8 @@ class LateralReplanner {
   PlanInput input_for(const Question& question) const;
   PlanOptions options_for(const Question& question, const Offsets& offsets, double l_step_m) const;
   double held_until_m(const Plan& plan) const;
+  PlannedPath kept_path() const;
+  PlannedPath led_back(const PlannedPath& path, double end_s_m) const;
 
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;

@@ -9,10 +9,11 @@ namespace {
 using geometry::Rectangle;
 
 constexpr double kStep_m = 0.5;
-constexpr double kSeenFor_s = 0.3;       // a lead's acceleration is taken over the last moments
-constexpr double kMostStretch = 1.5;     // of a path against its line, outside of a bend
-constexpr double kLeastAlongLine = 0.8;  // cosine, of who follows
-constexpr int kHalvings = 8;             // 0.5 m to 2 mm
+constexpr double kSeenFor_s = 0.3;        // a lead's acceleration is taken over the last moments
+constexpr double kMostStretch = 1.5;      // of a path against its line, outside of a bend
+constexpr double kLeastAlongLine = 0.8;   // cosine, of who follows
+constexpr double kMovesAcross_mps = 0.5;  // less is standing
+constexpr int kHalvings = 8;              // 0.5 m to 2 mm
 
 /// Distances from the body at stations of the path to one obstacle.
 class Sweep {
@@ -97,6 +98,14 @@ bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& veh
   return foot.s_m + along.dot(beyond) < vehicle.s_m &&
          std::abs(d_m - vehicle.d_m) < 0.5 * (vehicle.width_m + obstacle.width_m) &&
          std::cos(now.heading_rad - foot.heading_rad) > kLeastAlongLine;
+}
+
+bool is_crossing(const Obstacle& obstacle, double t_s, const ReferenceLine& line) {
+  if (obstacle.is_static()) return false;
+  const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
+  if (now.speed_mps < kMovesAcross_mps) return false;
+  const ReferencePoint foot = line.at(line.project(now.pose().position()).s_m);
+  return std::abs(std::cos(now.heading_rad - foot.heading_rad)) < kLeastAlongLine;
 }
 
 std::optional<double> emergency_deceleration_mps2(double speed_mps, const Lead& lead,

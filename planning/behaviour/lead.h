@@ -40,6 +40,10 @@ struct VehicleOnLine {
 /// to 37 degrees). O(N) in the line's points.
 bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle);
 
+/// Whether an obstacle moves across a line (more than 37 degrees from it, either way along).
+/// O(N) in the line's points.
+bool is_crossing(const Obstacle& obstacle, double t_s, const ReferenceLine& line);
+
 /// Deceleration that the safety layer demands beyond what the cruise control may ask for.
 struct SafetyOptions {
   double cruise_limit_mps2 = 0.25 * 9.81;  ///< up to here the cruise control brakes itself

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
-#include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/planning/behaviour/speed_search.h"
@@ -25,13 +26,6 @@ struct RiskLevel {
   bool is_emergency;
 };
 
-/// From the most careful on.
-inline constexpr std::array<RiskLevel, 3> kRiskLevels{{
-    {.margin_m = 0.4, .speed = {}, .is_emergency = false},
-    {.margin_m = 0.4, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
-    {.margin_m = 0.1, .speed = {.least_mps2 = -8.0, .most_mps2 = 4.0}, .is_emergency = true},
-}};
-
 /// One line to the goal, and the path that is kept along it.
 struct GoalLine {
   const ReferenceLine& line;
@@ -41,22 +35,48 @@ struct GoalLine {
   LateralReplanner replanner;
 };
 
+/// What a hypothesis does to those who are in the way.
+enum class Maneuver {
+  keep_lane,     ///< as the lateral planner chooses among all its candidates
+  pass_in_lane,  ///< past slower traffic, in the next lane of the own direction
+  overtake,      ///< the same through the lane of oncoming traffic
+  beside,        ///< the path ends beside the line, or on another line
+};
+
+/// A path to ask the lateral planner for.
+struct PathQuery {
+  GoalLine* goal_line;
+  Maneuver maneuver;
+  LateralReplanner::Question question;
+  LateralReplanner::Offsets offsets = {};
+  bool may_leave_lanes = true;
+};
+
 /// One path, its profile, and the best drive found on it.
 struct ManeuverHypothesis {
-  const GoalLine* goal_line;
-  std::optional<LateralReplanner::Proposal> proposal;  ///< none: the path that is being driven
+  GoalLine* goal_line;
+  Maneuver maneuver;
+  LateralReplanner::Proposal proposal;  ///< without a candidate: the path that is being driven
   PathProfile profile;
-  double on_road_m;  ///< how far along the path the body keeps to the road
-  SpeedSearchAnswer answer;
+  double on_road_m;            ///< how far along the path the body keeps to the road
+  bool by_cruise_law = false;  ///< the answer is what the cruise law is expected to do
+  /// Who would be met by the cruise law, and when; none: nobody.
+  struct Meeting {
+    std::size_t obstacle;
+    double after_s;
+  };
+  std::optional<Meeting> meeting = {};
+  SpeedSearchAnswer answer = {};
   const RiskLevel* risk_level = nullptr;
   std::shared_ptr<const StGraph> occupancy = nullptr;  ///< with that safety margin
   double cost = 0.0;
-  std::optional<DriveLead> lead;
+
+  bool has_candidate() const { return proposal.plan.chosen.has_value(); }
 };
 
 /// How far beside the reference line the path ends.
 inline double beside_m(const ManeuverHypothesis& hypothesis) {
-  return hypothesis.proposal ? std::abs(hypothesis.proposal->plan.chosen->end_d_m) : 0.0;
+  return hypothesis.has_candidate() ? std::abs(hypothesis.proposal.plan.chosen->end_d_m) : 0.0;
 }
 
 /// Whether it meets nothing, and takes no bend faster than can be borne.

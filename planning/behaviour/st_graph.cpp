@@ -14,6 +14,7 @@ namespace {
 using geometry::Rectangle;
 
 constexpr std::size_t kChunk = 16;
+constexpr std::size_t kKeptSteps = 5;  // in time, from who crosses
 
 /// What stands is looked at once.
 bool is_same_place(const TrafficBodies::Body& a, const TrafficBodies::Body& b) {
@@ -87,15 +88,32 @@ class BodiesOnPath {
 
 }  // namespace
 
-TrafficBodies::TrafficBodies(const Traffic& traffic, double start_s, int steps)
+TrafficBodies::TrafficBodies(const Traffic& traffic, double start_s, int steps,
+                             const Crossing& crossing)
     : times_(static_cast<std::size_t>(steps) + 1) {
   for (std::size_t o = 0; o < traffic.obstacles.size(); ++o) {
+    const bool crosses = !crossing.crosses.empty() && crossing.crosses[o];
+    const double wider_m = crosses ? crossing.clearance_m : 0.0;
     for (std::size_t k = 0; k < times_; ++k) {
       const double t_s = start_s + kStep_s * static_cast<double>(k);
       if (!traffic.obstacles[o].is_there(t_s)) continue;
-      const Rectangle at = rectangle_at(traffic.obstacles[o], t_s);
+      Rectangle at = rectangle_at(traffic.obstacles[o], t_s);
+      at.half_length_m += wider_m;
+      at.half_width_m += wider_m;
       all_.push_back({o, k, at, at.radius_m()});
+      if (crosses) add_around(Body(all_.back()));
     }
+  }
+}
+
+/// The same at the times that are too near to it.
+void TrafficBodies::add_around(const Body& body) {
+  const auto kept_at = [](std::size_t step) { return std::min(kKeptSteps, step / 2); };
+  const std::size_t first = body.step - std::min(body.step, kKeptSteps);
+  for (std::size_t k = first; k < std::min(times_, body.step + kKeptSteps + 1); ++k) {
+    const std::size_t apart = k > body.step ? k - body.step : body.step - k;
+    if (apart > 0 && apart <= kept_at(k))
+      all_.push_back({body.obstacle, k, body.at, body.radius_m});
   }
 }
 

@@ -22,8 +22,19 @@ class TrafficBodies {
  public:
   static constexpr double kStep_s = 0.1;
 
-  /// @param steps  of 0.1 s from `start_s` on; obstacles move as the world knows.
-  TrafficBodies(const Traffic& traffic, double start_s, int steps);
+  TrafficBodies() = default;
+  /// Those whom the vehicle meets only once, as they move across its path.
+  struct Crossing {
+    std::vector<bool> crosses = {};  ///< per obstacle; empty: none does
+    double clearance_m = 0.0;        ///< kept from them
+  };
+
+  /// @param steps     of 0.1 s from `start_s` on; obstacles move as the world knows.
+  /// @param crossing  from these some time is kept, too: half of that until they are met, 0.5 s at
+  ///                  most.
+  TrafficBodies(const Traffic& traffic, double start_s, int steps, const Crossing& crossing);
+  TrafficBodies(const Traffic& traffic, double start_s, int steps)
+      : TrafficBodies(traffic, start_s, steps, Crossing()) {}
 
   struct Body {
     std::size_t obstacle = 0, step = 0;
@@ -35,8 +46,10 @@ class TrafficBodies {
   std::size_t times() const { return times_; }  ///< one more than steps
 
  private:
+  void add_around(const Body& body);
+
   std::vector<Body> all_;
-  std::size_t times_;
+  std::size_t times_ = 0;
 };
 
 /// Which parts of a path are blocked when: the s–t graph of the obstacles. Parts of one time are in
@@ -53,6 +66,8 @@ class StGraph {
 
   /// A part that no obstacle blocks, such as the place behind a line at a red light.
   void block(int step, double from_m, double to_m);
+
+  std::size_t times() const { return moments_.size(); }  ///< one more than steps
 
   /// At `step` · 0.1 s after the start, clamped to the last one.
   const std::vector<StInterval>& at(int step) const { return of(step).parts; }

@@ -7,7 +7,7 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// Obstacles as a pilot foresees them: where each will be, and from when to when it is there.
+/// Obstacles as the planner foresees them: where each will be, and from when to when it is there.
 struct Traffic {
   std::span<const Obstacle> obstacles;
 };

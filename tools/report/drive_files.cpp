@@ -62,7 +62,7 @@ Driven drive_and_describe(const Scenario& scenario, World& world, const DriveCho
   DrivenScenario& result = driven.result;
   driven.drive =
       drive(scenario, world,
-            {.pilot = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
+            {.planner = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
              .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
   result.name = scenario.name;
   result.verdict = driven.drive.verdict;

@@ -24,7 +24,7 @@ struct DrivenScenario {
 
 /// How a scenario is driven.
 struct DriveChoice {
-  bool predicts = false;          ///< pilots know of others only what could be known at the time
+  bool predicts = false;  ///< the planner knows of others only what could be known at the time
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
   ScenarioChanges changes = {};   ///< of what the file says
   std::filesystem::path vehicle_file = {}, noise_file = {};  ///< where these come from, if given

@@ -13,7 +13,7 @@
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/control/single_track.h"
 #include "roadbed/control/stanley.h"
-#include "roadbed/planning/behaviour/pilot.h"
+#include "roadbed/planning/behaviour/planner.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/sensors.h"
@@ -90,7 +90,7 @@ class ClosedLoop {
         flow_(world.drivers, world.obstacles, scenario.duration_s, {}),
         sensors_(scenario.noise, scenario.seed),
         cruise_(sensors_, truth_),
-        pilot_(world.goal ? make_timed_pilot(setup()) : make_cruise_pilot(setup())),
+        planner_(setup()),
         observer_(world, scenario.vehicle) {
     truth_.map_from_vehicle = world.start;
     truth_.speed_mps = scenario.start_speed_mps;
@@ -113,11 +113,11 @@ class ClosedLoop {
   }
 
  private:
-  planning::PilotSetup setup() const {
+  planning::PlannerSetup setup() const {
     return {.task = world_,
             .vehicle = scenario_.vehicle,
             .driving = scenario_.options,
-            .pilot = options_.pilot};
+            .planner = options_.planner};
   }
 
   double t_s() const { return kControlStep_s * steps_; }
@@ -133,12 +133,12 @@ class ClosedLoop {
                       most);
   }
 
-  const planning::LateralReplanner& replanner() const { return pilot_->replanner(); }
+  const planning::LateralReplanner& replanner() const { return planner_.replanner(); }
 
   void plan_and_decide() {
     const auto begin = std::chrono::steady_clock::now();
     const planning::VehicleState measured = sensors_.measure(truth_);
-    command_ = pilot_->decide({.t_s = t_s(), .measured = measured, .speed_controller = cruise_});
+    command_ = planner_.decide({.t_s = t_s(), .measured = measured, .speed_controller = cruise_});
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     if (options_.on_cycle) options_.on_cycle(took.count());
     front_s_m_ = replanner().s_m();
@@ -289,14 +289,14 @@ class ClosedLoop {
   Sensors sensors_;
   planning::VehicleState truth_;
   MeasuredCruise cruise_;
-  std::unique_ptr<planning::Pilot> pilot_;
+  planning::Planner planner_;
   GroundTruthMonitor observer_;
 
   std::optional<PedalModel> foot_;
   int steps_ = 0;
   double s_m_ = 0.0;        ///< station on the world's line, when last looked
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
-  planning::PilotCommand command_;
+  planning::PlannerCommand command_;
   int saturated_ = 0;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;

@@ -103,7 +103,7 @@ planning::GoalState goal_state(const Source& source, const State& from) {
   return state;
 }
 
-/// The pilots drive forwards only.
+/// The planner drives forwards only.
 double start_speed_mps(const Source& source) {
   const double speed = exact(source, source.problem.initial_state.speed_mps, "a velocity");
   if (!(speed >= 0.0 && speed <= kFastestStart_mps)) {

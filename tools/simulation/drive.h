@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
-#include "roadbed/planning/behaviour/pilot.h"
+#include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
@@ -98,7 +98,7 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
 /// Bounds of the loop; the scenario's own options come on top.
 struct LoopOptions {
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
-  planning::PilotOptions pilot = {};
+  planning::PlannerOptions planner = {};
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
 };
 

@@ -64,7 +64,7 @@ Scenario at_speed(double speed_mps) {
 class BehaviourDrives : public testing::TestWithParam<bool> {
  protected:
   static Drive driven(const Scenario& scenario, World world) {
-    return tools::drive(scenario, world, {.pilot = {.predicts = GetParam()}});
+    return tools::drive(scenario, world, {.planner = {.predicts = GetParam()}});
   }
 };
 INSTANTIATE_TEST_SUITE_P(KnownOrForeseen, BehaviourDrives, testing::Bool());
@@ -105,6 +105,20 @@ TEST_P(BehaviourDrives, PedestrianWhoCrossesIsWaitedFor) {
   const Drive drive = driven(at_speed(10.0), street(150.0, {pedestrian}));
   EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
   EXPECT_GT(kept_on(drive).clearance_m, 0.25);
+}
+
+// Who keeps on at 10 m/s is beside the crossing car at x = 100 m after 9 s.
+TEST_P(BehaviourDrives, CarThatWillCrossIsBrakedForBeforeItIsOnTheRoad) {
+  const planning::Obstacle other =
+      scripted("car", 4.5, 1.8, {{0.0, {100, -72, M_PI_2}}, {18.0, {100, 72, M_PI_2}}});
+  const Drive drive = driven(at_speed(10.0), street(200.0, {other}));
+  EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
+  EXPECT_GT(kept_on(drive).clearance_m, 0.5);
+  EXPECT_FALSE(brakes_hard(drive));
+  const auto braking = std::ranges::find_if(
+      drive.samples, [](const DriveSample& sample) { return sample.command_mps2 < -0.5; });
+  ASSERT_NE(braking, drive.samples.end());
+  EXPECT_LT(braking->t_s, 8.0);  // its front is 4.75 m beside the road's edge then
 }
 
 TEST_P(BehaviourDrives, LeadThatLeavesTheRoadLetsTheVehicleSpeedUpAgain) {

@@ -1,0 +1,120 @@
+#include "roadbed/planning/behaviour/cruise_forecast.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kCruiseSpeedUp_mps2 = 1.0;
+constexpr double kAnswersIn_s = 0.5;  // to a speed that is missing or too much
+
+class Forecast {
+ public:
+  Forecast(const CruiseForecastQuestion& question, const DecisionOptions& options)
+      : q_(question), options_(options), ignored_(question.no_matter) {
+    for (const StInterval& part : q_.occupancy.at(0)) {
+      if (holds(part, 0.0)) ignore(part.obstacle);
+    }
+  }
+
+  CruiseForecast run() {
+    CruiseForecast forecast{.drive = {.is_free = true, .cost = 0.0, .plan = {}}, .met = {}};
+    SpeedSearchAnswer& drive = forecast.drive;
+    SpeedState at{.t_s = 0.0,
+                  .ahead_m = 0.0,
+                  .speed_mps = q_.speed_mps,
+                  .acceleration_mps2 = q_.acceleration_mps2};
+    drive.plan.push_back(at);
+    const int steps = static_cast<int>(q_.occupancy.times()) - 1;
+    for (int k = 0; k < steps; ++k) {
+      at = after(at, wanted_mps(at, k));
+      drive.plan.push_back(at);
+      forecast.met = who_is_met(k + 1, at.ahead_m);
+      drive.is_free = !forecast.met;
+      if (!drive.is_free) break;
+      drive.free_until_s = at.t_s;
+    }
+    return forecast;
+  }
+
+ private:
+  static bool holds(const StInterval& part, double ahead_m) {
+    return ahead_m > part.from_m && ahead_m < part.to_m;
+  }
+
+  void ignore(std::size_t obstacle) {
+    if (obstacle < ignored_.size()) ignored_[obstacle] = true;
+  }
+
+  bool is_ignored(const StInterval& part) const {
+    return part.obstacle < ignored_.size() && ignored_[part.obstacle];
+  }
+
+  bool crosses(const StInterval& part) const {
+    return part.obstacle < q_.crosses.size() && q_.crosses[part.obstacle];
+  }
+
+  std::optional<std::size_t> who_is_met(int step, double ahead_m) const {
+    for (const StInterval& part : q_.occupancy.at(step)) {
+      if (!is_ignored(part) && holds(part, ahead_m)) return part.obstacle;
+    }
+    return std::nullopt;
+  }
+
+  /// How fast the rear end of a part moves along the path.
+  double speed_of(const StInterval& part, int step) const {
+    for (const StInterval& later : q_.occupancy.at(step + 1)) {
+      if (later.obstacle == part.obstacle) {
+        return std::max(0.0, (later.from_m - part.from_m) / StGraph::kStep_s);
+      }
+    }
+    return std::numeric_limits<double>::infinity();  // it will have left
+  }
+
+  double wanted_mps(const SpeedState& at, int step) const {
+    double wanted = std::min(q_.profile.wanted_mps[q_.profile.before(at.ahead_m)],
+                             stopping_mps(q_.stop_m - at.ahead_m));
+    for (const StInterval& part : q_.occupancy.at(step)) {
+      if (is_ignored(part) || crosses(part) || part.from_m < at.ahead_m) continue;
+      const double lead_mps = speed_of(part, step);
+      const double gap_m = part.from_m - at.ahead_m;
+      const double free_m = gap_m - options_.standstill_gap_m - options_.headway_s * lead_mps;
+      wanted = std::min(wanted, lead_mps + stopping_mps(free_m));
+    }
+    return wanted;
+  }
+
+  double stopping_mps(double distance_m) const {
+    return stopping_speed(distance_m, options_.deceleration_mps2).speed_mps;
+  }
+
+  static SpeedState after(const SpeedState& at, double wanted_mps) {
+    constexpr double kStep_s = StGraph::kStep_s;
+    const double command = std::clamp((wanted_mps - at.speed_mps) / kAnswersIn_s,
+                                      -kMostCommand_mps2, kCruiseSpeedUp_mps2);
+    SpeedState next = at;
+    next.t_s += kStep_s;
+    next.command_mps2 = command;
+    next.acceleration_mps2 += (command - at.acceleration_mps2) * kStep_s / kActuatorLag_s;
+    next.speed_mps = std::max(0.0, at.speed_mps + next.acceleration_mps2 * kStep_s);
+    next.ahead_m += 0.5 * (at.speed_mps + next.speed_mps) * kStep_s;
+    return next;
+  }
+
+  const CruiseForecastQuestion& q_;
+  const DecisionOptions& options_;
+  std::vector<bool> ignored_;
+};
+
+}  // namespace
+
+CruiseForecast forecast_cruise(const CruiseForecastQuestion& question,
+                               const DecisionOptions& options) {
+  return Forecast(question, options).run();
+}
+
+}  // namespace roadbed::planning::behaviour

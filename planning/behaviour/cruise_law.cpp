@@ -1,0 +1,249 @@
+#include "roadbed/planning/behaviour/cruise_law.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/behaviour/st_graph.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
+constexpr double kBeyondHalt_m = 1.0;
+constexpr double kBeforeHalt_m = 0.4;  // of the distance before a line, that hard braking may use
+constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
+constexpr double kHoldingBrake_mps2 = -1.0;
+constexpr double kBesideLine_m = 0.5;     // off the reference line this far is passing
+constexpr double kFallsBehind_mps = 3.0;  // slower than who was to be overtaken
+
+/// Distance ahead that matters: to brake comfortably, and the gap to keep.
+double look_ahead_m(double speed_mps, const DecisionOptions& options) {
+  return 20.0 + options.standstill_gap_m + options.headway_s * speed_mps +
+         0.5 * speed_mps * speed_mps / options.deceleration_mps2;
+}
+
+}  // namespace
+
+CruiseLaw::CruiseLaw(const PlannerSetup& setup, const SpeedCeiling& ceiling)
+    : vehicle_(setup.vehicle),
+      task_(setup.task),
+      ceiling_(ceiling),
+      right_of_way_(setup.vehicle, setup.driving, setup.task) {
+  decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
+}
+
+std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view,
+                                              const LateralReplanner& replanner,
+                                              const Traffic& traffic) {
+  const PlannedPath path = replanner.expected_path();
+  return right_of_way_.look({.t_s = view.t_s,
+                             .s_m = replanner.s_m(),
+                             .speed_mps = view.measured.speed_mps,
+                             .path = path,
+                             .ceiling = ceiling_,
+                             .traffic = traffic,
+                             .acceleration_mps2 = view.measured.acceleration_mps2});
+}
+
+PlannerCommand CruiseLaw::command(const Question& q) {
+  const PlannerView& view = q.view;
+  const double speed = view.measured.speed_mps;
+  const std::optional<StopConstraint> halt = nearer_halt(q);
+  const std::optional<Lead> truth = lead_ahead(q, halt);
+  const std::optional<Lead> lead = known(q, truth);
+  const SpeedAnswer chosen = answer(q, lead, halt);
+  PlannerCommand command;
+  command.acceleration_mps2 = view.speed_controller.acceleration_mps2(view.measured, chosen.set);
+  command.saturated = std::abs(command.acceleration_mps2) >= kMostCommand_mps2;
+  if (chosen.hold) {
+    command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
+  }
+  command.set_speed_mps = chosen.set.speed_mps;
+  if (truth) {
+    command.lead = {task_.obstacles[truth->obstacle].id, truth->gap_m, truth->speed_mps};
+  }
+  explain(q, chosen, command);
+  if (lead) brake_for(*lead, speed, command);
+  if (halt && halt->is_hard) brake_for(*halt, q, command);
+  if (q.passing.overtaking.overtaken) overtake(q, command);
+  explain_passing(q, command);
+  return command;
+}
+
+/// The end of the lane that somebody is passed in is not to be passed either.
+std::optional<StopConstraint> CruiseLaw::nearer_halt(const Question& q) const {
+  constexpr double kBeforeEnd_m = 25.0;  // to come back in
+  if (!q.passes_in_lane) return q.halt;
+  const double end_s_m = q.passing.in_lane.lane_end_s_m - vehicle_.front_m() - kBeforeEnd_m;
+  if (q.halt && q.halt->s_m < end_s_m) return q.halt;
+  return StopConstraint{.s_m = end_s_m, .reason = "the passing lane ends"};
+}
+
+/// Who crosses, and who drives on the path now but will have left it, or the path its lane, when
+/// the vehicle comes there at the speed of the free road.
+std::vector<bool> CruiseLaw::ignored_on(const PlannedPath& path, const Question& q) const {
+  std::vector<bool> ignored = right_of_way_.crossing();
+  for (std::size_t i = 0; i < q.no_lead.size(); ++i) ignored[i] = ignored[i] || q.no_lead[i];
+  if (!q.passes_in_lane) return ignored;
+  constexpr double kAhead_m = 80.0, kMargin_m = 0.3;
+  constexpr std::size_t kSteps = 60;
+  const double speed = q.view.measured.speed_mps;
+  const PathProfile profile =
+      sample_path_profile(path, q.replanner.s_m(), kAhead_m, ceiling_, vehicle_);
+  std::vector<double> ahead = drive_on(profile, speed, kAhead_m);
+  ahead.resize(std::min(ahead.size(), kSteps));
+  const int last = static_cast<int>(ahead.size()) - 1;
+  const StGraph occupancy(profile, q.traffic, q.view.t_s, last, kMargin_m);
+  std::vector<bool> met(ignored.size(), false);
+  for (int k = 0; k <= last; ++k) {
+    const double ahead_m = ahead[static_cast<std::size_t>(k)];
+    // In the end the gap that is kept counts, too: who is as fast is never reached.
+    const double kept_m = k < last ? 0.0 : kept_gap_m(speed);
+    for (const StInterval& part : occupancy.at(k)) {
+      if (ahead_m + kept_m >= part.from_m && ahead_m <= part.to_m) met[part.obstacle] = true;
+    }
+  }
+  for (std::size_t i = 0; i < ignored.size(); ++i) {
+    ignored[i] = ignored[i] || (!task_.obstacles[i].is_static() && !met[i]);
+  }
+  return ignored;
+}
+
+double CruiseLaw::kept_gap_m(double speed_mps) const {
+  return decision_options_.standstill_gap_m + decision_options_.headway_s * speed_mps;
+}
+
+/// Who is beyond the place to halt at is none.
+std::optional<Lead> CruiseLaw::lead_ahead(const Question& q,
+                                          const std::optional<StopConstraint>& halt) const {
+  const LateralReplanner& replanner = q.replanner;
+  const double to_goal_m = task_.line.goal_s_m() - replanner.s_m();
+  const double look_m = std::min(look_ahead_m(q.view.measured.speed_mps, decision_options_),
+                                 std::max(0.0, to_goal_m) + vehicle_.front_m());
+  const PlannedPath path = q.passes_in_lane ? replanner.path() : replanner.expected_path();
+  std::optional<Lead> lead = find_lead(path, replanner.s_m(), look_m, task_.obstacles, q.view.t_s,
+                                       vehicle_, kSideMargin_m, ignored_on(path, q));
+  if (lead && halt && lead->gap_m > halt->s_m - replanner.s_m() + kBeyondHalt_m) lead.reset();
+  return lead;
+}
+
+std::optional<Lead> CruiseLaw::known(const Question& q, const std::optional<Lead>& truth) {
+  std::optional<Lead> lead = q.view.speed_controller.observe(q.view.measured, truth, q.view.t_s);
+  if (!lead && truth) return remembered(q.view);
+  last_seen_ = {q.view.t_s, lead};
+  return lead;
+}
+
+/// A lead that is not measured is taken to drive on at its speed, for a while.
+std::optional<Lead> CruiseLaw::remembered(const PlannerView& view) const {
+  const double since_s = view.t_s - last_seen_.t_s;
+  if (!last_seen_.lead || since_s > kRemembered_s) return std::nullopt;
+  Lead lead = *last_seen_.lead;
+  const double closing = view.measured.speed_mps - lead.speed_mps;
+  lead.gap_m = std::max(0.0, lead.gap_m - closing * since_s);
+  return lead;
+}
+
+SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead,
+                              const std::optional<StopConstraint>& halt) const {
+  SpeedAnswer answer = choose_speed({.ceiling = ceiling_,
+                                     .s_m = q.replanner.s_m(),
+                                     .goal_s_m = task_.line.goal_s_m(),
+                                     .speed_mps = q.view.measured.speed_mps,
+                                     .acceleration_mps2 = q.view.measured.acceleration_mps2,
+                                     .lead = lead,
+                                     .lead_name = lead ? lead_name(*lead) : "",
+                                     .path_left_m = path_left_m(q, lead),
+                                     .halt = halt},
+                                    decision_options_);
+  const std::optional<double>& most_mps = q.passing.in_lane.most_mps;
+  if (most_mps && *most_mps < answer.set.speed_mps) {
+    answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
+  }
+  return answer;
+}
+
+/// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
+std::optional<double> CruiseLaw::path_left_m(const Question& q,
+                                             const std::optional<Lead>& lead) const {
+  if (q.replanner.last_plan().chosen) return std::nullopt;
+  if (q.replanner.something_is_in_the_way() && !lead) return 0.0;
+  return q.replanner.checked_ahead_m();
+}
+
+std::string CruiseLaw::lead_name(const Lead& lead) const {
+  const Obstacle& obstacle = task_.obstacles[lead.obstacle];
+  return fmt::format("{} {}", obstacle.kind, obstacle.id);
+}
+
+void CruiseLaw::explain(const Question& q, const SpeedAnswer& answer,
+                        PlannerCommand& command) const {
+  command.behaviour = answer.behaviour;
+  command.reason = answer.reason;
+  const double offset_m = q.replanner.path().lateral_at(q.replanner.s_m()).d_m;
+  const auto& chosen = q.replanner.last_plan().chosen;
+  const double end_m = chosen ? chosen->end_d_m : offset_m;
+  if (answer.behaviour == Behaviour::cruise &&
+      std::max(std::abs(offset_m), std::abs(end_m)) > kBesideLine_m) {
+    command.behaviour = Behaviour::pass;
+    command.reason = fmt::format("the way is free {:.1f} m {} of the reference line",
+                                 std::abs(end_m), end_m < 0.0 ? "right" : "left");
+  }
+}
+
+void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) const {
+  const LanePassing::Decision& lane = q.passing.in_lane;
+  const Overtaking::Decision& overtaking = q.passing.overtaking;
+  if (q.passes_in_lane &&
+      (command.behaviour == Behaviour::cruise || command.behaviour == Behaviour::pass)) {
+    command.behaviour = Behaviour::pass;
+    command.reason = lane.reason;
+  }
+  std::string why_not = lane.reason.empty() ? overtaking.reason : lane.reason;
+  if (lane.passed && !q.passes_in_lane) {
+    why_not = fmt::format("{} is not passed: no path leads to the next lane",
+                          task_.obstacles[*lane.passed].id);
+  }
+  if (!overtaking.overtaken && !why_not.empty() && command.behaviour == Behaviour::follow) {
+    command.reason += "; " + why_not;
+  }
+}
+
+void CruiseLaw::brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const {
+  const auto braking = emergency_deceleration_mps2(speed_mps, lead);
+  if (!braking) return;
+  command.acceleration_mps2 = std::min(command.acceleration_mps2, -*braking);
+  command.behaviour = Behaviour::emergency;
+  command.reason =
+      fmt::format("braking at {:.1f} m/s²: {} is {:.1f} m ahead, closing at {:.1f} m/s", *braking,
+                  lead_name(lead), lead.gap_m, speed_mps - lead.speed_mps);
+}
+
+/// The cruise control cannot ask for what this halt takes.
+void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
+                          PlannerCommand& command) const {
+  const auto braking =
+      emergency_stop_mps2(q.view.measured.speed_mps, halt.s_m + kBeforeHalt_m - q.replanner.s_m());
+  if (!braking || -*braking > command.acceleration_mps2) return;
+  command.acceleration_mps2 = -*braking;
+  command.behaviour = Behaviour::emergency;
+  command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);
+}
+
+void CruiseLaw::overtake(const Question& q, PlannerCommand& command) const {
+  if (command.behaviour == Behaviour::emergency) return;
+  const Overtaking::Decision& overtaking = q.passing.overtaking;
+  command.behaviour = Behaviour::pass;
+  command.reason = overtaking.reason;
+  if (!overtaking.falls_back) return;
+  const double lead_mps =
+      q.traffic.obstacles[*overtaking.overtaken].motion.at(q.view.t_s).speed_mps;
+  const bool falls_behind = q.view.measured.speed_mps < lead_mps - kFallsBehind_mps;
+  command.acceleration_mps2 =
+      std::min(command.acceleration_mps2, falls_behind ? 0.0 : -kMostCommand_mps2);
+}
+
+}  // namespace roadbed::planning::behaviour

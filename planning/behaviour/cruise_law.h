@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/planning/behaviour/decision.h"
+#include "roadbed/planning/behaviour/lane_passing.h"
+#include "roadbed/planning/behaviour/lateral_replanner.h"
+#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/overtaking.h"
+#include "roadbed/planning/behaviour/planner_types.h"
+#include "roadbed/planning/behaviour/right_of_way.h"
+#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/speed_ceiling.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Who may be passed at one cycle, and how.
+struct PassingDecision {
+  Overtaking::Decision overtaking = {};
+  LanePassing::Decision in_lane = {};
+};
+
+/// The speed of a vehicle that follows its path to a place: set speed, speed controller behind
+/// whoever is ahead, and braking beyond what that may ask for.
+class CruiseLaw {
+ public:
+  CruiseLaw(const PlannerSetup& setup, const SpeedCeiling& ceiling);
+
+  /// Where a rule of the road asks to wait; to be asked once a cycle, before a path is taken.
+  std::optional<StopConstraint> look(const PlannerView& view, const LateralReplanner& replanner,
+                                     const Traffic& traffic);
+
+  struct Question {
+    const PlannerView& view;
+    const LateralReplanner& replanner;  ///< its path is the one to drive
+    const Traffic& traffic;
+    const PassingDecision& passing;
+    bool passes_in_lane = false;         ///< the path leads to the next lane, or along it
+    std::vector<bool> no_lead;           ///< per obstacle: it crosses the path in time
+    std::optional<StopConstraint> halt;  ///< of look()
+  };
+  PlannerCommand command(const Question& question);
+
+  const DecisionOptions& options() const { return decision_options_; }
+
+ private:
+  std::optional<Lead> lead_ahead(const Question& q,
+                                 const std::optional<StopConstraint>& halt) const;
+  std::vector<bool> ignored_on(const PlannedPath& path, const Question& q) const;
+  std::optional<StopConstraint> nearer_halt(const Question& q) const;
+  std::optional<Lead> known(const Question& q, const std::optional<Lead>& truth);
+  std::optional<Lead> remembered(const PlannerView& view) const;
+  SpeedAnswer answer(const Question& q, const std::optional<Lead>& lead,
+                     const std::optional<StopConstraint>& halt) const;
+  std::optional<double> path_left_m(const Question& q, const std::optional<Lead>& lead) const;
+  double kept_gap_m(double speed_mps) const;
+  std::string lead_name(const Lead& lead) const;
+  void explain(const Question& q, const SpeedAnswer& answer, PlannerCommand& command) const;
+  void explain_passing(const Question& q, PlannerCommand& command) const;
+  void brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const;
+  void brake_for(const StopConstraint& halt, const Question& q, PlannerCommand& command) const;
+  void overtake(const Question& q, PlannerCommand& command) const;
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  const SpeedCeiling& ceiling_;
+  DecisionOptions decision_options_;
+  RightOfWay right_of_way_;
+  struct {
+    double t_s = 0.0;
+    std::optional<Lead> lead;
+  } last_seen_;
+};
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,158 @@
+#include "roadbed/planning/behaviour/hypothesis_speed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "roadbed/planning/behaviour/cruise_forecast.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kLeastHorizon_s = 5.0, kMostHorizon_s = 12.0;
+constexpr double kBeyondGoal_s = 1.5;
+constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
+constexpr double kUsual_mps = 50.0 / 3.6;
+constexpr double kBesideCost = 0.3;        // per metre of the end's offset
+constexpr double kForecastMargin_m = 0.1;  // as that of a lead
+
+double stopping_m(const PlannerView& view) {
+  const SpeedSearchOptions usual;
+  const double speed = view.measured.speed_mps;
+  return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
+}
+
+/// Way from the profile's first sample to a station of the line.
+double ahead_of(const PathProfile& profile, double s_m) {
+  if (!std::isfinite(s_m)) return s_m;
+  const auto& stations = profile.station_m;
+  if (s_m >= stations.back()) return profile.ahead_m.back() + s_m - stations.back();
+  if (s_m <= stations.front()) return s_m - stations.front();
+  const auto after = std::upper_bound(stations.begin(), stations.end(), s_m);
+  const auto i = static_cast<std::size_t>(after - stations.begin());
+  const double fraction = (s_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
+  return profile.ahead_m[i - 1] + fraction * (profile.ahead_m[i] - profile.ahead_m[i - 1]);
+}
+
+GoalAhead ahead(const PathProfile& profile, const GoalStretch& stretch, const PlannerView& view) {
+  return {.time_s = {stretch.time_s.least - view.t_s, stretch.time_s.most - view.t_s},
+          .speed_mps = stretch.speed_mps,
+          .ahead_m = {ahead_of(profile, stretch.s_m.least), ahead_of(profile, stretch.s_m.most)}};
+}
+
+}  // namespace
+
+HypothesisSpeed::HypothesisSpeed(const PlannerSetup& setup, const DecisionOptions& cruise)
+    : vehicle_(setup.vehicle), task_(setup.task), cruise_(cruise) {}
+
+double HypothesisSpeed::horizon_s(double t_s) const {
+  if (!task_.goal) return kLeastHorizon_s;
+  const double to_goal_s = task_.goal->latest_s().value_or(t_s) - t_s;
+  return std::clamp(to_goal_s + kBeyondGoal_s, kLeastHorizon_s, kMostHorizon_s);
+}
+
+int HypothesisSpeed::steps(double t_s) const {
+  return static_cast<int>(std::ceil((horizon_s(t_s) + 1.0) / StGraph::kStep_s));
+}
+
+double HypothesisSpeed::look_ahead_m(const PlannerView& view) const {
+  const double fastest = std::max(view.measured.speed_mps, kUsual_mps) + 3.0;
+  return fastest * horizon_s(view.t_s) + 20.0;
+}
+
+bool HypothesisSpeed::goal_is_past(double t_s) const {
+  const std::optional<double> latest = task_.goal->latest_s();
+  return latest && t_s > *latest;
+}
+
+void HypothesisSpeed::forecast(const PlanningScene& scene, ManeuverHypothesis& hypothesis) const {
+  set_occupancy(scene, kForecastMargin_m, hypothesis);
+  CruiseForecast forecast =
+      forecast_cruise({.profile = hypothesis.profile,
+                       .occupancy = *hypothesis.occupancy,
+                       .speed_mps = scene.view.measured.speed_mps,
+                       .acceleration_mps2 = scene.view.measured.acceleration_mps2,
+                       .stop_m = end_m(scene, hypothesis),
+                       .no_matter = scene.no_matter,
+                       .crosses = scene.crosses},
+                      cruise_);
+  hypothesis.answer = std::move(forecast.drive);
+  if (forecast.met) hypothesis.meeting = {*forecast.met, hypothesis.answer.free_until_s};
+  hypothesis.by_cruise_law = true;
+}
+
+void HypothesisSpeed::search(const PlanningScene& scene, const RiskLevel& risk_level,
+                             ManeuverHypothesis& hypothesis) const {
+  if (!hypothesis.risk_level || hypothesis.risk_level->margin_m != risk_level.margin_m) {
+    set_occupancy(scene, risk_level.margin_m, hypothesis);
+  }
+  hypothesis.answer =
+      search_speed(question_of(scene, hypothesis, *hypothesis.occupancy), risk_level.speed);
+  hypothesis.risk_level = &risk_level;
+  hypothesis.cost = hypothesis.answer.cost + kBesideCost * beside_m(hypothesis);
+  hypothesis.by_cruise_law = false;
+}
+
+void HypothesisSpeed::set_occupancy(const PlanningScene& scene, double margin_m,
+                                    ManeuverHypothesis& hypothesis) const {
+  auto occupancy = std::make_shared<StGraph>(hypothesis.profile, scene.bodies, margin_m);
+  block_lights(scene, hypothesis, *occupancy);
+  hypothesis.occupancy = std::move(occupancy);
+}
+
+void HypothesisSpeed::block_lights(const PlanningScene& scene, const ManeuverHypothesis& hypothesis,
+                                   StGraph& occupancy) const {
+  const PlannerView& view = scene.view;
+  for (const LightAhead& ahead : lights_ahead(hypothesis)) {
+    block_light(ahead, view.t_s, steps(view.t_s), stopping_m(view) < ahead.line_m, occupancy);
+  }
+}
+
+std::vector<LightAhead> HypothesisSpeed::lights_ahead(const ManeuverHypothesis& hypothesis) const {
+  std::vector<LightAhead> ahead;
+  for (const StopPoint& place : hypothesis.goal_line->lights) {
+    const double line_m = ahead_of(hypothesis.profile, place.s_m) - vehicle_.front_m();
+    ahead.push_back({place, task_.lights[*place.light], line_m});
+  }
+  return ahead;
+}
+
+/// Where the vehicle has to stand at the latest.
+double HypothesisSpeed::end_m(const PlanningScene& scene,
+                              const ManeuverHypothesis& hypothesis) const {
+  const PathProfile& profile = hypothesis.profile;
+  const ReferenceLine& line = hypothesis.goal_line->line;
+  if (task_.goal) {
+    const double road_end_s_m = line.length_m() - vehicle_.front_m() - kRoadEnd_m;
+    return std::min(ahead_of(profile, road_end_s_m), hypothesis.on_road_m);
+  }
+  double end_m = ahead_of(profile, line.goal_s_m());
+  if (scene.halt) end_m = std::min(end_m, ahead_of(profile, scene.halt->s_m));
+  return end_m;
+}
+
+SpeedSearchQuestion HypothesisSpeed::question_of(const PlanningScene& scene,
+                                                 const ManeuverHypothesis& hypothesis,
+                                                 const StGraph& occupancy) const {
+  const PlannerView& view = scene.view;
+  SpeedSearchQuestion asked{.profile = hypothesis.profile,
+                            .occupancy = occupancy,
+                            .speed_mps = view.measured.speed_mps,
+                            .acceleration_mps2 = view.measured.acceleration_mps2,
+                            .last_command_mps2 = scene.last_command_mps2,
+                            .horizon_s = horizon_s(view.t_s),
+                            .end_m = end_m(scene, hypothesis),
+                            .goals = {}};
+  if (!task_.goal) return asked;
+  if (goal_is_past(view.t_s) || task_.goal->states.empty()) {
+    asked.most_wanted_mps = 0.0;
+    return asked;
+  }
+  if (!hypothesis.has_candidate()) asked.most_wanted_mps = 0.0;
+  for (const GoalStretch& stretch : hypothesis.goal_line->stretches)
+    asked.goals.push_back(ahead(hypothesis.profile, stretch, view));
+  return asked;
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,105 @@
+#include "roadbed/planning/behaviour/path_queries.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+using Offsets = LateralReplanner::Offsets;
+using Question = LateralReplanner::Question;
+
+constexpr double kChange_s = 3.0;          // to change lanes in
+constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
+constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
+constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
+
+constexpr std::array<Offsets, 6> kBeside{
+    {{-0.9, -0.4}, {0.4, 0.9}, {-1.8, -1.0}, {1.0, 1.8}, {-3.5, -2.0}, {2.0, 3.5}}};
+constexpr std::array<Offsets, 2> kOtherLanes{{{-3.5, -2.6}, {2.6, 3.5}}};
+
+/// A change to an offset takes a while, at any speed.
+PathQuery at_offset(GoalLine& on, Maneuver maneuver, double offset_m, Question question) {
+  const double speed = question.speed.speed_mps;
+  question.ends.least_m = std::max(question.ends.least_m, kChange_s * speed);
+  question.ends.most_m = std::max(question.ends.most_m, (kChange_s + 1.0) * speed);
+  question.checks_completion = false;
+  return {.goal_line = &on,
+          .maneuver = maneuver,
+          .question = question,
+          .offsets = {offset_m - kPassTolerance_m, offset_m + kPassTolerance_m}};
+}
+
+void keep_within(const std::optional<double>& offset_m, double side, Offsets& offsets) {
+  if (!offset_m) return;
+  if (side > 0.0) {
+    offsets.most_m = std::min(offsets.most_m, *offset_m);
+  } else {
+    offsets.least_m = std::max(offsets.least_m, -*offset_m);
+  }
+}
+
+std::vector<PathQuery> ending_at(std::span<const Offsets> ends, GoalLine& on,
+                                 const Question& question) {
+  std::vector<PathQuery> queries;
+  for (const Offsets& offsets : ends) {
+    queries.push_back({.goal_line = &on,
+                       .maneuver = Maneuver::beside,
+                       .question = question,
+                       .offsets = offsets,
+                       .may_leave_lanes = false});
+  }
+  return queries;
+}
+
+}  // namespace
+
+std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
+                                        const PassingDecision& passing) {
+  const Overtaking::Decision& overtaking = passing.overtaking;
+  const LanePassing::Decision& lane = passing.in_lane;
+  std::vector<PathQuery> queries;
+  const bool stays_beside =
+      overtaking.overtaken && (!overtaking.falls_back || overtaking.gap_m < kBehindToReturn_m);
+  if (stays_beside) {
+    queries.push_back(at_offset(on, Maneuver::overtake, *overtaking.pass_at_m, question));
+  }
+  if (lane.offset_m) {
+    Question at_free_speed = question;
+    at_free_speed.speed.target_mps = on.ceiling.at(on.replanner.s_m()).speed_mps;
+    queries.push_back(at_offset(on, Maneuver::pass_in_lane, *lane.offset_m, at_free_speed));
+  }
+  PathQuery keep{.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question};
+  keep_within(overtaking.keep_within_m, overtaking.side, keep.offsets);
+  keep_within(lane.keep_within_m, lane.side, keep.offsets);
+  queries.push_back(keep);
+  return queries;
+}
+
+std::vector<PathQuery> queries_to_goal(GoalLine& on, const Question& question) {
+  std::vector<PathQuery> queries;
+  for (const GoalStretch& stretch : on.stretches) {
+    const double ahead_m = stretch.s_m.most - on.replanner.s_m();
+    if (std::abs(stretch.d_m) < kBesideGoal_m || !(ahead_m > 0.0 && ahead_m < kNearGoal_m))
+      continue;
+    queries.push_back({.goal_line = &on,
+                       .maneuver = Maneuver::beside,
+                       .question = question,
+                       .offsets = {stretch.d_m - kBesideGoal_m, stretch.d_m + kBesideGoal_m},
+                       .may_leave_lanes = false});
+  }
+  queries.push_back({.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question});
+  return queries;
+}
+
+std::vector<PathQuery> queries_beside(GoalLine& on, const Question& question) {
+  return ending_at(kBeside, on, question);
+}
+
+std::vector<PathQuery> queries_in_other_lanes(GoalLine& on, const Question& question) {
+  return ending_at(kOtherLanes, on, question);
+}
+
+}  // namespace roadbed::planning::behaviour

@@ -1,0 +1,430 @@
+#include "roadbed/planning/behaviour/planner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "roadbed/planning/behaviour/cruise_law.h"
+#include "roadbed/planning/behaviour/hypothesis_speed.h"
+#include "roadbed/planning/behaviour/lane_passing.h"
+#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/maneuver_hypothesis.h"
+#include "roadbed/planning/behaviour/overtaking.h"
+#include "roadbed/planning/behaviour/path_queries.h"
+#include "roadbed/planning/behaviour/traffic.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
+constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
+constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
+constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
+
+/// From the most careful on; for those who have to be at their goal in time, and for those who
+/// have not, to whom only those in their way matter.
+constexpr std::array<RiskLevel, 3> kInTime{
+    {{.margin_m = 0.4, .speed = {}, .is_emergency = false},
+     {.margin_m = 0.4, .speed = kHardest, .is_emergency = true},
+     {.margin_m = 0.1, .speed = kHardest, .is_emergency = true}}};
+constexpr std::array<RiskLevel, 2> kOnRoute{
+    {{.margin_m = 0.1, .speed = {}, .is_emergency = false},
+     {.margin_m = 0.1, .speed = {.least_mps2 = -8.0}, .is_emergency = true}}};
+
+LateralReplanner::Bounds bounds_of(const PlannerSetup& setup) {
+  LateralReplanner::Bounds bounds{.tracking_error_m = setup.planner.max_tracking_error_m,
+                                  .heading_error_rad = setup.planner.max_heading_error_rad,
+                                  .margin_levels = {},
+                                  .keeps_candidates = setup.planner.keeps_candidates};
+  if (setup.task.goal) {
+    bounds.margin_levels = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}};
+    bounds.squeezes_past = true;
+  } else {
+    // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
+    const double clearance_m = setup.driving.clearance_m;
+    bounds.margin_levels = {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
+  }
+  return bounds;
+}
+
+GoalLine goal_line_on(const ReferenceLine& line, std::vector<StopPoint> lights,
+                      const PlannerSetup& setup) {
+  const DrivingTask& task = setup.task;
+  std::erase_if(lights, [](const auto& place) { return place.kind != StopKind::light; });
+  return {.line = line,
+          .ceiling = ceiling_of(line, setup.vehicle, setup.driving),
+          .stretches = task.goal ? goal_stretches(*task.goal, task.road_map, line, setup.vehicle)
+                                 : std::vector<GoalStretch>{},
+          .lights = task.goal ? std::move(lights) : std::vector<StopPoint>{},
+          .replanner = {setup.vehicle, task, line, bounds_of(setup)}};
+}
+
+std::vector<GoalLine> goal_lines_of(const PlannerSetup& setup) {
+  const DrivingTask& task = setup.task;
+  std::vector<GoalLine> lines;
+  lines.push_back(goal_line_on(task.line, task.stop_points, setup));
+  for (std::size_t i = 0; i < task.other_lines.size(); ++i) {
+    const bool has_places = i < task.other_stop_points.size();
+    lines.push_back(goal_line_on(task.other_lines[i],
+                                 has_places ? task.other_stop_points[i] : std::vector<StopPoint>{},
+                                 setup));
+  }
+  return lines;
+}
+
+/// The slower, the nearer: a bend of a few metres wants paths that are no longer.
+LateralReplanner::Ends ends_at(double speed_mps) {
+  const double least_m = std::clamp(2.0 * speed_mps, 7.0, PlanOptions{}.min_l_m);
+  return {.least_m = least_m, .most_m = 2.0 * least_m};
+}
+
+}  // namespace
+
+class Planner::Impl {
+ public:
+  explicit Impl(const PlannerSetup& setup)
+      : vehicle_(setup.vehicle),
+        task_(setup.task),
+        predicts_(setup.planner.predicts),
+        clearance_m_(setup.driving.clearance_m),
+        traffic_(true_traffic(task_)),
+        goal_lines_(goal_lines_of(setup)),
+        cruise_(setup, goal_lines_.front().ceiling),
+        overtaking_(vehicle_, task_, goal_lines_.front().ceiling),
+        lane_passing_(vehicle_, task_, goal_lines_.front().ceiling),
+        speed_(setup, cruise_.options()) {}
+
+  const LateralReplanner& replanner() const { return goal_lines_[current_].replanner; }
+
+  PlannerCommand decide(const PlannerView& view) {
+    foresee(view.t_s);
+    goal_line().replanner.locate(view.measured);
+    const PassingDecision passing = passing_at(view);
+    const PlanningScene scene = scene_at(view);
+    const std::vector<Obstacle> obstacles = obstacles_to_plan_for(scene);
+    const ManeuverHypothesis best = best_hypothesis(scene, question_at(view, obstacles), passing);
+    take(best);
+    PlannerCommand command = task_.goal ? searched(best, view) : cruised(best, scene, passing);
+    view.speed_controller.sent(command.acceleration_mps2);
+    last_command_mps2_ = command.acceleration_mps2;
+    last_set_speed_mps_ = command.set_speed_mps;
+    return command;
+  }
+
+ private:
+  GoalLine& goal_line() { return goal_lines_[current_]; }
+
+  // What will be where.
+
+  void foresee(double t_s) {
+    if (!predicts_) return;
+    predicted_.emplace(true_traffic(task_), t_s);
+    traffic_ = predicted_->traffic();
+  }
+
+  geometry::LinePosition place_of(const PlannerView& view) {
+    GoalLine& on = goal_line();
+    return on.line.project(view.measured.map_from_vehicle.position(), on.replanner.s_m());
+  }
+
+  /// Who follows keeps its own distance; who crosses is a matter of the speed, not of the path.
+  void tell_others_apart(PlanningScene& scene) {
+    if (task_.goal) return;
+    const PlannerView& view = scene.view;
+    const geometry::LinePosition at = place_of(view);
+    const VehicleOnLine vehicle{goal_line().line, at.s_m, at.d_m, vehicle_.width_m};
+    for (const Obstacle& other : traffic_.obstacles) {
+      scene.no_matter.push_back(!other.is_static() && is_following(other, view.t_s, vehicle));
+      scene.crosses.push_back(is_crossing(other, view.t_s, vehicle.line));
+    }
+  }
+
+  PassingDecision passing_at(const PlannerView& view) {
+    if (task_.goal) return {};
+    const ViewOnLine on_line{view.t_s, place_of(view), view.measured.speed_mps, traffic_};
+    PassingDecision passing;
+    passing.overtaking = overtaking_.look(on_line);
+    if (!passing.overtaking.overtaken) passing.in_lane = lane_passing_.look(on_line);
+    return passing;
+  }
+
+  PlanningScene scene_at(const PlannerView& view) {
+    PlanningScene scene{.view = view, .traffic = traffic_, .last_command_mps2 = last_command_mps2_};
+    tell_others_apart(scene);
+    scene.bodies =
+        TrafficBodies(traffic_, view.t_s, speed_.steps(view.t_s), {scene.crosses, clearance_m_});
+    if (!task_.goal) scene.halt = cruise_.look(view, replanner(), traffic_);
+    return scene;
+  }
+
+  /// For a path to a goal in time only what stands for a while, as something that stands for ever:
+  /// what moves is a matter of the speed.
+  std::vector<Obstacle> obstacles_to_plan_for(const PlanningScene& scene) const {
+    const PlannerView& view = scene.view;
+    std::vector<Obstacle> obstacles;
+    for (std::size_t i = 0; i < traffic_.obstacles.size(); ++i) {
+      const Obstacle& obstacle = traffic_.obstacles[i];
+      if (!task_.goal) {
+        if (!scene.no_matter[i] && !scene.crosses[i]) obstacles.push_back(obstacle);
+        continue;
+      }
+      if (!obstacle.is_there(view.t_s)) continue;
+      const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
+      const geometry::TrajectoryPoint later = obstacle.motion.at(view.t_s + kStillFor_s);
+      if ((later.pose().position() - now.pose().position()).norm() > kStill_m) continue;
+      obstacles.push_back(obstacle);
+      obstacles.back().motion = geometry::Trajectory({now});
+    }
+    return obstacles;
+  }
+
+  // Hypotheses.
+
+  LateralReplanner::Question question_at(const PlannerView& view,
+                                         const std::vector<Obstacle>& obstacles) const {
+    LateralReplanner::Question question{.t_s = view.t_s,
+                                        .measured = view.measured,
+                                        .speed = speed_plan(view.measured),
+                                        .obstacles = obstacles};
+    if (task_.goal) question.ends = ends_at(view.measured.speed_mps);
+    return question;
+  }
+
+  /// The last longitudinal plan as lateral planning understands it.
+  SpeedPlan speed_plan(const VehicleState& measured) const {
+    const double speed = measured.speed_mps;
+    if (!task_.goal) return {speed, measured.acceleration_mps2, last_set_speed_mps_};
+    double target = speed, reached_s = kLookForPath_s;
+    for (const SpeedState& state : last_plan_) {
+      if (state.t_s > kLookForPath_s) break;
+      target = state.speed_mps;
+      reached_s = state.t_s;
+    }
+    return {.speed_mps = speed,
+            .acceleration_mps2 = (target - speed) / std::max(1.0, reached_s),
+            .target_mps = target};
+  }
+
+  /// The first that is good, of the most careful risk level that has one; else the best of all.
+  ManeuverHypothesis best_hypothesis(const PlanningScene& scene,
+                                     const LateralReplanner::Question& question,
+                                     const PassingDecision& passing) {
+    std::vector<ManeuverHypothesis> all;
+    const std::span<const RiskLevel> levels =
+        task_.goal ? std::span<const RiskLevel>(kInTime) : std::span<const RiskLevel>(kOnRoute);
+    std::size_t best = 0;
+    add(scene, first_queries(goal_line(), question, passing), all, best);
+    if (task_.goal && !is_good(all[best])) add_others(scene, question, all, best);
+    for (const RiskLevel& level : levels) {
+      for (std::size_t i = 0; i < all.size() && !is_good(all[best]); ++i) {
+        if (all[i].risk_level == &level) continue;
+        speed_.search(scene, level, all[i]);
+        if (is_better(all[i], all[best])) best = i;
+      }
+    }
+    return std::move(all[best]);
+  }
+
+  std::vector<PathQuery> first_queries(GoalLine& on, const LateralReplanner::Question& question,
+                                       const PassingDecision& passing = {}) const {
+    return task_.goal ? queries_to_goal(on, question) : queries_on_route(on, question, passing);
+  }
+
+  /// Those for which there is a path, until one is good; the last one of the first line always.
+  void add(const PlanningScene& scene, const std::vector<PathQuery>& queries,
+           std::vector<ManeuverHypothesis>& all, std::size_t& best) {
+    for (const PathQuery& query : queries) {
+      if (!all.empty() && is_good(all[best])) return;
+      ManeuverHypothesis found = hypothesis_of(scene, query);
+      const bool is_needed = all.empty() && &query == &queries.back();
+      if (!found.has_candidate() && !is_needed) continue;
+      set_first_speed(scene, found);
+      all.push_back(std::move(found));
+      if (is_better(all.back(), all[best])) best = all.size() - 1;
+    }
+  }
+
+  void add_others(const PlanningScene& scene, const LateralReplanner::Question& question,
+                  std::vector<ManeuverHypothesis>& all, std::size_t& best) {
+    GoalLine& on = goal_line();
+    if (!is_drivable(all[best])) add(scene, queries_beside(on, question), all, best);
+    if (all[best].answer.misses_goal) {
+      add(scene, queries_in_other_lanes(on, question), all, best);
+    }
+    for (GoalLine& other : goal_lines_) {
+      if (&other == &on || is_good(all[best])) continue;
+      other.replanner.locate(scene.view.measured);
+      add(scene, first_queries(other, question), all, best);
+    }
+  }
+
+  ManeuverHypothesis hypothesis_of(const PlanningScene& scene, const PathQuery& query) {
+    GoalLine& on = *query.goal_line;
+    LateralReplanner::Proposal proposal =
+        on.replanner.propose(query.question, query.offsets, query.may_leave_lanes);
+    const bool leads_back = !task_.goal && query.maneuver == Maneuver::keep_lane;
+    const PlannedPath path =
+        leads_back ? on.replanner.expected_path_of(proposal) : on.replanner.path_of(proposal);
+    PathProfile profile = sample_path_profile(
+        path, on.replanner.s_m(), speed_.look_ahead_m(scene.view), on.ceiling, vehicle_);
+    const bool may_leave_road =
+        task_.goal && (!proposal.plan.chosen || proposal.beyond_the_edge_m > 0.0);
+    const double on_road = may_leave_road ? on_road_m(profile, task_.road_map)
+                                          : std::numeric_limits<double>::infinity();
+    return {.goal_line = &on,
+            .maneuver = query.maneuver,
+            .proposal = std::move(proposal),
+            .profile = std::move(profile),
+            .on_road_m = on_road};
+  }
+
+  /// Overtaking has been judged in space and time before it was begun, and without a candidate
+  /// the vehicle stops on the path that it has.
+  void set_first_speed(const PlanningScene& scene, ManeuverHypothesis& hypothesis) const {
+    if (task_.goal) {
+      speed_.search(scene, kInTime.front(), hypothesis);
+      return;
+    }
+    speed_.forecast(scene, hypothesis);
+    if (hypothesis.maneuver == Maneuver::overtake || !hypothesis.has_candidate()) {
+      hypothesis.answer.is_free = true;
+    }
+  }
+
+  // What becomes of the best.
+
+  void take(const ManeuverHypothesis& best) {
+    current_ = static_cast<std::size_t>(best.goal_line - goal_lines_.data());
+    goal_line().replanner.take(best.proposal);
+    last_plan_ = best.answer.plan;
+  }
+
+  PlannerCommand cruised(const ManeuverHypothesis& best, const PlanningScene& scene,
+                         const PassingDecision& passing) {
+    PlannerCommand command =
+        cruise_.command({.view = scene.view,
+                         .replanner = replanner(),
+                         .traffic = traffic_,
+                         .passing = passing,
+                         .passes_in_lane = best.maneuver == Maneuver::pass_in_lane,
+                         .no_lead = who_crosses_in_time(best, scene),
+                         .halt = scene.halt});
+    if (!best.by_cruise_law) give_way(best, command);
+    return command;
+  }
+
+  /// Not those who are too near already.
+  static std::vector<bool> who_crosses_in_time(const ManeuverHypothesis& best,
+                                               const PlanningScene& scene) {
+    if (!best.answer.is_free) return {};
+    std::vector<bool> in_time = scene.crosses;
+    for (const StInterval& part : best.occupancy->at(0)) {
+      const bool touches = part.from_m < 0.0 && part.to_m > 0.0;
+      if (touches && part.obstacle < in_time.size()) in_time[part.obstacle] = false;
+    }
+    return in_time;
+  }
+
+  /// To somebody whom the cruise law does not see coming.
+  void give_way(const ManeuverHypothesis& best, PlannerCommand& command) const {
+    const double searched_mps2 = first_command_mps2(best);
+    if (searched_mps2 >= command.acceleration_mps2) return;
+    command.acceleration_mps2 = searched_mps2;
+    const bool is_emergency = !best.answer.is_free || best.risk_level->is_emergency;
+    if (command.behaviour == Behaviour::emergency) return;
+    command.behaviour = is_emergency ? Behaviour::emergency : Behaviour::yield;
+    command.reason = "somebody comes into the way";
+    if (!best.meeting || best.meeting->obstacle >= traffic_.obstacles.size()) return;
+    const Obstacle& other = traffic_.obstacles[best.meeting->obstacle];
+    command.reason =
+        fmt::format("{} {} would be met in {:.1f} s", other.kind, other.id, best.meeting->after_s);
+  }
+
+  static double first_command_mps2(const ManeuverHypothesis& best) {
+    const std::vector<SpeedState>& plan = best.answer.plan;
+    return plan.size() > 1 ? plan[1].command_mps2 : best.risk_level->speed.least_mps2;
+  }
+
+  PlannerCommand searched(const ManeuverHypothesis& best, const PlannerView& view) const {
+    PlannerCommand command;
+    command.acceleration_mps2 = first_command_mps2(best);
+    command.set_speed_mps = best.answer.plan.size() > 1 ? best.answer.plan[1].speed_mps : 0.0;
+    command.lead = lead_on(*best.occupancy, view);
+    explain(best, view, command);
+    return command;
+  }
+
+  std::optional<DriveLead> lead_on(const StGraph& occupancy, const PlannerView& view) const {
+    const StInterval* nearest = nullptr;
+    for (const StInterval& part : occupancy.at(0)) {
+      if (part.obstacle == StInterval::kNoObstacle) continue;
+      if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
+    }
+    if (!nearest) return std::nullopt;
+    const Obstacle& obstacle = traffic_.obstacles[nearest->obstacle];
+    const double speed = obstacle.is_static() ? 0.0 : obstacle.motion.at(view.t_s).speed_mps;
+    return DriveLead{obstacle.id, nearest->from_m, speed};
+  }
+
+  void explain(const ManeuverHypothesis& best, const PlannerView& view,
+               PlannerCommand& command) const {
+    const bool has_goal = !task_.goal->states.empty();
+    if (!best.answer.is_free) {
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("every speed meets something after {:.1f} s", best.answer.free_until_s);
+    } else if (best.risk_level->is_emergency) {
+      command.behaviour = Behaviour::emergency;
+      command.reason =
+          fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command.acceleration_mps2);
+    } else if (speed_.goal_is_past(view.t_s) || !has_goal) {
+      command.behaviour = Behaviour::stop;
+      command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";
+    } else if (beside_m(best) > kPassOffset_m) {
+      command.behaviour = Behaviour::pass;
+      command.reason =
+          fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));
+    } else if (const auto light = why_light_stops(speed_.lights_ahead(best), view.t_s)) {
+      command.behaviour = Behaviour::yield;
+      command.reason = *light;
+    } else if (command.lead && command.lead->gap_m < kFollow_m) {
+      command.behaviour = Behaviour::follow;
+      command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,
+                                   command.lead->gap_m, command.lead->speed_mps);
+    } else {
+      command.reason =
+          best.answer.reaches_goal ? "the goal is reached in time" : "the road is free";
+    }
+  }
+
+  const geometry::VehicleShape& vehicle_;
+  const DrivingTask& task_;
+  bool predicts_;
+  double clearance_m_;
+  std::optional<PredictedTraffic> predicted_;
+  Traffic traffic_;                   ///< what is planned against: the true one, or as foreseen
+  std::vector<GoalLine> goal_lines_;  ///< the task's line first
+  std::size_t current_ = 0;           ///< that is driven
+  CruiseLaw cruise_;
+  Overtaking overtaking_;
+  LanePassing lane_passing_;
+  HypothesisSpeed speed_;
+  double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
+  std::vector<SpeedState> last_plan_;
+};
+
+Planner::Planner(const PlannerSetup& setup) : impl_(std::make_unique<Impl>(setup)) {}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+PlannerCommand Planner::decide(const PlannerView& view) { return impl_->decide(view); }
+
+const LateralReplanner& Planner::replanner() const { return impl_->replanner(); }
+
+}  // namespace roadbed::planning::behaviour
