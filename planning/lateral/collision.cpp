@@ -27,6 +27,10 @@ constexpr std::size_t kStanding = 0, kOccupied = 1, kFirstMover = 2;
 // Nearer than demanded by this much is too near, whatever the demand was rounded to.
 constexpr double kSure_m = 0.01;
 
+// Where the demand is less than the clearance, because the drive begins nearer, so much beyond it
+// is enough: it may pass what it begins beside.
+constexpr double kEnoughAtStart_m = 0.002;
+
 // The vehicle at one moment of a drive.
 struct Moment {
   double t_s = 0.0;
@@ -141,15 +145,17 @@ struct CollisionChecker::Impl {
     return !scene.counts || scene.counts(centre);
   }
   double horizon_end_s() const { return scene.start_t_s + options.horizon_s; }
-  double demanded_m(double driven_m) const;
+  double demanded_m(std::size_t with, double driven_m) const;
+  void begin_at(const TrajectoryPoint& start);
   void look_at(const std::vector<TrajectoryPoint>& drive, Place place, Moment& moment) const;
+  void set_moment(double t_s, const geometry::Pose2& pose, Moment& moment) const;
 
   template <typename Clearance>
   std::optional<Contact> contact(std::size_t with, const std::vector<TrajectoryPoint>& drive,
                                  const std::vector<Segment>& segments, double rate_mps,
                                  double until_s, const Clearance& clearance) const;
   bool is_clear_of_standing(std::size_t with, const Rectangle& cover, double enough_m) const;
-  Place follow(const std::vector<Segment>& segments, Place from, double rate_mps,
+  Place follow(std::size_t with, const std::vector<Segment>& segments, Place from, double rate_mps,
                double slack_m) const;
 
   Rectangle nearest(std::size_t with, const Moment& moment) const;
@@ -165,20 +171,51 @@ struct CollisionChecker::Impl {
   geometry::CoveringCircles circles;
   StaticObstacles standing;
   std::vector<Mover> movers;
+
+  // Of the drives that begin there: what is demanded at first, by what it is kept from.
+  std::optional<TrajectoryPoint> start;
+  std::vector<double> at_start_m;
 };
 
-double CollisionChecker::Impl::demanded_m(double driven_m) const {
+double CollisionChecker::Impl::demanded_m(std::size_t with, double driven_m) const {
   const double fraction = std::min(1.0, driven_m / options.recovery_m);
-  return options.clearance_m * (options.start_fraction + (1.0 - options.start_fraction) * fraction);
+  return at_start_m[with] + (options.clearance_m - at_start_m[with]) * fraction;
+}
+
+// All drives of a planning cycle begin at one place.
+void CollisionChecker::Impl::begin_at(const TrajectoryPoint& at) {
+  const bool is_same = start && start->t_s == at.t_s &&
+                       start->pose().position() == at.pose().position() &&
+                       start->heading_rad == at.heading_rad;
+  if (is_same) return;
+  start = at;
+  Moment moment;
+  set_moment(at.t_s, at.pose(), moment);
+  const double enough_m = options.clearance_m + 2.0 * options.tolerance_m;
+  const auto demanded = [&](double distance_m) {
+    return std::clamp(distance_m - options.tolerance_m, 0.0, options.clearance_m);
+  };
+  at_start_m.assign(kFirstMover + movers.size(), options.clearance_m);
+  if (!standing.empty()) at_start_m[kStanding] = demanded(from_standing_m(moment, enough_m));
+  if (scene.field != nullptr) at_start_m[kOccupied] = demanded(from_occupied_m(moment, enough_m));
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    at_start_m[kFirstMover + i] = demanded(from_mover_m(moment, movers[i], enough_m));
+  }
 }
 
 void CollisionChecker::Impl::look_at(const std::vector<TrajectoryPoint>& drive, Place place,
                                      Moment& moment) const {
   const TrajectoryPoint &a = drive[place.segment], &b = drive[place.segment + 1];
   const auto between = [&](double from, double to) { return from + place.fraction * (to - from); };
-  moment.t_s = between(a.t_s, b.t_s);
-  moment.pose = {between(a.x_m, b.x_m), between(a.y_m, b.y_m),
-                 between(a.heading_rad, b.heading_rad)};
+  set_moment(between(a.t_s, b.t_s),
+             {between(a.x_m, b.x_m), between(a.y_m, b.y_m), between(a.heading_rad, b.heading_rad)},
+             moment);
+}
+
+void CollisionChecker::Impl::set_moment(double t_s, const geometry::Pose2& pose,
+                                        Moment& moment) const {
+  moment.t_s = t_s;
+  moment.pose = pose;
   moment.body = geometry::body_at(moment.pose, vehicle);
   moment.circle_centres.clear();
   for (const double x_m : circles.centres_x_m) {
@@ -188,10 +225,9 @@ void CollisionChecker::Impl::look_at(const std::vector<TrajectoryPoint>& drive, 
 
 // As far along the drive as `slack_m` allows, if every metre of motion may cost a metre of it; a
 // demand that grows along the drive costs too.
-Place CollisionChecker::Impl::follow(const std::vector<Segment>& segments, Place from,
-                                     double rate_mps, double slack_m) const {
-  const double demand_slope =
-      options.clearance_m * (1.0 - options.start_fraction) / options.recovery_m;
+Place CollisionChecker::Impl::follow(std::size_t with, const std::vector<Segment>& segments,
+                                     Place from, double rate_mps, double slack_m) const {
+  const double demand_slope = (options.clearance_m - at_start_m[with]) / options.recovery_m;
   for (Place place = from; place.segment < segments.size(); place = {place.segment + 1, 0.0}) {
     const Segment& segment = segments[place.segment];
     const double whole_m =
@@ -216,18 +252,18 @@ std::optional<Contact> CollisionChecker::Impl::contact(std::size_t with,
     look_at(drive, place, moment);
     if (moment.t_s > until_s) return std::nullopt;
     const Segment& segment = segments[place.segment];
-    const double demanded = demanded_m(segment.from_m + place.fraction * segment.length_m);
+    const double demanded = demanded_m(with, segment.from_m + place.fraction * segment.length_m);
     const double slack_m = clearance(moment, demanded + kNear_m) - demanded;
-    if (!(slack_m >= options.tolerance_m))
-      return Contact{place.segment, with, nearest(with, moment)};
-    const Place next = follow(segments, place, rate_mps, slack_m);
+    const double least_m = demanded < options.clearance_m ? kEnoughAtStart_m : options.tolerance_m;
+    if (!(slack_m >= least_m)) return Contact{place.segment, with, nearest(with, moment)};
+    const Place next = follow(with, segments, place, rate_mps, slack_m);
     const bool is_slow = next.segment == place.segment && place.segment >= covered;
     covered = std::max(covered, place.segment + 1);
     // Beside a wall every step is short, and the whole segment mostly clear.
     const bool is_clear =
         is_slow && is_clear_of_standing(
                        with, cover_of(drive[place.segment], drive[place.segment + 1], vehicle),
-                       demanded_m(segment.from_m + segment.length_m));
+                       demanded_m(with, segment.from_m + segment.length_m));
     place = is_clear ? Place{place.segment + 1, 0.0} : next;
   }
   return std::nullopt;
@@ -308,6 +344,8 @@ CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = def
 
 std::optional<Contact> CollisionChecker::first_contact(
     const std::vector<TrajectoryPoint>& drive) const {
+  if (drive.empty()) return std::nullopt;
+  impl_->begin_at(drive.front());
   const Impl& impl = *impl_;
   const double for_ever = std::numeric_limits<double>::infinity();
   const std::vector<Segment> segments = segments_of(drive, impl.vehicle.reach_m());
@@ -344,7 +382,7 @@ double CollisionChecker::distance_m(const Contact& other, const Rectangle& body,
 
 bool CollisionChecker::surely_hits(const Contact& other, const Rectangle& body, double t_s,
                                    double driven_m) const {
-  return distance_m(other, body, t_s) < impl_->demanded_m(driven_m) - kSure_m;
+  return distance_m(other, body, t_s) < impl_->demanded_m(other.with, driven_m) - kSure_m;
 }
 
 bool CollisionChecker::is_empty() const {
@@ -353,6 +391,7 @@ bool CollisionChecker::is_empty() const {
 
 void CollisionChecker::set_clearance(double clearance_m) {
   impl_->options.clearance_m = clearance_m;
+  impl_->start.reset();
 }
 
 }  // namespace roadbed::planning::lateral

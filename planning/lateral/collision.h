@@ -20,10 +20,8 @@ namespace roadbed::planning::inline lateral {
 struct CollisionOptions {
   int circles = 3;           ///< that cover the vehicle, for the first look
   double clearance_m = 0.3;  ///< to keep from everything
-  /// Of the clearance that is demanded at the start of a drive; it grows to the whole over
-  /// `recovery_m`. Where a drive begins cannot be chosen any more, and without this a vehicle that
-  /// passes an obstacle at just the clearance would find every continuation forbidden.
-  double start_fraction = 0.5;
+  /// Where a drive begins cannot be chosen any more: what it begins nearer to than the clearance
+  /// has to be kept as far from as there, and the whole clearance after this way. Linear between.
   double recovery_m = 10.0;
   double tolerance_m = 0.02;  ///< see CollisionChecker::is_free
   double horizon_s = 5.0;     ///< moving obstacles are checked this far ahead

@@ -53,11 +53,17 @@ TEST(CollisionChecker, DemandsTheClearanceWithinItsTolerance) {
   EXPECT_TRUE(is_free(drive, {thing(30.0, side_m + 0.031, 0.02, 0.02)}));   // 0.321 m
 }
 
-TEST(CollisionChecker, DemandsHalfTheClearanceWhereTheDriveBegins) {
+TEST(CollisionChecker, DemandsTheClearanceFromTheBeginningOn) {
   const auto drive = straight_drive(40.0, 1.0, 10.0);
-  const double side_m = 0.5 * 1.61 + 0.2 + 0.01;
-  EXPECT_TRUE(is_free(drive, {thing(1.0, side_m, 0.02, 0.02)}));
-  EXPECT_FALSE(is_free(drive, {thing(30.0, side_m, 0.02, 0.02)}));
+  const double side_m = 0.5 * 1.61 + 0.28 + 0.01;
+  EXPECT_FALSE(is_free(drive, {thing(6.0, side_m, 0.02, 0.02)}));
+}
+
+TEST(CollisionChecker, LetsADriveBeginNearerThanTheClearance) {
+  const auto drive = straight_drive(40.0, 1.0, 10.0);
+  const double side_m = 0.5 * 1.61 + 0.1 + 0.01;
+  EXPECT_TRUE(is_free(drive, {thing(-0.5, side_m, 0.02, 0.02)}));  // beside the rear overhang
+  EXPECT_FALSE(is_free(drive, {thing(3.0, side_m, 0.02, 0.02)}));  // to be passed as near as that
 }
 
 TEST(CollisionChecker, SeesACarThatCrossesBetweenTwoPoints) {
@@ -90,18 +96,27 @@ TEST(CollisionChecker, SeesWhatIsInsideALargeBody) {
   EXPECT_FALSE(is_free(straight_drive(10.0, 1.0, 10.0), {thing(5.0, 0.0, 80.0, 60.0)}));
 }
 
-// Clearance minus demand at 200 times per leg.
+// Clearance minus demand at 200 times per leg. Where the drive begins the demand is at most the
+// distance there, less the tolerance; each obstacle is of a kind of its own.
 double least_slack_m(const std::vector<TrajectoryPoint>& drive,
                      const std::vector<Obstacle>& obstacles) {
   double slack_m = 1e300, driven_m = 0.0;
+  std::vector<double> at_start_m;
+  for (const Obstacle& obstacle : obstacles) {
+    const auto body = geometry::body_at(drive.front().pose(), VehicleShape{});
+    const double distance_m = geometry::distance_m(body, rectangle_at(obstacle, drive[0].t_s));
+    at_start_m.push_back(std::clamp(distance_m - 0.02, 0.0, 0.3));
+  }
   for (std::size_t i = 0; i + 1 < drive.size(); ++i) {
     const double leg_m =
         std::hypot(drive[i + 1].x_m - drive[i].x_m, drive[i + 1].y_m - drive[i].y_m);
     for (int k = 0; k <= 200; ++k) {
       const TrajectoryPoint at = interpolate(drive[i], drive[i + 1], k / 200.0);
       const auto body = geometry::body_at(at.pose(), VehicleShape{});
-      const double demanded_m = 0.15 + 0.15 * std::min(1.0, (driven_m + leg_m * k / 200.0) / 10.0);
-      for (const Obstacle& obstacle : obstacles) {
+      const double fraction = std::min(1.0, (driven_m + leg_m * k / 200.0) / 10.0);
+      for (std::size_t o = 0; o < obstacles.size(); ++o) {
+        const Obstacle& obstacle = obstacles[o];
+        const double demanded_m = at_start_m[o] + (0.3 - at_start_m[o]) * fraction;
         if (!obstacle.is_static() && at.t_s > 5.0) continue;
         slack_m = std::min(slack_m,
                            geometry::distance_m(body, rectangle_at(obstacle, at.t_s)) - demanded_m);

@@ -121,6 +121,24 @@ TEST_P(BehaviourDrives, CarThatWillCrossIsBrakedForBeforeItIsOnTheRoad) {
   EXPECT_LT(braking->t_s, 8.0);  // its front is 4.75 m beside the road's edge then
 }
 
+// A parked car 1.8 m wide leaves 3.8 to 5.9 m of a road of 8 m to a vehicle of 1.61 m.
+TEST_P(BehaviourDrives, RoomThatIsAskedForIsKept) {
+  for (const double clearance_m : {0.2, 0.3, 0.5, 1.0}) {
+    for (const double edge_m : {-1.9, -1.1, -0.4, 0.2}) {
+      const planning::Obstacle parked{
+          .id = "parked", .motion = geometry::Trajectory({{.x_m = 80.0, .y_m = edge_m - 0.9}})};
+      Scenario scenario = at_speed(8.0);
+      scenario.options.clearance_m = clearance_m;
+      scenario.duration_s = 40.0;
+      const tests::StraightRoad road{.to_x_m = 200.0, .width_m = 8.0, .goal_x_m = 140.0};
+      const Drive drive = driven(scenario, tests::straight_world(road, {parked}));
+      SCOPED_TRACE(testing::Message() << clearance_m << " m asked, edge at " << edge_m);
+      EXPECT_GE(kept_on(drive).clearance_m, clearance_m - 0.01);
+      EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
+    }
+  }
+}
+
 TEST_P(BehaviourDrives, LeadThatLeavesTheRoadLetsTheVehicleSpeedUpAgain) {
   const planning::Obstacle other =
       scripted("car", 4.5, 1.8, {{0.0, {30, 0, 0}}, {8.0, {70, 0, 0}}, {11.0, {84, 7, 0.5}}});
