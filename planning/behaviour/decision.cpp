@@ -13,7 +13,9 @@ constexpr double kStands_mps = 0.3;
 constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
 constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
 constexpr double kFollowSlack_mps = 2.0;
+constexpr double kBeyondGap_m = 3.0;  // nearer than the gap: that one is the cruise control's
 constexpr double kBrakes_mps2 = 0.5;  // less is no braking
+constexpr double kNeedsNone_mps = 1.0;
 constexpr double kFar_m = 1e4;
 
 struct Option {
@@ -69,7 +71,8 @@ Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
       std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
   const double stop_m = q.lead->gap_m - options.standstill_gap_m + stopping_way_m(*q.lead);
   const auto approach = [&](double driven_m, double closed_m) {
-    SpeedTarget target = stopping_speed(free_m - closed_m, options.deceleration_mps2);
+    SpeedTarget target = stopping_speed(free_m - closed_m + kBeyondGap_m, options.deceleration_mps2,
+                                        options.closing_s);
     target.speed_mps += lead_mps;
     const SpeedTarget stop = stopping_speed(stop_m - driven_m, options.deceleration_mps2);
     return stop.speed_mps < target.speed_mps ? stop : target;
@@ -89,10 +92,20 @@ std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& op
   return all;
 }
 
-const Option& slowest(const std::vector<Option>& options, SpeedTarget Option::*when) {
-  return *std::min_element(options.begin(), options.end(), [&](const Option& a, const Option& b) {
-    return (a.*when).speed_mps < (b.*when).speed_mps;
-  });
+const Option& slowest(const std::vector<Option>& options) {
+  return *std::ranges::min_element(options, {},
+                                   [](const Option& option) { return option.now.speed_mps; });
+}
+
+/// The planned deceleration is that of a vehicle at the planned speed; a slower one needs none.
+double feed_forward_mps2(const std::vector<Option>& options, double speed_mps) {
+  double least = 0.0;
+  for (const Option& option : options) {
+    const double missing_mps = option.ahead.speed_mps - speed_mps;
+    const double share = std::clamp(1.0 - missing_mps / kNeedsNone_mps, 0.0, 1.0);
+    least = std::min(least, share * option.ahead.acceleration_mps2);
+  }
+  return least;
 }
 
 bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
@@ -108,16 +121,12 @@ bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
 
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options) {
   const std::vector<Option> all = options_of(question, options);
-  const Option& now = slowest(all, &Option::now);
-  const SpeedTarget& ahead = slowest(all, &Option::ahead).ahead;
-  SpeedAnswer answer{.set = {.speed_mps = now.now.speed_mps, .acceleration_mps2 = 0.0},
+  const Option& now = slowest(all);
+  SpeedAnswer answer{.set = {.speed_mps = now.now.speed_mps,
+                             .acceleration_mps2 = feed_forward_mps2(all, question.speed_mps)},
                      .behaviour = now.behaviour,
                      .reason = now.reason,
                      .hold = is_at_rest(question, options)};
-  // The planned deceleration is that of a vehicle at the planned speed; a slower one needs none.
-  if (question.speed_mps > ahead.speed_mps - 0.5) {
-    answer.set.acceleration_mps2 = ahead.acceleration_mps2;
-  }
   if (question.lead && now.behaviour == Behaviour::cruise &&
       all.back().now.speed_mps < now.now.speed_mps + kFollowSlack_mps) {
     answer.behaviour = Behaviour::follow;

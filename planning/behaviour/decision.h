@@ -38,6 +38,7 @@ struct DecisionOptions {
   double most_deceleration_mps2 = 2.0;  ///< to stop on a path that ends
   double headway_s = 1.5;
   double standstill_gap_m = 5.0;
+  double closing_s = 2.7;   ///< the cruise control closes a gap e at e / this [m/s]
   double preview_s = 0.45;  ///< the actuator's lag: deceleration is asked for this much ahead
   double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
 };

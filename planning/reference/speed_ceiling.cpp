@@ -10,8 +10,6 @@
 namespace roadbed::planning::inline reference {
 namespace {
 
-constexpr double kApproach_s = 1.0;
-
 void check(const std::vector<double>& caps_mps, double step_m, double deceleration_mps2) {
   const bool usable =
       caps_mps.size() >= 2 && step_m > 0.0 && deceleration_mps2 > 0.0 &&
@@ -70,14 +68,14 @@ SpeedCeiling speed_ceiling(const ReferenceLine& line, const geometry::VehicleSha
   return SpeedCeiling(caps, options.step_m, options.deceleration_mps2);
 }
 
-SpeedTarget stopping_speed(double distance_m, double deceleration_mps2) {
+SpeedTarget stopping_speed(double distance_m, double deceleration_mps2, double fade_s) {
   if (distance_m <= 0.0) return {};
   // Where the approach alone asks for the full deceleration.
-  const double handover_mps = deceleration_mps2 * kApproach_s;
-  const double handover_m = handover_mps * kApproach_s;
+  const double handover_mps = deceleration_mps2 * fade_s;
+  const double handover_m = handover_mps * fade_s;
   if (distance_m < handover_m) {
-    const double speed = distance_m / kApproach_s;
-    return {speed, -speed / kApproach_s};
+    const double speed = distance_m / fade_s;
+    return {speed, -speed / fade_s};
   }
   const double squared =
       handover_mps * handover_mps + 2.0 * deceleration_mps2 * (distance_m - handover_m);

@@ -45,7 +45,7 @@ SpeedCeiling speed_ceiling(const ReferenceLine& line, const geometry::VehicleSha
                            const SpeedCeilingOptions& options);
 
 /// Speed at `distance_m` from a place to stop at: constant deceleration, which fades out at the end
-/// as v = distance / 1 s; 0 past the place. Speed and deceleration are continuous.
-SpeedTarget stopping_speed(double distance_m, double deceleration_mps2);
+/// as v = distance / fade; 0 past the place. Speed and deceleration are continuous.
+SpeedTarget stopping_speed(double distance_m, double deceleration_mps2, double fade_s = 1.0);
 
 }  // namespace roadbed::planning::reference

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "roadbed/control/cruise_design.h"
+
 namespace roadbed::tools {
 namespace {
 
@@ -52,10 +54,39 @@ TEST(Decision, ApproachesALeadDownToItsSpeedAndGap) {
   question.lead = planning::Lead{.gap_m = 1.5 * 4.0 + 5.0, .speed_mps = 4.0};
   const planning::SpeedAnswer close = ask(question);
   EXPECT_EQ(close.behaviour, planning::Behaviour::follow);
-  EXPECT_NEAR(close.set.speed_mps, 4.0, 1e-12);
+  EXPECT_LT(close.set.speed_mps, 5.5);
   EXPECT_THAT(close.reason, testing::StartsWith("car a is 11.0 m ahead"));
   question.lead->gap_m = 200.0;
   EXPECT_EQ(ask(question).behaviour, planning::Behaviour::cruise);
+}
+
+TEST(Decision, LeavesTheGapToTheCruiseControlOnceClosingIsOver) {
+  planning::SpeedQuestion question = free_road(4.0);
+  for (const double off_m : {-0.25, 0.0, 0.25}) {
+    question.lead = planning::Lead{.gap_m = 1.5 * 4.0 + 5.0 + off_m, .speed_mps = 4.0};
+    EXPECT_GT(ask(question).set.speed_mps, 5.0) << off_m << " m";
+    EXPECT_EQ(ask(question).set.acceleration_mps2, 0.0) << off_m << " m";
+  }
+}
+
+TEST(Decision, ApproachClosesAsTheCruiseControlDoes) {
+  const control::CruiseDesign design = control::design_cruise({});
+  // −K x = 0 at constant speeds, x = [τ_h c − left, −c, 0], c the closing.
+  const double closing_s = planning::DecisionOptions{}.headway_s - design.K[1] / design.K[0];
+  EXPECT_NEAR(planning::DecisionOptions{}.closing_s, closing_s, 0.05);
+}
+
+// A cycle later everything is a little further: so is what is asked for.
+TEST(Decision, BrakingForALeadSetsInGradually) {
+  planning::SpeedQuestion question = free_road(9.0);
+  double last_mps2 = 0.0;
+  for (double gap_m = 60.0; gap_m > 20.0; gap_m -= 0.1 * 7.0) {
+    question.lead = planning::Lead{.gap_m = gap_m, .speed_mps = 2.0};
+    const double asked_mps2 = ask(question).set.acceleration_mps2;
+    EXPECT_NEAR(asked_mps2, last_mps2, 0.4) << gap_m << " m";
+    last_mps2 = asked_mps2;
+  }
+  EXPECT_NEAR(last_mps2, -1.5, 1e-12);
 }
 
 TEST(Decision, BrakesForALeadThatBrakesToAStop) {
