@@ -4,21 +4,23 @@
 #include <complex>
 #include <vector>
 
+#include "roadbed/geometry/motion/longitudinal.h"
+
 namespace roadbed::control {
 
 /// Parameters of paper section 3.3.
 struct CruiseOptions {
-  double headway_s = 1.5;                        ///< τ_h
-  double standstill_gap_m = 5.0;                 ///< d_0
-  double actuator_lag_s = 0.45;                  ///< T_L
-  double actuator_gain = 1.0;                    ///< K_L
-  double step_s = 0.1;                           ///< T, sampling time
+  double headway_s = geometry::kLongitudinal.headway_s;                ///< τ_h
+  double standstill_gap_m = geometry::kLongitudinal.standstill_gap_m;  ///< d_0
+  double actuator_lag_s = geometry::kLongitudinal.actuator_lag_s;      ///< T_L
+  double actuator_gain = geometry::kLongitudinal.actuator_gain;        ///< K_L
+  double step_s = geometry::kLongitudinal.cycle_s;                     ///< T, sampling time
   Eigen::Vector3d state_weights{1.0, 1.0, 0.0};  ///< ρ1 … ρ3, diagonal of Q
   double input_weight = 1.0;                     ///< r
   Eigen::Vector3d measurement_noise_variance{0.25, 0.04, 0.01};
   double lead_acceleration_variance = 1.0;  ///< of a_p, the disturbance [m²/s⁴]
   double actuator_noise_variance = 1e-4;    ///< added to a_f in each step [m²/s⁴]
-  double max_command_mps2 = 0.25 * 9.81;    ///< paper: ±0.25 g
+  double max_command_mps2 = geometry::kLongitudinal.max_command_mps2;
   double max_jerk_mps3 = 4.0;  ///< that a command may ask of the actuator; nuPlan's bound is 4.13
   double bridged_s = 0.5;      ///< a lead that is not measured for so long is still followed
 };

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "roadbed/geometry/motion/longitudinal.h"
+
 namespace roadbed::control {
 
 /// Lower controller, actuator and vehicle together: a_f = K_L / (T_L s + 1) · a_des (paper eq. 25).
 struct ActuatorOptions {
-  double lag_s = 0.45;  ///< T_L
-  double gain = 1.0;    ///< K_L
+  double lag_s = geometry::kLongitudinal.actuator_lag_s;  ///< T_L
+  double gain = geometry::kLongitudinal.actuator_gain;    ///< K_L
 };
 
 /// Acceleration after `step_s` of a constant desired acceleration, exact for any step.
@@ -19,10 +21,10 @@ struct DriveTrain {
   double mass_kg = 1093.3;
   double drag_area_m2 = 0.65;  ///< c_d A
   double air_density_kgpm3 = 1.225;
-  double rolling_resistance = 0.012;  ///< of the weight
-  double full_throttle_N = 5000.0;    ///< at the wheels
-  double full_brake_N = 11'000.0;     ///< at the wheels
-  double lag_s = 0.45;                ///< T_L, of the force behind the pedals
+  double rolling_resistance = 0.012;                      ///< of the weight
+  double full_throttle_N = 5000.0;                        ///< at the wheels
+  double full_brake_N = 11'000.0;                         ///< at the wheels
+  double lag_s = geometry::kLongitudinal.actuator_lag_s;  ///< T_L, of the force behind the pedals
 };
 
 /// Both between 0 and 1; never both above 0.

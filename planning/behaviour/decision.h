@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
@@ -36,10 +37,11 @@ struct SpeedAnswer {
 struct DecisionOptions {
   double deceleration_mps2 = 1.5;
   double most_deceleration_mps2 = 2.0;  ///< to stop on a path that ends
-  double headway_s = 1.5;
-  double standstill_gap_m = 5.0;
-  double closing_s = 2.7;   ///< the cruise control closes a gap e at e / this [m/s]
-  double preview_s = 0.45;  ///< the actuator's lag: deceleration is asked for this much ahead
+  double headway_s = geometry::kLongitudinal.headway_s;
+  double standstill_gap_m = geometry::kLongitudinal.standstill_gap_m;
+  double closing_s = 2.7;  ///< the cruise control closes a gap e at e / this [m/s]
+  /// The actuator's lag: deceleration is asked for this much ahead.
+  double preview_s = geometry::kLongitudinal.actuator_lag_s;
   double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
 };
 

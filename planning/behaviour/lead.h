@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/obstacles/obstacle.h"
@@ -46,10 +47,12 @@ bool is_crossing(const Obstacle& obstacle, double t_s, const ReferenceLine& line
 
 /// Deceleration that the safety layer demands beyond what the cruise control may ask for.
 struct SafetyOptions {
-  double cruise_limit_mps2 = 0.25 * 9.81;  ///< up to here the cruise control brakes itself
-  double most_mps2 = 8.0;                  ///< the vehicle's limit
-  double standoff_m = 1.0;                 ///< gap to come to rest at
-  double reaction_s = 0.45;                ///< the actuator's lag, driven before it bites
+  /// Up to here the cruise control brakes itself.
+  double cruise_limit_mps2 = geometry::kLongitudinal.max_command_mps2;
+  double most_mps2 = 8.0;   ///< the vehicle's limit
+  double standoff_m = 1.0;  ///< gap to come to rest at
+  /// The actuator's lag, driven before it bites.
+  double reaction_s = geometry::kLongitudinal.actuator_lag_s;
 };
 
 /// Deceleration [m/s²] that stops the closing in time, if the cruise control's authority cannot:

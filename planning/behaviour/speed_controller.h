@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -9,8 +10,8 @@
 namespace roadbed::planning::inline behaviour {
 
 /// How an acceleration that is asked for reaches the vehicle: a = 1 / (lag s + 1) u, |u| bounded.
-inline constexpr double kActuatorLag_s = 0.45;
-inline constexpr double kMostCommand_mps2 = 0.25 * 9.81;  // paper: ±0.25 g
+inline constexpr double kActuatorLag_s = geometry::kLongitudinal.actuator_lag_s;
+inline constexpr double kMostCommand_mps2 = geometry::kLongitudinal.max_command_mps2;
 
 /// A cruise control behind sensors: what is known of the lead is what it measures and filters.
 class SpeedController {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/planning/behaviour/st_graph.h"
 #include "roadbed/planning/behaviour/timed_goal.h"
@@ -27,9 +28,9 @@ struct SpeedSearchQuestion {
 };
 
 struct SpeedSearchOptions {
-  double least_mps2 = -0.25 * 9.81;
-  double most_mps2 = 0.25 * 9.81;
-  double actuator_lag_s = 0.45;
+  double least_mps2 = -geometry::kLongitudinal.max_command_mps2;
+  double most_mps2 = geometry::kLongitudinal.max_command_mps2;
+  double actuator_lag_s = geometry::kLongitudinal.actuator_lag_s;
 };
 
 /// State and command of a plan at one time.

@@ -63,13 +63,15 @@ class NoisyFollowing {
  private:
   void advance(double t_s) {
     const double gap_m = lead_m_ - own_m_;
-    const double error_m = 1.5 * speed_mps_ + 5.0 - gap_m;
+    const double desired_m =
+        geometry::kLongitudinal.headway_s * speed_mps_ + geometry::kLongitudinal.standstill_gap_m;
+    const double error_m = desired_m - gap_m;
     const control::LeadMeasurement seen{
         .gap_m = gap_m + 0.5 * normal_(random_),
         .relative_speed_mps = lead_mps_ - speed_mps_ + 0.2 * normal_(random_)};
     const double command = cruise_.update(speed_mps_, acceleration_mps2_ + 0.1 * normal_(random_),
                                           {.speed_mps = 40.0}, seen);
-    measured_.points.push_back({t_s, 1.5 * speed_mps_ + 5.0 - seen.gap_m});
+    measured_.points.push_back({t_s, desired_m - seen.gap_m});
     true_.points.push_back({t_s, error_m});
     estimated_.points.push_back({t_s, (*cruise_.estimate())[0]});
     for (int i = 0; i < 10; ++i) {

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kControlStep_s = 0.01;
 constexpr int kControlStepsPerCycle = 10;
+static_assert(kControlStep_s * kControlStepsPerCycle == geometry::kLongitudinal.cycle_s);
 constexpr double kMostLateral_mps2 = 3.9;  // that the wheels are turned for
 
 /// Steering angle that keeps v² tan(δ)/L within a lateral acceleration.
@@ -60,7 +61,7 @@ class MeasuredCruise : public planning::SpeedController {
                           .gap_m = known->gap_m,
                           .speed_mps = lead_mps,
                           .acceleration_mps2 = (lead_mps - lead_speeds_mps_.front()) /
-                                               (kLeadCycles * control::CruiseOptions{}.step_s)};
+                                               (kLeadCycles * geometry::kLongitudinal.cycle_s)};
   }
 
   double acceleration_mps2(const planning::VehicleState& measured,
@@ -72,12 +73,11 @@ class MeasuredCruise : public planning::SpeedController {
   void sent(double acceleration_mps2) override { cruise_.sent(acceleration_mps2); }
 
  private:
-  static_assert(control::ActuatorOptions{}.lag_s == planning::kActuatorLag_s);
   static constexpr std::size_t kLeadCycles = 4;  // over which the lead's acceleration is taken
 
   Sensors& sensors_;
   const planning::VehicleState& truth_;
-  control::CruiseControl cruise_{{.max_command_mps2 = planning::kMostCommand_mps2}};
+  control::CruiseControl cruise_{{}};
   std::deque<double> lead_speeds_mps_;  ///< of the last cycles
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/planning/behaviour/lead.h"
 
@@ -13,7 +14,7 @@ namespace {
 using geometry::TrajectoryPoint;
 using nlohmann::ordered_json;
 
-constexpr double kCycle_s = 0.1;
+constexpr double kCycle_s = geometry::kLongitudinal.cycle_s;
 
 /// Largest value of a function over a list; 0 for an empty one.
 template <typename List, typename Value>

@@ -1,0 +1,18 @@
+#pragma once
+
+namespace roadbed::geometry::inline motion {
+
+/// How a vehicle drives and follows along the road [paper section 3.3]. Planning and control do not
+/// know each other, but have to mean the same vehicle: both take their defaults from here.
+struct Longitudinal {
+  double headway_s = 1.5;                 ///< τ_h
+  double standstill_gap_m = 5.0;          ///< d_0
+  double actuator_lag_s = 0.45;           ///< T_L, in a = K_L / (T_L s + 1) u (paper eq. 25)
+  double actuator_gain = 1.0;             ///< K_L
+  double max_command_mps2 = 0.25 * 9.81;  ///< of |u|; paper: ¼ g
+  double cycle_s = 0.1;                   ///< T: a command u is held for so long
+};
+
+inline constexpr Longitudinal kLongitudinal{};
+
+}  // namespace roadbed::geometry::motion
