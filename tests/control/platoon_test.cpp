@@ -76,6 +76,18 @@ TEST(Platoon, GainFromLeadToFollowerIsNotAboveOneWithFilterAndDelay) {
   }
 }
 
+// The reason why it has no weight by default: the command's weight counts it already.
+TEST(Platoon, WeightOnTheOwnAccelerationDampsNothing) {
+  double last = 0.0;
+  for (const double weight : {0.0, 0.5, 1.0, 2.0}) {
+    const CruiseOptions options{.state_weights = {1.0, 1.0, weight}};
+    const StringGain gain = loop_string_gain(design_cruise(options), options.step_s, kDelaySteps);
+    EXPECT_GT(gain.gain, last) << weight;
+    last = gain.gain;
+  }
+  EXPECT_EQ(CruiseOptions{}.state_weights[2], 0.0);
+}
+
 TEST(Platoon, GainOfTheLoopIsTheAmplitudeOfASineThatSettled) {
   const CruiseOptions sluggish{.state_weights = {0.04, 1.0, 0.5}};  // amplifies, with its filter
   const CruiseDesign design = design_cruise(sluggish);
