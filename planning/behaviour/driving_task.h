@@ -31,7 +31,6 @@ struct DrivingTask {
   /// To the goal too, from lanes beside the start that may be changed to there.
   std::vector<ReferenceLine> other_lines = {};
   std::vector<std::vector<StopPoint>> other_stop_points = {};  ///< on each other line
-  double road_end_s_m = 1e9;  ///< station at which the lanes behind the goal end
 
   /// Obstacles that are there at a time.
   std::vector<Obstacle> obstacles_at(double t_s) const {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeastHorizon_s = 5.0, kMostHorizon_s = 12.0;
 constexpr double kBeyondGoal_s = 1.5;
-constexpr double kRoadEnd_m = 0.5;  // kept from the end of the lanes
+constexpr double kRoadEnd_m = 0.1;  // kept from the end of the lanes
 constexpr double kUsual_mps = 50.0 / 3.6;
 constexpr double kBesideCost = 0.3;        // per metre of the end's offset
 constexpr double kForecastMargin_m = 0.1;  // as that of a lead
@@ -124,8 +124,8 @@ double HypothesisSpeed::end_m(const PlanningScene& scene,
   const PathProfile& profile = hypothesis.profile;
   const ReferenceLine& line = hypothesis.goal_line->line;
   if (task_.goal) {
-    const double road_end_s_m = line.length_m() - vehicle_.front_m() - kRoadEnd_m;
-    return std::min(ahead_of(profile, road_end_s_m), hypothesis.on_road_m);
+    const double end_s_m = hypothesis.goal_line->road_end_s_m - vehicle_.front_m() - kRoadEnd_m;
+    return std::min(ahead_of(profile, end_s_m), hypothesis.on_road_m);
   }
   double end_m = ahead_of(profile, line.goal_s_m());
   if (scene.halt) end_m = std::min(end_m, ahead_of(profile, scene.halt->s_m));

@@ -29,6 +29,7 @@ struct RiskLevel {
 /// One line to the goal, and the path that is kept along it.
 struct GoalLine {
   const ReferenceLine& line;
+  double road_end_s_m;  ///< see road_end.h
   SpeedCeiling ceiling;
   std::vector<GoalStretch> stretches;
   std::vector<StopPoint> lights;

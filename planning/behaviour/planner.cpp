@@ -16,6 +16,7 @@
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
+#include "roadbed/planning/behaviour/road_end.h"
 #include "roadbed/planning/behaviour/traffic.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -57,6 +58,7 @@ GoalLine goal_line_on(const ReferenceLine& line, std::vector<StopPoint> lights,
   const DrivingTask& task = setup.task;
   std::erase_if(lights, [](const auto& place) { return place.kind != StopKind::light; });
   return {.line = line,
+          .road_end_s_m = road_end_s_m(line, task.road_map),
           .ceiling = ceiling_of(line, setup.vehicle, setup.driving),
           .stretches = task.goal ? goal_stretches(*task.goal, task.road_map, line, setup.vehicle)
                                  : std::vector<GoalStretch>{},

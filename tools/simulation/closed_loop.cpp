@@ -233,7 +233,14 @@ class ClosedLoop {
     const bool is_step = std::abs(step - std::round(step)) * goal.step_s < 0.5 * kControlStep_s;
     if (is_step && goal.is_reached(world_.road_map, truth_.map_from_vehicle, truth_.speed_mps,
                                    t_s(), scenario_.vehicle)) {
-      end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s", t_s()));
+      look_at_road();
+      if (!left_road_) {
+        end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s", t_s()));
+      } else {
+        end(Outcome::left_road,
+            fmt::format("goal reached after {:.2f} s, but {:.2f} m off the road after {:.2f} s",
+                        t_s(), left_road_->off_m, left_road_->at_s));
+      }
     } else if (truth_.speed_mps <= 0.0 && t_s() > goal.latest_s().value_or(0.0)) {
       end(Outcome::stopped,
           goal.latest_s()
@@ -241,6 +248,16 @@ class ClosedLoop {
                             t_s(), *goal.latest_s())
               : fmt::format("stands after {:.2f} s: the problem states no goal", t_s()));
     }
+  }
+
+  /// What begins beside the road has left it only after it has been on it.
+  double look_at_road() {
+    const double off_m = observer_.off_road_m(truth_);
+    was_on_road_ = was_on_road_ || off_m == 0.0;
+    if (was_on_road_ && off_m > (left_road_ ? left_road_->off_m : 0.0)) {
+      left_road_ = OffRoad{off_m, t_s()};
+    }
+    return off_m;
   }
 
   void end(Outcome outcome, std::string text) {
@@ -279,7 +296,7 @@ class ClosedLoop {
                               .clearance_m = observer_.take_clearance_m(),
                               .throttle = foot_ ? foot_->pedals().throttle : 0.0,
                               .brake = foot_ ? foot_->pedals().brake : 0.0,
-                              .off_road_m = observer_.off_road_m(truth_)});
+                              .off_road_m = look_at_road()});
   }
 
   const Scenario& scenario_;
@@ -298,6 +315,11 @@ class ClosedLoop {
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
   planning::PlannerCommand command_;
   int saturated_ = 0;
+  struct OffRoad {
+    double off_m, at_s;
+  };
+  std::optional<OffRoad> left_road_;  ///< where it was farthest off, after it had been on it
+  bool was_on_road_ = false;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;
   Drive drive_;

@@ -160,18 +160,6 @@ LanePlace straight_ahead(const map::RoadMap& road_map, const LanePlace& from, do
   return at;
 }
 
-/// Lanes' length beyond a place, up to `length_m`.
-double road_after_m(const map::RoadMap& road_map, const LanePlace& from, double length_m) {
-  constexpr int kMostLanes = 1000;
-  double found_m = road_map.lane(from.lane).length_m() - from.s_m;
-  std::optional<map::LaneId> next = straightest(road_map, from.lane);
-  for (int i = 0; i < kMostLanes && next && found_m < length_m; ++i) {
-    found_m += road_map.lane(*next).length_m();
-    next = straightest(road_map, *next);
-  }
-  return std::min(found_m, length_m);
-}
-
 /// How far the vehicle may come until a time, so that lane changes are made before.
 double reach_m(double speed_mps, double limit_mps, double until_s) {
   return std::max(speed_mps, limit_mps) * std::max(0.0, until_s);
@@ -399,12 +387,6 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
       other_places.push_back(stop_points(road_map, *other, other_lines.back(), scenario.lights));
     }
   }
-  const planning::RouteLeg& last = route.legs.back();
-  const double beyond_m =
-      last.reversed
-          ? std::min(last.to_s_m, kBeyondGoal_m)
-          : road_after_m(road_map, {.lane = last.lane, .s_m = last.to_s_m}, kBeyondGoal_m);
-  const double road_end_s_m = line.goal_s_m() + beyond_m;
   World world{{.kept_map = std::move(kept_map),
                .field = {},
                .start = start,
@@ -415,8 +397,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                .lights = scenario.lights,
                .stop_points = std::move(places),
                .other_lines = std::move(other_lines),
-               .other_stop_points = std::move(other_places),
-               .road_end_s_m = road_end_s_m}};
+               .other_stop_points = std::move(other_places)}};
   const Source placed{file.string(), world.road_map, problem, from.time_step_s};
   add_obstacles(from, placed, world);
   refuse_overlap(placed, world, scenario.vehicle);

@@ -45,6 +45,8 @@ std::string_view to_string(Outcome outcome) {
       return "collision";
     case Outcome::timed_out:
       return "timed out";
+    case Outcome::left_road:
+      return "left the road";
   }
   return "";
 }

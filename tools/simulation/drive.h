@@ -58,7 +58,7 @@ struct DriveSample {
   double heading_error_rad = 0.0;      ///< θ_e
   double clearance_m = 0.0;            ///< to the nearest obstacle; infinite without any
   double throttle = 0.0, brake = 0.0;  ///< pedals, 0 to 1; 0 where the scenario has none
-  double off_road_m = 0.0;  ///< of the body's worst corner, in steps of 0.1 m; 0 on the road
+  double off_road_m = 0.0;             ///< of the body's worst corner; 0 on the road
 };
 
 enum class EventLevel { info, warning, fault };
@@ -69,7 +69,7 @@ struct DriveEvent {
   std::string text;
 };
 
-enum class Outcome { goal_reached, stopped, collision, timed_out };
+enum class Outcome { goal_reached, stopped, collision, timed_out, left_road };
 std::string_view to_string(Outcome outcome);
 std::string_view to_string(EventLevel level);
 

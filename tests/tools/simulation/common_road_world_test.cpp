@@ -1,5 +1,6 @@
 #include "roadbed/tools/simulation/world.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,6 +39,52 @@ std::string refusal_of(const std::string& bytes) {
     return error.what();
   }
   return "accepted";
+}
+
+/// A road of 4 m eastwards that ends at `end_x_m`, the ego's centre at x = 5 m at a speed, and a
+/// goal state.
+std::string road_that_ends(double end_x_m, double speed_mps, const std::string& goal) {
+  const auto bound = [&](const char* name, double y_m) {
+    return fmt::format(
+        "<{0}><point><x>0</x><y>{1}</y></point><point><x>{2}</x><y>{1}</y></point></{0}>", name,
+        y_m, end_x_m);
+  };
+  return "<?xml version=\"1.0\"?><commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\" "
+         "benchmarkID=\"ZAM_End-1_1_T-1\"><lanelet id=\"1\">" +
+         bound("leftBound", 2.0) + bound("rightBound", -2.0) +
+         fmt::format(
+             "<laneletType>urban</laneletType></lanelet><planningProblem id=\"9\">"
+             "<initialState><position><point><x>5</x><y>0</y></point></position>"
+             "<orientation><exact>0</exact></orientation><time><exact>0</exact></time>"
+             "<velocity><exact>{}</exact></velocity></initialState><goalState>{}</goalState>"
+             "</planningProblem></commonRoad>",
+             speed_mps, goal);
+}
+
+std::string within_steps(int least, int most) {
+  return fmt::format("<time><intervalStart>{}</intervalStart><intervalEnd>{}</intervalEnd></time>",
+                     least, most);
+}
+
+TEST(CommonRoadWorld, DriveStopsBeforeTheRoadEndsWhateverTheGoal) {
+  CommonRoadDrive problem = problem_of(road_that_ends(60.0, 10.0, within_steps(100, 110)));
+  const Drive driven = drive(problem.scenario, problem.world);
+  EXPECT_EQ(driven.verdict.outcome, Outcome::goal_reached) << driven.verdict.text;
+  const double front_x_m =
+      driven.trajectory.points().back().x_m + problem.scenario.vehicle.front_m();
+  EXPECT_LT(front_x_m, 60.0);
+  EXPECT_GT(front_x_m, 40.0);
+}
+
+TEST(CommonRoadWorld, GoalThatIsReachedOffTheRoadDoesNotCount) {
+  // 10.75 m from the front to the road's end; at 20 m/s nothing stops before.
+  CommonRoadDrive problem = problem_of(road_that_ends(18.0, 20.0, within_steps(10, 12)));
+  const Drive driven = drive(problem.scenario, problem.world);
+  EXPECT_EQ(driven.verdict.outcome, Outcome::left_road) << driven.verdict.text;
+  const auto& last = driven.trajectory.points().back();
+  EXPECT_NEAR(driven.samples.back().off_road_m,
+              last.x_m + geometry::VehicleShape{}.front_m() - 18.0, 5e-3);
+  EXPECT_GT(driven.samples.back().off_road_m, 1.0);
 }
 
 TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
