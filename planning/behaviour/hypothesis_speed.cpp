@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/planning/behaviour/cruise_forecast.h"
+#include "roadbed/planning/behaviour/goals_on_path.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -150,6 +151,9 @@ SpeedSearchQuestion HypothesisSpeed::question_of(const PlanningScene& scene,
     return asked;
   }
   if (!hypothesis.has_candidate()) asked.most_wanted_mps = 0.0;
+  asked.goals = goals_on_path(*task_.goal, task_.road_map, hypothesis.profile, view.t_s);
+  asked.goal_is_off_path = asked.goals.empty();
+  if (!asked.goal_is_off_path) return asked;
   for (const GoalStretch& stretch : hypothesis.goal_line->stretches)
     asked.goals.push_back(ahead(hypothesis.profile, stretch, view));
   return asked;

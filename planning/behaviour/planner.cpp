@@ -37,7 +37,7 @@ constexpr std::array<RiskLevel, 2> kOnRoute{
     {{.margin_m = 0.1, .speed = {}, .is_emergency = false},
      {.margin_m = 0.1, .speed = {.least_mps2 = -8.0}, .is_emergency = true}}};
 
-LateralReplanner::Bounds bounds_of(const PlannerSetup& setup) {
+LateralReplanner::Bounds replanner_bounds(const PlannerSetup& setup) {
   LateralReplanner::Bounds bounds{.tracking_error_m = setup.planner.max_tracking_error_m,
                                   .heading_error_rad = setup.planner.max_heading_error_rad,
                                   .margin_levels = {},
@@ -63,7 +63,7 @@ GoalLine goal_line_on(const ReferenceLine& line, std::vector<StopPoint> lights,
           .stretches = task.goal ? goal_stretches(*task.goal, task.road_map, line, setup.vehicle)
                                  : std::vector<GoalStretch>{},
           .lights = task.goal ? std::move(lights) : std::vector<StopPoint>{},
-          .replanner = {setup.vehicle, task, line, bounds_of(setup)}};
+          .replanner = {setup.vehicle, task, line, replanner_bounds(setup)}};
 }
 
 std::vector<GoalLine> goal_lines_of(const PlannerSetup& setup) {

@@ -19,6 +19,7 @@ constexpr double kCell_m = 0.75, kCell_mps = 0.6;
 constexpr double kLeast_mps2 = -12.0;  // no vehicle brakes harder
 constexpr double kMostLayers = 16.0;
 constexpr double kTimeSlack_s = 0.051;  // a goal's moment may lie between two substeps
+constexpr double kRounding = 1e-6;      // of time steps
 
 // Costs per second, in units of a speed that is missing altogether.
 constexpr double kTooFast = 4.0;
@@ -186,12 +187,24 @@ class Search {
     return std::max({0.0, window.least - value, value - window.most});
   }
 
+  /// The time nearest to a substep at which a goal counts; none within half a substep of it.
+  static std::optional<double> moment_s(const GoalAhead& goal, double t_s) {
+    double moment = std::clamp(t_s, goal.time_s.least, goal.time_s.most);
+    if (goal.step_s > 0.0) {
+      const auto steps = [&](double time_s) { return (time_s - goal.a_step_s) / goal.step_s; };
+      const double first = std::ceil(steps(goal.time_s.least) - kRounding);
+      const double last = std::floor(steps(goal.time_s.most) + kRounding);
+      if (first > last) return std::nullopt;
+      moment = goal.a_step_s + goal.step_s * std::clamp(std::round(steps(t_s)), first, last);
+    }
+    if (std::abs(moment - t_s) > kTimeSlack_s) return std::nullopt;
+    return moment;
+  }
+
   bool may_reach_goal_in(int layer) const {
     for (int i = 1; i <= substeps_; ++i) {
       const double t_s = kSubstep_s * (layer * substeps_ + i);
-      const auto is_time = [&](const GoalAhead& goal) {
-        return outside(goal.time_s, t_s) <= kTimeSlack_s;
-      };
+      const auto is_time = [&](const GoalAhead& goal) { return moment_s(goal, t_s).has_value(); };
       if (std::ranges::any_of(q_.goals, is_time)) return true;
     }
     return false;
@@ -199,9 +212,12 @@ class Search {
 
   void look_at_goals(Node& node, const Motion& at, double t_s) const {
     for (const GoalAhead& goal : q_.goals) {
-      if (outside(goal.time_s, t_s) > kTimeSlack_s) continue;
+      const auto moment = moment_s(goal, t_s);
+      if (!moment) continue;
+      const double ahead_m =
+          at.ahead_m + (goal.step_s > 0.0 ? at.speed_mps * (*moment - t_s) : 0.0);
       const double miss =
-          outside(goal.ahead_m, at.ahead_m) + 2.0 * outside(goal.speed_mps, at.speed_mps);
+          outside(goal.ahead_m, ahead_m) + 2.0 * outside(goal.speed_mps, at.speed_mps);
       node.miss = std::min(node.miss, miss);
       node.reached = node.reached || miss <= 0.0;
     }
@@ -322,11 +338,11 @@ class Search {
     SpeedSearchAnswer found;
     const Node& last = nodes_[static_cast<std::size_t>(end)];
     found.is_free = is_free;
-    found.misses_goal = !last.reached && ends_within_horizon_;
-    found.reaches_goal = last.reached && !q_.goals.empty();
+    found.misses_goal = q_.goal_is_off_path || (!last.reached && ends_within_horizon_);
+    found.reaches_goal = last.reached && !q_.goals.empty() && !q_.goal_is_off_path;
     found.free_until_s = kSubstep_s * substeps_ * last.layer;
     found.bend_excess_mps = last.bend_excess_mps;
-    if (is_free) found.cost = total(last);
+    if (is_free) found.cost = total(last) + (q_.goal_is_off_path ? kMissedGoal : 0.0);
     for (int i = end; i >= 0; i = nodes_[static_cast<std::size_t>(i)].parent) {
       const Node& node = nodes_[static_cast<std::size_t>(i)];
       found.plan.push_back({kSubstep_s * substeps_ * node.layer, node.ahead_m, node.speed_mps,

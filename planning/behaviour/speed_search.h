@@ -14,6 +14,8 @@ namespace roadbed::planning::inline behaviour {
 /// A goal as the search sees it: times from now, distances along the path.
 struct GoalAhead {
   Window time_s, speed_mps, ahead_m;
+  /// It counts only at time steps, `step_s` apart, one of them at `a_step_s`; 0: at any time.
+  double step_s = 0.0, a_step_s = 0.0;
 };
 
 struct SpeedSearchQuestion {
@@ -24,6 +26,8 @@ struct SpeedSearchQuestion {
   double horizon_s = 5.0;
   double end_m = 0.0;            ///< of the path that may be driven; the vehicle stops before
   std::vector<GoalAhead> goals;  ///< reaching one of them is enough
+  /// No speed on this path reaches the goal that is asked for: whatever is found misses it.
+  bool goal_is_off_path = false;
   double most_wanted_mps = 1e3;  ///< beside what the path wants
 };
 

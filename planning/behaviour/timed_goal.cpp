@@ -46,14 +46,51 @@ bool is_in(const PolygonShape& shape, const Eigen::Vector2d& point) {
   return is_in(shape.corners_m, point);
 }
 
+Eigen::Vector2d centre_of(const Pose2& rear_axle, const geometry::VehicleShape& vehicle) {
+  return rear_axle * Eigen::Vector2d(0.5 * vehicle.length_m - vehicle.rear_overhang_m, 0.0);
+}
+
+/// Stations at which a vehicle that drives `d_m` beside the line is where a state wants it.
+std::optional<Window> crossing(const GoalState& state, const map::RoadMap& road_map,
+                               const ReferenceLine& line, const geometry::VehicleShape& vehicle,
+                               double d_m, bool with_heading) {
+  std::optional<Window> part;
+  const auto steps = static_cast<int>(line.length_m() / kStationStep_m);
+  for (int i = 0; i <= steps; ++i) {
+    const double s_m = kStationStep_m * i;
+    const ReferencePoint at = line.at(s_m);
+    const Pose2 pose = Pose2{at.in_map.x(), at.in_map.y(), at.heading_rad} * Pose2{0.0, d_m, 0.0};
+    const bool here =
+        is_at_place(state, road_map, centre_of(pose, vehicle)) &&
+        (!with_heading || !state.heading_rad || holds_heading(*state.heading_rad, at.heading_rad));
+    if (here && !part) part = Window{s_m, s_m};
+    if (here) part->most = s_m;
+    if (!here && part) break;
+  }
+  return part;
+}
+
+/// At the offset nearest to the line at which there is a crossing; left first.
+bool find_crossing(const GoalState& state, const map::RoadMap& road_map, const ReferenceLine& line,
+                   const geometry::VehicleShape& vehicle, bool with_heading, GoalStretch& stretch) {
+  for (int i = 0; i <= kMostOffsets; ++i) {
+    for (const double side : {1.0, -1.0}) {
+      stretch.d_m = side * kOffsetStep_m * i;
+      const auto part = crossing(state, road_map, line, vehicle, stretch.d_m, with_heading);
+      if (!part) continue;
+      stretch.s_m = *part;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 // The least of heading + 2π k that is not before the window has to be within it.
 bool holds_heading(const Window& window, double heading_rad) {
   const double turns = std::ceil((window.least - heading_rad) / (2.0 * std::numbers::pi) - 1e-12);
   return heading_rad + 2.0 * std::numbers::pi * turns <= window.most + 1e-9;
-}
-
-Eigen::Vector2d centre_of(const Pose2& rear_axle, const geometry::VehicleShape& vehicle) {
-  return rear_axle * Eigen::Vector2d(0.5 * vehicle.length_m - vehicle.rear_overhang_m, 0.0);
 }
 
 bool is_at_place(const GoalState& state, const map::RoadMap& road_map,
@@ -64,27 +101,6 @@ bool is_at_place(const GoalState& state, const map::RoadMap& road_map,
     return is_in(road_map.lane(lane).polygon, centre_in_map);
   });
 }
-
-/// Stations at which a vehicle that drives `d_m` beside the line is where a state wants it.
-std::optional<Window> crossing(const GoalState& state, const map::RoadMap& road_map,
-                               const ReferenceLine& line, const geometry::VehicleShape& vehicle,
-                               double d_m) {
-  std::optional<Window> part;
-  const auto steps = static_cast<int>(line.length_m() / kStationStep_m);
-  for (int i = 0; i <= steps; ++i) {
-    const double s_m = kStationStep_m * i;
-    const ReferencePoint at = line.at(s_m);
-    const Pose2 pose = Pose2{at.in_map.x(), at.in_map.y(), at.heading_rad} * Pose2{0.0, d_m, 0.0};
-    const bool here = is_at_place(state, road_map, centre_of(pose, vehicle)) &&
-                      (!state.heading_rad || holds_heading(*state.heading_rad, at.heading_rad));
-    if (here && !part) part = Window{s_m, s_m};
-    if (here) part->most = s_m;
-    if (!here && part) break;
-  }
-  return part;
-}
-
-}  // namespace
 
 bool contains(const Shape& shape, const Eigen::Vector2d& point) {
   return std::ranges::any_of(shape, [&](const auto& part) {
@@ -119,17 +135,9 @@ std::vector<GoalStretch> goal_stretches(const TimedGoal& goal, const map::RoadMa
   std::vector<GoalStretch> stretches;
   for (const GoalState& state : goal.states) {
     GoalStretch stretch{.time_s = state.time_s, .speed_mps = state.speed_mps};
-    // The offset nearest to the line at which the goal is crossed; left first.
     bool found = state.is_anywhere();
-    for (int i = 0; i <= kMostOffsets && !found; ++i) {
-      for (const double side : {1.0, -1.0}) {
-        stretch.d_m = side * kOffsetStep_m * i;
-        const auto part = crossing(state, road_map, line, vehicle, stretch.d_m);
-        if (!part) continue;
-        stretch.s_m = *part;
-        found = true;
-        break;
-      }
+    for (const bool with_heading : {true, false}) {
+      found = found || find_crossing(state, road_map, line, vehicle, with_heading, stretch);
     }
     if (found) stretches.push_back(stretch);
   }

@@ -29,7 +29,8 @@ struct GoalState {
   bool is_anywhere() const { return region_in_source.empty() && lanes.empty(); }
 };
 
-/// Where on a reference line a goal state is met, for the rear axle of a vehicle that follows it.
+/// Where on a reference line the place of a goal state is met, for the rear axle of a vehicle that
+/// follows it; and its heading, too, where any offset meets both.
 struct GoalStretch {
   Window time_s, speed_mps;
   Window s_m = {};
@@ -51,9 +52,17 @@ struct TimedGoal {
 
 /// Stretches of the line, or of one beside it, on which states of the goal can be met. A state
 /// whose region is more than 2 m beside the line has none; one without a region has the whole line.
+/// That is what to aim at; whether a path meets a goal says goals_on_path.h.
 std::vector<GoalStretch> goal_stretches(const TimedGoal& goal, const map::RoadMap& road_map,
                                         const ReferenceLine& line,
                                         const geometry::VehicleShape& vehicle);
+
+/// Whether a heading, turned by any multiple of 2π, is within a window.
+bool holds_heading(const Window& window, double heading_rad);
+
+/// Whether a vehicle's centre is where a state wants it.
+bool is_at_place(const GoalState& state, const map::RoadMap& road_map,
+                 const Eigen::Vector2d& centre_in_map);
 
 /// Whether a point lies in one of the shapes.
 bool contains(const map::commonroad::Shape& shape, const Eigen::Vector2d& point);

@@ -15,47 +15,25 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
-#include "roadbed/planning/route/match_place.h"
-#include "roadbed/planning/route/router.h"
-#include "roadbed/tools/simulation/obstacle_motion.h"
+#include "roadbed/tools/simulation/common_road_routes.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {
 
 using geometry::Pose2;
-using map::LanePlace;
 using map::commonroad::ObstacleRole;
 using map::commonroad::PlanningProblem;
 using map::commonroad::State;
 using planning::Route;
-using planning::Sense;
 
 constexpr double kDefaultSpeed_mps = 50.0 / 3.6;
 constexpr double kLeastStep_s = 1e-3, kMostStep_s = 10.0, kFastestStart_mps = 100.0;
 constexpr double kStopping_s = 10.0;      // to come to rest after the goal is missed
 constexpr double kNothingAsked_s = 10.0;  // a drive without a goal
-constexpr double kRoadAhead_m = 120.0;    // beyond what is driven, to brake on
 constexpr double kBeyondGoal_m = 100.0;   // the line goes on past the goal
-constexpr double kAtGoal_m = 3.0;         // a region's middle may lie so far beside its lane
 
-struct Source {
-  std::string file;
-  const map::RoadMap& road_map;
-  const PlanningProblem& problem;
-  double step_s;
-
-  [[noreturn]] void refuse(const std::string& found, const std::string& needed,
-                           const std::string& remedy) const {
-    throw map::InputError({.file = file,
-                           .element = "planning problem " + problem.id,
-                           .found = found,
-                           .needed = needed,
-                           .remedy = remedy});
-  }
-};
-
-double exact(const Source& source, const std::optional<map::commonroad::Range<double>>& range,
-             const char* what) {
+double exact(const ProblemSource& source,
+             const std::optional<map::commonroad::Range<double>>& range, const char* what) {
   if (!range) {
     source.refuse(fmt::format("an initial state without {}", what), "one number", "add it");
   }
@@ -63,7 +41,7 @@ double exact(const Source& source, const std::optional<map::commonroad::Range<do
 }
 
 /// CommonRoad gives the vehicle's centre.
-Pose2 rear_axle(const Source& source, const geometry::VehicleShape& vehicle) {
+Pose2 rear_axle(const ProblemSource& source, const geometry::VehicleShape& vehicle) {
   const State& start = source.problem.initial_state;
   if (!start.position_m) {
     source.refuse("an initial state without a point", "its position", "add it");
@@ -83,7 +61,7 @@ planning::Window window(const map::commonroad::Range<double>& range) {
   return {range.least, range.most};
 }
 
-planning::GoalState goal_state(const Source& source, const State& from) {
+planning::GoalState goal_state(const ProblemSource& source, const State& from) {
   planning::GoalState state{
       .time_s =
           seconds(from.time_step, source.problem.initial_state.time_step.least, source.step_s),
@@ -104,7 +82,7 @@ planning::GoalState goal_state(const Source& source, const State& from) {
 }
 
 /// The planner drives forwards only.
-double start_speed_mps(const Source& source) {
+double start_speed_mps(const ProblemSource& source) {
   const double speed = exact(source, source.problem.initial_state.speed_mps, "a velocity");
   if (!(speed >= 0.0 && speed <= kFastestStart_mps)) {
     source.refuse(fmt::format("a start at {} m/s", speed),
@@ -113,149 +91,10 @@ double start_speed_mps(const Source& source) {
   return speed;
 }
 
-planning::TimedGoal goal_of(const Source& source) {
+planning::TimedGoal goal_of(const ProblemSource& source) {
   planning::TimedGoal goal{.step_s = source.step_s, .states = {}};
   for (const State& state : source.problem.goals) goal.states.push_back(goal_state(source, state));
   return goal;
-}
-
-/// Lanes that the vehicle's centre may be on, the best match first, at the rear axle's station.
-std::vector<LanePlace> start_places(const Source& source, const Pose2& start,
-                                    const geometry::VehicleShape& vehicle) {
-  const double ahead_m = 0.5 * vehicle.length_m - vehicle.rear_overhang_m;
-  const Eigen::Vector2d centre = start * Eigen::Vector2d(ahead_m, 0.0);
-  std::vector<LanePlace> places;
-  for (const planning::PlaceCandidate& match :
-       planning::match_place(source.road_map, centre, start.heading_rad)) {
-    if (match.verdict != planning::MatchVerdict::chosen &&
-        match.verdict != planning::MatchVerdict::possible) {
-      continue;
-    }
-    if (match.sense == planning::Sense::against) continue;
-    LanePlace place = match.place;
-    place.s_m = std::max(0.0, place.s_m - ahead_m);
-    places.push_back(place);
-  }
-  if (places.empty()) {
-    source.refuse("a start off the road, or against a lane's direction",
-                  "a lane that a car may use there", "correct the initial state");
-  }
-  return places;
-}
-
-/// The last place of the path that is driven if no lane is chosen on purpose.
-LanePlace straight_ahead(const map::RoadMap& road_map, const LanePlace& from, double length_m) {
-  constexpr int kMostLanes = 1000;
-  LanePlace at = from;
-  for (int i = 0; i < kMostLanes; ++i) {
-    const double left_m = road_map.lane(at.lane).length_m() - at.s_m;
-    const std::optional<map::LaneId> next = straightest(road_map, at.lane);
-    if (left_m >= length_m || !next) {
-      at.s_m += std::min(left_m, length_m);
-      break;
-    }
-    length_m -= left_m;
-    at = {.lane = *next, .s_m = 0.0};
-  }
-  return at;
-}
-
-/// How far the vehicle may come until a time, so that lane changes are made before.
-double reach_m(double speed_mps, double limit_mps, double until_s) {
-  return std::max(speed_mps, limit_mps) * std::max(0.0, until_s);
-}
-
-/// Places of a goal state that a route may lead to.
-std::vector<LanePlace> goal_places(const Source& source, const planning::GoalState& state) {
-  std::vector<LanePlace> places;
-  for (const map::LaneId lane : state.lanes) {
-    places.push_back({.lane = lane, .s_m = source.road_map.lane(lane).length_m()});
-  }
-  if (!state.region_in_source.empty()) {
-    const Eigen::Vector2d middle =
-        source.road_map.to_map(planning::middle_of(state.region_in_source));
-    std::optional<double> heading;
-    if (state.heading_rad) heading = 0.5 * (state.heading_rad->least + state.heading_rad->most);
-    for (const auto& match :
-         planning::match_place(source.road_map, middle, heading, {.reach_m = kAtGoal_m})) {
-      if (match.verdict == planning::MatchVerdict::chosen) places.push_back(match.place);
-    }
-  }
-  return places;
-}
-
-/// A lane goal is reached where the vehicle can be in time, not at the lane's end.
-LanePlace within_reach(const map::RoadMap& road_map, const Route& to_end, LanePlace place,
-                       double reach) {
-  const double entry_m = to_end.length_m - road_map.lane(place.lane).length_m();
-  const double s_m = std::max(reach - entry_m, 5.0);
-  place.s_m = std::min(place.s_m, s_m);
-  return place;
-}
-
-std::optional<Route> cheaper(std::optional<Route> a, std::optional<Route> b) {
-  if (!a || (b && b->cost_s < a->cost_s)) return b;
-  return a;
-}
-
-std::optional<Route> route_to(const Source& source, const std::vector<LanePlace>& starts,
-                              const planning::GoalState& state, double reach) {
-  std::optional<Route> best;
-  for (const LanePlace& goal : goal_places(source, state)) {
-    for (const LanePlace& start : starts) {
-      auto answer = planning::find_route(source.road_map, {start, Sense::along}, goal);
-      if (!answer.route) continue;
-      if (!state.lanes.empty()) {
-        const LanePlace near = within_reach(source.road_map, *answer.route, goal, reach);
-        if (auto nearer = planning::find_route(source.road_map, {start, Sense::along}, near);
-            nearer.route) {
-          answer = std::move(nearer);
-        }
-      }
-      best = cheaper(std::move(best), std::move(answer.route));
-    }
-  }
-  return best;
-}
-
-/// None if no route leads to the goal.
-std::optional<Route> find_route_of(const Source& source, const std::vector<LanePlace>& starts,
-                                   const planning::TimedGoal& goal, double speed_mps) {
-  const double until_s = goal.latest_s().value_or(kNothingAsked_s);
-  const double reach = reach_m(speed_mps, kDefaultSpeed_mps, until_s);
-  std::optional<Route> best;
-  bool anywhere = goal.states.empty();
-  for (const planning::GoalState& state : goal.states) {
-    anywhere = anywhere || state.is_anywhere();
-    if (!state.is_anywhere())
-      best = cheaper(std::move(best), route_to(source, starts, state, reach));
-  }
-  if (best || !anywhere) return best;
-  const LanePlace end = straight_ahead(source.road_map, starts.front(), reach + kRoadAhead_m);
-  return planning::find_route(source.road_map, {starts.front(), Sense::along}, end).route;
-}
-
-Route route_of(const Source& source, const std::vector<LanePlace>& starts,
-               const planning::TimedGoal& goal, double speed_mps) {
-  std::optional<Route> route = find_route_of(source, starts, goal, speed_mps);
-  if (!route) {
-    source.refuse("a goal that no route leads to", "a way over lanes that a car may use",
-                  "correct the goal, or the lanelets' links");
-  }
-  return *std::move(route);
-}
-
-/// Places of lanes beside the start that a car may change to.
-std::vector<LanePlace> places_beside(const map::RoadMap& road_map, const LanePlace& start) {
-  std::vector<LanePlace> places;
-  const Eigen::Vector2d here = road_map.lane(start.lane).pose_at(start.s_m).position();
-  const map::LaneLinks& links = road_map.graph().of(start.lane);
-  for (const auto& beside : {links.left, links.right}) {
-    if (!beside || !beside->same_direction || !beside->change_allowed()) continue;
-    const geometry::Polyline& centre = road_map.lane(beside->lane).centre.in_map;
-    places.push_back({.lane = beside->lane, .s_m = centre.project(here).s_m});
-  }
-  return places;
 }
 
 /// Where the file knows no limit: what towns allow, or what start and goal show to be usual.
@@ -305,7 +144,8 @@ std::vector<planning::LightCycle> lights_of(const map::commonroad::Scenario& fro
   return lights;
 }
 
-void add_obstacles(const map::commonroad::Scenario& from, const Source& source, World& world) {
+void add_obstacles(const map::commonroad::Scenario& from, const ProblemSource& source,
+                   World& world) {
   const planning::RecordingClock clock{source.problem.initial_state.time_step.least,
                                        from.time_step_s};
   for (const map::commonroad::Obstacle& obstacle : from.obstacles) {
@@ -318,7 +158,7 @@ void add_obstacles(const map::commonroad::Scenario& from, const Source& source, 
   }
 }
 
-void refuse_overlap(const Source& source, const World& world,
+void refuse_overlap(const ProblemSource& source, const World& world,
                     const geometry::VehicleShape& vehicle) {
   const geometry::Rectangle body = geometry::body_at(world.start, vehicle);
   for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
@@ -361,7 +201,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   auto kept_map = inputs.road_map(file);
   const map::RoadMap& road_map = *kept_map;
   const PlanningProblem& problem = from.planning_problems.front();
-  const Source source{file.string(), road_map, problem, from.time_step_s};
+  const ProblemSource source{file.string(), road_map, problem, from.time_step_s};
   if (!(from.time_step_s >= kLeastStep_s && from.time_step_s <= kMostStep_s)) {
     source.refuse(fmt::format("time steps of {} s", from.time_step_s),
                   fmt::format("{} to {} s", kLeastStep_s, kMostStep_s), "correct timeStepSize");
@@ -371,26 +211,24 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   Scenario scenario = scenario_of(file, from.benchmark_id, speed_mps, goal);
   changes.apply_to(scenario);
   const Pose2 start = rear_axle(source, scenario.vehicle);
-  Route route = route_of(source, start_places(source, start, scenario.vehicle), goal, speed_mps);
+  ProblemRoutes routes = routes_of(source, start, speed_mps, scenario.vehicle, goal);
   const planning::ReferenceLineOptions line_options{
       .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
-  planning::ReferenceLine line = planning::ReferenceLine::along(road_map, route, line_options);
+  planning::ReferenceLine line =
+      planning::ReferenceLine::along(road_map, routes.best, line_options);
   scenario.lights = lights_of(from, problem.initial_state.time_step.least);
-  std::vector<planning::StopPoint> places = stop_points(road_map, route, line, scenario.lights);
+  std::vector<planning::StopPoint> places =
+      stop_points(road_map, routes.best, line, scenario.lights);
   std::vector<planning::ReferenceLine> other_lines;
   std::vector<std::vector<planning::StopPoint>> other_places;
-  const planning::RouteLeg& first = route.legs.front();
-  for (const LanePlace& place :
-       places_beside(road_map, {.lane = first.lane, .s_m = first.from_s_m})) {
-    if (const auto other = find_route_of(source, {place}, goal, speed_mps)) {
-      other_lines.push_back(planning::ReferenceLine::along(road_map, *other, line_options));
-      other_places.push_back(stop_points(road_map, *other, other_lines.back(), scenario.lights));
-    }
+  for (const Route& other : routes.others) {
+    other_lines.push_back(planning::ReferenceLine::along(road_map, other, line_options));
+    other_places.push_back(stop_points(road_map, other, other_lines.back(), scenario.lights));
   }
   World world{{.kept_map = std::move(kept_map),
                .field = {},
                .start = start,
-               .route = std::move(route),
+               .route = std::move(routes.best),
                .line = std::move(line),
                .obstacles = {},
                .goal = std::move(goal),
@@ -398,7 +236,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                .stop_points = std::move(places),
                .other_lines = std::move(other_lines),
                .other_stop_points = std::move(other_places)}};
-  const Source placed{file.string(), world.road_map, problem, from.time_step_s};
+  const ProblemSource placed{file.string(), world.road_map, problem, from.time_step_s};
   add_obstacles(from, placed, world);
   refuse_overlap(placed, world, scenario.vehicle);
   return {.scenario = std::move(scenario),

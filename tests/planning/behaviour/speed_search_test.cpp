@@ -45,6 +45,7 @@ struct Case {
   double speed_mps = 10.0;
   double horizon_s = 5.0;
   std::vector<planning::GoalAhead> goals = {};
+  bool goal_is_off_path = false;
   std::vector<planning::Obstacle> obstacles = {};
   planning::SpeedSearchOptions options = {};
 };
@@ -58,7 +59,8 @@ planning::SpeedSearchAnswer answer(const Case& asked) {
                        .speed_mps = asked.speed_mps,
                        .horizon_s = asked.horizon_s,
                        .end_m = 140.0,
-                       .goals = asked.goals},
+                       .goals = asked.goals,
+                       .goal_is_off_path = asked.goal_is_off_path},
                       asked.options);
 }
 
@@ -135,6 +137,42 @@ TEST(SpeedSearch, GoalOutOfReachIsMissedAndSaid) {
   EXPECT_TRUE(found.is_free);
   EXPECT_TRUE(found.misses_goal);
   EXPECT_FALSE(found.reaches_goal);
+}
+
+/// Distance of a plan at a time, between its states.
+double ahead_at(const planning::SpeedSearchAnswer& found, double t_s) {
+  for (std::size_t i = 1; i < found.plan.size(); ++i) {
+    const planning::SpeedState &a = found.plan[i - 1], &b = found.plan[i];
+    if (b.t_s < t_s) continue;
+    return a.ahead_m + (b.ahead_m - a.ahead_m) * (t_s - a.t_s) / (b.t_s - a.t_s);
+  }
+  return 1e9;
+}
+
+TEST(SpeedSearch, GoalCountsAtItsTimeStepsOnly) {
+  // Of 2.0 to 3.4 s only 2.5 s is a time step: at 10 m/s it would be there at 2.25 s.
+  const planning::GoalAhead goal{.time_s = {2.0, 3.4},
+                                 .speed_mps = {},
+                                 .ahead_m = {22.0, 23.0},
+                                 .step_s = 1.0,
+                                 .a_step_s = -0.5};
+  const planning::SpeedSearchAnswer found = answer({.goals = {goal}});
+  ASSERT_TRUE(found.reaches_goal);
+  EXPECT_NEAR(ahead_at(found, 2.5), 22.5, 0.7);
+  planning::GoalAhead never = goal;
+  never.time_s = {2.6, 3.4};
+  EXPECT_FALSE(answer({.goals = {never}}).reaches_goal);
+}
+
+TEST(SpeedSearch, GoalThatIsNotOnThePathIsMissedByEverySpeed) {
+  const planning::GoalAhead beside{.time_s = {4.9, 5.0}, .speed_mps = {}, .ahead_m = {40, 60}};
+  for (const auto& goals : {std::vector{beside}, std::vector<planning::GoalAhead>{}}) {
+    const planning::SpeedSearchAnswer off = answer({.goals = goals, .goal_is_off_path = true});
+    EXPECT_TRUE(off.is_free);
+    EXPECT_TRUE(off.misses_goal);
+    EXPECT_FALSE(off.reaches_goal);
+    EXPECT_NEAR(off.cost - answer({.goals = goals}).cost, 40.0, 1e-9);
+  }
 }
 
 TEST(SpeedSearch, StopsBeforeTheWaysEnd) {

@@ -95,6 +95,39 @@ TEST(CommonRoadWorld, StartIsTheRearAxleOfACentreThatTheFileGives) {
   EXPECT_EQ(problem.scenario.start_speed_mps, 10.0);
 }
 
+/// The junction with one goal state in place of its own.
+std::string junction_with_goal(const std::string& goal) {
+  std::string bytes = junction();
+  const std::size_t from = bytes.find("<goalState>"), to = bytes.rfind("</goalState>");
+  return bytes.replace(from, to + 12 - from, "<goalState>" + goal + "</goalState>");
+}
+
+TEST(CommonRoadWorld, LinesLeadToEveryLaneUnderTheGoal) {
+  const CommonRoadDrive problem = problem_of(junction_with_goal(
+      "<position><rectangle><length>6</length><width>5</width><orientation>0</orientation><center>"
+      "<x>42</x><y>0</y></center></rectangle></position>" +
+      within_steps(20, 60)));
+  const World& world = problem.world;
+  std::vector<double> ends_y_m{world.line.at(world.line.goal_s_m()).in_map.y()};
+  for (const auto& other : world.other_lines)
+    ends_y_m.push_back(other.at(other.goal_s_m()).in_map.y());
+  for (double& y_m : ends_y_m) y_m = world.road_map.to_source({0.0, y_m}).y();
+  EXPECT_THAT(ends_y_m, testing::Contains(testing::DoubleNear(1.75, 0.3)));
+  EXPECT_THAT(ends_y_m, testing::Contains(testing::DoubleNear(-1.75, 0.3)));
+  EXPECT_EQ(world.other_stop_points.size(), world.other_lines.size());
+  EXPECT_LE(world.other_lines.size(), 4u);
+}
+
+TEST(CommonRoadWorld, GoalBesideTheLanesMiddleIsDrivenTo) {
+  // 1.1 m to the left of the lane's middle, 1 m wide.
+  CommonRoadDrive problem = problem_of(junction_with_goal(
+      "<position><rectangle><length>6</length><width>1</width><orientation>0</orientation><center>"
+      "<x>44</x><y>2.2</y></center></rectangle></position>" +
+      within_steps(30, 60)));
+  const Drive driven = drive(problem.scenario, problem.world);
+  EXPECT_EQ(driven.verdict.outcome, Outcome::goal_reached) << driven.verdict.text;
+}
+
 TEST(CommonRoadWorld, RecordedObstaclesAreThereAsLongAsTheirRecording) {
   CommonRoadDrive problem = problem_of(junction());
   ASSERT_EQ(problem.world.obstacles.size(), 3u);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/behaviour/speed_search.h"
+#include "roadbed/planning/behaviour/timed_goal.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Where along a path the vehicle itself is as a goal asks: its centre in the region, its heading
+/// in the window, at each place of the path with the path's own offset and heading. Each stretch is
+/// one entry, of times from `now_s` on; none: no speed on this path reaches the goal.
+///
+/// Aims inside, so that what the tracking errs by costs nothing: by 0.25 m to the sides, 0.3 m
+/// along, 0.05 rad and 0.2 m/s, less where a window is narrow; a path that meets a state with less
+/// room than that counts only where none meets it with it.
+std::vector<GoalAhead> goals_on_path(const TimedGoal& goal, const map::RoadMap& road_map,
+                                     const PathProfile& profile, double now_s);
+
+}  // namespace roadbed::planning::behaviour
