@@ -1,7 +1,7 @@
 #include "roadbed/planning/behaviour/cruise_forecast.h"
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 
 #include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kCruiseSpeedUp_mps2 = 1.0;
 constexpr double kAnswersIn_s = 0.5;  // to a speed that is missing or too much
+constexpr int kSpeedSteps = 3;        // over which the speed of others is taken
 
 class Forecast {
  public:
@@ -65,14 +66,25 @@ class Forecast {
     return std::nullopt;
   }
 
-  /// How fast the rear end of a part moves along the path.
-  double speed_of(const StInterval& part, int step) const {
-    for (const StInterval& later : q_.occupancy.at(step + 1)) {
-      if (later.obstacle == part.obstacle) {
-        return std::max(0.0, (later.from_m - part.from_m) / StGraph::kStep_s);
-      }
+  std::optional<double> rear_m(std::size_t obstacle, int step) const {
+    for (const StInterval& part : q_.occupancy.at(step)) {
+      if (part.obstacle == obstacle) return part.from_m;
     }
-    return std::numeric_limits<double>::infinity();  // it will have left
+    return std::nullopt;
+  }
+
+  /// None: it will have left at once.
+  std::optional<Lead> lead_of(const StInterval& part, int step, double ahead_m) const {
+    const auto soon_m = rear_m(part.obstacle, step + kSpeedSteps);
+    const auto later_m = rear_m(part.obstacle, step + 2 * kSpeedSteps);
+    if (!soon_m) return std::nullopt;
+    constexpr double kOver_s = kSpeedSteps * StGraph::kStep_s;
+    const double speed_mps = (*soon_m - part.from_m) / kOver_s;
+    const double then_mps = later_m ? (*later_m - *soon_m) / kOver_s : speed_mps;
+    return Lead{.obstacle = part.obstacle,
+                .gap_m = part.from_m - ahead_m,
+                .speed_mps = speed_mps,
+                .acceleration_mps2 = (then_mps - speed_mps) / kOver_s};
   }
 
   double wanted_mps(const SpeedState& at, int step) const {
@@ -80,12 +92,18 @@ class Forecast {
                              stopping_mps(q_.stop_m - at.ahead_m));
     for (const StInterval& part : q_.occupancy.at(step)) {
       if (is_ignored(part) || crosses(part) || part.from_m < at.ahead_m) continue;
-      const double lead_mps = speed_of(part, step);
-      const double gap_m = part.from_m - at.ahead_m;
-      const double free_m = gap_m - options_.standstill_gap_m - options_.headway_s * lead_mps;
-      wanted = std::min(wanted, lead_mps + stopping_mps(free_m));
+      const std::optional<Lead> lead = lead_of(part, step, at.ahead_m);
+      if (!lead) continue;
+      wanted = std::min({wanted, approach_speed(*lead, {}, options_).speed_mps, kept_mps(*lead)});
     }
     return wanted;
+  }
+
+  /// As the cruise control keeps its gap.
+  double kept_mps(const Lead& lead) const {
+    const double lead_mps = std::max(0.0, lead.speed_mps);
+    const double kept_m = options_.standstill_gap_m + options_.headway_s * lead_mps;
+    return std::max(0.0, lead_mps + (lead.gap_m - kept_m) / options_.closing_s);
   }
 
   double stopping_mps(double distance_m) const {

@@ -62,22 +62,12 @@ double stopping_way_m(const Lead& lead) {
   return 0.5 * lead.speed_mps * lead.speed_mps / -lead.acceleration_mps2;
 }
 
-/// In the lead's frame the approach is a stop, at the gap that belongs to the lead's speed; behind
-/// a lead that brakes it is one in the road's frame, where the lead will stand.
 Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
   const double lead_mps = std::max(0.0, q.lead->speed_mps);
-  const double free_m = q.lead->gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
-  const double closing_m =
-      std::max(0.0, preview_m(q, options.preview_s) - lead_mps * options.preview_s);
-  const double stop_m = q.lead->gap_m - options.standstill_gap_m + stopping_way_m(*q.lead);
-  const auto approach = [&](double driven_m, double closed_m) {
-    SpeedTarget target = stopping_speed(free_m - closed_m + kBeyondGap_m, options.deceleration_mps2,
-                                        options.closing_s);
-    target.speed_mps += lead_mps;
-    const SpeedTarget stop = stopping_speed(stop_m - driven_m, options.deceleration_mps2);
-    return stop.speed_mps < target.speed_mps ? stop : target;
-  };
-  return {approach(0.0, 0.0), approach(preview_m(q, options.preview_s), closing_m),
+  const double driven_m = preview_m(q, options.preview_s);
+  const double closing_m = std::max(0.0, driven_m - lead_mps * options.preview_s);
+  return {approach_speed(*q.lead, {}, options),
+          approach_speed(*q.lead, {.driven_m = driven_m, .closed_m = closing_m}, options),
           Behaviour::follow,
           fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
                       q.lead->speed_mps)};
@@ -118,6 +108,18 @@ bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
 }
 
 }  // namespace
+
+SpeedTarget approach_speed(const Lead& lead, const Approached& since,
+                           const DecisionOptions& options) {
+  const double lead_mps = std::max(0.0, lead.speed_mps);
+  const double free_m = lead.gap_m - options.standstill_gap_m - options.headway_s * lead_mps;
+  const double stop_m = lead.gap_m - options.standstill_gap_m + stopping_way_m(lead);
+  SpeedTarget target = stopping_speed(free_m - since.closed_m + kBeyondGap_m,
+                                      options.deceleration_mps2, options.closing_s);
+  target.speed_mps += lead_mps;
+  const SpeedTarget stop = stopping_speed(stop_m - since.driven_m, options.deceleration_mps2);
+  return stop.speed_mps < target.speed_mps ? stop : target;
+}
 
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options) {
   const std::vector<Option> all = options_of(question, options);

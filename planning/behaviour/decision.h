@@ -45,6 +45,17 @@ struct DecisionOptions {
   double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
 };
 
+/// What was driven since a lead was seen, and by how much the gap to it has closed.
+struct Approached {
+  double driven_m = 0.0, closed_m = 0.0;
+};
+
+/// Speed at which to close up to a lead, to the gap that the cruise control then keeps: in the
+/// lead's frame the approach is a stop, at the gap that belongs to the lead's speed; behind a lead
+/// that brakes it is one in the road's frame, where the lead will stand.
+SpeedTarget approach_speed(const Lead& lead, const Approached& since,
+                           const DecisionOptions& options);
+
 /// The least of: the ceiling, the stop at the goal, the halt that a rule asks for, the stop on a
 /// path that ends, and the approach to the lead, which closes up at a comfortable deceleration to
 /// the gap that the cruise control then keeps.
