@@ -175,6 +175,7 @@ Scenario scenario_of(const std::filesystem::path& file, const std::string& bench
   scenario.file = scenario.map_file = file;
   scenario.name = benchmark_id.empty() ? file.stem().string() : benchmark_id;
   scenario.start_speed_mps = speed_mps;
+  scenario.pedals = false;  // its speed search foresees the lag exactly
   const double until_s = std::max(0.0, goal.latest_s().value_or(kNothingAsked_s));
   scenario.duration_s = std::min(until_s + kStopping_s, 3600.0);
   return scenario;

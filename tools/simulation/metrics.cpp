@@ -166,9 +166,12 @@ ordered_json decisions(const Drive& drive) {
 ordered_json pedals(const Scenario& scenario, const Drive& drive) {
   if (!scenario.pedals) return nullptr;
   int changes = 0;
-  for (std::size_t i = 1; i < drive.samples.size(); ++i) {
-    const bool braked = drive.samples[i - 1].brake > 0.0, brakes = drive.samples[i].brake > 0.0;
-    changes += braked != brakes ? 1 : 0;
+  std::optional<bool> braked;
+  for (const DriveSample& sample : drive.samples) {
+    if (sample.brake <= 0.0 && sample.throttle <= 0.0) continue;
+    const bool brakes = sample.brake > 0.0;
+    changes += braked && *braked != brakes ? 1 : 0;
+    braked = brakes;
   }
   return {{"largest_throttle",
            largest(drive.samples, [](const DriveSample& sample) { return sample.throttle; })},

@@ -194,12 +194,12 @@ planning::DrivingOptions options(const JsonNode& node) {
       .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0})};
 }
 
-bool has_pedals(const JsonNode& options) {
+bool has_pedals(const JsonNode& options, bool otherwise) {
   const auto pedals = options.find("pedals");
   if (pedals && !pedals->value().is_boolean()) {
     pedals->refuse("is no truth value", "true or false", "correct it");
   }
-  return pedals && pedals->value().get<bool>();
+  return pedals ? pedals->value().get<bool>() : otherwise;
 }
 
 ScenarioNoise noise_in(const JsonNode& node) {
@@ -243,7 +243,7 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("noise")) scenario.noise = noise_in(*node);
   if (const auto node = root.find("options")) {
     scenario.options = options(*node);
-    scenario.pedals = has_pedals(*node);
+    scenario.pedals = has_pedals(*node, scenario.pedals);
   }
   if (const auto node = root.find("lights")) scenario.lights = lights(*node);
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);

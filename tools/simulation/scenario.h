@@ -88,7 +88,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   ScenarioNoise noise;
   planning::DrivingOptions options;
-  bool pedals = false;  ///< acceleration goes through throttle and brake, air, tyres and grade
+  bool pedals = true;  ///< acceleration goes through throttle and brake, air, tyres and grade
   std::vector<planning::LightCycle> lights;
   std::vector<ScenarioObstacle> obstacles;
 };

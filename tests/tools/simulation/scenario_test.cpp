@@ -106,6 +106,16 @@ TEST(Scenario, WhatIsOptionalMayBeMissing) {
   EXPECT_EQ(scenario.seed, 1U);
   EXPECT_TRUE(scenario.obstacles.empty());
   EXPECT_TRUE(scenario.occupancy_files.empty());
+  EXPECT_TRUE(scenario.pedals);
+}
+
+TEST(Scenario, PedalsAreUsedUnlessTheFileSaysOtherwise) {
+  json document = full();
+  EXPECT_TRUE(parsed(document).pedals);
+  document["options"]["pedals"] = false;
+  EXPECT_FALSE(parsed(document).pedals);
+  document["options"]["pedals"] = 0;
+  EXPECT_THAT(message_of(document.dump()), testing::HasSubstr("/options/pedals"));
 }
 
 TEST(Scenario, FaultsAreReportedAtTheirPlace) {
