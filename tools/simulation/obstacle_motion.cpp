@@ -43,12 +43,21 @@ void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line
   }
 }
 
-/// Speeds are those with which the straight line from point to point is driven.
-void fill_speeds(std::vector<TrajectoryPoint>& points) {
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Eigen::Vector2d way = points[i + 1].pose().position() - points[i].pose().position();
-    points[i].speed_mps = way.norm() / (points[i + 1].t_s - points[i].t_s);
-  }
+/// Drives on straight to `next`, where the speed changes at once: a row just before it still has
+/// the speed of the way there, as between rows speeds are linear.
+void drive_on(std::vector<TrajectoryPoint>& points, const TrajectoryPoint& next) {
+  constexpr double kAtOnce_s = 1e-3;
+  TrajectoryPoint& from = points.back();
+  const double duration_s = next.t_s - from.t_s;
+  from.speed_mps = (next.pose().position() - from.pose().position()).norm() / duration_s;
+  const double ratio = 1.0 - std::min(0.5, kAtOnce_s / duration_s);
+  const double turn_rad = geometry::wrap_angle(next.heading_rad - from.heading_rad);
+  points.push_back({.t_s = from.t_s + ratio * duration_s,
+                    .x_m = from.x_m + ratio * (next.x_m - from.x_m),
+                    .y_m = from.y_m + ratio * (next.y_m - from.y_m),
+                    .heading_rad = from.heading_rad + ratio * turn_rad,
+                    .speed_mps = from.speed_mps});
+  points.push_back(next);
 }
 
 }  // namespace
@@ -123,12 +132,16 @@ geometry::Trajectory drive_along(const Way& way, double way_length_m,
 geometry::Trajectory drive_through(const std::vector<TimedPose>& poses_in_map) {
   std::vector<TrajectoryPoint> points;
   for (const TimedPose& timed : poses_in_map) {
-    points.push_back({.t_s = timed.t_s,
-                      .x_m = timed.pose.x_m,
-                      .y_m = timed.pose.y_m,
-                      .heading_rad = timed.pose.heading_rad});
+    const TrajectoryPoint next{.t_s = timed.t_s,
+                               .x_m = timed.pose.x_m,
+                               .y_m = timed.pose.y_m,
+                               .heading_rad = timed.pose.heading_rad};
+    if (points.empty()) {
+      points.push_back(next);
+    } else {
+      drive_on(points, next);
+    }
   }
-  fill_speeds(points);
   return geometry::Trajectory(std::move(points));
 }
 

@@ -81,5 +81,15 @@ TEST(ObstacleMotion, ScriptedPosesAreMetAtTheirTimes) {
   EXPECT_NEAR(motion.at(9.0).x_m, 6.0, 1e-12);
 }
 
+TEST(ObstacleMotion, ScriptedSpeedIsTheRateAtWhichThePlaceChanges) {
+  const geometry::Trajectory motion =
+      drive_through({{0.0, {0, 0, 0}}, {2.0, {10, 0, 0}}, {2.5, {10, 4, 1}}, {6.0, {10, 4, 1}}});
+  for (double t = 0.05; t < 7.0; t += 0.1) {
+    const Eigen::Vector2d moved =
+        motion.at(t + 0.01).pose().position() - motion.at(t - 0.01).pose().position();
+    EXPECT_NEAR(motion.at(t).speed_mps, moved.norm() / 0.02, 1e-9) << t << " s";
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::tools
