@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "roadbed/control/stanley.h"
@@ -12,9 +13,13 @@ namespace {
 class TrackingRun {
  public:
   TrackingRun(const SampledPath& path, const TrackingOptions& options)
-      : path_(path), options_(options) {
-    state_.pose = path.at(0.0);
+      : path_(path), options_(options), random_(options.seed) {
+    state_.pose = path.at(0.0) * geometry::Pose2{0.0, options.start_offset_m, 0.0};
     state_.speed_mps = options.speed_mps;
+    if (options.slips) {
+      slipping_ = {.pose = state_.pose * geometry::Pose2{options.slips->rear_axle_m, 0.0, 0.0},
+                   .speed_mps = options.speed_mps};
+    }
   }
 
   std::vector<TrackingSample> rows() {
@@ -38,8 +43,14 @@ class TrackingRun {
     return tracking_error(state_.pose, wheelbase_m(), path_.at(front_s_m_));
   }
 
+  geometry::Pose2 measured() {
+    return {state_.pose.x_m + options_.position_noise_m * normal_(random_),
+            state_.pose.y_m + options_.position_noise_m * normal_(random_),
+            state_.pose.heading_rad + options_.heading_noise_rad * normal_(random_)};
+  }
+
   TrackingSample advance(double t_s, const TrackingError& error) {
-    const double before = state_.steering_rad, wanted = steering(error);
+    const double before = state_.steering_rad, wanted = steering(measured());
     TrackingSample row{.t_s = t_s,
                        .state = state_,
                        .cross_track_m = error.cross_track_m,
@@ -47,8 +58,7 @@ class TrackingRun {
     if (options_.euler) {
       euler_step(wanted);
     } else {
-      state_ = step(state_, {.steering_rate_radps = (wanted - before) / options_.step_s},
-                    options_.step_s, options_.vehicle);
+      drive({.steering_rate_radps = (wanted - before) / options_.step_s});
     }
     row.steering_rate_radps = (state_.steering_rad - before) / options_.step_s;
     row.lateral_jerk_mps3 = options_.speed_mps * options_.speed_mps / wheelbase_m() *
@@ -56,8 +66,20 @@ class TrackingRun {
     return row;
   }
 
-  double steering(TrackingError error) const {
+  void drive(const SingleTrackInput& input) {
+    if (!options_.slips) {
+      state_ = step(state_, input, options_.step_s, options_.vehicle);
+      return;
+    }
+    slipping_ = step(slipping_, input, options_.step_s, *options_.slips);
+    state_ = {.pose = slipping_.pose * geometry::Pose2{-options_.slips->rear_axle_m, 0.0, 0.0},
+              .speed_mps = slipping_.speed_mps,
+              .steering_rad = slipping_.steering_rad};
+  }
+
+  double steering(const geometry::Pose2& seen) const {
     const double speed = options_.speed_mps;
+    TrackingError error = tracking_error(seen, wheelbase_m(), path_.at(front_s_m_));
     switch (options_.law) {
       case SteeringLaw::stanley:
         error.heading_rad += path_.at(front_s_m_ + speed * options_.preview_s).heading_rad -
@@ -69,7 +91,7 @@ class TrackingRun {
       case SteeringLaw::pure_pursuit:
         break;
     }
-    return pure_pursuit_steering_rad(state_.pose, path_, rear_s_m_, pursuit_distance_m(speed),
+    return pure_pursuit_steering_rad(seen, path_, rear_s_m_, pursuit_distance_m(speed),
                                      options_.vehicle);
   }
 
@@ -84,7 +106,10 @@ class TrackingRun {
 
   const SampledPath& path_;
   const TrackingOptions& options_;
-  SingleTrackState state_;
+  SingleTrackState state_;  ///< of the rear axle
+  DynamicState slipping_;   ///< the same of the centre of gravity, if it slips
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
   double front_s_m_ = 0.0, rear_s_m_ = 0.0;
 };
 
@@ -109,9 +134,10 @@ std::vector<TrackingSample> track_path(const SampledPath& path, const TrackingOp
 
 TrackingSummary summarise(const std::vector<TrackingSample>& run) {
   if (run.empty()) return {};
-  Extent cross_track, heading, rate, jerk;
+  Extent cross_track, steering, heading, rate, jerk;
   for (const TrackingSample& row : run) {
     cross_track.add(row.cross_track_m);
+    steering.add(row.state.steering_rad);
     heading.add(row.heading_rad);
     rate.add(row.steering_rate_radps);
     jerk.add(row.lateral_jerk_mps3);
@@ -119,6 +145,7 @@ TrackingSummary summarise(const std::vector<TrackingSample>& run) {
   const std::size_t n = run.size();
   return {.cross_track_rms_m = cross_track.rms(n),
           .largest_cross_track_m = cross_track.largest,
+          .largest_steering_rad = steering.largest,
           .heading_rms_rad = heading.rms(n),
           .largest_heading_rad = heading.largest,
           .steering_rate_rms_radps = rate.rms(n),

@@ -79,6 +79,22 @@ TEST(DynamicSingleTrack, RollsWithoutSlipBelowATenthOfAMetrePerSecond) {
   EXPECT_NEAR(state.pose.heading_rad, 0.08 * std::cos(beta) * std::tan(0.3) / L, 1e-9);
 }
 
+// Slip is stiff at low speed: steps of 10 ms then must be as good as steps of 0.1 ms.
+TEST(DynamicSingleTrack, CrawlsStablyAtLongSteps) {
+  const DynamicVehicle vehicle = common_road_vehicle(2);
+  for (const double speed : {0.11, 0.2, 0.5, 2.0}) {
+    DynamicState coarse{.speed_mps = speed}, fine = coarse;
+    for (int k = 0; k < 500; ++k) {
+      const SingleTrackInput input{.steering_rate_radps = 0.1 * std::cos(0.02 * k)};
+      coarse = step(coarse, input, 0.01, vehicle);
+      for (int i = 0; i < 100; ++i) fine = step(fine, input, 0.0001, vehicle);
+    }
+    EXPECT_NEAR(coarse.pose.x_m, fine.pose.x_m, 1e-4) << speed << " m/s";
+    EXPECT_NEAR(coarse.pose.y_m, fine.pose.y_m, 1e-4) << speed << " m/s";
+    EXPECT_NEAR(coarse.slip_rad, fine.slip_rad, 1e-4) << speed << " m/s";
+  }
+}
+
 TEST(DynamicSingleTrack, BrakesToStandstillAndThereAreThreeVehicles) {
   DynamicState state{.speed_mps = 2.0};
   for (int k = 0; k < 300; ++k) {

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::control {
@@ -151,6 +152,49 @@ TEST(TrackingRun, LateralJerkIsTheChangeOfLateralAcceleration) {
     EXPECT_NEAR(acceleration_mps2, truth, 1e-9) << row.t_s << " s";
     acceleration_mps2 += 0.01 * row.lateral_jerk_mps3;
   }
+}
+
+SampledPath straight(double length_m) { return SampledPath({{0, 0, 0}, {length_m, 0, 0}}); }
+
+// Far from the wheels' limits e' = −v sin(atan(k e / v)): the error of eq. 31 falls as exp(−k t).
+TEST(TrackingRun, OffsetFadesAtTheRateOfTheOriginalLaw) {
+  for (const double speed : {10.0, 20.0}) {
+    const auto run = track_path(
+        straight(12.0 * speed),
+        {.law = SteeringLaw::original_stanley, .speed_mps = speed, .start_offset_m = 0.5});
+    EXPECT_NEAR(run.front().cross_track_m, -0.5, 1e-12);  // the path is to the right
+    EXPECT_NEAR(run[900].cross_track_m / run[500].cross_track_m, std::exp(-0.5 * 4.0), 0.01);
+  }
+}
+
+// Each axle carries its share of the lateral force, and its stiffness is in proportion to its load:
+// both slip by v² κ / (μ C g), the rear axle outwards.
+TEST(TrackingRun, SlippingRearAxleRunsInItsOwnDirectionOnACircle) {
+  constexpr double kRadius_m = 60.0, kSpeed_mps = 12.0;
+  std::vector<geometry::Pose2> circle;
+  for (double a = 0.0; a < 4.0; a += 0.005) {
+    circle.push_back({kRadius_m * std::sin(a), kRadius_m * (1.0 - std::cos(a)), a});
+  }
+  const DynamicVehicle car = common_road_vehicle(2);
+  const auto run =
+      track_path(SampledPath(circle), {.speed_mps = kSpeed_mps, .step_s = 0.01, .slips = car});
+  const auto& [before, after] = std::pair(run[run.size() - 30].state, run[run.size() - 10].state);
+  const Eigen::Vector2d moved = after.pose.position() - before.pose.position();
+  const double middle_rad = 0.5 * (before.pose.heading_rad + after.pose.heading_rad);
+  const double slip = geometry::wrap_angle(std::atan2(moved.y(), moved.x()) - middle_rad);
+  const double stiffness = car.friction * car.cornering_stiffness_per_rad;
+  EXPECT_NEAR(slip, -kSpeed_mps * kSpeed_mps / kRadius_m / (stiffness * 9.81), 5e-4);
+}
+
+TEST(TrackingRun, NoiseIsSeenByTheLawAndRepeatsWithItsSeed) {
+  const auto driven = [](std::uint64_t seed) {
+    return track_path(straight(40.0), {.position_noise_m = 0.05, .seed = seed});
+  };
+  EXPECT_EQ(driven(1).back().cross_track_m, driven(1).back().cross_track_m);
+  EXPECT_NE(driven(1).back().cross_track_m, driven(2).back().cross_track_m);
+  const TrackingSummary run = summarise(driven(1));
+  EXPECT_LT(run.largest_cross_track_m, 0.02);  // the rows are the truth, not what was seen
+  EXPECT_GT(run.steering_rate_rms_radps, 0.05);
 }
 
 TEST(TrackingRun, SpeedAndStepMustBePositive) {

@@ -67,6 +67,15 @@ TEST_F(FiguresCommand, WritesAPictureAndATableOfEach) {
         names.push_back(name + ".svg");
       }
     }
+    for (const char* quantity : {"cross_track", "steering_rate"}) {
+      const std::string name = std::string("figure_14_") + test + "_noise_" + quantity;
+      names.push_back(name + ".csv");
+      names.push_back(name + ".svg");
+    }
+  }
+  for (const char* of : {"cross_track", "largest_steering", "settling"}) {
+    names.push_back(std::string("figure_14_offset_start_") + of + ".csv");
+    names.push_back(std::string("figure_14_offset_start_") + of + ".svg");
   }
   std::ranges::sort(names);
   EXPECT_EQ(files_below(*folder_ / "figures"), names);
@@ -137,6 +146,26 @@ TEST_F(FiguresCommand, FilterIsNearerToTheTruthThanWhatItIsFed) {
     squares_estimated += std::pow(estimated[i].y - truth[i].y, 2);
   }
   EXPECT_LT(squares_estimated, 0.5 * squares_measured);
+}
+
+TEST_F(FiguresCommand, TellsTheSteeringLawsApartFromCrawlingToThirtyMetresPerSecond) {
+  const std::string modified = "modified Stanley, eq. 32", original = "original Stanley, eq. 31";
+  const FigureTable steering = table("figure_14_offset_start_largest_steering");
+  ASSERT_EQ(steering.at(modified).size(), 9u);
+  EXPECT_EQ(steering.at(modified).front().x, 0.2);
+  // At the start: atan(k_e e / L_x) with k_e = 0.504, L_x = 10 m, against atan(k e / v).
+  EXPECT_NEAR(steering.at(modified).front().y, std::atan(0.504 / 10.0), 0.003);
+  EXPECT_GT(steering.at(original).front().y, 0.9);
+  const FigureTable way = table("figure_14_offset_start_settling");
+  EXPECT_GT(way.at(modified).front().y, 20.0 * way.at(original).front().y);
+  EXPECT_LT(way.at(modified).back().y, 0.5 * way.at(original).back().y);
+  for (const FigureRow& row : way.at(modified)) EXPECT_NEAR(row.y, 40.0, 10.0) << row.x << " m/s";
+  for (const std::string test : {"right_turn", "zig_zag"}) {
+    const FigureTable rate = table("figure_14_" + test + "_noise_steering_rate");
+    EXPECT_LT(rate.at(modified).front().y, 0.6 * rate.at(original).front().y) << test;
+    const FigureTable error = table("figure_14_" + test + "_noise_cross_track");
+    EXPECT_LT(error.at(modified).back().y, 0.6 * error.at(original).back().y) << test;
+  }
 }
 
 TEST_F(FiguresCommand, TracksThePapersTestsFromFiveToThirtyMetresPerSecond) {

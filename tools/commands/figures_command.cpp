@@ -17,6 +17,7 @@ std::vector<Figure> all_figures() {
   std::vector<Figure> figures = reference_line_figures();
   std::ranges::move(lateral_planner_figures(), std::back_inserter(figures));
   std::ranges::move(tracking_figures(), std::back_inserter(figures));
+  std::ranges::move(steering_law_figures(), std::back_inserter(figures));
   return figures;
 }
 

@@ -54,4 +54,9 @@ std::vector<Figure> lateral_planner_figures();
 /// beside those of the original Stanley law and of pure pursuit.
 std::vector<Figure> tracking_figures();
 
+/// What tells the laws of Fig. 14 apart, which on the path and without noise they do not: from 0.2
+/// to 30 m/s with CommonRoad's vehicle 2 on its tyres, a start 1 m beside a straight (steering
+/// angle, way back), and the paper's two tests with noise (error, steering rate).
+std::vector<Figure> steering_law_figures();
+
 }  // namespace roadbed::tools::report

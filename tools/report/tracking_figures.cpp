@@ -13,6 +13,7 @@
 #include "roadbed/control/stanley.h"
 #include "roadbed/control/tracking_run.h"
 #include "roadbed/tools/report/paper_figures.h"
+#include "roadbed/tools/report/steering_laws.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -162,17 +163,7 @@ Figure over_time(const Test& test, const Quantity& quantity, const Runs& runs) {
   return figure;
 }
 
-/// The largest values of all laws: what the curves over time come down to.
-struct LawLook {
-  SteeringLaw law;
-  const char *name, *colour;
-};
-constexpr std::array<LawLook, 3> kLaws{{
-    {SteeringLaw::stanley, "modified Stanley, eq. 32", kBlue},
-    {SteeringLaw::original_stanley, "original Stanley, eq. 31", kRed},
-    {SteeringLaw::pure_pursuit, "pure pursuit", kGreen},
-}};
-
+/// Beside the curves over time, the largest values of all laws.
 std::vector<Figure> figures_of(const Test& test) {
   std::vector<Figure> largest;
   for (const Quantity& quantity : kQuantities) {
@@ -183,7 +174,7 @@ std::vector<Figure> figures_of(const Test& test) {
                         .series = {}}});
   }
   std::vector<Figure> figures{driven_way(test)};
-  for (const LawLook& look : kLaws) {
+  for (const LawLook& look : kSteeringLaws) {
     const Runs runs = runs_of(test, look.law);
     for (std::size_t q = 0; q < kQuantities.size(); ++q) {
       if (look.law == SteeringLaw::stanley) {
