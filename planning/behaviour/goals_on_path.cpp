@@ -11,6 +11,7 @@ namespace {
 constexpr double kInside_m = 0.25, kInsideAlong_m = 0.3, kInside_rad = 0.05, kInside_mps = 0.2;
 constexpr double kMostOfWindow = 0.25;  // on each side
 constexpr double kExactEdge_m = 0.01;
+constexpr double kLaterPath_m = 60.0;
 
 /// A window without a margin on both sides.
 Window inside(const Window& window, double margin) {
@@ -85,6 +86,15 @@ std::vector<Window> stretches_of(const GoalState& state, const map::RoadMap& roa
   return found.empty() ? body.stretches(false) : found;
 }
 
+GoalAhead goal_ahead(const TimedGoal& goal, const Window& time_s, const Window& speed_mps,
+                     const Window& ahead_m, double now_s) {
+  return {.time_s = {time_s.least - now_s, time_s.most - now_s},
+          .speed_mps = inside(speed_mps, kInside_mps),
+          .ahead_m = inside(ahead_m, kInsideAlong_m),
+          .step_s = goal.step_s,
+          .a_step_s = -now_s};
+}
+
 }  // namespace
 
 std::vector<GoalAhead> goals_on_path(const TimedGoal& goal, const map::RoadMap& road_map,
@@ -93,14 +103,25 @@ std::vector<GoalAhead> goals_on_path(const TimedGoal& goal, const map::RoadMap& 
   if (profile.ahead_m.size() < 2) return ahead;
   for (const GoalState& state : goal.states) {
     for (const Window& stretch : stretches_of(state, road_map, profile)) {
-      ahead.push_back({.time_s = {state.time_s.least - now_s, state.time_s.most - now_s},
-                       .speed_mps = inside(state.speed_mps, kInside_mps),
-                       .ahead_m = inside(stretch, kInsideAlong_m),
-                       .step_s = goal.step_s,
-                       .a_step_s = -now_s});
+      ahead.push_back(goal_ahead(goal, state.time_s, state.speed_mps, stretch, now_s));
     }
   }
   return ahead;
+}
+
+PathGoals path_goals(const TimedGoal& goal, const map::RoadMap& road_map,
+                     const std::vector<GoalStretch>& stretches, const PathProfile& profile,
+                     double now_s) {
+  PathGoals found{.goals = goals_on_path(goal, road_map, profile, now_s)};
+  if (!found.goals.empty()) return found;
+  found.is_off_path = true;
+  for (const GoalStretch& stretch : stretches) {
+    const Window ahead_m{profile.ahead_of_m(stretch.s_m.least),
+                         profile.ahead_of_m(stretch.s_m.most)};
+    found.is_off_path = found.is_off_path && !(ahead_m.least >= kLaterPath_m);
+    found.goals.push_back(goal_ahead(goal, stretch.time_s, stretch.speed_mps, ahead_m, now_s));
+  }
+  return found;
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -19,4 +19,17 @@ namespace roadbed::planning::inline behaviour {
 std::vector<GoalAhead> goals_on_path(const TimedGoal& goal, const map::RoadMap& road_map,
                                      const PathProfile& profile, double now_s);
 
+/// What a search for the speed on a path is to reach.
+struct PathGoals {
+  std::vector<GoalAhead> goals;
+  bool is_off_path = false;  ///< no speed on this path reaches the goal
+};
+
+/// Where the path meets the goal. Where it meets it nowhere, the stretches of its line are aimed
+/// at; that misses the goal, unless one is 60 m ahead or more, so that a later path can still lead
+/// there.
+PathGoals path_goals(const TimedGoal& goal, const map::RoadMap& road_map,
+                     const std::vector<GoalStretch>& stretches, const PathProfile& profile,
+                     double now_s);
+
 }  // namespace roadbed::planning::behaviour

@@ -24,24 +24,6 @@ double stopping_m(const PlannerView& view) {
   return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
 }
 
-/// Way from the profile's first sample to a station of the line.
-double ahead_of(const PathProfile& profile, double s_m) {
-  if (!std::isfinite(s_m)) return s_m;
-  const auto& stations = profile.station_m;
-  if (s_m >= stations.back()) return profile.ahead_m.back() + s_m - stations.back();
-  if (s_m <= stations.front()) return s_m - stations.front();
-  const auto after = std::upper_bound(stations.begin(), stations.end(), s_m);
-  const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double fraction = (s_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return profile.ahead_m[i - 1] + fraction * (profile.ahead_m[i] - profile.ahead_m[i - 1]);
-}
-
-GoalAhead ahead(const PathProfile& profile, const GoalStretch& stretch, const PlannerView& view) {
-  return {.time_s = {stretch.time_s.least - view.t_s, stretch.time_s.most - view.t_s},
-          .speed_mps = stretch.speed_mps,
-          .ahead_m = {ahead_of(profile, stretch.s_m.least), ahead_of(profile, stretch.s_m.most)}};
-}
-
 }  // namespace
 
 HypothesisSpeed::HypothesisSpeed(const PlannerSetup& setup, const DecisionOptions& cruise)
@@ -113,7 +95,7 @@ void HypothesisSpeed::block_lights(const PlanningScene& scene, const ManeuverHyp
 std::vector<LightAhead> HypothesisSpeed::lights_ahead(const ManeuverHypothesis& hypothesis) const {
   std::vector<LightAhead> ahead;
   for (const StopPoint& place : hypothesis.goal_line->lights) {
-    const double line_m = ahead_of(hypothesis.profile, place.s_m) - vehicle_.front_m();
+    const double line_m = hypothesis.profile.ahead_of_m(place.s_m) - vehicle_.front_m();
     ahead.push_back({place, task_.lights[*place.light], line_m});
   }
   return ahead;
@@ -126,10 +108,10 @@ double HypothesisSpeed::end_m(const PlanningScene& scene,
   const ReferenceLine& line = hypothesis.goal_line->line;
   if (task_.goal) {
     const double end_s_m = hypothesis.goal_line->road_end_s_m - vehicle_.front_m() - kRoadEnd_m;
-    return std::min(ahead_of(profile, end_s_m), hypothesis.on_road_m);
+    return std::min(profile.ahead_of_m(end_s_m), hypothesis.on_road_m);
   }
-  double end_m = ahead_of(profile, line.goal_s_m());
-  if (scene.halt) end_m = std::min(end_m, ahead_of(profile, scene.halt->s_m));
+  double end_m = profile.ahead_of_m(line.goal_s_m());
+  if (scene.halt) end_m = std::min(end_m, profile.ahead_of_m(scene.halt->s_m));
   return end_m;
 }
 
@@ -151,11 +133,10 @@ SpeedSearchQuestion HypothesisSpeed::question_of(const PlanningScene& scene,
     return asked;
   }
   if (!hypothesis.has_candidate()) asked.most_wanted_mps = 0.0;
-  asked.goals = goals_on_path(*task_.goal, task_.road_map, hypothesis.profile, view.t_s);
-  asked.goal_is_off_path = asked.goals.empty();
-  if (!asked.goal_is_off_path) return asked;
-  for (const GoalStretch& stretch : hypothesis.goal_line->stretches)
-    asked.goals.push_back(ahead(hypothesis.profile, stretch, view));
+  PathGoals found = path_goals(*task_.goal, task_.road_map, hypothesis.goal_line->stretches,
+                               hypothesis.profile, view.t_s);
+  asked.goals = std::move(found.goals);
+  asked.goal_is_off_path = found.is_off_path;
   return asked;
 }
 

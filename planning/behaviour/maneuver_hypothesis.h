@@ -91,10 +91,20 @@ inline bool is_good(const ManeuverHypothesis& hypothesis) {
   return is_drivable(hypothesis) && !hypothesis.answer.misses_goal;
 }
 
-/// Free before not free; then by cost, or by how long it is free and how slow it is by then.
+/// What is beyond the bends' limits is worse than what is within them, both reaching the goal or
+/// both missing it; only a goal that is missed otherwise is worth it, by cost.
+inline int rank_of(const ManeuverHypothesis& hypothesis) {
+  if (is_good(hypothesis)) return 0;
+  return is_drivable(hypothesis) || !hypothesis.answer.misses_goal ? 1 : 2;
+}
+
+/// Free before not free; then by rank, then by cost, or by how long it is free and how slow it is
+/// by then.
 inline bool is_better(const ManeuverHypothesis& a, const ManeuverHypothesis& b) {
   if (a.answer.is_free != b.answer.is_free) return a.answer.is_free;
-  if (a.answer.is_free) return a.cost < b.cost;
+  if (a.answer.is_free) {
+    return rank_of(a) != rank_of(b) ? rank_of(a) < rank_of(b) : a.cost < b.cost;
+  }
   if (a.answer.free_until_s != b.answer.free_until_s) {
     return a.answer.free_until_s > b.answer.free_until_s;
   }

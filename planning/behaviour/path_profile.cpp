@@ -35,6 +35,16 @@ std::size_t PathProfile::before(double distance_m) const {
   return after == ahead_m.begin() ? 0 : static_cast<std::size_t>(after - ahead_m.begin() - 1);
 }
 
+double PathProfile::ahead_of_m(double s_m) const {
+  if (!std::isfinite(s_m)) return s_m;
+  if (s_m >= station_m.back()) return ahead_m.back() + s_m - station_m.back();
+  if (s_m <= station_m.front()) return s_m - station_m.front();
+  const auto after = std::upper_bound(station_m.begin(), station_m.end(), s_m);
+  const auto i = static_cast<std::size_t>(after - station_m.begin());
+  const double fraction = (s_m - station_m[i - 1]) / (station_m[i] - station_m[i - 1]);
+  return ahead_m[i - 1] + fraction * (ahead_m[i] - ahead_m[i - 1]);
+}
+
 PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double length_m,
                                 const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                                 const BendLimits& limits) {

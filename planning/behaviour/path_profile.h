@@ -29,6 +29,9 @@ struct PathProfile {
 
   /// Index of the last sample that is not further ahead.
   std::size_t before(double distance_m) const;
+
+  /// Way from the first sample to a station of the line; less than 0 before it.
+  double ahead_of_m(double s_m) const;
 };
 
 /// Samples a path from a station on over `length_m` of its reference line, every 0.5 m, beyond 40 m

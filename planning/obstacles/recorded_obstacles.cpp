@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -207,9 +209,76 @@ class RecordedBoxes {
   std::vector<ObstacleInSource> boxes_;
 };
 
+/// An occupancy set for a simulation.
+class OccupancyPieces {
+ public:
+  OccupancyPieces(const Recorded& from, const RecordingClock& clock) : from_(from), clock_(clock) {
+    const Eigen::AlignedBox2d shape = bounds_of(from.shape);
+    const TrajectoryPoint start = point_of(*from.initial_state, shape.center(), clock);
+    add(0, {from.initial_state->time_step.least, {start.pose(), shape.sizes()}});
+    for (const Occupancy& part : from.occupancy_set) {
+      for (std::size_t i = 0; i < part.region.size(); ++i) {
+        add(i, {part.time_step.least, box_of(part.region[i])});
+        last_step_ = std::max(last_step_, part.time_step.most);
+      }
+    }
+  }
+
+  std::vector<ObstacleInSource> take() const {
+    std::vector<ObstacleInSource> pieces;
+    for (const std::vector<Moment>& part : parts_) {
+      for (std::size_t k = 0; k < part.size(); ++k) pieces.push_back(piece(part, k));
+    }
+    return pieces;
+  }
+
+ private:
+  struct Moment {
+    long step;
+    StandingBox box;
+  };
+
+  /// What the set says of a time step stands in place of the initial state.
+  void add(std::size_t part, const Moment& moment) {
+    if (parts_.size() <= part) parts_.resize(part + 1);
+    std::vector<Moment>& moments = parts_[part];
+    while (!moments.empty() && moments.back().step >= moment.step) moments.pop_back();
+    moments.push_back(moment);
+    last_step_ = std::max(last_step_, moment.step);
+  }
+
+  /// The box of one moment, on the way that the boxes' centres go: its speed is known then.
+  ObstacleInSource piece(const std::vector<Moment>& part, std::size_t k) const {
+    std::vector<TrajectoryPoint> way;
+    for (const Moment& moment : part) {
+      way.push_back({.t_s = clock_.seconds(moment.step),
+                     .x_m = moment.box.centre.x_m,
+                     .y_m = moment.box.centre.y_m,
+                     .heading_rad = part[k].box.centre.heading_rad});
+    }
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+      const Eigen::Vector2d step = way[i + 1].pose().position() - way[i].pose().position();
+      way[i].speed_mps = step.norm() / (way[i + 1].t_s - way[i].t_s);
+    }
+    if (way.size() > 1) way.back().speed_mps = way[way.size() - 2].speed_mps;
+    constexpr double before_next_s = 2e-6;  // never both, in spite of rounding
+    const double to_s = k + 1 < part.size() ? clock_.seconds(part[k + 1].step) - before_next_s
+                                            : clock_.seconds(last_step_);
+    return box_over_time(from_, part[k].box.size_m, std::move(way),
+                         {clock_.seconds(part[k].step), to_s});
+  }
+
+  const Recorded& from_;
+  const RecordingClock& clock_;
+  std::vector<std::vector<Moment>> parts_;
+  long last_step_ = std::numeric_limits<long>::min();
+};
+
 }  // namespace
 
-ObstacleInSource recorded_obstacle(const Recorded& from, const RecordingClock& clock) {
+std::vector<ObstacleInSource> recorded_obstacles(const Recorded& from,
+                                                 const RecordingClock& clock) {
+  if (!from.occupancy_set.empty()) return OccupancyPieces(from, clock).take();
   const Eigen::AlignedBox2d box = bounds_of(from.shape);
   std::vector<TrajectoryPoint> points;
   const auto add = [&](const TrajectoryPoint& point) {
@@ -217,20 +286,11 @@ ObstacleInSource recorded_obstacle(const Recorded& from, const RecordingClock& c
   };
   add(point_of(*from.initial_state, box.center(), clock));
   for (const State& state : from.trajectory) add(point_of(state, box.center(), clock));
-  Eigen::Vector2d size_m = box.sizes();
-  for (const Occupancy& part : from.occupancy_set) {
-    if (part.region.empty()) continue;
-    const Eigen::AlignedBox2d area = bounds_of(part.region);
-    size_m = size_m.cwiseMax(area.sizes());
-    add({.t_s = clock.seconds(part.time_step.least),
-         .x_m = area.center().x(),
-         .y_m = area.center().y()});
-  }
   const bool moves = points.size() > 1;
   const TimeSpan there = moves ? TimeSpan{points.front().t_s, points.back().t_s} : kAlways;
-  ObstacleInSource obstacle = box_over_time(from, size_m, std::move(points), there);
+  ObstacleInSource obstacle = box_over_time(from, box.sizes(), std::move(points), there);
   if (obstacle.kind.empty()) obstacle.kind = "car";
-  return obstacle;
+  return {obstacle};
 }
 
 std::vector<ObstacleInSource> recorded_boxes(const map::commonroad::Scenario& scenario,

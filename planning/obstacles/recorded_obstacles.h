@@ -22,9 +22,12 @@ struct RecordingClock {
 /// shape, for a simulation: it may reach beyond that where the file gives regions or intervals,
 /// whose middles it is at. What moves is there from its first to its last recorded time step; what
 /// does not, always.
+///
+/// An occupancy set is one obstacle for each part and time step, all of the same id: the least
+/// rectangle of that part, there until the next step's, which it moves towards.
 /// @pre it has an initial state and a shape.
-ObstacleInSource recorded_obstacle(const map::commonroad::Obstacle& from,
-                                   const RecordingClock& clock);
+std::vector<ObstacleInSource> recorded_obstacles(const map::commonroad::Obstacle& from,
+                                                 const RecordingClock& clock);
 
 /// The obstacles of a CommonRoad file as boxes over time that hold all that the file says of them,
 /// for a proof; second 0 is the initial time step of its first planning problem, else

@@ -176,6 +176,9 @@ class SimulateCommand : public Command {
              "Noise of what is measured (.json, the keys of a scenario's noise), in place of the "
              "scenario's")
         .reads();
+    arguments.flag("--drop-ego-recording", choice_.changes.drops_ego_recording,
+                   "Leave out the ego's own recording, an obstacle of its extent where it starts "
+                   "(CommonRoad files)");
     arguments
         .add("--seed", seed_,
              "Seed of the noise in place of the scenario's: the same drive for the same seed; "

@@ -48,6 +48,7 @@ std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
     command += " --vehicle " + choice.vehicle_file.filename().string();
   }
   if (!choice.noise_file.empty()) command += " --noise " + choice.noise_file.filename().string();
+  if (choice.changes.drops_ego_recording) command += " --drop-ego-recording";
   if (choice.changes.seed) command += fmt::format(" --seed {}", *choice.changes.seed);
   return command + " -o DIR";
 }

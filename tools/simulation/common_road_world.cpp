@@ -15,6 +15,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
+#include "roadbed/tools/simulation/common_road_obstacles.h"
 #include "roadbed/tools/simulation/common_road_routes.h"
 
 namespace roadbed::tools::inline simulation {
@@ -28,6 +29,8 @@ using planning::Route;
 
 constexpr double kDefaultSpeed_mps = 50.0 / 3.6;
 constexpr double kLeastStep_s = 1e-3, kMostStep_s = 10.0, kFastestStart_mps = 100.0;
+constexpr double kFastestUsual_mps = 130.0 / 3.6;
+constexpr double kHurry = 1.1;            // of the mean speed to a goal
 constexpr double kStopping_s = 10.0;      // to come to rest after the goal is missed
 constexpr double kNothingAsked_s = 10.0;  // a drive without a goal
 constexpr double kBeyondGoal_m = 100.0;   // the line goes on past the goal
@@ -97,29 +100,17 @@ planning::TimedGoal goal_of(const ProblemSource& source) {
   return goal;
 }
 
-/// Where the file knows no limit: what towns allow, or what start and goal show to be usual.
-double usual_speed_mps(double start_mps, const planning::TimedGoal& goal) {
+/// Where the file knows no limit: what towns allow, or what start and goal show to be usual, or
+/// what it takes to be there in time, speeding up evenly or having sped up at once.
+double usual_speed_mps(double start_mps, const planning::TimedGoal& goal, double way_m) {
   double usual = std::max(kDefaultSpeed_mps, start_mps);
   for (const planning::GoalState& state : goal.states) {
     if (std::isfinite(state.speed_mps.least)) usual = std::max(usual, state.speed_mps.least + 1.0);
   }
-  return usual;
-}
-
-/// A recording is one state for each time step: where one is missing nobody knows where it was.
-void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obstacle) {
-  long last = obstacle.initial_state->time_step.least;
-  for (const State& state : obstacle.trajectory) {
-    const long step = state.time_step.least;
-    if (step != last + 1) {
-      throw map::InputError({.file = file,
-                             .element = "obstacle " + obstacle.id,
-                             .found = fmt::format("time step {} after {}", step, last),
-                             .needed = "a state for each time step",
-                             .remedy = "add what is missing, or cut the trajectory off before"});
-    }
-    last = step;
-  }
+  if (goal.latest_s().value_or(0.0) <= 0.0) return usual;
+  const double mean_mps = way_m / *goal.latest_s();
+  const double even_mps = 2.0 * mean_mps - start_mps;
+  return std::max({usual, kHurry * mean_mps, std::min(even_mps, kFastestUsual_mps)});
 }
 
 /// What a file's lights show: red with yellow is red, and one that is off is dark.
@@ -142,31 +133,6 @@ std::vector<planning::LightCycle> lights_of(const map::commonroad::Scenario& fro
     if (is_on && !shown.phases.empty()) lights.push_back(std::move(shown));
   }
   return lights;
-}
-
-void add_obstacles(const map::commonroad::Scenario& from, const ProblemSource& source,
-                   World& world) {
-  const planning::RecordingClock clock{source.problem.initial_state.time_step.least,
-                                       from.time_step_s};
-  for (const map::commonroad::Obstacle& obstacle : from.obstacles) {
-    const bool can_be_hit =
-        obstacle.role == ObstacleRole::fixed || obstacle.role == ObstacleRole::dynamic;
-    if (!can_be_hit) continue;
-    refuse_gaps(source.file, obstacle);
-    world.obstacles.push_back(
-        planning::obstacle_in_map(world.road_map, planning::recorded_obstacle(obstacle, clock)));
-  }
-}
-
-void refuse_overlap(const ProblemSource& source, const World& world,
-                    const geometry::VehicleShape& vehicle) {
-  const geometry::Rectangle body = geometry::body_at(world.start, vehicle);
-  for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
-    if (!world.obstacles[i].is_there(0.0)) continue;
-    if (geometry::distance_m(body, rectangle_at(world.obstacles[i], 0.0)) > 0.0) continue;
-    source.refuse(fmt::format("obstacle {} touches the ego at the start", world.obstacles[i].id),
-                  "room to start from", "move one of the two");
-  }
 }
 
 Scenario scenario_of(const std::filesystem::path& file, const std::string& benchmark_id,
@@ -214,7 +180,8 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   const Pose2 start = rear_axle(source, scenario.vehicle);
   ProblemRoutes routes = routes_of(source, start, speed_mps, scenario.vehicle, goal);
   const planning::ReferenceLineOptions line_options{
-      .default_speed_mps = usual_speed_mps(speed_mps, goal), .extend_m = kBeyondGoal_m};
+      .default_speed_mps = usual_speed_mps(speed_mps, goal, routes.best.length_m),
+      .extend_m = kBeyondGoal_m};
   planning::ReferenceLine line =
       planning::ReferenceLine::along(road_map, routes.best, line_options);
   scenario.lights = lights_of(from, problem.initial_state.time_step.least);
@@ -238,8 +205,8 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                .other_lines = std::move(other_lines),
                .other_stop_points = std::move(other_places)}};
   const ProblemSource placed{file.string(), world.road_map, problem, from.time_step_s};
-  add_obstacles(from, placed, world);
-  refuse_overlap(placed, world, scenario.vehicle);
+  world.obstacles =
+      obstacles_of(from, placed, world.start, scenario.vehicle, changes.drops_ego_recording);
   return {.scenario = std::move(scenario),
           .world = std::move(world),
           .benchmark_id = from.benchmark_id,

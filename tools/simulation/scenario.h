@@ -109,6 +109,7 @@ struct ScenarioChanges {
   std::optional<geometry::VehicleShape> vehicle = {};
   std::optional<ScenarioNoise> noise = {};
   std::optional<std::uint64_t> seed = {};
+  bool drops_ego_recording = false;  ///< of a CommonRoad file, see common_road_obstacles.h
 
   /// @throws InputError if there is a seed, and nothing that is left to chance: all seeds would
   ///         give the same drive.

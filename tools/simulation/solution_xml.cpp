@@ -30,7 +30,10 @@ std::string solution_xml(const CommonRoadDrive& problem, const Drive& drive) {
       "  <ksTrajectory planningProblem=\"{}\">\n",
       map::xml_text(problem.benchmark_id), map::xml_text(problem.version),
       map::xml_text(problem.problem_id));
-  const auto steps = static_cast<long>(std::floor(drive.trajectory.end_s() / step_s + 1e-6));
+  // Who is hit within a time step is so at its end.
+  const double end = drive.trajectory.end_s() / step_s;
+  const auto steps = static_cast<long>(
+      drive.verdict.outcome == Outcome::collision ? std::ceil(end - 1e-6) : std::floor(end + 1e-6));
   for (long k = 0; k <= steps; ++k) {
     const auto row = drive.trajectory.at(step_s * static_cast<double>(k));
     xml += state_xml(row, problem.start_step + k, ahead_m);

@@ -16,6 +16,7 @@ planning::PathProfile path_from(double y_m, double heading_rad) {
   for (int i = 0; i <= 80; ++i) {
     const Eigen::Vector2d at = Eigen::Vector2d(0.0, y_m) + i * along;
     path.ahead_m.push_back(i);
+    path.station_m.push_back(100.0 + i);
     path.body.push_back(geometry::body_at({at.x(), at.y(), heading_rad}, {}));
   }
   return path;
@@ -37,6 +38,16 @@ std::vector<planning::GoalAhead> met_on(const planning::PathProfile& path, doubl
   made.parts.format = "made";
   made.add_lane(made.add_road("1"), "-1", {{0, 9}, {100, 9}}, {{0, -9}, {100, -9}});
   return goals_on_path(goal(), made.build(), path, now_s);
+}
+
+/// Of a path that passes the goal at 3 m to the side, on a line that meets it at some stations.
+planning::PathGoals with_stretch(double from_s_m) {
+  tests::MadeMap made;
+  made.parts.format = "made";
+  made.add_lane(made.add_road("1"), "-1", {{0, 9}, {100, 9}}, {{0, -9}, {100, -9}});
+  const planning::GoalStretch stretch{
+      .time_s = {4.0, 6.0}, .speed_mps = {}, .s_m = {from_s_m, from_s_m + 9.0}};
+  return path_goals(goal(), made.build(), {stretch}, path_from(-3.0, 0.0), 0.0);
 }
 
 constexpr double kCentreAhead_m = 0.5 * 4.508 - 0.8312829;
@@ -80,6 +91,16 @@ TEST(GoalsOnPath, EdgeOfAWindowIsTakenWhereThereIsNothingInside) {
   ASSERT_EQ(met.size(), 1u);
   const double from_m = 35.0 / std::cos(turned_rad) - kCentreAhead_m;
   EXPECT_NEAR(met[0].ahead_m.least, from_m + 0.3, 0.02);
+}
+
+TEST(GoalsOnPath, OneThatOnlyTheLineMeetsIsMissedUnlessALaterPathMayLeadThere) {
+  const auto near = with_stretch(158.0), far = with_stretch(162.0);
+  EXPECT_TRUE(near.is_off_path);
+  EXPECT_FALSE(far.is_off_path);
+  ASSERT_EQ(near.goals.size(), 1u);  // it is aimed at all the same
+  ASSERT_EQ(far.goals.size(), 1u);
+  EXPECT_NEAR(near.goals[0].ahead_m.least, 58.3, 1e-9);
+  EXPECT_NEAR(far.goals[0].ahead_m.most, 70.7, 1e-9);
 }
 
 }  // namespace

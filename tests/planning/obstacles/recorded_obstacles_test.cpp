@@ -191,5 +191,51 @@ TEST(RecordedBoxes, OfAPolygonHoldItTightly) {
   }
 }
 
+std::vector<ObstacleInSource> simulated(const std::string& elements) {
+  const auto scenario = map::commonroad::parse_scenario(
+      "<commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\">" + elements + "</commonRoad>",
+      "made.xml");
+  return recorded_obstacles(scenario.obstacles.at(0), {.start_step = 0, .step_s = 0.1});
+}
+
+std::string rectangle(double length_m, double x_m, double heading_rad) {
+  return "<rectangle><length>" + std::to_string(length_m) +
+         "</length><width>2</width><orientation>" + std::to_string(heading_rad) +
+         "</orientation><center><x>" + std::to_string(x_m) + "</x><y>2</y></center></rectangle>";
+}
+
+TEST(RecordedObstacles, OccupancySetHasItsOwnShapeAtEachTimeStep) {
+  const auto pieces = simulated(
+      dynamic(kStart + "<occupancySet>" + occupancy(rectangle(4.0, 2.0, 0.0), exact("1")) +
+              occupancy(rectangle(9.0, 3.5, 0.3), exact("2")) +
+              occupancy(rectangle(30.0, 5.0, 0.0), exact("3")) + "</occupancySet>"));
+  ASSERT_EQ(pieces.size(), 4u);
+  const std::vector<double> lengths_m{4.0, 4.0, 9.0, 30.0}, at_x_m{1.0, 2.0, 3.5, 5.0};
+  for (std::size_t step = 0; step < 4; ++step) {
+    const double t_s = 0.1 * static_cast<double>(step);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(pieces[k].validity.holds(t_s), k == step) << step << ' ' << k;
+    }
+    EXPECT_NEAR(pieces[step].length_m, lengths_m[step], 1e-9);
+    EXPECT_NEAR(pieces[step].width_m, 2.0, 1e-9);
+    EXPECT_NEAR(pieces[step].motion.at(t_s).x_m, at_x_m[step], 1e-9);
+    EXPECT_EQ(pieces[step].id, "42");
+  }
+  EXPECT_NEAR(pieces[0].motion.at(0.0).heading_rad, 0.5, 1e-9);
+  EXPECT_NEAR(pieces[2].motion.at(0.2).heading_rad, 0.3, 1e-9);
+  EXPECT_NEAR(pieces[2].motion.at(0.2).speed_mps, 15.0, 1e-9);
+  EXPECT_TRUE(pieces[2].validity.holds(0.29));
+  EXPECT_FALSE(pieces[3].validity.holds(0.31));
+}
+
+TEST(RecordedObstacles, TrajectoryIsOneObstacle) {
+  const auto one =
+      simulated(dynamic(kStart + "<trajectory>" + state("state", kPoint, exact("0.5"), exact("1")) +
+                        "</trajectory>"));
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_TRUE(one[0].validity.holds(0.1));
+  EXPECT_FALSE(one[0].validity.holds(0.2));
+}
+
 }  // namespace
 }  // namespace roadbed::planning

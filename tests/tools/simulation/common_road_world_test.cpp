@@ -130,7 +130,7 @@ TEST(CommonRoadWorld, GoalBesideTheLanesMiddleIsDrivenTo) {
 
 TEST(CommonRoadWorld, RecordedObstaclesAreThereAsLongAsTheirRecording) {
   CommonRoadDrive problem = problem_of(junction());
-  ASSERT_EQ(problem.world.obstacles.size(), 3u);
+  ASSERT_EQ(problem.world.obstacles.size(), 2u + 6u);     // the last is an occupancy set of 6 steps
   EXPECT_TRUE(problem.world.obstacles[0].is_there(1e6));  // stands
   EXPECT_TRUE(problem.world.obstacles[1].is_there(3.0));  // 30 recorded steps
   EXPECT_FALSE(problem.world.obstacles[1].is_there(3.1));
@@ -181,6 +181,65 @@ TEST(CommonRoadWorld, SolutionHoldsEveryTimeStepOfTheCentre) {
   std::size_t states = 0;
   for (std::size_t at = 0; (at = xml.find("<ksState>", at)) != std::string::npos; ++at) ++states;
   EXPECT_EQ(states, static_cast<std::size_t>(std::lround(driven.verdict.at_s / 0.1)) + 1);
+}
+
+/// The ego's start of `road_that_ends`, as an obstacle.
+std::string recording_at(double x_m, double length_m) {
+  return fmt::format(
+      "<dynamicObstacle id=\"42\"><type>car</type><shape><rectangle><length>{}</length><width>1.8"
+      "</width></rectangle></shape><initialState><position><point><x>{}</x><y>0</y></point>"
+      "</position><orientation><exact>0</exact></orientation><time><exact>0</exact></time>"
+      "</initialState></dynamicObstacle>",
+      length_m, x_m);
+}
+
+std::string with_obstacle(const std::string& road, const std::string& obstacle) {
+  return replaced(road, "<planningProblem", obstacle + "<planningProblem");
+}
+
+TEST(CommonRoadWorld, EgosOwnRecordingIsNamedSoAndMayBeDropped) {
+  const std::string road = road_that_ends(60.0, 10.0, within_steps(10, 20));
+  const std::string own = with_obstacle(road, recording_at(5.02, 4.4));
+  EXPECT_THAT(refusal_of(own), HasSubstr("obstacle 42 is 0.0 m from the ego"));
+  EXPECT_THAT(refusal_of(own), HasSubstr("--drop-ego-recording"));
+  const tests::TemporaryFolder folder;
+  const auto dropped = [&](const std::string& bytes) {
+    return read_common_road_drive(folder.write("made.xml", bytes), {.drops_ego_recording = true});
+  };
+  EXPECT_TRUE(dropped(own).world.obstacles.empty());
+  EXPECT_EQ(dropped(with_obstacle(road, recording_at(30.0, 4.4))).world.obstacles.size(), 1u);
+  for (const std::string& other : {recording_at(5.3, 4.4), recording_at(5.0, 7.0)}) {
+    EXPECT_THAT(refusal_of(with_obstacle(road, other)),
+                HasSubstr("obstacle 42 touches the ego at the start"));
+    EXPECT_THROW(dropped(with_obstacle(road, other)), map::InputError);
+  }
+}
+
+TEST(CommonRoadWorld, UnknownSpeedLimitIsWhatTheGoalsTimeAsks) {
+  const auto driven_with_goal = [](int first, int last) {
+    CommonRoadDrive problem = problem_of(road_that_ends(
+        400.0, 14.0,
+        "<position><rectangle><length>20</length><width>4</width><orientation>0</orientation>"
+        "<center><x>205</x><y>0</y></center></rectangle></position>" +
+            within_steps(first, last)));
+    return drive(problem.scenario, problem.world);
+  };
+  // 190 m within 9 s are 21 m/s in the mean: 50 km/h do not do.
+  EXPECT_EQ(driven_with_goal(80, 90).verdict.outcome, Outcome::goal_reached);
+  const Drive slow = driven_with_goal(140, 150);
+  EXPECT_EQ(slow.verdict.outcome, Outcome::goal_reached);
+  for (const auto& row : slow.trajectory.points()) EXPECT_LT(row.speed_mps, 15.5);
+}
+
+TEST(CommonRoadWorld, CollisionWithinATimeStepIsInTheSolution) {
+  CommonRoadDrive problem = problem_of(
+      with_obstacle(road_that_ends(60.0, 20.0, within_steps(10, 20)), recording_at(14.0, 4.4)));
+  const Drive driven = drive(problem.scenario, problem.world);
+  ASSERT_EQ(driven.verdict.outcome, Outcome::collision);
+  const double steps = driven.verdict.at_s / 0.1;
+  ASSERT_GT(std::abs(steps - std::round(steps)), 0.05);  // between two
+  const std::string xml = solution_xml(problem, driven);
+  EXPECT_THAT(xml, HasSubstr(fmt::format("<time>{}</time>", std::lround(std::ceil(steps)))));
 }
 
 TEST(CommonRoadWorld, WhatCannotBeDrivenIsRefused) {
