@@ -14,6 +14,7 @@
 #include "roadbed/control/single_track.h"
 #include "roadbed/control/stanley.h"
 #include "roadbed/planning/behaviour/planner.h"
+#include "roadbed/tools/simulation/goal_misses.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/sensors.h"
@@ -242,12 +243,19 @@ class ClosedLoop {
                         t_s(), left_road_->off_m, left_road_->at_s));
       }
     } else if (truth_.speed_mps <= 0.0 && t_s() > goal.latest_s().value_or(0.0)) {
-      end(Outcome::stopped,
-          goal.latest_s()
-              ? fmt::format("stands after {:.2f} s: the goal was to be reached until {:.2f} s",
-                            t_s(), *goal.latest_s())
-              : fmt::format("stands after {:.2f} s: the problem states no goal", t_s()));
+      end(Outcome::stopped, why_goal_is_missed(goal));
+    } else if (is_step) {
+      misses_.look(goal, world_.road_map, t_s(), truth_, scenario_.vehicle);
     }
+  }
+
+  std::string why_goal_is_missed(const planning::TimedGoal& goal) const {
+    if (!goal.latest_s()) {
+      return fmt::format("stands after {:.2f} s: the problem states no goal", t_s());
+    }
+    const std::string best = misses_.at_best();
+    return fmt::format("stands after {:.2f} s: the goal was to be reached until {:.2f} s{}{}",
+                       t_s(), *goal.latest_s(), best.empty() ? "" : "; ", best);
   }
 
   /// What begins beside the road has left it only after it has been on it.
@@ -320,6 +328,7 @@ class ClosedLoop {
   };
   std::optional<OffRoad> left_road_;  ///< where it was farthest off, after it had been on it
   bool was_on_road_ = false;
+  GoalMisses misses_;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;
   Drive drive_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "roadbed/geometry/motion/rectangle.h"
@@ -30,6 +31,26 @@ void refuse_gaps(const std::string& file, const map::commonroad::Obstacle& obsta
                              .remedy = "add what is missing, or cut the trajectory off before"});
     }
     last = step;
+  }
+}
+
+/// Occupancies are areas in order of time.
+void refuse_occupancies(const std::string& file, const map::commonroad::Obstacle& obstacle) {
+  long last = std::numeric_limits<long>::min();
+  for (const map::commonroad::Occupancy& part : obstacle.occupancy_set) {
+    const long step = part.time_step.least;
+    if (!part.region.empty() && step > last) {
+      last = part.time_step.most;
+      continue;
+    }
+    throw map::InputError(
+        {.file = file,
+         .element = "obstacle " + obstacle.id,
+         .found = part.region.empty()
+                      ? fmt::format("an occupancy at time step {} without a shape", step)
+                      : fmt::format("an occupancy at time step {} after {}", step, last),
+         .needed = "a shape for each, in order of time",
+         .remedy = "correct the occupancy set"});
   }
 }
 
@@ -75,6 +96,7 @@ std::vector<planning::Obstacle> obstacles_of(const map::commonroad::Scenario& fr
       continue;
     }
     refuse_gaps(source.file, recorded);
+    refuse_occupancies(source.file, recorded);
     std::vector<planning::Obstacle> pieces;
     bool is_dropped = false;
     for (const planning::ObstacleInSource& piece : planning::recorded_obstacles(recorded, clock)) {
