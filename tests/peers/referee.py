@@ -6,12 +6,15 @@ usage: referee.py ROADBED OUTPUT SCENARIO.xml...
 Each scenario is simulated into a folder of OUTPUT; judged with commonroad-drivability-checker, which
 shares no code with roadbed:
     goal       the planning problem's goal was reached, in time
-    collision  the body touched an obstacle at a time step
+    hits       the body touched an obstacle at a time step, or, as roadbed saw itself, between two:
+               the step in which it did counts whole
     road       the body stayed within the road's boundary
     feasible   every step fits the kinematic single-track model of vehicle 2 (BMW 320i) with its
                limits, and the steering rate is within the vehicle's
     solution   solution.xml loads with commonroad-io and holds the same drive
-Prints a table. Exit status 1 if a drive collides, ends in an exception, passes 4 m/s² of lateral
+    blind      the same with all traffic deleted before planning, judged with it: who succeeds so has
+               not needed to see anybody
+Prints a table, and how many succeed only because they see the traffic. Exit status 1 if a drive collides, ends in an exception, passes 4 m/s² of lateral
 acceleration in a success, or a solution does not load."""
 import copy
 import csv
@@ -19,6 +22,7 @@ import json
 import subprocess
 import sys
 import warnings
+import xml.etree.ElementTree as ElementTree
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -38,16 +42,19 @@ warnings.filterwarnings("ignore")
 VEHICLE = 2
 STEERING_SLACK = 1.025  # the rate is a difference over a step
 MOST_LATERAL_MPS2 = 4.0
+TRAFFIC = ("dynamicObstacle", "staticObstacle", "obstacle", "phantomObstacle")
 COLUMNS = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps", "steering_rad")
 
 
-def read_drive(file, step_s):
-    """The drive at the scenario's time steps, rear axle."""
+def read_drive(file, step_s, ends_by_collision):
+    """The drive at the scenario's time steps, rear axle; one that a collision ends, to the end of the
+    step in which it happens."""
     with open(file, newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     drive = {name: np.array([float(row[name]) for row in rows]) for name in COLUMNS}
     drive["heading_rad"] = np.unwrap(drive["heading_rad"])
-    times = np.arange(0.0, drive["t_s"][-1] + 1e-9, step_s)
+    end_s = drive["t_s"][-1] + (step_s if ends_by_collision else 0.0)
+    times = np.arange(0.0, end_s + (-1e-6 if ends_by_collision else 1e-9), step_s)
     return {name: np.interp(times, drive["t_s"], values) for name, values in drive.items()}
 
 
@@ -94,7 +101,8 @@ def judge(scenario_file, folder):
     scenario, problems = CommonRoadFileReader(str(scenario_file)).open()
     problem = next(iter(problems.planning_problem_dict.values()))
     vehicle, step_s = setup_vehicle_parameters(VEHICLE), scenario.dt
-    drive = read_drive(folder / "trajectory.csv", step_s)
+    metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    drive = read_drive(folder / "trajectory.csv", step_s, metrics["collision"])
     states = states_of(drive, problem.initial_state.time_step, vehicle.b)
     solution = CommonRoadSolutionReader.open(str(folder / "solution.xml"))
     solved = solution.planning_problem_solutions[0].trajectory.state_list
@@ -113,7 +121,8 @@ def judge(scenario_file, folder):
     body = body_of(states, vehicle)
     return {
         "goal": bool(reached) and starts_right(states[0], problem),
-        "collision": bool(create_collision_checker(scenario).collide(body)),
+        "collision": metrics["collision"]
+        or bool(create_collision_checker(scenario).collide(body)),
         "road": not road.collide(body),
         "feasible": infeasible_steps(states, step_s) == 0
         and bool(rate <= STEERING_SLACK * vehicle.steering.v_max),
@@ -124,14 +133,42 @@ def judge(scenario_file, folder):
     }
 
 
+def simulate(roadbed, scenario_file, folder):
+    return subprocess.run([roadbed, "simulate", str(scenario_file), "-o", str(folder), "--force",
+                           "--drop-ego-recording"], capture_output=True, text=True, check=False)
+
+
+def without_traffic(scenario_file, output):
+    """The scenario with nobody in it."""
+    tree = ElementTree.parse(scenario_file)
+    for obstacle in [child for child in tree.getroot() if child.tag in TRAFFIC]:
+        tree.getroot().remove(obstacle)
+    blind = output / "blind" / scenario_file.name
+    blind.parent.mkdir(parents=True, exist_ok=True)
+    tree.write(blind, encoding="utf-8", xml_declaration=True)
+    return blind
+
+
+def is_good(result):
+    return result["goal"] and not result["collision"] and result["road"]
+
+
+def run_blind(roadbed, output, scenario_file):
+    """Whether who does not see the traffic succeeds among it."""
+    folder = output / "blind" / scenario_file.stem
+    done = simulate(roadbed, without_traffic(scenario_file, output), folder)
+    return done.returncode in (0, 1) and bool(done.stdout) and is_good(
+        judge(scenario_file, folder))
+
+
 def run(roadbed, output, scenario_file):
     folder = output / scenario_file.stem
-    done = subprocess.run([roadbed, "simulate", str(scenario_file), "-o", str(folder), "--force"],
-                          capture_output=True, text=True, check=False)
+    done = simulate(roadbed, scenario_file, folder)
     said = (done.stdout if done.stdout else done.stderr).strip().splitlines()
     result = {"status": done.returncode, "said": said[-1].split(": ", 1)[-1] if said else ""}
     if done.returncode in (0, 1) and done.stdout:
         result.update(judge(scenario_file, folder))
+        result["blind"] = run_blind(roadbed, output, scenario_file)
     return result
 
 
@@ -140,20 +177,21 @@ def mark(value):
 
 
 def print_table(names, results):
-    print(f"{'scenario':28} goal  hits  road  feas  steps  a_lat  a_lon  said")
+    print(f"{'scenario':28} goal  hits  road  feas  blind steps  a_lat  a_lon  said")
     for name, r in zip(names, results):
         if "goal" not in r:
             print(f"{name:28} no drive: {r['said']}")
             continue
         print(f"{name:28} {mark(r['goal']):5} {mark(r['collision']):5} {mark(r['road']):5} "
-              f"{mark(r['feasible']):5} {r['steps']:5}  {r['a_lat']:5.2f}  {r['a_lon']:5.2f}  "
+              f"{mark(r['feasible']):5} {mark(r['blind']):5} {r['steps']:5}  {r['a_lat']:5.2f}  {r['a_lon']:5.2f}  "
               f"{r['said']}")
     judged = [r for r in results if "goal" in r]
-    good = [r for r in judged if r["goal"] and not r["collision"] and r["road"]]
+    good = [r for r in judged if is_good(r)]
     print(f"{len(results)} scenarios: {len(good)} reach the goal without collision on the road, "
           f"{sum(r['feasible'] for r in good)} of them with every step feasible; "
           f"{sum(r['collision'] for r in judged)} collide, {len(results) - len(judged)} without a "
-          f"drive; largest lateral acceleration of a success "
+          f"drive; {sum(not r['blind'] for r in good)} of those that reach it need to see the traffic; "
+          f"largest lateral acceleration of a success "
           f"{max((r['a_lat'] for r in good), default=0.0):.2f} m/s²")
     return all(r["solution"] and not r["collision"] for r in judged) and all(
         r["a_lat"] <= MOST_LATERAL_MPS2 for r in good) and all(
