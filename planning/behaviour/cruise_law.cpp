@@ -65,6 +65,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (truth) {
     command.lead = {task_.obstacles[truth->obstacle].id, truth->gap_m, truth->speed_mps};
   }
+  follows_ = chosen.behaviour == Behaviour::follow;
   explain(q, chosen, command);
   if (lead) brake_for(*lead, speed, command);
   if (halt && halt->is_hard) brake_for(*halt, q, command);
@@ -76,7 +77,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
 /// The end of the lane that somebody is passed in is not to be passed either.
 std::optional<StopConstraint> CruiseLaw::nearer_halt(const Question& q) const {
   constexpr double kBeforeEnd_m = 25.0;  // to come back in
-  if (!q.passes_in_lane) return q.halt;
+  if (q.maneuver != Maneuver::pass_in_lane) return q.halt;
   const double end_s_m = q.passing.in_lane.lane_end_s_m - vehicle_.front_m() - kBeforeEnd_m;
   if (q.halt && q.halt->s_m < end_s_m) return q.halt;
   return StopConstraint{.s_m = end_s_m, .reason = "the passing lane ends"};
@@ -87,7 +88,7 @@ std::optional<StopConstraint> CruiseLaw::nearer_halt(const Question& q) const {
 std::vector<bool> CruiseLaw::ignored_on(const PlannedPath& path, const Question& q) const {
   std::vector<bool> ignored = right_of_way_.crossing();
   for (std::size_t i = 0; i < q.no_lead.size(); ++i) ignored[i] = ignored[i] || q.no_lead[i];
-  if (!q.passes_in_lane) return ignored;
+  if (q.maneuver != Maneuver::pass_in_lane) return ignored;
   constexpr double kAhead_m = 80.0, kMargin_m = 0.3;
   constexpr std::size_t kSteps = 60;
   const double speed = q.view.measured.speed_mps;
@@ -123,8 +124,10 @@ std::optional<Lead> CruiseLaw::lead_ahead(const Question& q,
   const double to_goal_m = task_.line.goal_s_m() - replanner.s_m();
   const double look_m = std::min(look_ahead_m(q.view.measured.speed_mps, decision_options_),
                                  std::max(0.0, to_goal_m) + vehicle_.front_m());
-  const PlannedPath path = q.passes_in_lane ? replanner.path() : replanner.expected_path();
-  std::optional<Lead> lead = find_lead(path, replanner.s_m(), look_m, task_.obstacles, q.view.t_s,
+  const bool stays_beside =
+      q.maneuver == Maneuver::pass_in_lane || q.maneuver == Maneuver::pass_within_lane;
+  const PlannedPath path = stays_beside ? replanner.path() : replanner.expected_path();
+  std::optional<Lead> lead = find_lead(path, replanner.s_m(), look_m, q.truth.obstacles, q.view.t_s,
                                        vehicle_, kSideMargin_m, ignored_on(path, q));
   if (lead && halt && lead->gap_m > halt->s_m - replanner.s_m() + kBeyondHalt_m) lead.reset();
   return lead;
@@ -156,6 +159,7 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .acceleration_mps2 = q.view.measured.acceleration_mps2,
                                      .lead = lead,
                                      .lead_name = lead ? lead_name(*lead) : "",
+                                     .follows = follows_,
                                      .path_left_m = path_left_m(q, lead),
                                      .halt = halt},
                                     decision_options_);
@@ -197,13 +201,21 @@ void CruiseLaw::explain(const Question& q, const SpeedAnswer& answer,
 void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) const {
   const LanePassing::Decision& lane = q.passing.in_lane;
   const Overtaking::Decision& overtaking = q.passing.overtaking;
-  if (q.passes_in_lane &&
+  if (q.maneuver == Maneuver::pass_in_lane &&
       (command.behaviour == Behaviour::cruise || command.behaviour == Behaviour::pass)) {
     command.behaviour = Behaviour::pass;
     command.reason = lane.reason;
   }
+  if (q.maneuver == Maneuver::pass_within_lane && command.behaviour == Behaviour::cruise) {
+    command.behaviour = Behaviour::pass;
+  }
+  if (q.maneuver == Maneuver::pass_within_lane && command.behaviour == Behaviour::pass) {
+    command.reason =
+        fmt::format("passes {} within the lane", task_.obstacles[*q.passing.within_lane.passed].id);
+  }
   std::string why_not = lane.reason.empty() ? overtaking.reason : lane.reason;
-  if (lane.passed && !q.passes_in_lane) {
+  if (why_not.empty()) why_not = q.passing.within_lane.reason;
+  if (lane.passed && q.maneuver != Maneuver::pass_in_lane) {
     why_not = fmt::format("{} is not passed: no path leads to the next lane",
                           task_.obstacles[*lane.passed].id);
   }

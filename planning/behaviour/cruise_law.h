@@ -8,10 +8,12 @@
 #include "roadbed/planning/behaviour/lane_passing.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
 #include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/behaviour/within_lane_passing.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -20,6 +22,7 @@ namespace roadbed::planning::inline behaviour {
 struct PassingDecision {
   Overtaking::Decision overtaking = {};
   LanePassing::Decision in_lane = {};
+  WithinLanePassing within_lane = {};
 };
 
 /// The speed of a vehicle that follows its path to a place: set speed, speed controller behind
@@ -35,11 +38,12 @@ class CruiseLaw {
   struct Question {
     const PlannerView& view;
     const LateralReplanner& replanner;  ///< its path is the one to drive
-    const Traffic& traffic;
+    const Traffic& truth;               ///< to be measured
+    const Traffic& traffic;             ///< as foreseen
     const PassingDecision& passing;
-    bool passes_in_lane = false;         ///< the path leads to the next lane, or along it
-    std::vector<bool> no_lead;           ///< per obstacle: it crosses the path in time
-    std::optional<StopConstraint> halt;  ///< of look()
+    Maneuver maneuver = Maneuver::keep_lane;  ///< that the path is of
+    std::vector<bool> no_lead;                ///< per obstacle: it crosses the path in time
+    std::optional<StopConstraint> halt;       ///< of look()
   };
   PlannerCommand command(const Question& question);
 
@@ -68,6 +72,7 @@ class CruiseLaw {
   const SpeedCeiling& ceiling_;
   DecisionOptions decision_options_;
   RightOfWay right_of_way_;
+  bool follows_ = false;  ///< in the last cycle
   struct {
     double t_s = 0.0;
     std::optional<Lead> lead;

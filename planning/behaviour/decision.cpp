@@ -12,7 +12,7 @@ namespace {
 constexpr double kStands_mps = 0.3;
 constexpr double kStopping_m = 0.3;    // this near to where it is to stop, it stops
 constexpr double kMoveOffGap_m = 1.0;  // beyond the standstill gap, before following on
-constexpr double kFollowSlack_mps = 2.0;
+constexpr double kFollowSlack_mps = 2.0, kStillFollows_mps = 4.0;
 constexpr double kBeyondGap_m = 3.0;  // nearer than the gap: that one is the cruise control's
 constexpr double kBrakes_mps2 = 0.5;  // less is no braking
 constexpr double kNeedsNone_mps = 1.0;
@@ -129,8 +129,9 @@ SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& o
                      .behaviour = now.behaviour,
                      .reason = now.reason,
                      .hold = is_at_rest(question, options)};
+  const double slack_mps = question.follows ? kStillFollows_mps : kFollowSlack_mps;
   if (question.lead && now.behaviour == Behaviour::cruise &&
-      all.back().now.speed_mps < now.now.speed_mps + kFollowSlack_mps) {
+      all.back().now.speed_mps < now.now.speed_mps + slack_mps) {
     answer.behaviour = Behaviour::follow;
     answer.reason = all.back().reason;
   }

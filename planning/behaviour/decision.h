@@ -21,6 +21,7 @@ struct SpeedQuestion {
   double acceleration_mps2 = 0.0;
   std::optional<Lead> lead;
   std::string lead_name;  ///< for the reason
+  bool follows = false;   ///< in the cycle before: who follows is not said to cruise for a moment
   /// Set if the planner found nothing: the last path is still good for so far; stop on it.
   std::optional<double> path_left_m;
   std::optional<StopConstraint> halt = {};  ///< where a rule of the road asks to wait

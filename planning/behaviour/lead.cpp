@@ -62,7 +62,7 @@ std::optional<double> first_touch_m(const Sweep& sweep, double s_m, double look_
 }  // namespace
 
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
-                              const std::vector<Obstacle>& obstacles, double t_s,
+                              std::span<const Obstacle> obstacles, double t_s,
                               const geometry::VehicleShape& vehicle, double side_margin_m,
                               const std::vector<bool>& ignored) {
   std::optional<Lead> nearest;

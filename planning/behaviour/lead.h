@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct Lead {
 /// @param side_margin_m  an obstacle this near to the body's sides counts as touched.
 /// @param ignored        obstacles that are not looked at; none if empty.
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
-                              const std::vector<Obstacle>& obstacles, double t_s,
+                              std::span<const Obstacle> obstacles, double t_s,
                               const geometry::VehicleShape& vehicle, double side_margin_m,
                               const std::vector<bool>& ignored = {});
 

@@ -38,10 +38,11 @@ struct GoalLine {
 
 /// What a hypothesis does to those who are in the way.
 enum class Maneuver {
-  keep_lane,     ///< as the lateral planner chooses among all its candidates
-  pass_in_lane,  ///< past slower traffic, in the next lane of the own direction
-  overtake,      ///< the same through the lane of oncoming traffic
-  beside,        ///< the path ends beside the line, or on another line
+  keep_lane,         ///< as the lateral planner chooses among all its candidates
+  pass_within_lane,  ///< the same at the speed of the free road, past somebody slower
+  pass_in_lane,      ///< past slower traffic, in the next lane of the own direction
+  overtake,          ///< the same through the lane of oncoming traffic
+  beside,            ///< the path ends beside the line, or on another line
 };
 
 /// A path to ask the lateral planner for.

@@ -15,9 +15,9 @@ constexpr double kPassing_mps2 = 0.9, kFallingBack_mps2 = 2.0;
 constexpr double kBackInLane_s = 3.5;  // from beside to back in the lane
 // What others do at worst: speed up, to a tenth above the limit.
 constexpr double kSpeedsUp_mps2 = 1.0, kAboveLimit = 1.1;
-constexpr double kMargin_s = 1.5;     // of the way on which two come towards each other
-constexpr double kBeside_m = 1.0;     // kept from who is overtaken
-constexpr double kNotInLane_m = 0.3;  // as MoverOnLine::shares_way
+constexpr double kMargin_s = 1.5;  // of the way on which two come towards each other
+constexpr double kBeside_m = 1.0, kLeastBeside_m = 0.4;   // kept from who is overtaken
+constexpr double kNotInLane_m = 0.3;                      // as MoverOnLine::shares_way
 constexpr double kReturnGap_m = 4.0, kReturnGap_s = 0.4;  // before who was overtaken
 constexpr double kGapAhead_m = 5.0, kGapAhead_s = 1.0;    // to who drives ahead of that one
 constexpr double kBehindRear_m = 3.0;                     // of who is not overtaken after all
@@ -72,7 +72,10 @@ const MoverOnLine* Overtaking::slower_ahead(const std::vector<MoverOnLine>& move
 }
 
 double Overtaking::pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const {
-  return lead.d_m + stretch.side * (lead.half_width_m + 0.5 * vehicle_.width_m + kBeside_m);
+  // Cyclists are wider than they are, for the room that is kept beside them.
+  const double wider_m = lead.half_width_m - 0.5 * task_.obstacles[lead.obstacle].width_m;
+  const double room_m = std::max(kLeastBeside_m, kBeside_m - std::max(0.0, wider_m));
+  return lead.d_m + stretch.side * (lead.half_width_m + 0.5 * vehicle_.width_m + room_m);
 }
 
 const OncomingLaneSegment* Overtaking::stretch_at(double s_m) const {

@@ -32,6 +32,14 @@ PathQuery at_offset(GoalLine& on, Maneuver maneuver, double offset_m, Question q
           .offsets = {offset_m - kPassTolerance_m, offset_m + kPassTolerance_m}};
 }
 
+/// As the cruise control speeds up on a free road.
+SpeedPlan free_speed(const GoalLine& on, SpeedPlan speed) {
+  constexpr double kFreeSpeedUp_mps2 = 1.0;
+  speed.target_mps = on.ceiling.at(on.replanner.s_m()).speed_mps;
+  if (speed.speed_mps < speed.target_mps) speed.acceleration_mps2 = kFreeSpeedUp_mps2;
+  return speed;
+}
+
 void keep_within(const std::optional<double>& offset_m, double side, Offsets& offsets) {
   if (!offset_m) return;
   if (side > 0.0) {
@@ -74,6 +82,12 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
   PathQuery keep{.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question};
   keep_within(overtaking.keep_within_m, overtaking.side, keep.offsets);
   keep_within(lane.keep_within_m, lane.side, keep.offsets);
+  if (passing.within_lane.passed) {
+    PathQuery pass = keep;
+    pass.maneuver = Maneuver::pass_within_lane;
+    pass.question.speed = free_speed(on, question.speed);
+    queries.push_back(pass);
+  }
   queries.push_back(keep);
   return queries;
 }

@@ -94,7 +94,6 @@ class Planner::Impl {
         task_(setup.task),
         predicts_(setup.planner.predicts),
         clearance_m_(setup.driving.clearance_m),
-        traffic_(true_traffic(task_)),
         goal_lines_(goal_lines_of(setup)),
         cruise_(setup, goal_lines_.front().ceiling),
         overtaking_(vehicle_, task_, goal_lines_.front().ceiling),
@@ -104,7 +103,7 @@ class Planner::Impl {
   const LateralReplanner& replanner() const { return goal_lines_[current_].replanner; }
 
   PlannerCommand decide(const PlannerView& view) {
-    foresee(view.t_s);
+    foresee(view);
     goal_line().replanner.locate(view.measured);
     const PassingDecision passing = passing_at(view);
     const PlanningScene scene = scene_at(view);
@@ -123,9 +122,17 @@ class Planner::Impl {
 
   // What will be where.
 
-  void foresee(double t_s) {
+  void foresee(const PlannerView& view) {
+    truth_ = true_traffic(task_);
+    if (!task_.goal) {
+      kept_from_ = with_room_beside_cyclists(
+          truth_.obstacles, view.t_s, geometry::body_at(view.measured.map_from_vehicle, vehicle_),
+          clearance_m_);
+      if (kept_from_) truth_ = {*kept_from_};
+    }
+    traffic_ = truth_;
     if (!predicts_) return;
-    predicted_.emplace(true_traffic(task_), t_s);
+    predicted_.emplace(truth_, view.t_s);
     traffic_ = predicted_->traffic();
   }
 
@@ -152,7 +159,24 @@ class Planner::Impl {
     PassingDecision passing;
     passing.overtaking = overtaking_.look(on_line);
     if (!passing.overtaking.overtaken) passing.in_lane = lane_passing_.look(on_line);
+    passing.within_lane = within_lane(on_line, passing);
     return passing;
+  }
+
+  WithinLanePassing within_lane(const ViewOnLine& view, const PassingDecision& passing) {
+    const GoalLine& on = goal_line();
+    WithinLaneQuestion question{.view = view,
+                                .line = on.line,
+                                .vehicle = vehicle_,
+                                .free_mps = on.ceiling.at(view.at.s_m).speed_mps,
+                                .clearance_m = clearance_m_};
+    const auto keep_within = [&](const std::optional<double>& offset_m, double side) {
+      double& most_m = side > 0.0 ? question.most_left_m : question.most_right_m;
+      most_m = std::min(most_m, offset_m.value_or(most_m));
+    };
+    keep_within(passing.overtaking.keep_within_m, passing.overtaking.side);
+    keep_within(passing.in_lane.keep_within_m, passing.in_lane.side);
+    return look_within_lane(question);
   }
 
   PlanningScene scene_at(const PlannerView& view) {
@@ -172,7 +196,8 @@ class Planner::Impl {
     for (std::size_t i = 0; i < traffic_.obstacles.size(); ++i) {
       const Obstacle& obstacle = traffic_.obstacles[i];
       if (!task_.goal) {
-        if (!scene.no_matter[i] && !scene.crosses[i]) obstacles.push_back(obstacle);
+        if (scene.no_matter[i] || scene.crosses[i]) continue;
+        obstacles.push_back(obstacle);
         continue;
       }
       if (!obstacle.is_there(view.t_s)) continue;
@@ -308,14 +333,14 @@ class Planner::Impl {
 
   PlannerCommand cruised(const ManeuverHypothesis& best, const PlanningScene& scene,
                          const PassingDecision& passing) {
-    PlannerCommand command =
-        cruise_.command({.view = scene.view,
-                         .replanner = replanner(),
-                         .traffic = traffic_,
-                         .passing = passing,
-                         .passes_in_lane = best.maneuver == Maneuver::pass_in_lane,
-                         .no_lead = who_crosses_in_time(best, scene),
-                         .halt = scene.halt});
+    PlannerCommand command = cruise_.command({.view = scene.view,
+                                              .replanner = replanner(),
+                                              .truth = truth_,
+                                              .traffic = traffic_,
+                                              .passing = passing,
+                                              .maneuver = best.maneuver,
+                                              .no_lead = who_crosses_in_time(best, scene),
+                                              .halt = scene.halt});
     if (!best.by_cruise_law) give_way(best, command);
     return command;
   }
@@ -409,6 +434,8 @@ class Planner::Impl {
   bool predicts_;
   double clearance_m_;
   std::optional<PredictedTraffic> predicted_;
+  std::optional<std::vector<Obstacle>> kept_from_;  ///< wider than they are; none: as they are
+  Traffic truth_;                                   ///< with that room
   Traffic traffic_;                   ///< what is planned against: the true one, or as foreseen
   std::vector<GoalLine> goal_lines_;  ///< the task's line first
   std::size_t current_ = 0;           ///< that is driven

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/tests/support/straight_world.h"
+#include "roadbed/tools/simulation/drive.h"
+#include "roadbed/tools/simulation/obstacle_motion.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kCyclist_mps = 4.0, kCyclistWidth_m = 0.6;
+
+struct Passed {
+  bool is_passed = false;
+  double beside_m = 1e9;  ///< least distance of the sides while the bodies are beside one another
+  std::string reason;     ///< of a cycle behind it
+};
+
+/// On a one-way road, with a cyclist 0.5 m from its right edge.
+Passed drive_behind_cyclist(double road_width_m, const std::string& kind = "bicycle") {
+  const double d_m = 0.5 - 0.5 * road_width_m;
+  planning::Obstacle other{
+      .id = "rider", .kind = kind, .length_m = 1.8, .width_m = kCyclistWidth_m, .motion = {}};
+  other.motion =
+      drive_through({{0.0, {50.0, d_m, 0.0}}, {60.0, {50.0 + 60.0 * kCyclist_mps, d_m, 0}}});
+  Scenario scenario;
+  scenario.start_speed_mps = 8.0;
+  scenario.options.desired_speed_mps = 10.0;
+  scenario.duration_s = 25.0;
+  World world =
+      tests::straight_world({.to_x_m = 460.0, .width_m = road_width_m, .goal_x_m = 400.0}, {other});
+  const Drive driven = drive(scenario, world);
+  Passed passed;
+  for (const geometry::TrajectoryPoint& row : driven.trajectory.points()) {
+    const auto body = geometry::body_at(row.pose(), scenario.vehicle);
+    const auto rider = rectangle_at(other, row.t_s);
+    const double apart_m = std::abs(body.centre.x() - rider.centre.x());
+    passed.is_passed = body.centre.x() > rider.centre.x() + 5.0;
+    if (apart_m > body.half_length_m + rider.half_length_m) continue;
+    passed.beside_m = std::min(passed.beside_m, geometry::distance_m(body, rider));
+  }
+  for (const DriveCycle& cycle : driven.cycles) {
+    if (cycle.behaviour == planning::Behaviour::follow) passed.reason = cycle.reason;
+  }
+  return passed;
+}
+
+// Beside the cyclist's 0.8 m a vehicle of 1.61 m and 1.5 m between them have to fit: 3.91 m. A
+// path ends on a grid of 0.1 m, and the body sways a little as it turns.
+TEST(WithinLanePassing, CyclistsArePassedAtAMetreAndAHalfWhereTheLaneHasThatRoom) {
+  for (const double width_m : {4.15, 4.5, 5.0, 6.0}) {
+    SCOPED_TRACE(testing::Message() << "road of " << width_m << " m");
+    const Passed passed = drive_behind_cyclist(width_m);
+    EXPECT_TRUE(passed.is_passed) << passed.reason;
+    EXPECT_GE(passed.beside_m, 1.49);
+  }
+}
+
+TEST(WithinLanePassing, CyclistsAreFollowedWhereTheLaneLacksRoomAndTheReasonSaysHowMuch) {
+  for (const double width_m : {3.0, 3.5, 3.8}) {
+    SCOPED_TRACE(testing::Message() << "road of " << width_m << " m");
+    const Passed passed = drive_behind_cyclist(width_m);
+    EXPECT_FALSE(passed.is_passed);
+    EXPECT_EQ(passed.beside_m, 1e9);
+    EXPECT_THAT(passed.reason, testing::HasSubstr(fmt::format(
+                                   "{:.1f} m of room are missing beside it", 3.91 - width_m)));
+  }
+}
+
+TEST(WithinLanePassing, OthersNeedOnlyTheClearanceThatIsAskedFor) {
+  const Passed passed = drive_behind_cyclist(3.5, "scooter");
+  EXPECT_TRUE(passed.is_passed) << passed.reason;
+  EXPECT_GE(passed.beside_m, 0.29);
+  EXPECT_LT(passed.beside_m, 1.0);
+}
+
+}  // namespace
+}  // namespace roadbed::tools
