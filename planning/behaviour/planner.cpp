@@ -25,6 +25,7 @@ namespace {
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
 constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
+constexpr double kCompareEvery_m = 4.0, kAlike_m = 0.1;  // of two lines
 constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
 
 /// From the most careful on; for those who have to be at their goal in time, and for those who
@@ -77,6 +78,19 @@ std::vector<GoalLine> goal_lines_of(const PlannerSetup& setup) {
                                  setup));
   }
   return lines;
+}
+
+/// Whether two lines, and the room beside them, are the same from the vehicle on.
+bool run_alike(const GoalLine& a, const GoalLine& b, double ahead_m) {
+  for (double l_m = 0.0; l_m <= ahead_m; l_m += kCompareEvery_m) {
+    const double in_a_m = a.replanner.s_m() + l_m, in_b_m = b.replanner.s_m() + l_m;
+    if ((a.line.at(in_a_m).in_map - b.line.at(in_b_m).in_map).norm() > kAlike_m) return false;
+    const Corridor of_a = a.line.corridor_at(in_a_m), of_b = b.line.corridor_at(in_b_m);
+    if (std::abs(of_a.left_m - of_b.left_m) > kAlike_m ||
+        std::abs(of_a.right_m - of_b.right_m) > kAlike_m)
+      return false;
+  }
+  return true;
 }
 
 /// The slower, the nearer: a bend of a few metres wants paths that are no longer.
@@ -283,10 +297,15 @@ class Planner::Impl {
     if (all[best].answer.misses_goal) {
       add(scene, queries_in_other_lanes(on, question), all, best);
     }
+    std::vector<const GoalLine*> tried{&on};
     for (GoalLine& other : goal_lines_) {
       if (&other == &on || is_good(all[best])) continue;
       other.replanner.locate(scene.view.measured);
+      const double ahead_m = speed_.look_ahead_m(scene.view);
+      const auto is_like = [&](const GoalLine* one) { return run_alike(*one, other, ahead_m); };
+      if (std::ranges::any_of(tried, is_like)) continue;
       add(scene, first_queries(other, question), all, best);
+      tried.push_back(&other);
     }
   }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "roadbed/planning/behaviour/path_speed_limits.h"
+#include "roadbed/planning/behaviour/remaining_cost.h"
 #include "roadbed/planning/behaviour/state_table.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -52,6 +53,7 @@ class Search {
       responses_.push_back({t, decay, lag * (1.0 - decay), lag * (t - lag * (1.0 - decay))});
     }
     drive_.resize(responses_.size());
+    remaining_.emplace(question, options, layer_s(), layers_ * layer_s());
     ends_within_horizon_ = goal_ends_within_horizon();
     for (int layer = 0; layer < layers_; ++layer) may_reach_.push_back(may_reach_goal_in(layer));
     for (const double fraction : {-1.0, -0.7, -0.45, -0.25, -0.1, 0.0, 0.1, 0.25, 0.45, 0.7, 1.0}) {
@@ -102,6 +104,8 @@ class Search {
     }
   };
 
+  double layer_s() const { return kSubstep_s * substeps_; }
+
   double wanted_mps(double ahead_m) const {
     return std::min(q_.most_wanted_mps, speeds_.wanted_mps(ahead_m));
   }
@@ -116,48 +120,59 @@ class Search {
   /// Drives one layer on with a constant command; keeps the end if it is the best of its cell.
   /// Whether anything is touched on the way is asked last: most ends are not the best anyway.
   void follow(int index, const Node& from, double command) {
-    move(from, command);
+    const bool rests = may_rest(from, command);
+    if (rests) move(from, command);
+    const Motion end = rests ? drive_.back() : motion_at(responses_.back(), from, command);
     Node to = from;
     to.parent = index;
     to.layer = from.layer + 1;
     to.is_done = false;
     to.command_mps2 = command;
-    to.ahead_m = drive_.back().ahead_m;
-    to.speed_mps = drive_.back().speed_mps;
-    to.acceleration_mps2 = drive_.back().acceleration_mps2;
+    to.ahead_m = end.ahead_m;
+    to.speed_mps = end.speed_mps;
+    to.acceleration_mps2 = end.acceleration_mps2;
     const auto key = key_of(to);
     if (!key) return;
     StateTable::Cell& cell = cells_.at(*key);
     const double bend_mps = bend_excess_mps(to), own_cost = cost_of(to, bend_mps);
     const double change = command - from.command_mps2;
     const auto with = [&](double nearness_cost, double touch) {
-      return from.cost + (kSubstep_s * substeps_ * (own_cost + nearness_cost) +
-                          kChange * change * change + touch);
+      return from.cost +
+             (layer_s() * (own_cost + nearness_cost) + kChange * change * change + touch);
     };
     if (is_dearer(with(0.0, 0.0), cell, from)) return;
     const double nearness_cost = nearness(to, to.layer * substeps_);
-    if (is_dearer(with(nearness_cost, 0.0), cell, from) || !drives(to)) return;
+    if (is_dearer(with(nearness_cost, 0.0), cell, from)) return;
+    if (!rests) move(from, command);
+    if (!drives(to)) return;
     to.bend_excess_mps = std::max(from.bend_excess_mps, bend_mps);
     to.cost = with(nearness_cost, to.touched && !from.touched ? kTouchAfterGoal : 0.0);
     keep(to, to.reached ? cell.after_goal : cell.before_goal);
   }
 
+  /// Whether a drive may come to rest within a layer.
+  bool may_rest(const Node& from, double command) const {
+    const double least_mps2 = std::min({0.0, from.acceleration_mps2, command});
+    return from.speed_mps + least_mps2 * responses_.back().t_s <= 0.0;
+  }
+
+  /// Of one that goes on moving.
+  static Motion motion_at(const Response& r, const Node& from, double command) {
+    const double lagging = from.acceleration_mps2 - command;
+    return {from.ahead_m + from.speed_mps * r.t_s + 0.5 * command * r.t_s * r.t_s +
+                lagging * r.lag_square_s2,
+            from.speed_mps + command * r.t_s + lagging * r.lag_way_s, command + lagging * r.decay};
+  }
+
   /// Fills drive_.
   void move(const Node& from, double command) {
-    const double lagging = from.acceleration_mps2 - command;
     double last_m = from.ahead_m;
     for (std::size_t i = 0; i < drive_.size(); ++i) {
-      const Response& r = responses_[i];
-      Motion& to = drive_[i];
-      to.acceleration_mps2 = command + lagging * r.decay;
-      to.speed_mps = from.speed_mps + command * r.t_s + lagging * r.lag_way_s;
-      to.ahead_m = last_m;
+      Motion& to = drive_[i] = motion_at(responses_[i], from, command);
       if (to.speed_mps <= 0.0) {
-        to.speed_mps = to.acceleration_mps2 = 0.0;
+        to = {last_m, 0.0, 0.0};
       } else {
-        to.ahead_m =
-            std::max(last_m, from.ahead_m + from.speed_mps * r.t_s + 0.5 * command * r.t_s * r.t_s +
-                                 lagging * r.lag_square_s2);
+        to.ahead_m = std::max(last_m, to.ahead_m);
       }
       last_m = to.ahead_m;
     }
@@ -179,7 +194,8 @@ class Search {
     const bool hit = is_past || q_.occupancy.is_blocked(substep, at.ahead_m);
     if (hit && (q_.goals.empty() || !node.reached)) return false;
     node.touched = node.touched || hit;
-    if (!node.reached) look_at_goals(node, at, kSubstep_s * substep);
+    const bool may_reach = !node.reached && may_reach_[static_cast<std::size_t>(node.layer - 1)];
+    if (may_reach) look_at_goals(node, at, kSubstep_s * substep);
     return true;
   }
 
@@ -276,13 +292,22 @@ class Search {
       if (other.is_done || other.cost <= node.cost) return;
       other = node;
     }
-    const double rest = node.layer == layers_ ? missed_cost(node.miss) : least_missed_cost(node);
-    queue_.push({node.cost + (node.reached ? 0.0 : rest), kept});
+    queue_.push({node.cost + least_rest(node), kept});
+  }
+
+  /// What a state will at least cost yet.
+  double least_rest(const Node& node) const {
+    if (node.layer == layers_) return node.reached ? 0.0 : missed_cost(node.miss);
+    const SpeedSearchPlace at{layer_s() * node.layer, node.ahead_m, node.speed_mps,
+                              node.acceleration_mps2};
+    const double before_end = node.touched ? 0.0 : remaining_->before_end(at);
+    const double slow = q_.goals.empty() ? before_end : std::min(before_end, kTouchAfterGoal);
+    return std::max(slow, node.reached ? 0.0 : least_missed_cost(node, at));
   }
 
   bool goal_ends_within_horizon() const {
     return std::ranges::any_of(q_.goals, [&](const GoalAhead& goal) {
-      return goal.time_s.most <= kSubstep_s * substeps_ * layers_ + kTimeSlack_s;
+      return goal.time_s.most <= layer_s() * layers_ + kTimeSlack_s;
     });
   }
 
@@ -296,34 +321,11 @@ class Search {
   }
 
   /// Of all that a state may lead to: what it can reach by the strongest commands.
-  double least_missed_cost(const Node& node) const {
+  double least_missed_cost(const Node& node, const SpeedSearchPlace& at) const {
     double miss = node.miss;
-    for (const GoalAhead& goal : q_.goals) miss = std::min(miss, least_miss(node, goal));
+    for (const GoalAhead& goal : q_.goals)
+      miss = std::min(miss, remaining_->miss(at, goal, kTimeSlack_s));
     return missed_cost(miss);
-  }
-
-  double least_miss(const Node& node, const GoalAhead& goal) const {
-    const double t_s = kSubstep_s * substeps_ * node.layer;
-    const double last_s = goal.time_s.most + kTimeSlack_s - t_s;
-    if (last_s < 0.0) return std::numeric_limits<double>::infinity();
-    const double first_s = std::max(0.0, goal.time_s.least - kTimeSlack_s - t_s);
-    return std::max({0.0, goal.ahead_m.least - node.ahead_m - farthest_m(node, last_s),
-                     node.ahead_m + nearest_m(node, first_s) - goal.ahead_m.most});
-  }
-
-  /// No drive comes farther within a time.
-  double farthest_m(const Node& node, double within_s) const {
-    const double lag_s = options_.actuator_lag_s, most = options_.most_mps2;
-    const double lagging_s = lag_s * (1.0 - std::exp(-within_s / lag_s));
-    return node.speed_mps * within_s + 0.5 * most * within_s * within_s +
-           (std::max(0.0, node.acceleration_mps2) - most) * lag_s * (within_s - lagging_s);
-  }
-
-  /// Every drive comes as far within a time.
-  double nearest_m(const Node& node, double within_s) const {
-    const double least = std::min({-1e-3, options_.least_mps2, node.acceleration_mps2});
-    const double braking_s = std::min(within_s, node.speed_mps / -least);
-    return braking_s * (node.speed_mps + 0.5 * least * braking_s);
   }
 
   /// Of the states that came farthest, the slowest; of those the cheapest.
@@ -340,12 +342,12 @@ class Search {
     found.is_free = is_free;
     found.misses_goal = q_.goal_is_off_path || (!last.reached && ends_within_horizon_);
     found.reaches_goal = last.reached && !q_.goals.empty() && !q_.goal_is_off_path;
-    found.free_until_s = kSubstep_s * substeps_ * last.layer;
+    found.free_until_s = layer_s() * last.layer;
     found.bend_excess_mps = last.bend_excess_mps;
     if (is_free) found.cost = total(last) + (q_.goal_is_off_path ? kMissedGoal : 0.0);
     for (int i = end; i >= 0; i = nodes_[static_cast<std::size_t>(i)].parent) {
       const Node& node = nodes_[static_cast<std::size_t>(i)];
-      found.plan.push_back({kSubstep_s * substeps_ * node.layer, node.ahead_m, node.speed_mps,
+      found.plan.push_back({layer_s() * node.layer, node.ahead_m, node.speed_mps,
                             node.acceleration_mps2, node.command_mps2});
     }
     std::ranges::reverse(found.plan);
@@ -362,6 +364,7 @@ class Search {
   std::vector<Motion> drive_;  ///< of one command, by substep
   std::vector<double> commands_;
   std::vector<Node> nodes_;
+  std::optional<RemainingCost> remaining_;
   StateTable cells_;
   std::priority_queue<Waiting> queue_;
 };
