@@ -142,6 +142,16 @@ Plan PlanningCycle::plan(const SafetyMargins& margins, const EndOffsetRange& end
   return plan;
 }
 
+CandidateGrid PlanningCycle::judge(const SafetyMargins& margins, const EndOffsetRange& ends,
+                                   const Plan& plan, std::size_t length_stride) {
+  check(margins);
+  CandidateEvaluator& evaluator = impl_->evaluator;
+  const OffsetIndexRange offsets = offsets_within(evaluator.grid(), ends);
+  impl_->restart(margins, offsets);
+  const auto chosen_d_m = plan.chosen ? std::optional(plan.chosen->end_d_m) : std::nullopt;
+  return judge_grid(evaluator, {offsets, length_stride}, chosen_d_m);
+}
+
 Plan plan_path(const PlanInput& input, const geometry::VehicleShape& vehicle,
                const PlanOptions& options) {
   return PlanningCycle(input, vehicle, options).plan(margins_of(options));

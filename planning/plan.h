@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/lateral/candidate_grid.h"
 #include "roadbed/planning/lateral/plan_types.h"
 
 namespace roadbed::planning {
@@ -41,6 +42,11 @@ class PlanningCycle {
   /// @param ends  as a grid that reaches so far; Plan::candidates holds the whole one.
   /// @throws std::invalid_argument also if the grid has no such end.
   Plan plan(const SafetyMargins& margins, const EndOffsetRange& ends = {});
+
+  /// What became of the candidates of every `length_stride`-th length, with these margins and ends.
+  /// @param plan  that was found with them.
+  CandidateGrid judge(const SafetyMargins& margins, const EndOffsetRange& ends, const Plan& plan,
+                      std::size_t length_stride = KeptCandidates{}.length_stride);
 
  private:
   struct Impl;

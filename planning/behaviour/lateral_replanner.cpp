@@ -106,7 +106,7 @@ PlanOptions LateralReplanner::options_for(const Question& question, const Offset
   options.l_step_m = l_step_m;
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
-  options.keep_candidates = bounds_.keeps_candidates;
+  options.keep_stations = bounds_.keeps_candidates;
   if (!question.checks_completion) options.completion_horizon_s = 0.0;
   return options;
 }
@@ -137,8 +137,7 @@ std::shared_ptr<LateralReplanner::Cycles> LateralReplanner::cycles_for(
   return cycles;
 }
 
-// Questions with other offsets look at the same grids, unless candidates are kept: those are of one
-// question.
+// Questions with other offsets look at the same grids.
 LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
                                                      const Offsets& offsets,
                                                      bool may_leave_lanes) const {
@@ -153,8 +152,13 @@ LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
           cycles->inputs[level.brakes ? 1 : 0], vehicle_,
           options_for(question, shares_cycles() ? Offsets{} : offsets, level.l_step_m));
     }
-    last = {cycle->plan(level.margins, {offsets.least_m, offsets.most_m}),
-            std::max(0.0, -level.margins.border_margin_m), question.ends.most_m};
+    const EndOffsetRange ends{offsets.least_m, offsets.most_m};
+    last = {.plan = cycle->plan(level.margins, ends),
+            .beyond_the_edge_m = std::max(0.0, -level.margins.border_margin_m),
+            .checked_m = question.ends.most_m,
+            .margins = level.margins,
+            .ends = ends};
+    if (bounds_.keeps_candidates) last.cycle = {cycles, cycle.get()};
     const bool waits = !bounds_.squeezes_past && last.plan.meets_something();
     if (last.plan.chosen || waits) break;
   }
@@ -195,6 +199,10 @@ PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
 }
 
 void LateralReplanner::take(const Proposal& proposal) {
+  candidates_.reset();
+  if (proposal.cycle) {
+    candidates_ = proposal.cycle->judge(proposal.margins, proposal.ends, proposal.plan);
+  }
   cycles_.reset();  // they ask for the path so far
   plan_ = proposal.plan;
   beyond_the_edge_m_ = proposal.beyond_the_edge_m;

@@ -6,6 +6,7 @@
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/planning/plan.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -21,7 +22,7 @@ class LateralReplanner {
     /// Whether an obstacle in the way is a reason to relax the margins, and to try at a braking
     /// speed, or to wait.
     bool squeezes_past = false;
-    bool keeps_candidates = false;  ///< in the plan; every one is judged then
+    bool keeps_candidates = false;  ///< those of what is taken, see candidates()
   };
 
   /// @param line  to drive along, of the world.
@@ -54,6 +55,10 @@ class LateralReplanner {
     Plan plan;
     double beyond_the_edge_m = 0.0;
     double checked_m = 0.0;  ///< from the start on
+    /// What found it, and how, if candidates are kept; valid as long as the question is.
+    std::shared_ptr<PlanningCycle> cycle = nullptr;
+    SafetyMargins margins = {};
+    EndOffsetRange ends = {};
   };
 
   /// Where the vehicle is: the start of what is proposed until the next call.
@@ -78,6 +83,8 @@ class LateralReplanner {
 
   /// Of the last cycle; `chosen` is empty if nothing was feasible.
   const Plan& last_plan() const { return plan_; }
+  /// What became of the candidates of the last cycle, if they are kept.
+  const std::optional<CandidateGrid>& candidates() const { return candidates_; }
   bool from_measurement() const { return from_measurement_; }
 
   /// How far the body was allowed past the corridor's edge, because nothing keeps to it [m].
@@ -110,7 +117,7 @@ class LateralReplanner {
   LateralState start_state(const VehicleState& measured);
   std::vector<FallbackLevel> fallback_levels(const Question& question, bool may_leave_lanes) const;
   std::shared_ptr<Cycles> cycles_for(const Question& question) const;
-  bool shares_cycles() const { return bounds_.squeezes_past && !bounds_.keeps_candidates; }
+  bool shares_cycles() const { return bounds_.squeezes_past; }
   PlanInput input_for(const Question& question) const;
   PlanOptions options_for(const Question& question, const Offsets& offsets, double l_step_m) const;
   double held_until_m(const Plan& plan) const;
@@ -124,6 +131,7 @@ class LateralReplanner {
   LineView line_;
   LateralState start_;
   Plan plan_;
+  std::optional<CandidateGrid> candidates_;
   std::optional<PlannedPath> path_;
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;

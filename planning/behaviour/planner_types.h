@@ -34,7 +34,7 @@ struct PlannerOptions {
   double max_heading_error_rad = 0.15;
   /// Other vehicles are known only as could be at the time, not by their true future.
   bool predicts = false;
-  /// Each cycle keeps what became of its candidates; all of them are judged, which takes longer.
+  /// Each cycle keeps what became of its candidates, which takes longer.
   bool keeps_candidates = false;
 };
 

@@ -116,6 +116,13 @@ void CandidateEvaluator::set_margins(const SafetyMargins& margins) {
   collision_.set_clearance(margins.clearance_m);
   context_.half_width_m = 0.5 * vehicle_.width_m + margins.border_margin_m;
   context_.start_excess_m = start_excess_m();
+  for (std::vector<Station>& batch : stations_) {
+    for (Station& station : batch) {
+      const OffsetRange range = offsets_on_road(context_, station.l_m);
+      station.min_d_m = range.min_d_m;
+      station.max_d_m = range.max_d_m;
+    }
+  }
 }
 
 // How far the vehicle's body, or the full width at its rear axle, is outside the corridor now.

@@ -71,6 +71,7 @@ class CandidateEvaluator {
   const CycleContext& context() const { return context_; }
   const CollisionScene& scene() const { return scene_; }
   const CollisionChecker& collision() const { return collision_; }
+  const RoadBorder& border() const { return border_; }
 
   /// What is wrong with the start, that none of the candidates can help; empty if nothing is.
   std::string fault_of_start() const;
@@ -82,6 +83,10 @@ class CandidateEvaluator {
   /// Not kept.
   std::vector<Station> make_stations(std::size_t batch) const;
   const std::vector<Station>& stations(std::size_t batch);
+  /// One per station.
+  const std::vector<LinearPoint>& linear(std::size_t batch);
+  /// Stations of the longest batch that are farther than this are part of the drives of a length.
+  double past_end_from_m(double end_l_m) const;
 
   CandidateDrive drive(std::size_t index);
 
@@ -103,8 +108,6 @@ class CandidateEvaluator {
                                        std::span<const double> end_d_m, bool with_lengths);
   std::vector<CandidateBody> bodies_past_end(std::size_t batch, std::span<const double> end_d_m,
                                              double l_m, bool with_lengths);
-  double past_end_from_m(double end_l_m) const;
-  const std::vector<LinearPoint>& linear(std::size_t batch);
 
   const PlanInput& input_;
   const geometry::VehicleShape& vehicle_;

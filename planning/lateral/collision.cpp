@@ -154,7 +154,10 @@ struct CollisionChecker::Impl {
   std::optional<Contact> contact(std::size_t with, const std::vector<TrajectoryPoint>& drive,
                                  const std::vector<Segment>& segments, double rate_mps,
                                  double until_s, const Clearance& clearance) const;
+  std::optional<Contact> contact_with(std::size_t with, const std::vector<TrajectoryPoint>& drive,
+                                      const std::vector<Segment>& segments) const;
   bool is_clear_of_standing(std::size_t with, const Rectangle& cover, double enough_m) const;
+  bool is_far_from_occupied(const Rectangle& cover, double enough_m) const;
   Place follow(std::size_t with, const std::vector<Segment>& segments, Place from, double rate_mps,
                double slack_m) const;
 
@@ -282,6 +285,19 @@ bool CollisionChecker::Impl::is_clear_of_standing(std::size_t with, const Rectan
   return !scene.field->nearest(in_source(centre), shape, enough_m);
 }
 
+// By circles along the cover that stick out of it by an eighth of its half width.
+bool CollisionChecker::Impl::is_far_from_occupied(const Rectangle& cover, double enough_m) const {
+  const int count = static_cast<int>(std::ceil(2.0 * cover.half_length_m / cover.half_width_m));
+  const double part_m = cover.half_length_m / count;
+  const double radius_m = std::hypot(part_m, cover.half_width_m);
+  for (int i = 0; i < count; ++i) {
+    const double along_m = (2 * i + 1 - count) * part_m;
+    const Eigen::Vector2d centre = cover.centre + along_m * cover.axis + scene.origin_in_source;
+    if (scene.field->distance_bound_m(centre) - radius_m <= enough_m) return false;
+  }
+  return true;
+}
+
 double CollisionChecker::Impl::from_standing_m(const Moment& moment, double enough_m) const {
   double bound_m = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& centre : moment.circle_centres) {
@@ -344,32 +360,39 @@ CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = def
 
 std::optional<Contact> CollisionChecker::first_contact(
     const std::vector<TrajectoryPoint>& drive) const {
+  return first_contact(drive, things());
+}
+
+std::optional<Contact> CollisionChecker::first_contact(const std::vector<TrajectoryPoint>& drive,
+                                                       std::span<const std::size_t> things) const {
   if (drive.empty()) return std::nullopt;
   impl_->begin_at(drive.front());
-  const Impl& impl = *impl_;
-  const double for_ever = std::numeric_limits<double>::infinity();
-  const std::vector<Segment> segments = segments_of(drive, impl.vehicle.reach_m());
+  const std::vector<Segment> segments = segments_of(drive, impl_->vehicle.reach_m());
   std::optional<Contact> found;
-  if (!impl.standing.empty()) {
-    found = impl.contact(kStanding, drive, segments, 0.0, for_ever,
-                         [&](const Moment& moment, double enough_m) {
-                           return impl.from_standing_m(moment, enough_m);
-                         });
-  }
-  if (!found && impl.scene.field != nullptr) {
-    found = impl.contact(kOccupied, drive, segments, 0.0, for_ever,
-                         [&](const Moment& moment, double enough_m) {
-                           return impl.from_occupied_m(moment, enough_m);
-                         });
-  }
-  for (std::size_t i = 0; !found && i < impl.movers.size(); ++i) {
-    const Mover& mover = impl.movers[i];
-    found = impl.contact(kFirstMover + i, drive, segments, mover.rate_mps, mover.until_s,
-                         [&](const Moment& moment, double enough_m) {
-                           return impl.from_mover_m(moment, mover, enough_m);
-                         });
+  for (std::size_t i = 0; !found && i < things.size(); ++i) {
+    found = impl_->contact_with(things[i], drive, segments);
   }
   return found;
+}
+
+std::optional<Contact> CollisionChecker::Impl::contact_with(
+    std::size_t with, const std::vector<TrajectoryPoint>& drive,
+    const std::vector<Segment>& segments) const {
+  const double for_ever = std::numeric_limits<double>::infinity();
+  if (with == kStanding) {
+    return contact(with, drive, segments, 0.0, for_ever, [&](const Moment& at, double enough_m) {
+      return from_standing_m(at, enough_m);
+    });
+  }
+  if (with == kOccupied) {
+    return contact(with, drive, segments, 0.0, for_ever, [&](const Moment& at, double enough_m) {
+      return from_occupied_m(at, enough_m);
+    });
+  }
+  const Mover& mover = movers[with - kFirstMover];
+  return contact(
+      with, drive, segments, mover.rate_mps, mover.until_s,
+      [&](const Moment& at, double enough_m) { return from_mover_m(at, mover, enough_m); });
 }
 
 double CollisionChecker::distance_m(const Contact& other, const Rectangle& body, double t_s) const {
@@ -387,6 +410,33 @@ bool CollisionChecker::surely_hits(const Contact& other, const Rectangle& body, 
 
 bool CollisionChecker::is_empty() const {
   return impl_->standing.empty() && impl_->scene.field == nullptr && impl_->movers.empty();
+}
+
+std::vector<std::size_t> CollisionChecker::things() const {
+  std::vector<std::size_t> things;
+  if (!impl_->standing.empty()) things.push_back(kStanding);
+  if (impl_->scene.field != nullptr) things.push_back(kOccupied);
+  for (std::size_t i = 0; i < impl_->movers.size(); ++i) things.push_back(kFirstMover + i);
+  return things;
+}
+
+bool CollisionChecker::keeps_clear(std::size_t with, const Rectangle& cover, double from_t_s,
+                                   double to_t_s) const {
+  const double enough_m = impl_->options.clearance_m + impl_->options.tolerance_m + kSure_m;
+  if (with == kStanding) return impl_->standing.distance_m(cover) > enough_m;
+  if (with == kOccupied) return impl_->is_far_from_occupied(cover, enough_m);
+  const Mover& mover = impl_->movers[with - kFirstMover];
+  const double to_s = std::min(to_t_s, mover.until_s);
+  double t_s = from_t_s;
+  while (t_s <= to_s) {
+    const double slack_m = geometry::distance_m(cover, body_around(mover.centre_at(t_s),
+                                                                   mover.length_m, mover.width_m)) -
+                           enough_m;
+    if (slack_m < kSure_m) return false;
+    if (mover.rate_mps == 0.0) return true;
+    t_s += slack_m / mover.rate_mps;
+  }
+  return true;
 }
 
 void CollisionChecker::set_clearance(double clearance_m) {

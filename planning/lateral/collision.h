@@ -69,6 +69,10 @@ class CollisionChecker {
   /// What a drive comes too near to, and where; none if it is free.
   std::optional<Contact> first_contact(const std::vector<geometry::TrajectoryPoint>& drive) const;
 
+  /// The same of some things().
+  std::optional<Contact> first_contact(const std::vector<geometry::TrajectoryPoint>& drive,
+                                       std::span<const std::size_t> things) const;
+
   /// Distance of the vehicle's body at a time to what another drive came too near to; infinite
   /// where that is not looked at any more.
   double distance_m(const Contact& other, const geometry::Rectangle& body, double t_s) const;
@@ -81,6 +85,14 @@ class CollisionChecker {
 
   /// Whether there is nothing to come too near to.
   bool is_empty() const;
+
+  /// What there is to come too near to: as Contact::with.
+  std::vector<std::size_t> things() const;
+
+  /// Whether a body that is within a cover from one time to another surely is free of one of them.
+  /// `false` says nothing.
+  bool keeps_clear(std::size_t with, const geometry::Rectangle& cover, double from_t_s,
+                   double to_t_s) const;
 
   /// Another clearance from now on.
   void set_clearance(double clearance_m);

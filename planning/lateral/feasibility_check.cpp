@@ -31,22 +31,43 @@ Rejection FeasibilityCheck::at(std::size_t index) {
   }
   const Grid& grid = evaluator_.grid();
   if (const auto contact = evaluator_.collision().first_contact(drive.points)) {
-    remember(contact_place_m(drive, *contact), contact);
+    remember(drive, *contact);
     return Rejection::collision;
   }
   const bool leads_on = completion_.exists(grid.end_d_m(index), grid.end_l_m(index));
   return leads_on ? Rejection::none : Rejection::collision;
 }
 
-Rejection FeasibilityCheck::known(std::size_t index) {
+void FeasibilityCheck::remember(const CandidateDrive& drive, const Contact& contact) {
+  remember(contact_place_m(drive, contact), contact);
+}
+
+bool FeasibilityCheck::is_known_to_collide(std::size_t index) {
+  return std::ranges::any_of(places_,
+                             [&](Place& place) { return place.contact && is_among(place, index); });
+}
+
+bool FeasibilityCheck::collides(std::size_t index, const std::vector<std::size_t>& things) {
+  if (is_known_to_collide(index)) return true;
+  const CandidateDrive drive = evaluator_.drive(index);
+  const auto contact = evaluator_.collision().first_contact(drive.points, things);
+  if (contact) remember(drive, *contact);
+  return contact.has_value();
+}
+
+bool FeasibilityCheck::is_among(Place& place, std::size_t index) {
   const Grid& grid = evaluator_.grid();
   const std::size_t batch = index / grid.offset_count(), offset = index % grid.offset_count();
   const std::size_t block = offset / kSimdWidth, first_offset = block * kSimdWidth;
+  auto& who = place.who[batch * blocks_per_batch(grid) + block];
+  if (!who) who = who_fails(place, batch, first_offset);
+  return (*who >> (offset - first_offset) & 1) != 0;
+}
+
+Rejection FeasibilityCheck::known(std::size_t index) {
+  const Grid& grid = evaluator_.grid();
   for (Place& place : places_) {
-    auto& who = place.who[batch * blocks_per_batch(grid) + block];
-    if (!who) who = who_fails(place, batch, first_offset);
-    if ((*who >> (offset - first_offset) & 1) == 0) continue;
-    return place.contact ? Rejection::collision : Rejection::off_road;
+    if (is_among(place, index)) return place.contact ? Rejection::collision : Rejection::off_road;
   }
   return completion_.is_known_to_fail(grid.end_d_m(index), grid.end_l_m(index))
              ? Rejection::collision

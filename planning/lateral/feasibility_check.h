@@ -21,6 +21,15 @@ class FeasibilityCheck {
   /// First cause to reject a candidate of those that are checked here.
   Rejection at(std::size_t index);
 
+  /// Whether a candidate that keeps to the road comes too near to something.
+  /// @param things  of CollisionChecker::things(); the others are known to be far away.
+  bool collides(std::size_t index, const std::vector<std::size_t>& things);
+
+  /// Whether it surely does where others did; `false`: not known.
+  bool is_known_to_collide(std::size_t index);
+
+  ManeuverCompletion& completion() { return completion_; }
+
   /// A cause that a candidate surely fails for, as far as that is remembered: without the cost of
   /// a check. `none`: not known.
   Rejection known(std::size_t index);
@@ -34,6 +43,8 @@ class FeasibilityCheck {
         who;  // per block, a bit per offset; none: not looked at
   };
 
+  bool is_among(Place& place, std::size_t index);
+  void remember(const CandidateDrive& drive, const Contact& contact);
   void remember(double l_m, const std::optional<Contact>& contact);
   std::optional<double> edge_place_m(const CandidateDrive& drive) const;
   double contact_place_m(const CandidateDrive& drive, const Contact& contact) const;

@@ -145,6 +145,23 @@ ManeuverCompletion::ManeuverCompletion(const CycleContext& context, const Collis
                 .recovery_m = options.recovery_m,
                 .horizon_s = options.horizon_s}) {}
 
+std::vector<std::size_t> ManeuverCompletion::things() const {
+  return options_.horizon_s == 0.0 ? std::vector<std::size_t>{} : checker_.things();
+}
+
+bool ManeuverCompletion::keeps_clear(std::size_t thing,
+                                     const std::vector<LineStretch>& stretches) const {
+  return std::ranges::all_of(stretches, [&](const LineStretch& stretch) {
+    return checker_.keeps_clear(thing, stretch.cover, stretch.from_t_s,
+                                start_t_s_ + options_.horizon_s);
+  });
+}
+
+double ManeuverCompletion::stop_m() const {
+  const double speed_mps = context_.speed.at(0.0).speed_mps;
+  return 0.5 * speed_mps * speed_mps / options_.deceleration_mps2;
+}
+
 ManeuverCompletion::Place ManeuverCompletion::place_of(double end_d_m, double end_l_m) const {
   return {end_d_m, next_multiple(context_.start.s_m + end_l_m, kReachStep_m)};
 }

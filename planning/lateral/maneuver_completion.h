@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/lateral/candidates.h"
@@ -13,6 +14,12 @@
 #include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline lateral {
+
+/// A stretch of the line that some candidates may be on, or go on along later.
+struct LineStretch {
+  geometry::Rectangle cover;  ///< holds the body of each of them that is on it
+  double from_t_s;            ///< nobody is there before
+};
 
 /// A path beside a line: d, d′ and d″ at a station of it; may be empty.
 using LateralPath = std::function<LateralState(double s_m)>;
@@ -65,6 +72,17 @@ class ManeuverCompletion {
   /// @param context, vehicle  kept by reference.
   ManeuverCompletion(const CycleContext& context, const CollisionScene& scene,
                      const geometry::VehicleShape& vehicle, const Options& options);
+
+  /// What moves ahead, as CollisionChecker::things().
+  std::vector<std::size_t> things() const;
+
+  /// Whether one of them surely is far from where a body may be until a stop. Where all are, there
+  /// is a continuation. `false` says nothing.
+  /// @param stretches  of some ends, over stop_m() and more.
+  bool keeps_clear(std::size_t thing, const std::vector<LineStretch>& stretches) const;
+
+  /// How far the stop goes along the line, at most.
+  double stop_m() const;
 
   /// Of an end state. Each offset is looked at once per station that it is reached at.
   bool exists(double end_d_m, double end_l_m);

@@ -39,6 +39,7 @@ struct PlanOptions {
   bool limit_steering_rate = true;            ///< to what the vehicle's steering can do
   CostTerms weights = default_weights();
   bool keep_candidates = false;  ///< fill Plan::candidates, every one fully judged
+  bool keep_stations = false;    ///< for PlanningCycle::judge(), which is quicker then
   bool exhaustive = false;       ///< evaluate even what cannot be the cheapest; same answer
 };
 

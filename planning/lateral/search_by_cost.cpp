@@ -9,19 +9,6 @@
 namespace roadbed::planning::inline lateral {
 namespace {
 
-BatchConfig config_of(const CandidateEvaluator& evaluator) {
-  const PlanOptions& options = evaluator.options();
-  BatchConfig config{
-      .end_d_m = evaluator.grid().end_d_m(),
-      .weights = options.weights,
-      .frame = {},
-      .limits = driving_limits(evaluator.vehicle(), options.max_lateral_acceleration_mps2)};
-  if (options.limit_steering_rate) {
-    config.limits.max_steering_rate_radps = evaluator.vehicle().max_steering_rate_radps;
-  }
-  return config;
-}
-
 bool evaluates_all(const PlanOptions& options) {
   return options.exhaustive || options.keep_candidates;
 }
@@ -48,15 +35,31 @@ std::vector<double> least_costs(const CandidateEvaluator& evaluator) {
 
 }  // namespace
 
-CandidateSearch search_by_cost(const CandidateEvaluator& evaluator) {
+BatchConfig batch_config(const CandidateEvaluator& evaluator) {
+  const PlanOptions& options = evaluator.options();
+  BatchConfig config{
+      .end_d_m = evaluator.grid().end_d_m(),
+      .weights = options.weights,
+      .frame = {},
+      .limits = driving_limits(evaluator.vehicle(), options.max_lateral_acceleration_mps2)};
+  if (options.limit_steering_rate) {
+    config.limits.max_steering_rate_radps = evaluator.vehicle().max_steering_rate_radps;
+  }
+  return config;
+}
+
+CandidateSearch search_by_cost(CandidateEvaluator& evaluator) {
   const bool all = evaluates_all(evaluator.options());
   const auto make_batch = [&evaluator, all, points = kernel_points(evaluator),
-                           config = config_of(evaluator)](std::size_t batch) mutable {
+                           config = batch_config(evaluator)](std::size_t batch) mutable {
     const auto count = static_cast<std::size_t>(evaluator.options().points);
     const std::size_t first = all ? 0 : batch * count;
     config.frame = evaluator.frame(batch);
-    return CandidateBatch(evaluator.make_stations(batch), evaluator.family(batch), config,
-                          std::span(points.get() + first, count));
+    const std::span<KernelPoint> own_points(points.get() + first, count);
+    const QuinticFamily& family = evaluator.family(batch);
+    return evaluator.options().keep_stations
+               ? CandidateBatch(evaluator.stations(batch), family, config, own_points)
+               : CandidateBatch(evaluator.make_stations(batch), family, config, own_points);
   };
   return {evaluator.grid().offset_count(), least_costs(evaluator), make_batch, all};
 }
@@ -70,12 +73,16 @@ Candidate candidate_at(const CandidateEvaluator& evaluator, const CandidateSearc
           .rejection = search.rejections()[index]};
 }
 
+CostTerms terms_of(CandidateEvaluator& evaluator, std::size_t index) {
+  const std::size_t batch = index / evaluator.grid().offset_count();
+  const auto points = cost_points(evaluator.stations(batch), evaluator.quintic(index));
+  return points.empty() ? CostTerms{} : cost_terms(points, evaluator.frame(batch));
+}
+
 Candidate candidate_with_terms(CandidateEvaluator& evaluator, const CandidateSearch& search,
                                std::size_t index) {
   Candidate candidate = candidate_at(evaluator, search, index);
-  const std::size_t batch = index / evaluator.grid().offset_count();
-  const auto points = cost_points(evaluator.stations(batch), evaluator.quintic(index));
-  if (!points.empty()) candidate.terms = cost_terms(points, evaluator.frame(batch));
+  candidate.terms = terms_of(evaluator, index);
   return candidate;
 }
 

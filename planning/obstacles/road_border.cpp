@@ -22,7 +22,8 @@ RoadBorder::RoadBorder(const LineView& line, double from_s_m, double to_s_m) : f
     samples_.push_back({point.in_map,
                         {std::cos(point.heading_rad), std::sin(point.heading_rad)},
                         corridor.left_m,
-                        corridor.right_m});
+                        corridor.right_m,
+                        point.curvature_per_m});
   }
 }
 
@@ -38,6 +39,22 @@ double RoadBorder::excess_m(const geometry::Rectangle& body, double rear_overhan
     }
   }
   return excess_m;
+}
+
+RoadBorder::Room RoadBorder::least_room(double from_s_m, double to_s_m) const {
+  const double last = static_cast<double>(samples_.size() - 1);
+  const auto index = [&](double s_m) {
+    return static_cast<std::size_t>(std::clamp((s_m - from_s_m_) / kStep_m, 0.0, last));
+  };
+  const std::size_t end = std::min(index(to_s_m) + 2, samples_.size());
+  Room room{1e300, 1e300, 1e300, -1e300};
+  for (std::size_t i = index(from_s_m); i < end; ++i) {
+    room.left_m = std::min(room.left_m, samples_[i].left_m);
+    room.right_m = std::min(room.right_m, samples_[i].right_m);
+    room.least_curvature_per_m = std::min(room.least_curvature_per_m, samples_[i].curvature_per_m);
+    room.most_curvature_per_m = std::max(room.most_curvature_per_m, samples_[i].curvature_per_m);
+  }
+  return room;
 }
 
 // The last sample whose normal the point has passed, searched from a first guess.

@@ -19,10 +19,17 @@ class RoadBorder {
   /// the line's radius is 10 m.
   double excess_m(const geometry::Rectangle& body, double rear_overhang_m, double near_s_m) const;
 
+  /// What the corridor has at least beside the line between two stations, and how the line bends.
+  struct Room {
+    double left_m, right_m;
+    double least_curvature_per_m, most_curvature_per_m;
+  };
+  Room least_room(double from_s_m, double to_s_m) const;
+
  private:
   struct Sample {
     Eigen::Vector2d in_map, tangent;
-    double left_m, right_m;
+    double left_m, right_m, curvature_per_m;
   };
   double excess_of_point_m(const Eigen::Vector2d& point, double near_s_m) const;
   std::size_t sample_before(const Eigen::Vector2d& point, double near_s_m) const;

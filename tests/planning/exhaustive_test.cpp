@@ -331,6 +331,54 @@ TEST(PlanPath, LooksLazilyAtNothingThatAFullLookWouldChange) {
   }
 }
 
+const Candidate* cheapest_elsewhere(const std::vector<Candidate>& candidates, std::size_t stride,
+                                    std::size_t offsets, const std::optional<Candidate>& chosen) {
+  const Candidate* best = nullptr;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    if (candidate.rejection != Rejection::none || i / offsets % stride != 0) continue;
+    if (chosen && candidate.end_d_m == chosen->end_d_m) continue;
+    if (best == nullptr || candidate.cost < best->cost) best = &candidate;
+  }
+  return best;
+}
+
+// With moving obstacles every other scene asks for a completion of the maneuver too.
+TEST(PlanningCycle, JudgesTheCandidatesThatAreKeptAsEachOneByItself) {
+  constexpr std::size_t kStride = 2;
+  RejectionCounts seen{};
+  const std::uint32_t scenes = scene_count(300);
+  for (std::uint32_t seed = 3000; seed < 3000 + scenes; ++seed) {
+    Scene scene = random_scene(seed);
+    scene.options.d_step_m = 0.1;
+    if (seed % 2 == 0) scene.options.completion_horizon_s = 10.0;
+    const PlanInput input = scene.input();
+    const VehicleShape vehicle;
+    const SafetyMargins margins = margins_of(scene.options);
+    PlanningCycle cycle(input, vehicle, scene.options);
+    cycle.plan({-0.3, 0.1});  // margins of an earlier question leave nothing behind
+    const Plan plan = cycle.plan(margins);
+    const CandidateGrid grid = cycle.judge(margins, {}, plan, kStride);
+    scene.options.keep_candidates = true;
+    const std::vector<Candidate> all = plan_path(input, vehicle, scene.options).candidates;
+    const std::size_t offsets = grid.end_d_m.size();
+    ASSERT_EQ(grid.causes.size(), offsets * ((all.size() / offsets + kStride - 1) / kStride));
+    for (std::size_t i = 0; i < grid.causes.size(); ++i) {
+      const Candidate& one = all[i / offsets * kStride * offsets + i % offsets];
+      ++seen[static_cast<std::size_t>(one.rejection)];
+      ASSERT_EQ(static_cast<Rejection>(grid.causes[i]), one.rejection)
+          << "seed " << seed << ", d_e " << one.end_d_m << ", l_e " << one.end_l_m;
+    }
+    const Candidate* second = cheapest_elsewhere(all, kStride, offsets, plan.chosen);
+    ASSERT_EQ(grid.runner_up.has_value(), second != nullptr) << "seed " << seed;
+    if (second == nullptr) continue;
+    EXPECT_NEAR(grid.runner_up->cost, second->cost, 1e-9 * second->cost) << "seed " << seed;
+  }
+  for (const Rejection cause : {Rejection::none, Rejection::off_road, Rejection::collision}) {
+    EXPECT_GT(seen[static_cast<std::size_t>(cause)], 10 * scenes) << to_string(cause);
+  }
+}
+
 TEST(PlanPath, TermsAreThoseOfTheSlowEvaluation) {
   for (std::uint32_t seed = 2000; seed < 2030; ++seed) {
     Scene scene = random_scene(seed);

@@ -125,7 +125,7 @@ std::vector<tools::DriveCycle> cycles_of(const geometry::Trajectory& drive) {
       cycle.path.push_back(drive.at(cycle.t_s + ahead_s).pose().position());
     }
     cycle.chosen = planning::Candidate{.end_d_m = 0.4, .end_l_m = 22.0, .terms = {0.1, 0.2}};
-    cycle.grid = tools::CandidateGrid{
+    cycle.grid = planning::CandidateGrid{
         .end_d_m = {-0.1, 0.0, 0.1},
         .end_l_m = {15.0, 30.0},
         .causes = {0, 0, 1, 5, 5, 0},

@@ -185,7 +185,7 @@ Json coded_runs(const std::vector<std::uint8_t>& causes) {
   return runs;
 }
 
-Json coded_grid(const std::optional<CandidateGrid>& grid) {
+Json coded_grid(const std::optional<planning::CandidateGrid>& grid) {
   if (!grid || grid->end_d_m.empty() || grid->end_l_m.empty()) return nullptr;
   const auto axis = [](const std::vector<double>& ends) {
     return Json{ends.front(), ends.back(), ends.size()};

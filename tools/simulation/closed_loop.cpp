@@ -154,7 +154,7 @@ class ClosedLoop {
                      .from_measurement = replanner().from_measurement() && !drive_.cycles.empty(),
                      .chosen = replanner().last_plan().chosen,
                      .start = replanner().last_plan().start,
-                     .grid = candidate_grid(replanner().last_plan()),
+                     .grid = replanner().candidates(),
                      .plan_reason = replanner().last_plan().reason,
                      .beyond_the_edge_m = replanner().beyond_the_edge_m(),
                      .lead = command_.lead};

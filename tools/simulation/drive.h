@@ -10,6 +10,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/behaviour/planner_types.h"
+#include "roadbed/planning/lateral/candidate_grid.h"
 #include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
@@ -19,18 +20,6 @@ namespace roadbed::tools::inline simulation {
 // What a closed-loop drive left behind, as plain data. Coordinates are the source's raw ones [m],
 // times are seconds of the drive.
 
-/// What became of each candidate of a planning cycle, small enough to be kept for every cycle.
-struct CandidateGrid {
-  std::vector<double> end_d_m, end_l_m;  ///< ascending
-  std::vector<std::uint8_t> causes;      ///< planning::Rejection per candidate, d fastest
-  /// The cheapest feasible candidate that ends at another offset than the chosen one.
-  std::optional<planning::Candidate> runner_up;
-};
-
-/// @param row_stride  of the lengths, only every so many-th is kept.
-/// None if the plan kept no candidates.
-std::optional<CandidateGrid> candidate_grid(const planning::Plan& plan, std::size_t row_stride = 3);
-
 /// One planning cycle, every 0.1 s.
 struct DriveCycle {
   double t_s = 0.0;
@@ -38,10 +27,10 @@ struct DriveCycle {
   std::string reason = {};        ///< "car p1 is 22.4 m ahead"
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
-      {};                                  ///< none: nothing feasible, the last path is kept
-  planning::LateralState start = {};       ///< of the candidates
-  std::optional<CandidateGrid> grid = {};  ///< if candidates are kept
-  std::string plan_reason = {};            ///< why nothing was feasible
+      {};                             ///< none: nothing feasible, the last path is kept
+  planning::LateralState start = {};  ///< of the candidates
+  std::optional<planning::CandidateGrid> grid = {};  ///< if candidates are kept
+  std::string plan_reason = {};                      ///< why nothing was feasible
   double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<planning::DriveLead> lead = {};
