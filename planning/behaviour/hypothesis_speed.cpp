@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/planning/behaviour/cruise_forecast.h"
+#include "roadbed/planning/behaviour/goal_reach.h"
 #include "roadbed/planning/behaviour/goals_on_path.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -75,6 +76,13 @@ void HypothesisSpeed::search(const PlanningScene& scene, const RiskLevel& risk_l
   hypothesis.risk_level = &risk_level;
   hypothesis.cost = hypothesis.answer.cost + kBesideCost * beside_m(hypothesis);
   hypothesis.by_cruise_law = false;
+}
+
+bool HypothesisSpeed::may_reach_goal(const PlanningScene& scene, const RiskLevel& risk_level,
+                                     const ManeuverHypothesis& hypothesis) const {
+  const StGraph occupancy(hypothesis.profile, scene.bodies, risk_level.margin_m);
+  return planning::may_reach_goal(question_of(scene, hypothesis, occupancy),
+                                  risk_level.speed.most_mps2);
 }
 
 void HypothesisSpeed::set_occupancy(const PlanningScene& scene, double margin_m,

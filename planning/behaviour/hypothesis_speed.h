@@ -41,6 +41,10 @@ class HypothesisSpeed {
   void search(const PlanningScene& scene, const RiskLevel& risk_level,
               ManeuverHypothesis& hypothesis) const;
 
+  /// Whether some speed at that level could lead to the goal; see goal_reach.h.
+  bool may_reach_goal(const PlanningScene& scene, const RiskLevel& risk_level,
+                      const ManeuverHypothesis& hypothesis) const;
+
   /// Whether the time in which the goal could have been reached is over.
   bool goal_is_past(double t_s) const;
 

@@ -256,19 +256,28 @@ class Planner::Impl {
                                      const LateralReplanner::Question& question,
                                      const PassingDecision& passing) {
     std::vector<ManeuverHypothesis> all;
-    const std::span<const RiskLevel> levels =
-        task_.goal ? std::span<const RiskLevel>(kInTime) : std::span<const RiskLevel>(kOnRoute);
     std::size_t best = 0;
     add(scene, first_queries(goal_line(), question, passing), all, best);
+    const bool is_too_near = all[best].answer.free_until_s == 0.0;  // already, on any path
+    if (task_.goal && is_too_near) search_at_levels(scene, all, best);
     if (task_.goal && !is_good(all[best])) add_others(scene, question, all, best);
+    search_at_levels(scene, all, best);
+    return std::move(all[best]);
+  }
+
+  /// Once one is drivable, only those are searched on whose goal some speed could still reach.
+  void search_at_levels(const PlanningScene& scene, std::vector<ManeuverHypothesis>& all,
+                        std::size_t& best) {
+    const std::span<const RiskLevel> levels =
+        task_.goal ? std::span<const RiskLevel>(kInTime) : std::span<const RiskLevel>(kOnRoute);
     for (const RiskLevel& level : levels) {
       for (std::size_t i = 0; i < all.size() && !is_good(all[best]); ++i) {
         if (all[i].risk_level == &level) continue;
+        if (is_drivable(all[best]) && !speed_.may_reach_goal(scene, level, all[i])) continue;
         speed_.search(scene, level, all[i]);
         if (is_better(all[i], all[best])) best = i;
       }
     }
-    return std::move(all[best]);
   }
 
   std::vector<PathQuery> first_queries(GoalLine& on, const LateralReplanner::Question& question,

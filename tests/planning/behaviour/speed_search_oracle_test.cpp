@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/planning/behaviour/goal_reach.h"
 #include "roadbed/planning/behaviour/speed_search.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -283,6 +284,31 @@ TEST(SpeedSearchOracle, GoalThatCanBeMetIsMetAtNoHigherCost) {
   }
   EXPECT_GT(met, 5);
   EXPECT_GT(missed, 5);
+}
+
+TEST(SpeedSearchOracle, GoalThatIsReachedIsOneThatMayBe) {
+  std::mt19937 random(14);
+  int reached = 0, excluded = 0;
+  for (int i = 0; i < 300; ++i) {
+    SearchScene scene = random_search_scene(random, true);
+    scene.goals.front().ahead_m.most += 20.0;
+    const planning::StGraph occupancy(scene.way, true_traffic(scene.world), 0.0, 100, 0.3);
+    const planning::SpeedSearchQuestion question{.profile = scene.way,
+                                                 .occupancy = occupancy,
+                                                 .speed_mps = scene.speed_mps,
+                                                 .acceleration_mps2 = scene.acceleration_mps2,
+                                                 .horizon_s = scene.horizon_s,
+                                                 .end_m = scene.end_m,
+                                                 .goals = scene.goals};
+    const planning::SpeedSearchOptions options;
+    const bool may_be = planning::may_reach_goal(question, options.most_mps2);
+    const bool is = planning::search_speed(question, options).reaches_goal;
+    EXPECT_TRUE(may_be || !is) << "scene " << i;
+    reached += is;
+    excluded += !may_be;
+  }
+  EXPECT_GT(reached, 20);
+  EXPECT_GT(excluded, 50);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "roadbed/planning/behaviour/speed_search.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Whether any speed could lead to one of a question's goals: where nobody is in the way all the
+/// time up to then, and as fast as the strongest command allows, however it changes. False means
+/// that the search finds nothing either; true, that it may. True also where no goal is asked for.
+bool may_reach_goal(const SpeedSearchQuestion& question, double most_mps2);
+
+}  // namespace roadbed::planning::behaviour
