@@ -16,6 +16,7 @@ namespace {
 constexpr int kLeastIterations = 4;  // until the parameters have settled
 constexpr int kMostIterations = 40;
 constexpr double kAim = 0.9;         // of the tolerance, so that the last bit does not take long
+constexpr double kMostLength = 2.0;  // of a curve to its line's
 constexpr double kMostWeight = 1e4;  // beyond it the equations lose their digits
 constexpr double kWiderScale = 3.0;  // of the scale: detail of wider stretches is smoothed away
 constexpr double kMostKnotsPerScale = 4.0;
@@ -109,8 +110,10 @@ class Fit {
     }
     auto solution = std::move(problem).solve();
     if (!solution) return false;
+    SmoothCurve curve(*solution, knot_distance());
+    if (!(curve.length_m() < kMostLength * length_m_)) return false;  // the digits were lost
     control_points_ = std::move(*solution);
-    curve_ = SmoothCurve(control_points_, knot_distance());
+    curve_ = std::move(curve);
     return true;
   }
 

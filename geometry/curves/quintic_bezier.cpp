@@ -39,6 +39,15 @@ void check_leg(double leg_m, const CornerGaps& gaps) {
   }
 }
 
+// Control point i = 0, 1, 2 of a leg that runs along a heading. B″ = 20 (P2 − 2 P1 + P0) is across
+// it, and κ = B′ × B″ / |B′|³ with B′ = 5 (P1 − P0).
+Eigen::Vector2d on_leg(const CurvePoint& end, double gap_m, int i) {
+  const Eigen::Vector2d along(std::cos(end.heading_rad), std::sin(end.heading_rad));
+  const Eigen::Vector2d left(-along.y(), along.x());
+  const double across_m = i == 2 ? 1.25 * end.curvature_per_m[0] * gap_m * gap_m : 0.0;
+  return end.position + i * gap_m * along + across_m * left;
+}
+
 }  // namespace
 
 CornerGaps scaled_to(const CornerGaps& gaps, double total_m) {
@@ -54,6 +63,17 @@ QuinticBezier QuinticBezier::corner(const Eigen::Vector2d& w1, const Eigen::Vect
   const double near_m = gaps.corner_m, middle_m = near_m + gaps.second_m, far_m = gaps.total_m();
   return QuinticBezier({w2 + far_m * back, w2 + middle_m * back, w2 + near_m * back,
                         w2 + near_m * ahead, w2 + middle_m * ahead, w2 + far_m * ahead});
+}
+
+QuinticBezier QuinticBezier::joining(const CurvePoint& from, double from_gap_m,
+                                     const CurvePoint& to, double to_gap_m) {
+  if (!(from_gap_m > 0.0) || !(to_gap_m > 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("QuinticBezier: gaps must be positive, got {} and {} m", from_gap_m, to_gap_m));
+  }
+  return QuinticBezier({on_leg(from, from_gap_m, 0), on_leg(from, from_gap_m, 1),
+                        on_leg(from, from_gap_m, 2), on_leg(to, -to_gap_m, 2),
+                        on_leg(to, -to_gap_m, 1), on_leg(to, -to_gap_m, 0)});
 }
 
 Eigen::Vector2d QuinticBezier::derivative(double t, int order) const {

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "roadbed/geometry/curves/curve_table.h"
+
 namespace roadbed::geometry::inline curves {
 
 /// Gaps between the control points on each leg of a corner, from the leg towards the corner:
@@ -42,6 +44,12 @@ class QuinticBezier {
   ///         positive.
   static QuinticBezier corner(const Eigen::Vector2d& w1, const Eigen::Vector2d& w2,
                               const Eigen::Vector2d& w3, const CornerGaps& gaps = kPaperGaps);
+
+  /// From one place of a curve to another one, with the position, heading and curvature of both, as
+  /// a corner between curved legs asks for. The first two gaps of each leg are equal.
+  /// @throws std::invalid_argument if a gap is not positive.
+  static QuinticBezier joining(const CurvePoint& from, double from_gap_m, const CurvePoint& to,
+                               double to_gap_m);
 
   const std::array<Eigen::Vector2d, 6>& control_points() const { return control_points_; }
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/planning/reference/bezier_places.h"
 
 namespace roadbed::planning::inline reference {
 namespace {
@@ -18,42 +20,7 @@ using geometry::VehicleShape;
 
 constexpr double kLongest_m = 40.0;
 constexpr int kLengths = 60, kProportions = 40;
-constexpr double kPlaceStep_m = 0.2;
 constexpr double kTurnsBack = 0.99;  // cosine of the angle between the segments
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// A place on the curve; κ′ by the derivatives of the curve, not by differences.
-struct Place {
-  geometry::Pose2 pose;
-  double curvature_per_m, rate_per_m2;
-};
-
-Place place_at(const QuinticBezier& curve, double t) {
-  const Vector2d p = curve.at(t), p1 = curve.derivative(t, 1), p2 = curve.derivative(t, 2),
-                 p3 = curve.derivative(t, 3);
-  const double squared = p1.squaredNorm(), speed = std::sqrt(squared);
-  const double turn = cross(p1, p2), curvature = turn / (squared * speed);
-  // d/dt (turn / speed³), by arc length.
-  const double rate = (cross(p1, p3) - 3.0 * turn * p1.dot(p2) / squared) / (squared * squared);
-  return {{p.x(), p.y(), std::atan2(p1.y(), p1.x())}, curvature, rate};
-}
-
-// Near enough to each other that those of the curve times `scale` are kPlaceStep_m apart at most:
-// the parameter's speed is at most that of the control polygon's longest side, five times over.
-std::vector<Place> places_on(const QuinticBezier& curve, double scale) {
-  const auto& control = curve.control_points();
-  double longest_m = 0.0;
-  for (std::size_t i = 0; i + 1 < control.size(); ++i) {
-    longest_m = std::max(longest_m, (control[i + 1] - control[i]).norm());
-  }
-  const int count = static_cast<int>(std::ceil(5.0 * longest_m * scale / kPlaceStep_m));
-  std::vector<Place> places;
-  for (int i = 0; i <= count; ++i) {
-    places.push_back(place_at(curve, static_cast<double>(i) / count));
-  }
-  return places;
-}
 
 bool holds(const std::vector<Vector2d>& ring, const Vector2d& point) {
   bool inside = false;
@@ -68,7 +35,7 @@ bool holds(const std::vector<Vector2d>& ring, const Vector2d& point) {
 
 bool cross_each_other(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
   const auto side = [](const Vector2d& from, const Vector2d& to, const Vector2d& point) {
-    return cross(to - from, point - from) > 0.0;
+    return geometry::cross(to - from, point - from) > 0.0;
   };
   return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
 }
@@ -103,7 +70,7 @@ double room_of(const CornerQuestion& question) {
 // falls with the length, the rate with its square.
 struct Shape {
   CornerGaps unit;
-  std::vector<Place> places;  // of the curve with `unit`, the corner in the origin
+  std::vector<BezierPlace> places;  // of the curve with `unit`, the corner in the origin
   double peak_curvature = 0.0, peak_rate = 0.0;
 };
 
@@ -111,9 +78,9 @@ Shape shape_of(const CornerQuestion& question, double first_fraction, double roo
   const Vector2d back = (question.before - question.at).normalized();
   const Vector2d ahead = (question.after - question.at).normalized();
   Shape shape{.unit = {first_fraction, first_fraction, 1.0 - 2.0 * first_fraction}, .places = {}};
-  shape.places = places_on(
+  shape.places = dense_places_on(
       QuinticBezier::corner(2.0 * back, Vector2d(0.0, 0.0), 2.0 * ahead, shape.unit), room_m);
-  for (const Place& place : shape.places) {
+  for (const BezierPlace& place : shape.places) {
     shape.peak_curvature = std::max(shape.peak_curvature, std::abs(place.curvature_per_m));
     shape.peak_rate = std::max(shape.peak_rate, std::abs(place.rate_per_m2));
   }
@@ -123,7 +90,7 @@ Shape shape_of(const CornerQuestion& question, double first_fraction, double roo
 double peak_steering_radps(const Shape& shape, double total_m, double speed_mps,
                            double wheelbase_m) {
   double peak = 0.0;
-  for (const Place& place : shape.places) {
+  for (const BezierPlace& place : shape.places) {
     const double tangent = wheelbase_m * place.curvature_per_m / total_m;
     const double rate_per_m2 = std::abs(place.rate_per_m2) / (total_m * total_m);
     peak = std::max(peak, wheelbase_m * speed_mps * rate_per_m2 / (1.0 + tangent * tangent));

@@ -65,4 +65,11 @@ Corridor room_beside(const map::RoadMap& road_map, LaneId lane, double fraction,
           limit_mps && *limit_mps > 0.0 ? *limit_mps : default_speed_mps};
 }
 
+Corridor room_in_lane(const map::RoadMap& road_map, LaneId lane, double fraction,
+                      const geometry::CurvePoint& point, bool reversed) {
+  const Edge edge{&road_map.lane(lane), !reversed};
+  return {distance_m(edge, fraction, Side::left, point),
+          distance_m(edge, fraction, Side::right, point), 0.0};
+}
+
 }  // namespace roadbed::planning::reference

@@ -26,11 +26,10 @@ struct ReferenceLineOptions {
   double default_speed_mps = 50.0 / 3.6;
   double extend_m = 30.0;  ///< how far the line goes on past the goal
   /// Who is to drive along it. Corners of way-points are rounded for it at the speed below (none:
-  /// by 14 m); bends of a route that it cannot steer are drawn wider, as far as its body keeps to
-  /// the road, and what remains is noted.
+  /// by 14 m); bends of a route that it cannot steer are rounded as far as its body has the room,
+  /// and what remains is noted.
   std::optional<geometry::VehicleShape> corner_vehicle = std::nullopt;
   double corner_speed_mps = 0.0;
-  double max_widening_m = 1.2;  ///< of such bends: the largest move of theirs
 };
 
 /// A smooth line to drive along: position, heading, κ, κ′, κ″, κ‴ and κ⁗ are continuous and exact
@@ -69,8 +68,8 @@ class ReferenceLine {
   /// Largest distance of a way-point that is no corner, or of the centreline, from the line [m].
   double largest_move_m() const;
 
-  /// Corners of way-points, and stretches of a route, that cannot be driven as asked, or are drawn
-  /// wider so that they can; a line of text for each.
+  /// Corners of way-points, and stretches of a route, that cannot be driven as asked; a line
+  /// of text for each.
   const std::vector<std::string>& notes() const;
 
  private:

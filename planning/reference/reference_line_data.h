@@ -37,4 +37,8 @@ Corridor room_beside(const map::RoadMap& road_map, map::LaneId lane, double frac
                      const geometry::CurvePoint& point, double default_speed_mps,
                      bool reversed = false);
 
+/// The same of the lane alone, whoever may cross its markings.
+Corridor room_in_lane(const map::RoadMap& road_map, map::LaneId lane, double fraction,
+                      const geometry::CurvePoint& point, bool reversed = false);
+
 }  // namespace roadbed::planning::reference

@@ -20,6 +20,8 @@
 namespace roadbed::tools::inline commands {
 namespace {
 
+constexpr double kOffRoad_m = 0.05;  // of the body; less still is on the road
+
 void append_row(fmt::memory_buffer& text, const map::RoadMap& road_map,
                 const planning::ReferenceLine& line, double s_m) {
   const planning::ReferencePoint point = line.at(s_m);
@@ -107,9 +109,14 @@ class ReferenceCommand : public Command {
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
     map::write_output(output_, line_csv(road_map, line, step_m_));
     if (!common.quiet) {
-      for (const std::string& note : line.notes()) fmt::print(streams.err, "note: {}\n", note);
       const planning::LineDriving driving = planning::driving_along(
-          line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}), {});
+          line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}),
+          [&](const Eigen::Vector2d& place) {
+            return !options.corner_vehicle || road_map.on_surface(place, kOffRoad_m);
+          });
+      for (const auto& notes : {line.notes(), planning::notes_on(driving.leaves)}) {
+        for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
+      }
       fmt::print(streams.err,
                  "{}: {:.1f} m, peak curvature {:.3f} 1/m at {:.0f} m, of its rate {:.3f} 1/m² at "
                  "{:.0f} m, at most {:.2f} m off the centreline\n",

@@ -181,7 +181,8 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   ProblemRoutes routes = routes_of(source, start, speed_mps, scenario.vehicle, goal);
   const planning::ReferenceLineOptions line_options{
       .default_speed_mps = usual_speed_mps(speed_mps, goal, routes.best.length_m),
-      .extend_m = kBeyondGoal_m};
+      .extend_m = kBeyondGoal_m,
+      .corner_vehicle = scenario.vehicle};
   planning::ReferenceLine line =
       planning::ReferenceLine::along(road_map, routes.best, line_options);
   scenario.lights = lights_of(from, problem.initial_state.time_step.least);

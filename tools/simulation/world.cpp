@@ -165,7 +165,7 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
   Route route = route_or_refuse(
       scenario, road_map,
       {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
-  ReferenceLine line = ReferenceLine::along(road_map, route);
+  ReferenceLine line = ReferenceLine::along(road_map, route, {.corner_vehicle = scenario.vehicle});
   const ObstacleMaker maker(scenario, road_map);
   std::vector<Obstacle> obstacles;
   std::vector<LaneDriver> drivers;

@@ -50,6 +50,25 @@ TEST(QuinticBezier, EachDerivativeIsTheSlopeOfTheOneBefore) {
   }
 }
 
+// Heading and curvature of chords beside an end of the curve, by positions alone.
+TEST(QuinticBezier, JoinsPlacesWithTheirHeadingsAndCurvatures) {
+  const CurvePoint from{.position = {1.0, 2.0}, .heading_rad = 0.3, .curvature_per_m = {0.08}};
+  const CurvePoint to{.position = {12.0, 9.0}, .heading_rad = 1.2, .curvature_per_m = {-0.05}};
+  const QuinticBezier curve = QuinticBezier::joining(from, 2.5, to, 3.5);
+  EXPECT_EQ(curve.at(0.0), from.position);
+  EXPECT_EQ(curve.at(1.0), to.position);
+  const double h = 1e-3;
+  for (const CurvePoint* end : {&from, &to}) {
+    const double t = end == &from ? 0.0 : 1.0;
+    const Eigen::Vector2d a = curve.at(t - h), b = curve.at(t), c = curve.at(t + h);
+    EXPECT_NEAR(std::atan2(c.y() - a.y(), c.x() - a.x()), end->heading_rad, 1e-5);
+    const double turn =
+        std::atan2(c.y() - b.y(), c.x() - b.x()) - std::atan2(b.y() - a.y(), b.x() - a.x());
+    EXPECT_NEAR(turn / (0.5 * (c - a).norm()), end->curvature_per_m[0], 1e-4);
+  }
+  EXPECT_THROW(QuinticBezier::joining(from, 0.0, to, 1.0), std::invalid_argument);
+}
+
 struct Peaks {
   double curvature = 0.0, rate = 0.0;
   int humps = 0;
