@@ -227,6 +227,34 @@ std::uint64_t seed(const JsonNode& node) {
   return static_cast<std::uint64_t>(number);
 }
 
+ScenarioWayPoints way_points(const JsonNode& root, const JsonNode& list) {
+  ScenarioWayPoints way;
+  for (const JsonNode& node : not_empty(list)) way.places.push_back(place(node));
+  way.half_width_m = root.number_or("half_width_m", way.half_width_m, {0.1, 100.0});
+  way.speed_limit_mps = root.number_or("speed_limit_mps", way.speed_limit_mps, {0.3, 100.0});
+  if (const auto lights = root.find("lights")) {
+    lights->refuse("stands beside way_points", "a goal, on whose route lights are looked at",
+                   "remove one of the two");
+  }
+  return way;
+}
+
+void read_way(const JsonNode& root, Scenario& scenario) {
+  const auto list = root.find("way_points");
+  if (!list) {
+    for (const char* key : {"half_width_m", "speed_limit_mps"}) {
+      if (const auto node = root.find(key)) {
+        node->refuse("stands without way_points", "a line of way-points that it is of",
+                     "remove it, or give way_points in place of the goal");
+      }
+    }
+    scenario.goal = place(root.at("goal"));
+    return;
+  }
+  if (root.find("goal")) list->refuse("stands beside goal", "one of the two", "remove one");
+  scenario.way_points = way_points(root, *list);
+}
+
 void read_ego(const JsonNode& node, Scenario& scenario) {
   node.require_object({"start", "speed_mps"});
   scenario.start = place(node.at("start"));
@@ -261,15 +289,16 @@ bool is_random(const ScenarioNoise& noise) {
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
   const nlohmann::json document = parse_json_strictly(bytes, file.string());
   const JsonNode root(document, file.string());
-  root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "vehicle",
-                       "duration_s", "seed", "noise", "options", "lights", "obstacles"});
+  root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "way_points",
+                       "half_width_m", "speed_limit_mps", "vehicle", "duration_s", "seed", "noise",
+                       "options", "lights", "obstacles"});
   root.at("roadbed_scenario").number({1.0, 1.0});
   Scenario scenario;
   scenario.file = file;
   scenario.name = file.stem().string();
   scenario.map_file = beside(root.at("map"), file.parent_path());
   read_ego(root.at("ego"), scenario);
-  scenario.goal = place(root.at("goal"));
+  read_way(root, scenario);
   scenario.duration_s = root.at("duration_s").number(kDuration);
   read_optional_parts(root, scenario);
   return scenario;

@@ -23,6 +23,13 @@ struct ScenarioPlace {
   std::string pointer;  ///< JSON pointer of the text
 };
 
+/// A way of its own in place of a route, from the ego's start through all of them.
+struct ScenarioWayPoints {
+  std::vector<ScenarioPlace> places;  ///< at least one; the last one is the goal
+  double half_width_m = 1.75;         ///< room on both sides of the line
+  double speed_limit_mps = 50.0 / 3.6;
+};
+
 /// Stands for the whole scenario.
 struct ParkedObstacle {
   /// Pose of its centre in source coordinates, or a place on a lane with an offset to the left.
@@ -82,6 +89,7 @@ struct Scenario {
   std::filesystem::path map_file;                      ///< resolved against the scenario's folder
   std::vector<std::filesystem::path> occupancy_files;  ///< the same; empty: no occupancy
   ScenarioPlace start, goal;
+  std::optional<ScenarioWayPoints> way_points;  ///< in place of the goal
   double start_speed_mps = 0.0;
   geometry::VehicleShape vehicle;
   double duration_s = 60.0;

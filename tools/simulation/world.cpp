@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
@@ -45,6 +46,63 @@ Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
            "choose another start or goal");
   }
   return *std::move(answer.route);
+}
+
+/// Where the ego goes along, and what it is a route of the map on; none of way-points.
+struct Course {
+  Route route;
+  ReferenceLine line;
+};
+
+Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const Place& start) {
+  // Without a heading the vehicle stands as its lane runs.
+  const bool against = start.sense == planning::Sense::against;
+  Route route = route_or_refuse(
+      scenario, road_map,
+      {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
+  ReferenceLine line = ReferenceLine::along(road_map, route, {.corner_vehicle = scenario.vehicle});
+  return {std::move(route), std::move(line)};
+}
+
+/// A point need not be on the road.
+Eigen::Vector2d way_point(const Scenario& scenario, const map::RoadMap& road_map,
+                          const ScenarioPlace& place) {
+  if (const auto in_source = parse_point(place.text)) return road_map.to_map(*in_source);
+  const Place found = find(scenario, road_map, place);
+  if (found.has_heading) {
+    refuse(scenario, place.pointer, "has a heading", "leave it out: a way-point has none");
+  }
+  return found.map_from_vehicle.position();
+}
+
+Course through_way_points(const Scenario& scenario, const map::RoadMap& road_map,
+                          const Place& start) {
+  const ScenarioWayPoints& way = *scenario.way_points;
+  if (2.0 * way.half_width_m < scenario.vehicle.width_m) {
+    refuse(scenario, "/half_width_m",
+           fmt::format("{} m to each side, less than half the vehicle's {} m", way.half_width_m,
+                       scenario.vehicle.width_m),
+           "make it wider");
+  }
+  std::vector<Eigen::Vector2d> points = {start.map_from_vehicle.position()};
+  for (const ScenarioPlace& place : way.places) {
+    points.push_back(way_point(scenario, road_map, place));
+  }
+  const double speed_mps = std::min(way.speed_limit_mps, scenario.options.desired_speed_mps);
+  try {
+    ReferenceLine line =
+        ReferenceLine::through(points, way.half_width_m, way.speed_limit_mps,
+                               {.corner_vehicle = scenario.vehicle, .corner_speed_mps = speed_mps});
+    const double turn_rad = line.at(0.0).heading_rad - start.map_from_vehicle.heading_rad;
+    if (std::cos(turn_rad) <= 0.0) {
+      refuse(scenario, way.places.front().pointer, "lies behind the vehicle",
+             "turn the vehicle with ego.start \"X,Y,HEADING\"");
+    }
+    return {{}, std::move(line)};
+  } catch (const std::invalid_argument& unusable) {
+    refuse(scenario, "/way_points", fmt::format("make no line: {}", unusable.what()),
+           "give distinct points, on a way that does not turn back on itself");
+  }
 }
 
 /// Makes obstacles of the scenario's; one instance per world.
@@ -160,12 +218,8 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
   auto kept_map = inputs.road_map(scenario.map_file);
   const map::RoadMap& road_map = *kept_map;
   const Place start = find(scenario, road_map, scenario.start);
-  // Without a heading the vehicle stands as its lane runs.
-  const bool against = start.sense == planning::Sense::against;
-  Route route = route_or_refuse(
-      scenario, road_map,
-      {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
-  ReferenceLine line = ReferenceLine::along(road_map, route, {.corner_vehicle = scenario.vehicle});
+  Course course = scenario.way_points ? through_way_points(scenario, road_map, start)
+                                      : along_route(scenario, road_map, start);
   const ObstacleMaker maker(scenario, road_map);
   std::vector<Obstacle> obstacles;
   std::vector<LaneDriver> drivers;
@@ -183,12 +237,12 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
   }
   refuse_unknown_signals(scenario, road_map);
   std::vector<planning::StopPoint> places =
-      planning::stop_points(road_map, route, line, scenario.lights);
+      planning::stop_points(road_map, course.route, course.line, scenario.lights);
   World world{{.kept_map = std::move(kept_map),
                .field = std::move(field),
                .start = start.map_from_vehicle,
-               .route = std::move(route),
-               .line = std::move(line),
+               .route = std::move(course.route),
+               .line = std::move(course.line),
                .obstacles = std::move(obstacles),
                .lights = scenario.lights,
                .stop_points = std::move(places)},

@@ -1,9 +1,12 @@
 // The scenarios of data/scenarios, each for one thing that traffic asks for.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -58,6 +61,58 @@ void expect_arrives(const Driven& driven, double clearance_m) {
   EXPECT_GE(driven.clearance_m(), clearance_m);
   EXPECT_EQ(driven.off_road_m(), 0.0);
   EXPECT_EQ(driven.first(planning::Behaviour::emergency), nullptr);
+}
+
+TEST(ScenarioDrives, WayPointsAreDrivenRoundTheirCornerPastWhatIsParked) {
+  const Driven d = driven("way_points");
+  expect_arrives(d, 0.29);
+  // The corner's legs are 88 m and 58 m long: rounded so that no speed is lost, away from it.
+  double nearest_m = 1e9, slowest_mps = 1e9;
+  for (const auto& row : d.drive.trajectory.points()) {
+    if (row.y_m < -40.0) break;
+    nearest_m = std::min(nearest_m, std::hypot(row.x_m - 918.25, row.y_m + 1.75));
+    slowest_mps = std::min(slowest_mps, row.speed_mps);
+  }
+  EXPECT_NEAR(nearest_m, 3.5, 1.0);
+  EXPECT_GT(slowest_mps, 4.0);
+  const auto& end = d.drive.trajectory.points().back();
+  EXPECT_NEAR(std::hypot(end.x_m - 918.25, end.y_m + 120.0), 0.0, 1.0);
+}
+
+TEST(ScenarioDrives, WayPointsLeadBetweenWallsOfTheOccupancy) {
+  Scenario scenario = scenario_of("narrow_gap");
+  scenario.way_points = {
+      .places = {{"lane:1/3/1@60", "/way_points/0"}, {"lane:1/3/1@105", "/way_points/1"}}};
+  const Driven d = driven(scenario);
+  EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached) << d.drive.verdict.text;
+  EXPECT_TRUE(d.world.route.legs.empty());
+  EXPECT_NE(d.world.field, nullptr);
+}
+
+std::string refusal_of(ScenarioWayPoints way_points) {
+  Scenario scenario = scenario_of("way_points");
+  scenario.way_points = std::move(way_points);
+  try {
+    make_world(scenario);
+  } catch (const map::InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ScenarioDrives, WayPointsThatMakeNoLineAreRefusedAtTheirPlace) {
+  using testing::HasSubstr;
+  const auto at = [](const char* text) { return ScenarioPlace{text, "/way_points/0"}; };
+  EXPECT_THAT(refusal_of({.places = {at("700,-1.75")}}),
+              HasSubstr("way_points.json:/way_points/0: lies behind the vehicle"));
+  EXPECT_THAT(refusal_of({.places = {at("830,-1.75")}}),
+              HasSubstr("way_points.json:/way_points: make no line: path_through: needs at least "
+                        "two distinct way-points"));
+  EXPECT_THAT(refusal_of({.places = {at("lane:none")}}), HasSubstr("/way_points/0: "));
+  EXPECT_THAT(refusal_of({.places = {at("900,-1.75,0")}}),
+              HasSubstr("/way_points/0: has a heading"));
+  EXPECT_THAT(refusal_of({.places = {at("900,-1.75")}, .half_width_m = 0.7}),
+              HasSubstr("/half_width_m: 0.7 m to each side"));
 }
 
 TEST(ScenarioDrives, RedLightIsStoppedAtAndGreenIsDrivenOnAt) {

@@ -96,6 +96,46 @@ TEST(Scenario, EveryKindOfObstacleIsRead) {
   EXPECT_EQ(profile.speeds[1].t_s, 9.0);
 }
 
+json with_way_points() {
+  json document = full();
+  document.erase("goal");
+  document["way_points"] = {"3,4", "lane:7/0/-1@80"};
+  return document;
+}
+
+TEST(Scenario, WayPointsStandInPlaceOfTheGoal) {
+  json document = with_way_points();
+  const Scenario plain = parsed(document);
+  ASSERT_EQ(plain.way_points->places.size(), 2U);
+  EXPECT_EQ(plain.way_points->places[1].text, "lane:7/0/-1@80");
+  EXPECT_EQ(plain.way_points->places[1].pointer, "/way_points/1");
+  EXPECT_EQ(plain.way_points->half_width_m, 1.75);
+  EXPECT_EQ(plain.way_points->speed_limit_mps, 50.0 / 3.6);
+  document["half_width_m"] = 3.0;
+  document["speed_limit_mps"] = 9.0;
+  EXPECT_EQ(parsed(document).way_points->half_width_m, 3.0);
+  EXPECT_EQ(parsed(document).way_points->speed_limit_mps, 9.0);
+  EXPECT_FALSE(parsed(full()).way_points);
+}
+
+TEST(Scenario, JustOneOfGoalAndWayPointsIsTaken) {
+  json document = with_way_points();
+  document["goal"] = "9,9";
+  EXPECT_EQ(message_of(document.dump()),
+            "test.json:/way_points: stands beside goal, needs one of the two; remove one");
+  EXPECT_THAT(message_without("", "goal"), testing::HasSubstr("goal"));
+  EXPECT_THAT(message_with("/half_width_m", 2.0),
+              testing::StartsWith("test.json:/half_width_m: stands without way_points"));
+  document = with_way_points();
+  document["lights"] = json::array();
+  EXPECT_THAT(message_of(document.dump()),
+              testing::StartsWith("test.json:/lights: stands beside way_points"));
+  document = with_way_points();
+  document["way_points"] = json::array();
+  EXPECT_THAT(message_of(document.dump()),
+              testing::StartsWith("test.json:/way_points: is an empty list"));
+}
+
 TEST(Scenario, WhatIsOptionalMayBeMissing) {
   const Scenario scenario = parse_scenario(
       R"({"roadbed_scenario": 1, "map": "m.xodr", "ego": {"start": "0,0"}, "goal": "9,9",
