@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "roadbed/planning/behaviour/speed_search.h"
+#include "roadbed/planning/behaviour/speed_question.h"
 
 namespace roadbed::planning::inline behaviour {
 
