@@ -33,6 +33,8 @@ CruiseLaw::CruiseLaw(const PlannerSetup& setup, const SpeedCeiling& ceiling)
       ceiling_(ceiling),
       right_of_way_(setup.vehicle, setup.driving, setup.task) {
   decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
+  decision_options_.headway_s = setup.driving.headway_s;
+  decision_options_.standstill_gap_m = setup.driving.standstill_gap_m;
 }
 
 std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view,

@@ -9,6 +9,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/behaviour/timed_goal.h"
+#include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -48,6 +49,9 @@ struct DrivingOptions {
   double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
   double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
   double clearance_m = 0.3;                    ///< to obstacles and occupied space
+  double headway_s = 1.5;                      ///< kept behind a lead, besides the standstill gap
+  double standstill_gap_m = 5.0;
+  CostTerms weights = default_weights();  ///< of a candidate's cost
 };
 
 /// Greatest speeds along a line for a vehicle that is driven so.

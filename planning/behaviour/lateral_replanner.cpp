@@ -107,6 +107,7 @@ PlanOptions LateralReplanner::options_for(const Question& question, const Offset
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
   options.keep_stations = bounds_.keeps_candidates;
+  options.weights = bounds_.weights;
   if (!question.checks_completion) options.completion_horizon_s = 0.0;
   return options;
 }

@@ -23,6 +23,7 @@ class LateralReplanner {
     /// speed, or to wait.
     bool squeezes_past = false;
     bool keeps_candidates = false;  ///< those of what is taken, see candidates()
+    CostTerms weights = default_weights();
   };
 
   /// @param line  to drive along, of the world.

@@ -42,7 +42,8 @@ LateralReplanner::Bounds replanner_bounds(const PlannerSetup& setup) {
   LateralReplanner::Bounds bounds{.tracking_error_m = setup.planner.max_tracking_error_m,
                                   .heading_error_rad = setup.planner.max_heading_error_rad,
                                   .margin_levels = {},
-                                  .keeps_candidates = setup.planner.keeps_candidates};
+                                  .keeps_candidates = setup.planner.keeps_candidates,
+                                  .weights = setup.driving.weights};
   if (setup.task.goal) {
     bounds.margin_levels = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}};
     bounds.squeezes_past = true;

@@ -58,7 +58,7 @@ TEST(PlanCommand, ExplainsTheSharesOfTheChosenAndTheRunnerUp) {
 
 TEST(PlanCommand, WeightsFromAFileChangeTheChoice) {
   const TemporaryFolder folder;
-  const std::string weights = folder.write("w.json", R"({"length": 0, "time": 5})");
+  const std::string weights = folder.write("w.json", R"({"weights": {"length": 0, "time": 5}})");
   const auto length_with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {
         "plan", scene("parked_car.json"), "-o", (folder / "plan").string(), "--force", "--json"};
@@ -68,16 +68,16 @@ TEST(PlanCommand, WeightsFromAFileChangeTheChoice) {
     return nlohmann::json::parse(run.out)["chosen"]["l_e_m"].get<double>();
   };
   EXPECT_GT(length_with({}), 20.0);
-  EXPECT_NEAR(length_with({"--weights", weights}), 15.0, 1e-9);
+  EXPECT_NEAR(length_with({"--options", weights}), 15.0, 1e-9);
 }
 
 TEST(PlanCommand, RefusesAnUnknownWeightAndWritesNothing) {
   const TemporaryFolder folder;
-  const std::string weights = folder.write("w.json", R"({"ofset": 1})");
+  const std::string weights = folder.write("w.json", R"({"weights": {"ofset": 1}})");
   const ProgramRun run = run_roadbed(
-      {"plan", scene("parked_car.json"), "-o", (folder / "plan").string(), "--weights", weights});
+      {"plan", scene("parked_car.json"), "-o", (folder / "plan").string(), "--options", weights});
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("w.json:/ofset"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("w.json:/weights/ofset"), std::string::npos) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(files_below(folder.path()), (std::vector<std::string>{"w.json"}));
 }

@@ -13,7 +13,6 @@
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/trajectory_csv.h"
-#include "roadbed/tools/files/weights_json.h"
 #include "roadbed/tools/report/plan_svg.h"
 #include "roadbed/tools/report/surroundings.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -30,11 +29,11 @@ using planning::Plan;
 
 constexpr double kPictureReach_m = 60.0;
 
-planning::PlanOptions options_of(const Scenario& scenario, const std::string& weights_file) {
+planning::PlanOptions options_of(const Scenario& scenario) {
   planning::PlanOptions options;
   options.clearance_m = scenario.options.clearance_m;
   options.keep_candidates = true;
-  if (!weights_file.empty()) options.weights = read_weights(weights_file);
+  options.weights = scenario.options.weights;
   return options;
 }
 
@@ -187,8 +186,10 @@ class PlanCommand : public Command {
         .required();
     arguments.add("-o,--output", folder_, "Folder for candidates.csv, trajectory.csv and plan.svg")
         .required();
-    arguments.add("--weights", weights_file_,
-                  "JSON file with weights by term; others keep their defaults");
+    arguments.add(
+        "--options", options_file_,
+        "How to drive (.json): a style (gentle, normal, sporty), limits, and weights of the "
+        "cost, in place of the scenario's");
     arguments.add("--circles", circles_, "Circles that cover the vehicle, for the first look")
         .within(1, 20)
         .with_default();
@@ -200,8 +201,9 @@ class PlanCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    const Scenario scenario = read_scenario(scene_file_);
-    planning::PlanOptions options = options_of(scenario, weights_file_);
+    Scenario scenario = read_scenario(scene_file_);
+    if (!options_file_.empty()) read_planner_options(options_file_).apply_to(scenario.options);
+    planning::PlanOptions options = options_of(scenario);
     options.circles = circles_;
     const World world = make_world(scenario);
     const planning::PlanInput input = input_of(scenario, world);
@@ -240,7 +242,7 @@ class PlanCommand : public Command {
     map::write_output(folder / "plan.svg", plan_svg(picture));
   }
 
-  std::string scene_file_, folder_, weights_file_;
+  std::string scene_file_, folder_, options_file_;
   int circles_ = planning::PlanOptions{}.circles;
   bool json_ = false, force_ = false, explain_ = false;
 };

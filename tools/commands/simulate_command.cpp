@@ -180,6 +180,11 @@ class SimulateCommand : public Command {
                    "Leave out the ego's own recording, an obstacle of its extent where it starts "
                    "(CommonRoad files)");
     arguments
+        .add("--options", choice_.planner_file,
+             "How to drive (.json): a style (gentle, normal, sporty), limits, and weights of the "
+             "cost, in place of the scenario's")
+        .reads();
+    arguments
         .add("--seed", seed_,
              "Seed of the noise in place of the scenario's: the same drive for the same seed; "
              "refused where there is no noise")
@@ -192,6 +197,9 @@ class SimulateCommand : public Command {
       changes.vehicle = read_vehicle_shape_json(choice_.vehicle_file);
     }
     if (!choice_.noise_file.empty()) changes.noise = read_noise_json(choice_.noise_file);
+    if (!choice_.planner_file.empty()) {
+      changes.planner = read_planner_options(choice_.planner_file);
+    }
     if (!seed_.empty()) changes.seed = parse_seed(seed_);
   }
 

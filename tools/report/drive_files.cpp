@@ -28,6 +28,9 @@ std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice
   for (const fs::path& file : scenario.occupancy_files) sources.push_back(source("cloud", file));
   if (!choice.vehicle_file.empty()) sources.push_back(source("vehicle", choice.vehicle_file));
   if (!choice.noise_file.empty()) sources.push_back(source("noise", choice.noise_file));
+  if (!choice.planner_file.empty()) {
+    sources.push_back(source("planner options", choice.planner_file));
+  }
   return sources;
 }
 
@@ -49,6 +52,9 @@ std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   }
   if (!choice.noise_file.empty()) command += " --noise " + choice.noise_file.filename().string();
   if (choice.changes.drops_ego_recording) command += " --drop-ego-recording";
+  if (!choice.planner_file.empty()) {
+    command += " --options " + choice.planner_file.filename().string();
+  }
   if (choice.changes.seed) command += fmt::format(" --seed {}", *choice.changes.seed);
   return command + " -o DIR";
 }

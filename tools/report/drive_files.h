@@ -27,7 +27,7 @@ struct DriveChoice {
   bool predicts = false;  ///< the planner knows of others only what could be known at the time
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
   ScenarioChanges changes = {};   ///< of what the file says
-  std::filesystem::path vehicle_file = {}, noise_file = {};  ///< where these come from, if given
+  std::filesystem::path vehicle_file = {}, noise_file = {}, planner_file = {};  ///< their sources
 };
 
 /// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:

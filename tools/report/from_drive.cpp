@@ -112,6 +112,7 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
   input.decisions = decisions_of(drive);
   input.checks = drive_checks(drive, context.audit);
   input.origin = {context.command, context.version, world.road_map.crs(), context.sources};
+  input.weights = scenario.options.weights;
   return input;
 }
 

@@ -160,9 +160,9 @@ Json coded_vehicle(const ReportInput& input) {
 }
 
 // Weighted costs in thousandths.
-Json coded_candidate(const std::optional<planning::Candidate>& candidate) {
+Json coded_candidate(const std::optional<planning::Candidate>& candidate,
+                     const planning::CostTerms& weights) {
   if (!candidate) return nullptr;
-  static const planning::CostTerms weights = planning::default_weights();
   Json costs = Json::array();
   for (std::size_t i = 0; i < weights.size(); ++i) {
     costs.push_back(rounded(1e3 * (weights[i] * candidate->terms[i])));
@@ -210,14 +210,14 @@ std::string note_of(const DriveCycle& cycle) {
                            cycle.chosen->end_l_m);
 }
 
-Json coded_cycle(const DriveCycle& cycle, Json path) {
+Json coded_cycle(const DriveCycle& cycle, Json path, const planning::CostTerms& weights) {
   return {{"t", cycle.t_s},
           {"note", note_of(cycle)},
           {"reason", cycle.reason},
           {"path", std::move(path)},
           {"start", coded_start(cycle.start)},
-          {"chosen", coded_candidate(cycle.chosen)},
-          {"runner", coded_candidate(cycle.grid ? cycle.grid->runner_up : std::nullopt)},
+          {"chosen", coded_candidate(cycle.chosen, weights)},
+          {"runner", coded_candidate(cycle.grid ? cycle.grid->runner_up : std::nullopt, weights)},
           {"grid", coded_grid(cycle.grid)}};
 }
 
@@ -264,9 +264,10 @@ std::string page_data_json(const ReportInput& input) {
       {"obstacles",
        list_of(input.scene.obstacles,
                [&](const planning::ObstacleInSource& one) { return coded_obstacle(one, origin); })},
-      {"plans",
-       list_of(input.drive.cycles,
-               [&](const DriveCycle& cycle) { return coded_cycle(cycle, line(cycle.path)); })},
+      {"plans", list_of(input.drive.cycles,
+                        [&](const DriveCycle& cycle) {
+                          return coded_cycle(cycle, line(cycle.path), input.weights);
+                        })},
       {"costNames", names_of<planning::CostTerm>(input.drive, planning::kCostTerms)},
       {"causeNames", names_of<planning::Rejection>(input.drive, planning::kRejections)},
       {"plots", list_of(input.plots, coded_plot)},

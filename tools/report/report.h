@@ -123,6 +123,7 @@ struct ReportInput {
   std::vector<ReportCheck> checks;
   std::vector<ReportPicture> pictures;  ///< by time
   ReportOrigin origin;
+  planning::CostTerms weights = planning::default_weights();  ///< of the candidates' cost
 };
 
 /// One HTML page that plays the drive, from `file://`, without any other file and without network.

@@ -38,8 +38,13 @@ double most_steering_rad(double speed_mps, double lateral_mps2,
 /// The cruise control behind the sensors of the lead.
 class MeasuredCruise : public planning::SpeedController {
  public:
-  MeasuredCruise(Sensors& sensors, const planning::VehicleState& truth)
-      : sensors_(sensors), truth_(truth) {}
+  MeasuredCruise(Sensors& sensors, const planning::VehicleState& truth,
+                 const planning::DrivingOptions& driving)
+      : sensors_(sensors),
+        truth_(truth),
+        cruise_({.headway_s = driving.headway_s,
+                 .standstill_gap_m = driving.standstill_gap_m,
+                 .max_command_mps2 = planning::kMostCommand_mps2}) {}
 
   std::optional<planning::Lead> observe(const planning::VehicleState& measured,
                                         const std::optional<planning::Lead>& truth,
@@ -78,7 +83,7 @@ class MeasuredCruise : public planning::SpeedController {
 
   Sensors& sensors_;
   const planning::VehicleState& truth_;
-  control::CruiseControl cruise_{{}};
+  control::CruiseControl cruise_;
   std::deque<double> lead_speeds_mps_;  ///< of the last cycles
 };
 
@@ -90,7 +95,7 @@ class ClosedLoop {
         options_(options),
         flow_(world.drivers, world.obstacles, scenario.duration_s, {}),
         sensors_(scenario.noise, scenario.seed),
-        cruise_(sensors_, truth_),
+        cruise_(sensors_, truth_, scenario.options),
         planner_(setup()),
         observer_(world, scenario.vehicle) {
     truth_.map_from_vehicle = world.start;

@@ -181,17 +181,9 @@ std::vector<planning::LightCycle> lights(const JsonNode& list) {
 }
 
 planning::DrivingOptions options(const JsonNode& node) {
-  node.require_object({"desired_speed_mps", "max_lateral_acceleration_mps2",
-                       "comfort_deceleration_mps2", "clearance_m", "pedals"});
-  const planning::DrivingOptions otherwise;
-  return {
-      .desired_speed_mps =
-          node.number_or("desired_speed_mps", otherwise.desired_speed_mps, {0.5, 100.0}),
-      .max_lateral_acceleration_mps2 = node.number_or(
-          "max_lateral_acceleration_mps2", otherwise.max_lateral_acceleration_mps2, {0.1, 10.0}),
-      .comfort_deceleration_mps2 = node.number_or("comfort_deceleration_mps2",
-                                                  otherwise.comfort_deceleration_mps2, {0.1, 10.0}),
-      .clearance_m = node.number_or("clearance_m", otherwise.clearance_m, {0.0, 5.0})};
+  planning::DrivingOptions options;
+  limits_in(node, {"pedals"}).apply_to(options);
+  return options;
 }
 
 bool has_pedals(const JsonNode& options, bool otherwise) {
@@ -336,6 +328,7 @@ std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem
 void ScenarioChanges::apply_to(Scenario& scenario) const {
   if (vehicle) scenario.vehicle = *vehicle;
   if (noise) scenario.noise = *noise;
+  planner.apply_to(scenario.options);
   if (!seed) return;
   if (!is_random(scenario.noise)) {
     throw map::InputError({.file = scenario.file.string(),

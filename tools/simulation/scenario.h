@@ -11,6 +11,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/tools/simulation/planner_options.h"
 
 namespace roadbed::tools::inline simulation {
 
@@ -118,6 +119,7 @@ struct ScenarioChanges {
   std::optional<ScenarioNoise> noise = {};
   std::optional<std::uint64_t> seed = {};
   bool drops_ego_recording = false;  ///< of a CommonRoad file, see common_road_obstacles.h
+  PlannerChanges planner = {};
 
   /// @throws InputError if there is a seed, and nothing that is left to chance: all seeds would
   ///         give the same drive.

@@ -3,11 +3,11 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/tools/files/weights_json.h"
+#include "roadbed/tools/simulation/planner_options.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    roadbed::tools::parse_weights({reinterpret_cast<const char*>(data), size}, "fuzz.json");
+    roadbed::tools::parse_planner_options({reinterpret_cast<const char*>(data), size}, "fuzz.json");
   } catch (const roadbed::map::InputError&) {
   }
   return 0;
