@@ -90,6 +90,7 @@ class Forecast {
   double wanted_mps(const SpeedState& at, int step) const {
     double wanted = std::min(q_.profile.wanted_mps[q_.profile.before(at.ahead_m)],
                              stopping_mps(q_.stop_m - at.ahead_m));
+    if (q_.most_mps) wanted = std::min(wanted, *q_.most_mps);
     for (const StInterval& part : q_.occupancy.at(step)) {
       if (is_ignored(part) || crosses(part) || part.from_m < at.ahead_m) continue;
       const std::optional<Lead> lead = lead_of(part, step, at.ahead_m);

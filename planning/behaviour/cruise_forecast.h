@@ -18,6 +18,7 @@ struct CruiseForecastQuestion {
   double stop_m = 0.0;  ///< ahead, where the vehicle has to stop by a rule or at the goal
   const std::vector<bool>& no_matter;  ///< per obstacle: it follows, and keeps its distance itself
   const std::vector<bool>& crosses;    ///< per obstacle: it will have left the path, and is no lead
+  std::optional<double> most_mps = {};
 };
 
 struct CruiseForecast {

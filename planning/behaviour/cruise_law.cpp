@@ -17,6 +17,7 @@ constexpr double kBeforeHalt_m = 0.4;  // of the distance before a line, that ha
 constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kBesideLine_m = 0.5;     // off the reference line this far is passing
+constexpr double kEasedRoom_m = 1.0;      // less than what merging takes
 constexpr double kFallsBehind_mps = 3.0;  // slower than who was to be overtaken
 
 /// Distance ahead that matters: to brake comfortably, and the gap to keep.
@@ -69,6 +70,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   }
   follows_ = chosen.behaviour == Behaviour::follow;
   explain(q, chosen, command);
+  if (lead) ease(q, *lead, command);
   if (lead) brake_for(*lead, speed, command);
   if (halt && halt->is_hard) brake_for(*halt, q, command);
   if (q.passing.overtaking.overtaken) overtake(q, command);
@@ -169,6 +171,12 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
   if (most_mps && *most_mps < answer.set.speed_mps) {
     answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
   }
+  const Merging::Decision& merging = q.passing.merging;
+  if (merging.most_mps && *merging.most_mps < answer.set.speed_mps) {
+    answer.set = {.speed_mps = *merging.most_mps, .acceleration_mps2 = 0.0};
+    answer.behaviour = Behaviour::yield;
+    answer.reason = merging.reason;
+  }
   return answer;
 }
 
@@ -224,6 +232,20 @@ void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) cons
   if (!overtaking.overtaken && !why_not.empty() && command.behaviour == Behaviour::follow) {
     command.reason += "; " + why_not;
   }
+}
+
+/// In a gap that is safe the gap to keep may open slowly, so that nobody behind has to brake for
+/// it.
+void CruiseLaw::ease(const Question& q, const Lead& lead, PlannerCommand& command) const {
+  constexpr double kBrakesHard_mps2 = -0.5, kOpens_mps = 0.5;
+  const bool opens = lead.speed_mps > q.view.measured.speed_mps + kOpens_mps;
+  if (q.passing.merging.merged_behind != lead.obstacle || command.behaviour != Behaviour::follow) {
+    return;
+  }
+  const bool has_room =
+      lead.gap_m > room_ahead_m(q.view.measured.speed_mps, lead.speed_mps) - kEasedRoom_m;
+  if (!has_room || lead.acceleration_mps2 < kBrakesHard_mps2) return;
+  command.acceleration_mps2 = std::max(command.acceleration_mps2, opens ? 0.0 : -0.4);
 }
 
 void CruiseLaw::brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const {

@@ -9,6 +9,7 @@
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
+#include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
@@ -18,11 +19,12 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// Who may be passed at one cycle, and how.
+/// Who may be passed at one cycle, and whose gap is merged into, and how.
 struct PassingDecision {
   Overtaking::Decision overtaking = {};
   LanePassing::Decision in_lane = {};
   WithinLanePassing within_lane = {};
+  Merging::Decision merging = {};
 };
 
 /// The speed of a vehicle that follows its path to a place: set speed, speed controller behind
@@ -63,6 +65,7 @@ class CruiseLaw {
   std::string lead_name(const Lead& lead) const;
   void explain(const Question& q, const SpeedAnswer& answer, PlannerCommand& command) const;
   void explain_passing(const Question& q, PlannerCommand& command) const;
+  void ease(const Question& q, const Lead& lead, PlannerCommand& command) const;
   void brake_for(const Lead& lead, double speed_mps, PlannerCommand& command) const;
   void brake_for(const StopConstraint& halt, const Question& q, PlannerCommand& command) const;
   void overtake(const Question& q, PlannerCommand& command) const;

@@ -59,7 +59,8 @@ void HypothesisSpeed::forecast(const PlanningScene& scene, ManeuverHypothesis& h
                        .acceleration_mps2 = scene.view.measured.acceleration_mps2,
                        .stop_m = end_m(scene, hypothesis),
                        .no_matter = scene.no_matter,
-                       .crosses = scene.crosses},
+                       .crosses = scene.crosses,
+                       .most_mps = scene.most_mps},
                       cruise_);
   hypothesis.answer = std::move(forecast.drive);
   if (forecast.met) hypothesis.meeting = {*forecast.met, hypothesis.answer.free_until_s};

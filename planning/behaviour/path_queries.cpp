@@ -14,6 +14,7 @@ using Question = LateralReplanner::Question;
 constexpr double kChange_s = 3.0;          // to change lanes in
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
+constexpr double kMerging_m = 0.8;         // beside the line
 constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
 
 constexpr std::array<Offsets, 6> kBeside{
@@ -82,6 +83,10 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
   PathQuery keep{.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question};
   keep_within(overtaking.keep_within_m, overtaking.side, keep.offsets);
   keep_within(lane.keep_within_m, lane.side, keep.offsets);
+  if (passing.merging.is_near()) {  // nobody is passed on the way from lane to lane
+    keep_within(kMerging_m, 1.0, keep.offsets);
+    keep_within(kMerging_m, -1.0, keep.offsets);
+  }
   if (passing.within_lane.passed) {
     PathQuery pass = keep;
     pass.maneuver = Maneuver::pass_within_lane;

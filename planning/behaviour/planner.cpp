@@ -14,6 +14,7 @@
 #include "roadbed/planning/behaviour/lane_passing.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
+#include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
 #include "roadbed/planning/behaviour/road_end.h"
@@ -113,6 +114,7 @@ class Planner::Impl {
         cruise_(setup, goal_lines_.front().ceiling),
         overtaking_(vehicle_, task_, goal_lines_.front().ceiling),
         lane_passing_(vehicle_, task_, goal_lines_.front().ceiling),
+        merging_(vehicle_, task_, goal_lines_.front().ceiling),
         speed_(setup, cruise_.options()) {}
 
   const LateralReplanner& replanner() const { return goal_lines_[current_].replanner; }
@@ -121,7 +123,7 @@ class Planner::Impl {
     foresee(view);
     goal_line().replanner.locate(view.measured);
     const PassingDecision passing = passing_at(view);
-    const PlanningScene scene = scene_at(view);
+    const PlanningScene scene = scene_at(view, passing.merging);
     const std::vector<Obstacle> obstacles = obstacles_to_plan_for(scene);
     const ManeuverHypothesis best = best_hypothesis(scene, question_at(view, obstacles), passing);
     take(best);
@@ -173,8 +175,11 @@ class Planner::Impl {
     const ViewOnLine on_line{view.t_s, place_of(view), view.measured.speed_mps, traffic_};
     PassingDecision passing;
     passing.overtaking = overtaking_.look(on_line);
-    if (!passing.overtaking.overtaken) passing.in_lane = lane_passing_.look(on_line);
-    passing.within_lane = within_lane(on_line, passing);
+    passing.merging = merging_.look(on_line);
+    if (!passing.overtaking.overtaken && !passing.merging.is_near()) {
+      passing.in_lane = lane_passing_.look(on_line);
+    }
+    if (!passing.merging.is_near()) passing.within_lane = within_lane(on_line, passing);
     return passing;
   }
 
@@ -194,12 +199,22 @@ class Planner::Impl {
     return look_within_lane(question);
   }
 
-  PlanningScene scene_at(const PlannerView& view) {
-    PlanningScene scene{.view = view, .traffic = traffic_, .last_command_mps2 = last_command_mps2_};
+  PlanningScene scene_at(const PlannerView& view, const Merging::Decision& merging) {
+    PlanningScene scene{.view = view,
+                        .traffic = traffic_,
+                        .last_command_mps2 = last_command_mps2_,
+                        .most_mps = merging.most_mps};
     tell_others_apart(scene);
+    for (std::size_t i = 0; i < merging.comes_behind.size(); ++i) {
+      if (merging.comes_behind[i]) scene.no_matter[i] = true;
+    }
     scene.bodies =
         TrafficBodies(traffic_, view.t_s, speed_.steps(view.t_s), {scene.crosses, clearance_m_});
-    if (!task_.goal) scene.halt = cruise_.look(view, replanner(), traffic_);
+    if (task_.goal) return scene;
+    scene.halt = cruise_.look(view, replanner(), traffic_);
+    if (merging.halt && (!scene.halt || merging.halt->s_m < scene.halt->s_m)) {
+      scene.halt = merging.halt;
+    }
     return scene;
   }
 
@@ -471,6 +486,7 @@ class Planner::Impl {
   CruiseLaw cruise_;
   Overtaking overtaking_;
   LanePassing lane_passing_;
+  Merging merging_;
   HypothesisSpeed speed_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;

@@ -10,6 +10,7 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -54,13 +55,29 @@ struct Course {
   ReferenceLine line;
 };
 
+/// A lane change takes a while at any speed: the faster it is driven, the longer the line's.
+ReferenceLine line_along(const Scenario& scenario, const map::RoadMap& road_map,
+                         const Route& route) {
+  constexpr double kChange_s = 3.5;
+  planning::ReferenceLineOptions options{.corner_vehicle = scenario.vehicle};
+  ReferenceLine line = ReferenceLine::along(road_map, route, options);
+  double fastest_mps = 0.0;
+  for (const planning::MergePlace& place : planning::merge_places(road_map, route, line)) {
+    fastest_mps = std::max(fastest_mps, line.corridor_at(place.enter_s_m).speed_limit_mps);
+  }
+  const double length_m = kChange_s * std::min(fastest_mps, scenario.options.desired_speed_mps);
+  if (length_m <= options.lane_change_length_m) return line;
+  options.lane_change_length_m = length_m;
+  return ReferenceLine::along(road_map, route, options);
+}
+
 Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const Place& start) {
   // Without a heading the vehicle stands as its lane runs.
   const bool against = start.sense == planning::Sense::against;
   Route route = route_or_refuse(
       scenario, road_map,
       {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
-  ReferenceLine line = ReferenceLine::along(road_map, route, {.corner_vehicle = scenario.vehicle});
+  ReferenceLine line = line_along(scenario, road_map, route);
   return {std::move(route), std::move(line)};
 }
 

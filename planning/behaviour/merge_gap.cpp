@@ -1,0 +1,143 @@
+#include "roadbed/planning/behaviour/merge_gap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kComfortSpeedUp_mps2 = 0.9,
+                 kComfortBraking_mps2 = 1.5;  // the vehicle, comfortably
+constexpr double kIntoGap_mps2 = 0.8;         // slowing down to the gap's speed, at the end
+constexpr double kSettled_s = 1.0;
+constexpr double kFollowerBraking_mps2 = 2.0;
+constexpr double kMergeAhead_m = 1.0, kMergeAhead_s = 0.5;
+constexpr double kMergeSpeedStep_mps = 0.5, kSlowestMerge_mps = 1.0;
+
+/// A change of speed on the way.
+struct SpeedChange {
+  double duration_s, length_m;
+};
+
+SpeedChange speed_change(double from_mps, double to_mps, double braking_mps2) {
+  const double rate_mps2 = to_mps > from_mps ? kComfortSpeedUp_mps2 : braking_mps2;
+  const double duration_s = std::abs(to_mps - from_mps) / rate_mps2;
+  return {duration_s, 0.5 * (from_mps + to_mps) * duration_s};
+}
+
+struct MergeArrival {
+  double after_s, speed_mps;
+  double next_mps;  ///< to drive at for now
+};
+
+/// By way of one speed to another; none: that takes more than there is. Who slows down to the gap's
+/// speed has it some time before.
+std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double by_mps,
+                                       double at_mps) {
+  const double settled_s = at_mps < by_mps ? kSettled_s : 0.0;
+  const double way_m = std::max(0.0, vehicle.to_enter_m - settled_s * at_mps);
+  const SpeedChange first = speed_change(vehicle.speed_mps, by_mps, kComfortBraking_mps2);
+  const SpeedChange last = speed_change(by_mps, at_mps, kIntoGap_mps2);
+  const double kept_m = way_m - first.length_m - last.length_m;
+  if (kept_m >= 0.0) {
+    const double after_s = first.duration_s + kept_m / by_mps + last.duration_s + settled_s;
+    return MergeArrival{after_s, at_mps, by_mps};
+  }
+  if (first.length_m > 0.0) return std::nullopt;
+  const double rate_mps2 = at_mps > by_mps ? kComfortSpeedUp_mps2 : -kIntoGap_mps2;
+  const double speed_mps = std::sqrt(
+      std::max(0.0, by_mps * by_mps + 2.0 * rate_mps2 * std::max(0.0, vehicle.to_enter_m)));
+  return MergeArrival{(speed_mps - by_mps) / rate_mps2, speed_mps, at_mps};
+}
+
+using MergeMovers = std::vector<MergeMover>;
+
+/// Between the movers i − 1 and i of the list.
+MergeGap merge_gap_at(const MergingVehicle& vehicle, const MergeMovers& movers, std::size_t i,
+                      const MergeArrival& arrival) {
+  MergeGap gap{.speed_mps = arrival.next_mps, .after_s = arrival.after_s};
+  const auto to_enter_m = [&](const MergeMover& mover) {
+    return mover.to_enter_m - mover.speed_mps * arrival.after_s;
+  };
+  double lacks_ahead_m = 0.0, lacks_behind_m = 0.0;
+  if (i > 0) {
+    const MergeMover& ahead = movers[i - 1];
+    gap.ahead = ahead.obstacle;
+    lacks_ahead_m =
+        room_ahead_m(arrival.speed_mps, ahead.speed_mps) + to_enter_m(ahead) + ahead.half_length_m;
+  }
+  if (i < movers.size()) {
+    const MergeMover& behind = movers[i];
+    gap.behind = behind.obstacle;
+    lacks_behind_m = room_behind_m(arrival.speed_mps, behind.speed_mps) + vehicle.length_m -
+                     to_enter_m(behind) + behind.half_length_m;
+  }
+  gap.lacks_ahead = lacks_ahead_m > 0.0;
+  gap.lacks_behind = lacks_behind_m > 0.0;
+  gap.missing_m = std::max(0.0, lacks_ahead_m) + std::max(0.0, lacks_behind_m);
+  gap.is_good = gap.missing_m <= 0.0;
+  return gap;
+}
+
+double speed_in_gap_mps(const MergingVehicle& vehicle, const MergeMovers& movers, std::size_t i) {
+  if (i == 0) return vehicle.free_mps;
+  return std::clamp(movers[i - 1].speed_mps, kSlowestMerge_mps, vehicle.free_mps);
+}
+
+std::vector<double> speeds_to_try(const MergingVehicle& vehicle) {
+  std::vector<double> speeds;
+  for (double mps = vehicle.free_mps; mps >= kSlowestMerge_mps; mps -= kMergeSpeedStep_mps) {
+    speeds.push_back(mps);
+  }
+  if (vehicle.speed_mps <= vehicle.free_mps) speeds.push_back(vehicle.speed_mps);
+  std::ranges::sort(speeds, std::greater<>());
+  return speeds;
+}
+
+bool is_same_gap(const MergeGap& gap, const std::optional<MergeGap>& taken) {
+  return taken && gap.ahead == taken->ahead && gap.behind == taken->behind;
+}
+
+/// Of the ways into one gap, or any: the first that is good, else the one that lacks least.
+void improve(std::optional<MergeGap>& best, const MergeGap& gap) {
+  if (!best || gap.missing_m < best->missing_m) best = gap;
+}
+
+}  // namespace
+
+double room_ahead_m(double own_mps, double ahead_mps) {
+  const double closing_mps = std::max(0.0, own_mps - ahead_mps);
+  return kMergeAhead_m + kMergeAhead_s * std::max(0.0, ahead_mps) +
+         0.5 * closing_mps * closing_mps / kComfortBraking_mps2;
+}
+
+double room_behind_m(double own_mps, double behind_mps) {
+  constexpr double kStandstill_m = 2.0, kHeadway_s = 1.2, kIdmSpeedsUp_mps2 = 1.5,
+                   kIdmBrakes_mps2 = 2.0;
+  const double speed_mps = std::max(0.0, behind_mps);
+  const double dynamic_m =
+      speed_mps * kHeadway_s +
+      speed_mps * (speed_mps - own_mps) / (2.0 * std::sqrt(kIdmSpeedsUp_mps2 * kIdmBrakes_mps2));
+  const double wanted_m = kStandstill_m + std::max(0.0, dynamic_m);
+  return wanted_m / std::sqrt(1.0 + kFollowerBraking_mps2 / kIdmSpeedsUp_mps2);
+}
+
+MergeGap choose_merge_gap(const MergingVehicle& vehicle, const MergeMovers& movers,
+                          const std::optional<MergeGap>& taken) {
+  constexpr double kLittle_m = 2.0;  // room that is short by so much is no reason to give up a gap
+  std::optional<MergeGap> best, kept;
+  for (const double by_mps : speeds_to_try(vehicle)) {
+    for (std::size_t i = 0; i <= movers.size(); ++i) {
+      const auto there = arrival_by(vehicle, by_mps, speed_in_gap_mps(vehicle, movers, i));
+      if (!there) continue;
+      const MergeGap gap = merge_gap_at(vehicle, movers, i, *there);
+      improve(best, gap);
+      if (is_same_gap(gap, taken)) improve(kept, gap);
+    }
+  }
+  if (!kept || kept->missing_m > kLittle_m) return best.value();
+  kept->is_good = true;
+  return *kept;
+}
+
+}  // namespace roadbed::planning::behaviour

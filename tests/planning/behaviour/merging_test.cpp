@@ -1,0 +1,238 @@
+// Merging where a lane ends, in the closed loop: held to a plain argument about times and gaps.
+#include "roadbed/planning/behaviour/merging.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+
+#include "roadbed/tests/support/made_road.h"
+#include "roadbed/tools/simulation/drive.h"
+
+namespace roadbed::tools {
+namespace {
+
+constexpr double kStart_m = 220.0, kLaneEnds_m = 500.0,
+                 kGoal_m = 350.0;                  // of the goal: beyond that
+constexpr double kCar_m = 4.5, kChange_m = 360.0;  // its length; the middle of the change
+
+/// The ego's lane ends after 300 m; cars drive in the next one at one speed, at one gap.
+struct Scene {
+  double own_mps = 15.0, others_mps = 15.0;
+  double gap_m = 0.0;      ///< bumper to bumper; 0: the road is free
+  double first_m = 370.0;  ///< station of the first one
+  int cars = 40;
+};
+
+std::filesystem::path map_file() {
+  const auto lane = [](int id, int next) {
+    return tests::made_lane(
+        id, fmt::format(R"(<link>{}</link>)",
+                        next ? fmt::format(R"(<successor id="{}"/>)", next) : "") +
+                R"(<roadMark sOffset="0" type="broken" color="white" laneChange="both"/>)");
+  };
+  const auto path = std::filesystem::path(testing::TempDir()) / "merging.xodr";
+  tests::MadeRoad road;
+  road.id = "1";
+  road.length_m = 1500.0;
+  road.type = R"(<type s="0" type="rural"><speed max="30" unit="m/s"/></type>)";
+  road.lanes = tests::made_section(0.0, "", lane(-1, -1) + lane(-2, 0)) +
+               tests::made_section(kLaneEnds_m, "",
+                                   tests::made_lane(-1, R"(<link><predecessor id="-1"/></link>)"));
+  std::ofstream(path) << tests::made_document(tests::made_road(road));
+  return path;
+}
+
+ScenarioPlace place(const char* lane, double s_m) {
+  return {.text = fmt::format("lane:1/{}@{}", lane, s_m), .pointer = "/test"};
+}
+
+Scenario scenario_of(const Scene& scene) {
+  Scenario scenario;
+  scenario.file = "merging.json";
+  scenario.map_file = map_file();
+  scenario.start = place("0/-2", kStart_m);
+  scenario.goal = place("1/-1", kGoal_m);
+  scenario.start_speed_mps = scene.own_mps;
+  scenario.duration_s = 60.0;
+  scenario.options.desired_speed_mps = std::max(8.0, scene.own_mps);
+  for (int i = 0; i < (scene.gap_m > 0.0 ? scene.cars : 0); ++i) {
+    const double s_m = scene.first_m - i * (scene.gap_m + kCar_m);
+    if (s_m < 5.0) break;
+    scenario.obstacles.push_back(
+        {.id = fmt::format("car {}", i),
+         .length_m = kCar_m,
+         .motion = TrafficObstacle{place("0/-1", s_m), {}, {{0.0, scene.others_mps}}}});
+  }
+  return scenario;
+}
+
+struct Driven {
+  Drive drive;
+  std::optional<std::size_t> ahead = {}, behind = {};  ///< in whose gap it has merged
+  double others_brake_mps2 = 0.0, own_brake_mps2 = 0.0, clearance_m = 1e9, merged_at_s = 0.0;
+  double least_mps = 1e9;
+};
+
+Driven drive_in(const Scene& scene) {
+  const Scenario scenario = scenario_of(scene);
+  World world = make_world(scenario);
+  Driven driven{.drive = drive(scenario, world)};
+  for (const DriveSample& sample : driven.drive.samples) {
+    driven.clearance_m = std::min(driven.clearance_m, sample.clearance_m);
+  }
+  for (const auto& row : driven.drive.trajectory.points()) {
+    driven.own_brake_mps2 = std::max(driven.own_brake_mps2, -row.acceleration_mps2);
+    if (row.y_m < -3.0) driven.least_mps = std::min(driven.least_mps, row.speed_mps);
+    if (driven.merged_at_s > 0.0 || row.y_m < -2.2) continue;
+    driven.merged_at_s = row.t_s;
+    double ahead_m = 1e9, behind_m = -1e9;
+    for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+      const double at_m = world.obstacles[i].motion.at(row.t_s).x_m - row.x_m;
+      if (at_m > 0 && at_m < ahead_m) ahead_m = at_m, driven.ahead = i;
+      if (at_m <= 0 && at_m > behind_m) behind_m = at_m, driven.behind = i;
+    }
+  }
+  for (std::size_t i = driven.behind.value_or(99); i < world.obstacles.size(); ++i) {
+    const planning::Obstacle& other = world.obstacles[i];
+    for (double t_s = driven.merged_at_s - 1.5; t_s < driven.merged_at_s + 8.0; t_s += 0.1) {
+      if (other.motion.at(t_s).x_m > 1400.0) break;
+      driven.others_brake_mps2 =
+          std::max(driven.others_brake_mps2,
+                   (other.motion.at(t_s - 0.5).speed_mps - other.motion.at(t_s).speed_mps) / 0.5);
+    }
+  }
+  return driven;
+}
+
+/// Follows an intruder of constant speed by the simulation's car following, in small steps.
+double hardest_braking_mps2(double gap_m, double speed_mps, double intruder_mps) {
+  double hardest = 0.0;
+  for (double t_s = 0.0; t_s < 6.0; t_s += 0.02) {
+    const double wanted_m =
+        2.0 + std::max(0.0, 1.2 * speed_mps + speed_mps * (speed_mps - intruder_mps) /
+                                                  (2.0 * std::sqrt(1.5 * 2.0)));
+    const double z = wanted_m / std::max(0.01, gap_m);
+    const double braking = z < 1.0 ? 0.0 : 1.5 * (z * z - 1.0);
+    hardest = std::max(hardest, braking);
+    speed_mps = std::max(0.0, speed_mps - 0.02 * braking);
+    gap_m += 0.02 * (intruder_mps - speed_mps);
+  }
+  return hardest;
+}
+
+/// Whether some drive with two accelerations comes to the middle of the change, 140 m ahead, with
+/// much room to both sides: 2 m and 0.8 s behind who is ahead, and the one behind brakes by 1.5
+/// m/s² at most.
+bool has_easy_gap(const Scene& scene) {
+  const double spacing_m = scene.gap_m + kCar_m;
+  const double most_mps = std::max(8.0, scene.own_mps);
+  for (double first_mps2 = -1.2; first_mps2 < 0.75; first_mps2 += 0.1) {
+    for (double until_s = 0.0; until_s < 8.0; until_s += 0.5) {
+      double t_s = 0.0, s_m = kStart_m + 3.68, speed_mps = scene.own_mps;
+      for (; s_m < kChange_m && t_s < 60.0; t_s += 0.05) {
+        const double wanted_mps = std::min(most_mps, scene.others_mps);
+        const double back_mps2 = std::clamp((wanted_mps - speed_mps) / 0.5, -1.0, 0.7);
+        speed_mps += 0.05 * (t_s < until_s ? first_mps2 : back_mps2);
+        speed_mps = std::clamp(speed_mps, 1.0, most_mps);
+        s_m += 0.05 * speed_mps;
+      }
+      const double first_at_m = scene.first_m + scene.others_mps * t_s;
+      const double number = std::ceil((first_at_m - s_m) / spacing_m) - 1.0;  // who is ahead
+      if (number < 0.0 || scene.first_m - (number + 1.0) * spacing_m < 5.0) continue;
+      const double ahead_m = first_at_m - number * spacing_m - 0.5 * kCar_m - s_m;
+      const double behind_m = scene.gap_m - ahead_m - 4.508;
+      if (ahead_m < 2.0 + 0.8 * scene.others_mps || behind_m < 0.0) continue;
+      if (speed_mps > scene.others_mps + 0.3) continue;
+      if (hardest_braking_mps2(behind_m, scene.others_mps, speed_mps) < 1.5) return true;
+    }
+  }
+  return false;
+}
+
+TEST(Merging, TakesGapsThatAreEasyAndLeavesThoseThatAreNone) {
+  const bool is_short = std::getenv("ROADBED_ROUTES") != nullptr;  // ten times slower, sanitized
+  int merges = 0, waits = 0;
+  for (const double others_mps : {2.0, 5.0, 10.0, 15.0, 25.0}) {
+    for (const double faster_mps : {-5.0, 0.0, 5.0}) {
+      for (const double gap_m : {4.0, 20.0, 30.0, 40.0, 60.0}) {
+        if (gap_m < 10.0 && others_mps > 5.0) continue;  // nobody drives like that
+        const Scene scene{others_mps + faster_mps, others_mps, gap_m};
+        if (scene.own_mps < 3.0 || scene.own_mps > 25.0) continue;
+        if (is_short && (others_mps != 15.0 || faster_mps != 0.0)) continue;
+        SCOPED_TRACE(
+            fmt::format("own {} m/s, others {} m/s, gap {} m", scene.own_mps, others_mps, gap_m));
+        const Driven driven = drive_in(scene);
+        EXPECT_NE(driven.drive.verdict.outcome, Outcome::collision) << driven.drive.verdict.text;
+        EXPECT_GT(driven.clearance_m, 0.29);
+        EXPECT_LT(driven.others_brake_mps2, 2.1);
+        EXPECT_LT(driven.own_brake_mps2, 3.5);
+        const bool between = driven.ahead && driven.behind;
+        if (has_easy_gap(scene)) {
+          EXPECT_TRUE(between);
+          EXPECT_GT(driven.least_mps, 1.0);  // in its own lane: it did not have to wait
+          ++merges;
+        } else if (gap_m < kCar_m + 4.508) {  // not even twice the length of a car
+          EXPECT_FALSE(between);
+          ++waits;
+        }
+      }
+    }
+  }
+  EXPECT_GE(merges, is_short ? 2 : 25);
+  EXPECT_GE(waits, is_short ? 0 : 3);
+}
+
+TEST(Merging, NobodyInTheNextLaneIsNoReasonToSlowDown) {
+  for (const double own_mps : {5.0, 15.0, 25.0}) {
+    const Driven driven = drive_in({own_mps, 0.0, 0.0});
+    EXPECT_GT(driven.merged_at_s, 0.0);
+    EXPECT_GT(driven.least_mps, own_mps - 0.1);
+  }
+}
+
+TEST(Merging, SaysWhoIsInTheWayAndHowManyMetresAreMissing) {
+  const Driven driven = drive_in({15.0, 15.0, 10.0});
+  const auto says = [&](const std::string& part) {
+    return std::ranges::any_of(driven.drive.cycles, [&](const DriveCycle& cycle) {
+      return cycle.reason.find(part) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says("no gap to merge into: "));
+  EXPECT_TRUE(says(" m are missing behind car "));
+  EXPECT_TRUE(says("and before car "));
+  const Driven easy = drive_in({20.0, 15.0, 60.0});
+  EXPECT_TRUE(std::ranges::any_of(easy.drive.cycles, [](const DriveCycle& cycle) {
+    return cycle.reason.find("merges behind car ") == 0;
+  }));
+}
+
+TEST(Merging, RoomBehindIsWhatAFollowerStopsClosingInBy2MetresPerSecondSquared) {
+  for (const double own_mps : {5.0, 10.0, 20.0}) {
+    for (const double behind_mps : {5.0, 12.0, 20.0}) {
+      const double room_m = planning::room_behind_m(own_mps, behind_mps);
+      if (behind_mps < own_mps) continue;  // it falls back by itself
+      EXPECT_NEAR(hardest_braking_mps2(room_m, behind_mps, own_mps), 2.0, 0.02);
+    }
+  }
+}
+
+TEST(Merging, PlaceIsWhereTheBodyComesIntoTheWay) {
+  Scene scene{15.0, 15.0, 0.0};
+  const World world = make_world(scenario_of(scene));
+  const auto places = planning::merge_places(world.road_map, world.route, world.line);
+  ASSERT_EQ(places.size(), 1U);
+  const auto y_m = [&](double s_m) { return world.line.at(s_m).in_map.y(); };
+  EXPECT_NEAR(y_m(places[0].hold_s_m), -1.75 - 2.6, 0.1);
+  EXPECT_NEAR(y_m(places[0].enter_s_m), -1.75 - 2.0, 0.1);
+  EXPECT_NEAR(y_m(places[0].out_s_m), -1.75 - 0.5, 0.1);
+  EXPECT_NEAR(places[0].lane.at(places[0].enter_m).x(),
+              world.line.at(places[0].enter_s_m).in_map.x(), 0.01);
+}
+
+}  // namespace
+}  // namespace roadbed::tools
