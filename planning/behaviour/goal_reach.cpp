@@ -54,8 +54,7 @@ bool meets(const GoalAhead& goal, const Places& places, double t_s, double most_
 }  // namespace
 
 bool may_reach_goal(const SpeedSearchQuestion& question, double most_mps2) {
-  if (question.goal_is_off_path) return false;
-  if (question.goals.empty()) return true;
+  if (question.goal_is_off_path || question.goals.empty()) return true;
   const double fastest_mps2 = std::max(most_mps2, question.acceleration_mps2);
   const auto steps = static_cast<int>(std::ceil((question.horizon_s + kBeyondHorizon_s) / kStep_s));
   Places places{{0.0, 0.0}};

@@ -274,14 +274,14 @@ class Planner::Impl {
     std::vector<ManeuverHypothesis> all;
     std::size_t best = 0;
     add(scene, first_queries(goal_line(), question, passing), all, best);
-    const bool is_too_near = all[best].answer.free_until_s == 0.0;  // already, on any path
-    if (task_.goal && is_too_near) search_at_levels(scene, all, best);
+    const bool is_too_near = !all[best].answer.is_free && all[best].occupancy->is_blocked(0, 0.0);
+    if (task_.goal && is_too_near) search_at_levels(scene, all, best);  // as it is on any path
     if (task_.goal && !is_good(all[best])) add_others(scene, question, all, best);
     search_at_levels(scene, all, best);
     return std::move(all[best]);
   }
 
-  /// Once one is drivable, only those are searched on whose goal some speed could still reach.
+  /// One that is drivable is searched again only if some speed could reach its goal.
   void search_at_levels(const PlanningScene& scene, std::vector<ManeuverHypothesis>& all,
                         std::size_t& best) {
     const std::span<const RiskLevel> levels =
@@ -289,7 +289,7 @@ class Planner::Impl {
     for (const RiskLevel& level : levels) {
       for (std::size_t i = 0; i < all.size() && !is_good(all[best]); ++i) {
         if (all[i].risk_level == &level) continue;
-        if (is_drivable(all[best]) && !speed_.may_reach_goal(scene, level, all[i])) continue;
+        if (is_drivable(all[i]) && !speed_.may_reach_goal(scene, level, all[i])) continue;
         speed_.search(scene, level, all[i]);
         if (is_better(all[i], all[best])) best = i;
       }
