@@ -39,7 +39,7 @@ std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double by_
   const SpeedChange first = speed_change(vehicle.speed_mps, by_mps, kComfortBraking_mps2);
   const SpeedChange last = speed_change(by_mps, at_mps, kIntoGap_mps2);
   const double kept_m = way_m - first.length_m - last.length_m;
-  if (kept_m >= 0.0) {
+  if (kept_m >= 0.0 && by_mps > 0.0) {
     const double after_s = first.duration_s + kept_m / by_mps + last.duration_s + settled_s;
     return MergeArrival{after_s, at_mps, by_mps};
   }
@@ -89,7 +89,9 @@ std::vector<double> speeds_to_try(const MergingVehicle& vehicle) {
   for (double mps = vehicle.free_mps; mps >= kSlowestMerge_mps; mps -= kMergeSpeedStep_mps) {
     speeds.push_back(mps);
   }
-  if (vehicle.speed_mps <= vehicle.free_mps) speeds.push_back(vehicle.speed_mps);
+  const bool may_keep =
+      vehicle.speed_mps >= kSlowestMerge_mps && vehicle.speed_mps <= vehicle.free_mps;
+  if (may_keep) speeds.push_back(vehicle.speed_mps);
   std::ranges::sort(speeds, std::greater<>());
   return speeds;
 }
@@ -126,7 +128,7 @@ MergeGap choose_merge_gap(const MergingVehicle& vehicle, const MergeMovers& move
                           const std::optional<MergeGap>& taken) {
   constexpr double kLittle_m = 2.0;  // room that is short by so much is no reason to give up a gap
   std::optional<MergeGap> best, kept;
-  for (const double by_mps : speeds_to_try(vehicle)) {
+  const auto look_at_gaps = [&](double by_mps) {
     for (std::size_t i = 0; i <= movers.size(); ++i) {
       const auto there = arrival_by(vehicle, by_mps, speed_in_gap_mps(vehicle, movers, i));
       if (!there) continue;
@@ -134,7 +136,10 @@ MergeGap choose_merge_gap(const MergingVehicle& vehicle, const MergeMovers& move
       improve(best, gap);
       if (is_same_gap(gap, taken)) improve(kept, gap);
     }
-  }
+  };
+  std::ranges::for_each(speeds_to_try(vehicle), look_at_gaps);
+  // Too near to take on any other speed before the merging point.
+  if (!best) look_at_gaps(vehicle.speed_mps);
   if (!kept || kept->missing_m > kLittle_m) return best.value();
   kept->is_good = true;
   return *kept;

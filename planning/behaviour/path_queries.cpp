@@ -41,6 +41,16 @@ SpeedPlan free_speed(const GoalLine& on, SpeedPlan speed) {
   return speed;
 }
 
+bool somebody_moves_near(const Question& question) {
+  constexpr double kNear_m = 40.0, kMovesNear_mps = 0.5;
+  const Eigen::Vector2d here = question.measured.map_from_vehicle.position();
+  return std::ranges::any_of(question.obstacles, [&](const Obstacle& obstacle) {
+    if (!obstacle.is_there(question.t_s)) return false;
+    const geometry::TrajectoryPoint at = obstacle.motion.at(question.t_s);
+    return at.speed_mps > kMovesNear_mps && (at.pose().position() - here).norm() < kNear_m;
+  });
+}
+
 void keep_within(const std::optional<double>& offset_m, double side, Offsets& offsets) {
   if (!offset_m) return;
   if (side > 0.0) {
@@ -83,7 +93,8 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
   PathQuery keep{.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question};
   keep_within(overtaking.keep_within_m, overtaking.side, keep.offsets);
   keep_within(lane.keep_within_m, lane.side, keep.offsets);
-  if (passing.merging.is_near()) {  // nobody is passed on the way from lane to lane
+  // Nobody is passed on the way from lane to lane, but who stands.
+  if (passing.merging.is_near() && somebody_moves_near(question)) {
     keep_within(kMerging_m, 1.0, keep.offsets);
     keep_within(kMerging_m, -1.0, keep.offsets);
   }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,7 @@ std::string lane(int id, bool may_cross) {
 std::filesystem::path map_of(const Scene& scene) {
   const bool has_two = scene.next_lane != NextLane::none;
   const std::string file =
-      fmt::format("passing_{}{}{}.xodr", has_two, scene.in_bend, scene.may_cross);
+      fmt::format("passing_{}{}{}_{}.xodr", has_two, scene.in_bend, scene.may_cross, ::getpid());
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / file;
   tests::MadeRoad road;
   road.id = "1";

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,8 @@ std::filesystem::path map_file() {
                         next ? fmt::format(R"(<successor id="{}"/>)", next) : "") +
                 R"(<roadMark sOffset="0" type="broken" color="white" laneChange="both"/>)");
   };
-  const auto path = std::filesystem::path(testing::TempDir()) / "merging.xodr";
+  const auto path =
+      std::filesystem::path(testing::TempDir()) / fmt::format("merging_{}.xodr", ::getpid());
   tests::MadeRoad road;
   road.id = "1";
   road.length_m = 1500.0;
@@ -192,6 +194,22 @@ TEST(Merging, NobodyInTheNextLaneIsNoReasonToSlowDown) {
     const Driven driven = drive_in({own_mps, 0.0, 0.0});
     EXPECT_GT(driven.merged_at_s, 0.0);
     EXPECT_GT(driven.least_mps, own_mps - 0.1);
+  }
+}
+
+TEST(Merging, ThereIsAnAnswerAtAnySpeedAndAtAnyDistance) {
+  const std::vector<planning::MergeMover> others{{0, 20.0, 2.25, 10.0}, {1, 60.0, 2.25, 0.0}};
+  for (const double speed_mps : {0.0, 3.0, 10.0, 40.0}) {
+    for (const double free_mps : {0.0, 0.5, 6.0, 30.0}) {
+      for (const double to_enter_m : {-3.0, 0.0, 0.5, 20.0, 150.0}) {
+        const planning::MergeGap gap = planning::choose_merge_gap(
+            {.to_enter_m = to_enter_m, .speed_mps = speed_mps, .free_mps = free_mps}, others, {});
+        EXPECT_TRUE(std::isfinite(gap.after_s) && gap.after_s >= 0.0);
+        EXPECT_TRUE(std::isfinite(gap.missing_m) && gap.missing_m >= 0.0);
+        EXPECT_GE(gap.speed_mps, 0.0);
+        EXPECT_TRUE(gap.ahead || gap.behind);
+      }
+    }
   }
 }
 
