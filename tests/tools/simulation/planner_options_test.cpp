@@ -101,11 +101,13 @@ TEST(PlannerOptions, SportierStylesAreFasterRoundARoundabout) {
 TEST(PlannerOptions, ClearanceIsKeptBesideAParkedCar) {
   for (const double asked_m : {0.3, 0.5, 0.7}) {
     const std::string limits = R"({"limits": {"clearance_m": )" + std::to_string(asked_m) + "}}";
-    EXPECT_NEAR(clearance_m(driven("parked_car.json", limits)), asked_m, 0.045);
+    const double kept_m = clearance_m(driven("parked_car.json", limits));
+    EXPECT_GE(kept_m, asked_m - 0.01);
+    EXPECT_LT(kept_m, asked_m + 0.1);
   }
 }
 
-// It starts at 13 m/s, and slows down for the lane change or the goal only later.
+// It is past the slower car by then.
 TEST(PlannerOptions, DesiredSpeedIsKept) {
   const Drive slow = driven("pass_car.json", R"({"limits": {"desired_speed_mps": 9}})");
   EXPECT_NEAR(slow.trajectory.at(9.0).speed_mps, 9.0, 0.3);
