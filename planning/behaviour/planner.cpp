@@ -17,8 +17,8 @@
 #include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
-#include "roadbed/planning/behaviour/road_end.h"
 #include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/reference/road_end.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

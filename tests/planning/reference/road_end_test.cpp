@@ -1,4 +1,4 @@
-#include "roadbed/planning/behaviour/road_end.h"
+#include "roadbed/planning/reference/road_end.h"
 
 #include <gtest/gtest.h>
 

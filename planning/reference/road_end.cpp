@@ -1,8 +1,8 @@
-#include "roadbed/planning/behaviour/road_end.h"
+#include "roadbed/planning/reference/road_end.h"
 
 #include <algorithm>
 
-namespace roadbed::planning::inline behaviour {
+namespace roadbed::planning::inline reference {
 namespace {
 
 constexpr double kAlong_m = 0.5, kHalfGap_m = 0.3, kExact_m = 1e-3;
@@ -24,4 +24,4 @@ double road_end_s_m(const ReferenceLine& line, const map::RoadMap& road_map) {
   return on_m;
 }
 
-}  // namespace roadbed::planning::behaviour
+}  // namespace roadbed::planning::reference
