@@ -48,8 +48,7 @@ struct DynamicState {
 /// State after `step_s` of constant input (classic Runge–Kutta) by the linear-tyre single-track
 /// model with load transfer, ST of [Althoff, Würsching 2020, CommonRoad: Vehicle Models, section
 /// 7]; below 0.1 m/s it rolls without slip, and slowly driven steps are divided, as slip is stiff
-/// there. Steering angle and rate keep to the vehicle's limits,
-/// the speed stays ≥ 0.
+/// there. Steering angle and rate keep to the vehicle's limits, the speed stays ≥ 0.
 DynamicState step(const DynamicState& state, const SingleTrackInput& input, double step_s,
                   const DynamicVehicle& vehicle);
 

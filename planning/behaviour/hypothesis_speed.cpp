@@ -1,5 +1,7 @@
 #include "roadbed/planning/behaviour/hypothesis_speed.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,6 +18,7 @@ constexpr double kLeastHorizon_s = 5.0, kMostHorizon_s = 12.0;
 constexpr double kBeyondGoal_s = 1.5;
 constexpr double kRoadEnd_m = 0.1;  // kept from the end of the lanes
 constexpr double kUsual_mps = 50.0 / 3.6;
+constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
 constexpr double kBesideCost = 0.3;        // per metre of the end's offset
 constexpr double kForecastMargin_m = 0.1;  // as that of a lead
 
@@ -23,6 +26,19 @@ double stopping_m(const PlannerView& view) {
   const SpeedSearchOptions usual;
   const double speed = view.measured.speed_mps;
   return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
+}
+
+/// Who is nearest ahead on the path.
+std::optional<DriveLead> lead_on(const StGraph& occupancy, const PlanningScene& scene) {
+  const StInterval* nearest = nullptr;
+  for (const StInterval& part : occupancy.at(0)) {
+    if (part.obstacle == StInterval::kNoObstacle) continue;
+    if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
+  }
+  if (!nearest) return std::nullopt;
+  const Obstacle& obstacle = scene.traffic.obstacles[nearest->obstacle];
+  const double speed = obstacle.is_static() ? 0.0 : obstacle.motion.at(scene.view.t_s).speed_mps;
+  return DriveLead{obstacle.id, nearest->from_m, speed};
 }
 
 }  // namespace
@@ -45,6 +61,7 @@ double HypothesisSpeed::look_ahead_m(const PlannerView& view) const {
   return fastest * horizon_s(view.t_s) + 20.0;
 }
 
+/// Whether the time in which the goal could have been reached is over.
 bool HypothesisSpeed::goal_is_past(double t_s) const {
   const std::optional<double> latest = task_.goal->latest_s();
   return latest && t_s > *latest;
@@ -147,6 +164,47 @@ SpeedSearchQuestion HypothesisSpeed::question_of(const PlanningScene& scene,
   asked.goals = std::move(found.goals);
   asked.goal_is_off_path = found.is_off_path;
   return asked;
+}
+
+PlannerCommand HypothesisSpeed::command_of(const ManeuverHypothesis& best,
+                                           const PlanningScene& scene) const {
+  PlannerCommand command;
+  command.acceleration_mps2 = first_command_mps2(best);
+  command.set_speed_mps = best.answer.plan.size() > 1 ? best.answer.plan[1].speed_mps : 0.0;
+  command.lead = lead_on(*best.occupancy, scene);
+  explain(best, scene, command);
+  return command;
+}
+
+void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScene& scene,
+                              PlannerCommand& command) const {
+  const double t_s = scene.view.t_s;
+  const bool has_goal = !task_.goal->states.empty();
+  if (!best.answer.is_free) {
+    command.behaviour = Behaviour::emergency;
+    command.reason =
+        fmt::format("every speed meets something after {:.1f} s", best.answer.free_until_s);
+  } else if (best.risk_level->is_emergency) {
+    command.behaviour = Behaviour::emergency;
+    command.reason =
+        fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command.acceleration_mps2);
+  } else if (goal_is_past(t_s) || !has_goal) {
+    command.behaviour = Behaviour::stop;
+    command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";
+  } else if (beside_m(best) > kPassOffset_m) {
+    command.behaviour = Behaviour::pass;
+    command.reason =
+        fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));
+  } else if (const auto light = why_light_stops(lights_ahead(best), t_s)) {
+    command.behaviour = Behaviour::yield;
+    command.reason = *light;
+  } else if (command.lead && command.lead->gap_m < kFollow_m) {
+    command.behaviour = Behaviour::follow;
+    command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,
+                                 command.lead->gap_m, command.lead->speed_mps);
+  } else {
+    command.reason = best.answer.reaches_goal ? "the goal is reached in time" : "the road is free";
+  }
 }
 
 }  // namespace roadbed::planning::behaviour

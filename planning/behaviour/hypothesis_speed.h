@@ -46,12 +46,14 @@ class HypothesisSpeed {
   bool may_reach_goal(const PlanningScene& scene, const RiskLevel& risk_level,
                       const ManeuverHypothesis& hypothesis) const;
 
-  /// Whether the time in which the goal could have been reached is over.
-  bool goal_is_past(double t_s) const;
-
-  std::vector<LightAhead> lights_ahead(const ManeuverHypothesis& hypothesis) const;
+  /// What the search asks for, and why.
+  PlannerCommand command_of(const ManeuverHypothesis& best, const PlanningScene& scene) const;
 
  private:
+  bool goal_is_past(double t_s) const;
+  std::vector<LightAhead> lights_ahead(const ManeuverHypothesis& hypothesis) const;
+  void explain(const ManeuverHypothesis& best, const PlanningScene& scene,
+               PlannerCommand& command) const;
   SpeedSearchQuestion question_of(const PlanningScene& scene, const ManeuverHypothesis& hypothesis,
                                   const StGraph& occupancy) const;
   double end_m(const PlanningScene& scene, const ManeuverHypothesis& hypothesis) const;

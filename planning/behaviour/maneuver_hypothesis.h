@@ -76,6 +76,12 @@ struct ManeuverHypothesis {
   bool has_candidate() const { return proposal.plan.chosen.has_value(); }
 };
 
+/// What the search found asks the actuator for until the next cycle. @pre it was searched
+inline double first_command_mps2(const ManeuverHypothesis& hypothesis) {
+  const std::vector<SpeedState>& plan = hypothesis.answer.plan;
+  return plan.size() > 1 ? plan[1].command_mps2 : hypothesis.risk_level->speed.least_mps2;
+}
+
 /// How far beside the reference line the path ends.
 inline double beside_m(const ManeuverHypothesis& hypothesis) {
   return hypothesis.has_candidate() ? std::abs(hypothesis.proposal.plan.chosen->end_d_m) : 0.0;

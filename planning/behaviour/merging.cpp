@@ -191,7 +191,9 @@ bool Merging::is_in(const MergePlace& place, const ViewOnLine& view) const {
   return std::abs(place.lane.project(foot.in_map + view.at.d_m * left).d_m) < kInNextLane_m;
 }
 
-std::string Merging::name_of(std::size_t obstacle) const { return task_.obstacles[obstacle].id; }
+std::string Merging::name_of(std::size_t obstacle) const {
+  return fmt::format("{} {}", task_.obstacles[obstacle].kind, task_.obstacles[obstacle].id);
+}
 
 Merging::Decision Merging::look(const ViewOnLine& view) {
   const MergePlace* place = next_place(view.at.s_m);

@@ -75,6 +75,13 @@ std::vector<PathQuery> ending_at(std::span<const Offsets> ends, GoalLine& on,
 
 }  // namespace
 
+Offsets offsets_in_lane(const PassingDecision& passing) {
+  Offsets offsets;
+  keep_within(passing.overtaking.keep_within_m, passing.overtaking.side, offsets);
+  keep_within(passing.in_lane.keep_within_m, passing.in_lane.side, offsets);
+  return offsets;
+}
+
 std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
                                         const PassingDecision& passing) {
   const Overtaking::Decision& overtaking = passing.overtaking;
@@ -90,9 +97,10 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     at_free_speed.speed.target_mps = on.ceiling.at(on.replanner.s_m()).speed_mps;
     queries.push_back(at_offset(on, Maneuver::pass_in_lane, *lane.offset_m, at_free_speed));
   }
-  PathQuery keep{.goal_line = &on, .maneuver = Maneuver::keep_lane, .question = question};
-  keep_within(overtaking.keep_within_m, overtaking.side, keep.offsets);
-  keep_within(lane.keep_within_m, lane.side, keep.offsets);
+  PathQuery keep{.goal_line = &on,
+                 .maneuver = Maneuver::keep_lane,
+                 .question = question,
+                 .offsets = offsets_in_lane(passing)};
   // Nobody is passed on the way from lane to lane, but who stands.
   if (passing.merging.is_near() && somebody_moves_near(question)) {
     keep_within(kMerging_m, 1.0, keep.offsets);

@@ -7,6 +7,9 @@
 
 namespace roadbed::planning::inline behaviour {
 
+/// Offsets of the lane's own, as far as those who decide on the lanes beside it leave them.
+LateralReplanner::Offsets offsets_in_lane(const PassingDecision& passing);
+
 /// On the way to a place: past those whom `passing` names, and, last, along the lane, within what
 /// it allows. Paths past others are planned at the speed of the free road.
 std::vector<PathQuery> queries_on_route(GoalLine& on, const LateralReplanner::Question& question,

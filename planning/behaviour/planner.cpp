@@ -24,8 +24,7 @@ namespace roadbed::planning::inline behaviour {
 namespace {
 
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
-constexpr double kPassOffset_m = 0.5, kFollow_m = 20.0;
-constexpr double kLookForPath_s = 3.0;  // the speed plan that lateral planning is told
+constexpr double kLookForPath_s = 3.0;               // the speed plan that lateral planning is told
 constexpr double kCompareEvery_m = 4.0, kAlike_m = 0.1;  // of two lines
 constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
 
@@ -127,7 +126,8 @@ class Planner::Impl {
     const std::vector<Obstacle> obstacles = obstacles_to_plan_for(scene);
     const ManeuverHypothesis best = best_hypothesis(scene, question_at(view, obstacles), passing);
     take(best);
-    PlannerCommand command = task_.goal ? searched(best, view) : cruised(best, scene, passing);
+    PlannerCommand command =
+        task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
     last_set_speed_mps_ = command.set_speed_mps;
@@ -185,18 +185,14 @@ class Planner::Impl {
 
   WithinLanePassing within_lane(const ViewOnLine& view, const PassingDecision& passing) {
     const GoalLine& on = goal_line();
-    WithinLaneQuestion question{.view = view,
-                                .line = on.line,
-                                .vehicle = vehicle_,
-                                .free_mps = on.ceiling.at(view.at.s_m).speed_mps,
-                                .clearance_m = clearance_m_};
-    const auto keep_within = [&](const std::optional<double>& offset_m, double side) {
-      double& most_m = side > 0.0 ? question.most_left_m : question.most_right_m;
-      most_m = std::min(most_m, offset_m.value_or(most_m));
-    };
-    keep_within(passing.overtaking.keep_within_m, passing.overtaking.side);
-    keep_within(passing.in_lane.keep_within_m, passing.in_lane.side);
-    return look_within_lane(question);
+    const LateralReplanner::Offsets offsets = offsets_in_lane(passing);
+    return look_within_lane({.view = view,
+                             .line = on.line,
+                             .vehicle = vehicle_,
+                             .free_mps = on.ceiling.at(view.at.s_m).speed_mps,
+                             .clearance_m = clearance_m_,
+                             .most_left_m = offsets.most_m,
+                             .most_right_m = -offsets.least_m});
   }
 
   PlanningScene scene_at(const PlannerView& view, const Merging::Decision& merging) {
@@ -414,63 +410,6 @@ class Planner::Impl {
     const Obstacle& other = traffic_.obstacles[best.meeting->obstacle];
     command.reason =
         fmt::format("{} {} would be met in {:.1f} s", other.kind, other.id, best.meeting->after_s);
-  }
-
-  static double first_command_mps2(const ManeuverHypothesis& best) {
-    const std::vector<SpeedState>& plan = best.answer.plan;
-    return plan.size() > 1 ? plan[1].command_mps2 : best.risk_level->speed.least_mps2;
-  }
-
-  PlannerCommand searched(const ManeuverHypothesis& best, const PlannerView& view) const {
-    PlannerCommand command;
-    command.acceleration_mps2 = first_command_mps2(best);
-    command.set_speed_mps = best.answer.plan.size() > 1 ? best.answer.plan[1].speed_mps : 0.0;
-    command.lead = lead_on(*best.occupancy, view);
-    explain(best, view, command);
-    return command;
-  }
-
-  std::optional<DriveLead> lead_on(const StGraph& occupancy, const PlannerView& view) const {
-    const StInterval* nearest = nullptr;
-    for (const StInterval& part : occupancy.at(0)) {
-      if (part.obstacle == StInterval::kNoObstacle) continue;
-      if (part.from_m >= 0.0 && (!nearest || part.from_m < nearest->from_m)) nearest = &part;
-    }
-    if (!nearest) return std::nullopt;
-    const Obstacle& obstacle = traffic_.obstacles[nearest->obstacle];
-    const double speed = obstacle.is_static() ? 0.0 : obstacle.motion.at(view.t_s).speed_mps;
-    return DriveLead{obstacle.id, nearest->from_m, speed};
-  }
-
-  void explain(const ManeuverHypothesis& best, const PlannerView& view,
-               PlannerCommand& command) const {
-    const bool has_goal = !task_.goal->states.empty();
-    if (!best.answer.is_free) {
-      command.behaviour = Behaviour::emergency;
-      command.reason =
-          fmt::format("every speed meets something after {:.1f} s", best.answer.free_until_s);
-    } else if (best.risk_level->is_emergency) {
-      command.behaviour = Behaviour::emergency;
-      command.reason =
-          fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command.acceleration_mps2);
-    } else if (speed_.goal_is_past(view.t_s) || !has_goal) {
-      command.behaviour = Behaviour::stop;
-      command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";
-    } else if (beside_m(best) > kPassOffset_m) {
-      command.behaviour = Behaviour::pass;
-      command.reason =
-          fmt::format("the way is free {:.1f} m beside the reference line", beside_m(best));
-    } else if (const auto light = why_light_stops(speed_.lights_ahead(best), view.t_s)) {
-      command.behaviour = Behaviour::yield;
-      command.reason = *light;
-    } else if (command.lead && command.lead->gap_m < kFollow_m) {
-      command.behaviour = Behaviour::follow;
-      command.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", command.lead->id,
-                                   command.lead->gap_m, command.lead->speed_mps);
-    } else {
-      command.reason =
-          best.answer.reaches_goal ? "the goal is reached in time" : "the road is free";
-    }
   }
 
   const geometry::VehicleShape& vehicle_;

@@ -10,9 +10,9 @@ namespace roadbed::planning::inline behaviour {
 /// Plans path and speed, once every 0.1 s.
 ///
 ///     who is there ─▶ what will be where ─▶ hypotheses: which line, past or behind whom
-///                                                  │ each: best path of the grid, best speed in
-///                                                  s–t ▼
-///                                  the first that is free, else the cheapest ─▶ path, acceleration
+///                                                │ best path of the grid, best speed in s–t
+///                                                ▼
+///                           the first that is free, else the cheapest ─▶ path, acceleration
 ///
 /// Where the task ends at a place, the speed is that of the cruise law, as long as a forecast of
 /// it meets nothing; where the goal has a time, or the forecast meets somebody, a search over the

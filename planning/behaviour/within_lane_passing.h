@@ -35,7 +35,7 @@ struct WithinLaneQuestion {
   double free_mps = 0.0;     ///< of the road without the others
   double clearance_m = 0.0;  ///< asked for beside them
   /// Greatest offsets from the line, to the left and to the right, that the vehicle may drive at.
-  double most_left_m = 1e9, most_right_m = 1e9;
+  double most_left_m = 0.0, most_right_m = 0.0;
 };
 
 /// The nearest one that moves ahead on the line and is 1 m/s slower than the road allows, if the

@@ -17,8 +17,7 @@ namespace roadbed::tools::inline simulation {
 /// @param start  of the ego's rear axle
 /// @param drops_ego_recording  leave that out; else it is refused by that name.
 /// @throws InputError if a recording has gaps or is not in order of time, or an obstacle touches
-/// the
-///         ego at the start.
+///         the ego at the start.
 std::vector<planning::Obstacle> obstacles_of(const map::commonroad::Scenario& from,
                                              const ProblemSource& source,
                                              const geometry::Pose2& start,

@@ -212,19 +212,24 @@ SearchScene random_search_scene(std::mt19937& random, bool has_goal) {
   return scene;
 }
 
+planning::SpeedSearchQuestion question_of(const SearchScene& scene,
+                                          const planning::StGraph& occupancy) {
+  return {.profile = scene.way,
+          .occupancy = occupancy,
+          .speed_mps = scene.speed_mps,
+          .acceleration_mps2 = scene.acceleration_mps2,
+          .horizon_s = scene.horizon_s,
+          .end_m = scene.end_m,
+          .goals = scene.goals};
+}
+
 struct SearchCosts {
   double found, plain;
 };
 
 SearchCosts search_costs_of(const SearchScene& scene) {
   const planning::StGraph occupancy(scene.way, true_traffic(scene.world), 0.0, 100, 0.3);
-  const planning::SpeedSearchQuestion question{.profile = scene.way,
-                                               .occupancy = occupancy,
-                                               .speed_mps = scene.speed_mps,
-                                               .acceleration_mps2 = scene.acceleration_mps2,
-                                               .horizon_s = scene.horizon_s,
-                                               .end_m = scene.end_m,
-                                               .goals = scene.goals};
+  const planning::SpeedSearchQuestion question = question_of(scene, occupancy);
   const planning::SpeedSearchOptions options;
   return {search_speed(question, options).cost, PlainSearch(question, options).cost()};
 }
@@ -293,13 +298,7 @@ TEST(SpeedSearchOracle, GoalThatIsReachedIsOneThatMayBe) {
     SearchScene scene = random_search_scene(random, true);
     scene.goals.front().ahead_m.most += 20.0;
     const planning::StGraph occupancy(scene.way, true_traffic(scene.world), 0.0, 100, 0.3);
-    const planning::SpeedSearchQuestion question{.profile = scene.way,
-                                                 .occupancy = occupancy,
-                                                 .speed_mps = scene.speed_mps,
-                                                 .acceleration_mps2 = scene.acceleration_mps2,
-                                                 .horizon_s = scene.horizon_s,
-                                                 .end_m = scene.end_m,
-                                                 .goals = scene.goals};
+    const planning::SpeedSearchQuestion question = question_of(scene, occupancy);
     const planning::SpeedSearchOptions options;
     const bool may_be = planning::may_reach_goal(question, options.most_mps2);
     const bool is = planning::search_speed(question, options).reaches_goal;
