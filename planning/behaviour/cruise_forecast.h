@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
-#include "roadbed/planning/behaviour/path_profile.h"
-#include "roadbed/planning/behaviour/speed_search.h"
-#include "roadbed/planning/behaviour/st_graph.h"
+#include "roadbed/planning/speed/path_profile.h"
+#include "roadbed/planning/speed/speed_search.h"
+#include "roadbed/planning/speed/st_graph.h"
 
 namespace roadbed::planning::inline behaviour {
 

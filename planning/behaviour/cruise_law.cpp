@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/planning/behaviour/path_profile.h"
-#include "roadbed/planning/behaviour/st_graph.h"
+#include "roadbed/planning/speed/path_profile.h"
+#include "roadbed/planning/speed/st_graph.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

@@ -13,8 +13,8 @@
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
-#include "roadbed/planning/behaviour/traffic.h"
 #include "roadbed/planning/behaviour/within_lane_passing.h"
+#include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {

@@ -8,12 +8,12 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/behaviour/stop_points.h"
-#include "roadbed/planning/behaviour/timed_goal.h"
 #include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/route/route.h"
+#include "roadbed/planning/speed/timed_goal.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "roadbed/planning/behaviour/cruise_forecast.h"
-#include "roadbed/planning/behaviour/goal_reach.h"
-#include "roadbed/planning/behaviour/goals_on_path.h"
+#include "roadbed/planning/speed/goal_reach.h"
+#include "roadbed/planning/speed/goals_on_path.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

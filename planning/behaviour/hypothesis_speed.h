@@ -8,7 +8,7 @@
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
-#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/obstacles/traffic.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -6,8 +6,8 @@
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/behaviour/driving_task.h"
-#include "roadbed/planning/behaviour/movers_on_line.h"
-#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/obstacles/movers_on_line.h"
+#include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/route/route.h"

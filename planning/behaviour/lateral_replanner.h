@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "roadbed/planning/behaviour/driving_task.h"
-#include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/plan.h"
 
 namespace roadbed::planning::inline behaviour {

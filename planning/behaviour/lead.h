@@ -7,7 +7,7 @@
 
 #include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/reference_line.h"
 

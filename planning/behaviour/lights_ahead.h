@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/behaviour/st_graph.h"
 #include "roadbed/planning/behaviour/stop_points.h"
+#include "roadbed/planning/speed/st_graph.h"
 
 namespace roadbed::planning::inline behaviour {
 

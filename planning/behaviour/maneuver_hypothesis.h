@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/lateral_replanner.h"
-#include "roadbed/planning/behaviour/path_profile.h"
-#include "roadbed/planning/behaviour/speed_search.h"
-#include "roadbed/planning/behaviour/st_graph.h"
 #include "roadbed/planning/behaviour/stop_points.h"
-#include "roadbed/planning/behaviour/timed_goal.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
+#include "roadbed/planning/speed/path_profile.h"
+#include "roadbed/planning/speed/speed_search.h"
+#include "roadbed/planning/speed/st_graph.h"
+#include "roadbed/planning/speed/timed_goal.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -8,8 +8,8 @@
 #include "roadbed/geometry/primitives/polyline.h"
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/merge_gap.h"
-#include "roadbed/planning/behaviour/movers_on_line.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
+#include "roadbed/planning/obstacles/movers_on_line.h"
 
 namespace roadbed::planning::inline behaviour {
 

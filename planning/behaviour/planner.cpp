@@ -17,7 +17,7 @@
 #include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
-#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/road_end.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -140,7 +140,7 @@ class Planner::Impl {
   // What will be where.
 
   void foresee(const PlannerView& view) {
-    truth_ = true_traffic(task_);
+    truth_ = Traffic{task_.obstacles};
     if (!task_.goal) {
       kept_from_ = with_room_beside_cyclists(
           truth_.obstacles, view.t_s, geometry::body_at(view.measured.map_from_vehicle, vehicle_),

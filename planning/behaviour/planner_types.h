@@ -6,8 +6,8 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/driving_task.h"
-#include "roadbed/planning/behaviour/planned_path.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/lateral/planned_path.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/path_profile.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
-#include "roadbed/planning/behaviour/st_graph.h"
+#include "roadbed/planning/speed/path_profile.h"
+#include "roadbed/planning/speed/st_graph.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "roadbed/planning/behaviour/driving_task.h"
-#include "roadbed/planning/behaviour/planned_path.h"
-#include "roadbed/planning/behaviour/traffic.h"
+#include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {

@@ -4,7 +4,7 @@
 
 #include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {

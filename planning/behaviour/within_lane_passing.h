@@ -8,7 +8,7 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/behaviour/movers_on_line.h"
+#include "roadbed/planning/obstacles/movers_on_line.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/planning/reference/reference_line.h"
 

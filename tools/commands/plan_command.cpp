@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/trajectory_csv.h"

@@ -8,8 +8,8 @@
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/model/road_map.h"
-#include "roadbed/planning/behaviour/timed_goal.h"
 #include "roadbed/planning/route/route.h"
+#include "roadbed/planning/speed/timed_goal.h"
 
 namespace roadbed::tools::inline simulation {
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/planning/behaviour/planned_path.h"
-#include "roadbed/planning/behaviour/timed_goal.h"
+#include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/speed/timed_goal.h"
 
 namespace roadbed::tools::inline simulation {
 

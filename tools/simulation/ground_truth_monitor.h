@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/world.h"
 

@@ -5,7 +5,7 @@
 
 #include "roadbed/control/cruise_control.h"
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/planned_path.h"
+#include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline simulation {

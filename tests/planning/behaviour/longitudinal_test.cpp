@@ -8,7 +8,7 @@
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/planning/behaviour/decision.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
-#include "roadbed/planning/behaviour/speed_search.h"
+#include "roadbed/planning/speed/speed_search.h"
 
 namespace roadbed {
 namespace {

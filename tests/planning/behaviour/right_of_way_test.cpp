@@ -41,7 +41,7 @@ class WaitingAtAPlace : public testing::Test {
                        .speed_mps = speed_mps,
                        .path = path,
                        .ceiling = ceiling_of(world_.line, scenario_.vehicle, scenario_.options),
-                       .traffic = true_traffic(world_)});
+                       .traffic = planning::Traffic{world_.obstacles}});
   }
 
   Scenario scenario_;

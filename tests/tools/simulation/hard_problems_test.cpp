@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "roadbed/planning/behaviour/path_profile.h"
+#include "roadbed/planning/speed/path_profile.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/drive.h"

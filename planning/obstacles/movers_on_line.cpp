@@ -1,0 +1,34 @@
+#include "roadbed/planning/obstacles/movers_on_line.h"
+
+#include <cmath>
+
+namespace roadbed::planning::inline obstacles {
+
+bool MoverOnLine::shares_way(double at_d_m, const geometry::VehicleShape& vehicle) const {
+  constexpr double kApart_m = 0.3;  // sides that far apart do not matter to each other
+  return std::abs(d_m - at_d_m) < half_width_m + 0.5 * vehicle.width_m + kApart_m;
+}
+
+std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
+                                        double t_s, bool with_standing) {
+  std::vector<MoverOnLine> movers;
+  for (std::size_t i = 0; i < traffic.obstacles.size(); ++i) {
+    const Obstacle& obstacle = traffic.obstacles[i];
+    if ((obstacle.is_static() && !with_standing) || !obstacle.is_there(t_s)) continue;
+    const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
+    const geometry::LinePosition at = line.project(now.pose().position());
+    const double turned = now.heading_rad - line.at(at.s_m).heading_rad;
+    const double along = std::abs(std::cos(turned)), across = std::abs(std::sin(turned));
+    movers.push_back(
+        {.obstacle = i,
+         .s_m = at.s_m,
+         .d_m = at.d_m,
+         .half_length_m = 0.5 * (obstacle.length_m * along + obstacle.width_m * across),
+         .half_width_m = 0.5 * (obstacle.width_m * along + obstacle.length_m * across),
+         .speed_mps = obstacle.is_static() ? 0.0 : now.speed_mps * std::cos(turned),
+         .stands = obstacle.is_static()});
+  }
+  return movers;
+}
+
+}  // namespace roadbed::planning::obstacles

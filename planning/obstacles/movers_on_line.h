@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/obstacles/traffic.h"
+#include "roadbed/planning/reference/reference_line.h"
+
+namespace roadbed::planning::inline obstacles {
+
+/// The vehicle on its line at one time, and who is around it.
+struct ViewOnLine {
+  double t_s;
+  geometry::LinePosition at;  ///< of the rear axle
+  double speed_mps;
+  Traffic traffic;  ///< only what is there now is looked at
+};
+
+/// An obstacle, seen from a reference line at one time.
+struct MoverOnLine {
+  std::size_t obstacle;                ///< index
+  double s_m, d_m;                     ///< of its centre
+  double half_length_m, half_width_m;  ///< along the line, and across
+  double speed_mps;                    ///< along the line; less than 0 if it is oncoming
+  bool stands = false;                 ///< for the whole drive
+
+  double rear_m() const { return s_m - half_length_m; }
+  double front_m() const { return s_m + half_length_m; }
+
+  /// Whether a vehicle whose middle is `d_m` beside the line would get into its way.
+  bool shares_way(double d_m, const geometry::VehicleShape& vehicle) const;
+};
+
+/// Those that are there, in the traffic's order. A projection for each.
+/// @param with_standing  those that stand for the whole drive, too.
+std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
+                                        double t_s, bool with_standing = false);
+
+}  // namespace roadbed::planning::obstacles
