@@ -1,10 +1,13 @@
 #include "roadbed/planning/behaviour/cruise_forecast.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
+#include "roadbed/planning/speed/safe_way_on.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -39,6 +42,11 @@ class Forecast {
       if (!drive.is_free) break;
       drive.free_until_s = at.t_s;
     }
+    if (drive.is_free) {
+      constexpr double kNoEnd_m = std::numeric_limits<double>::infinity();  // it stops by its law
+      forecast.met = who_bars_way_on(at, q_.occupancy, kNoEnd_m, who_is_no_lead());
+      drive.is_free = !forecast.met;
+    }
     return forecast;
   }
 
@@ -57,6 +65,13 @@ class Forecast {
 
   bool crosses(const StInterval& part) const {
     return part.obstacle < q_.crosses.size() && q_.crosses[part.obstacle];
+  }
+
+  std::vector<bool> who_is_no_lead() const {
+    std::vector<bool> none = ignored_;
+    none.resize(std::max(ignored_.size(), q_.crosses.size()));
+    for (std::size_t i = 0; i < q_.crosses.size(); ++i) none[i] = none[i] || q_.crosses[i];
+    return none;
   }
 
   std::optional<std::size_t> who_is_met(int step, double ahead_m) const {

@@ -182,8 +182,7 @@ void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScen
   const bool has_goal = !task_.goal->states.empty();
   if (!best.answer.is_free) {
     command.behaviour = Behaviour::emergency;
-    command.reason =
-        fmt::format("every speed meets something after {:.1f} s", best.answer.free_until_s);
+    command.reason = fmt::format("no way on is free: {:.1f} s at best", best.answer.free_until_s);
   } else if (best.risk_level->is_emergency) {
     command.behaviour = Behaviour::emergency;
     command.reason =

@@ -409,7 +409,10 @@ class Planner::Impl {
     if (!best.meeting || best.meeting->obstacle >= traffic_.obstacles.size()) return;
     const Obstacle& other = traffic_.obstacles[best.meeting->obstacle];
     command.reason =
-        fmt::format("{} {} would be met in {:.1f} s", other.kind, other.id, best.meeting->after_s);
+        fmt::format("{} {} would be met in {:.1f} s{}", other.kind, other.id, best.meeting->after_s,
+                    best.answer.is_free
+                        ? ""
+                        : fmt::format(", and {:.1f} s is free at best", best.answer.free_until_s));
   }
 
   const geometry::VehicleShape& vehicle_;

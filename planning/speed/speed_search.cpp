@@ -10,6 +10,7 @@
 
 #include "roadbed/planning/speed/path_speed_limits.h"
 #include "roadbed/planning/speed/remaining_cost.h"
+#include "roadbed/planning/speed/safe_way_on.h"
 #include "roadbed/planning/speed/state_table.h"
 
 namespace roadbed::planning::inline speed {
@@ -106,6 +107,17 @@ class Search {
 
   double layer_s() const { return kSubstep_s * substeps_; }
 
+  /// Beyond a goal nothing counts.
+  bool has_way_on(const Node& node) const {
+    if (!q_.goals.empty() && node.reached) return true;
+    return !who_bars_way_on(state_of(node), q_.occupancy, q_.end_m);
+  }
+
+  SpeedState state_of(const Node& node) const {
+    return {layer_s() * node.layer, node.ahead_m, node.speed_mps, node.acceleration_mps2,
+            node.command_mps2};
+  }
+
   double wanted_mps(double ahead_m) const {
     return std::min(q_.most_wanted_mps, speeds_.wanted_mps(ahead_m));
   }
@@ -144,7 +156,7 @@ class Search {
     const double nearness_cost = nearness(to, to.layer * substeps_);
     if (is_dearer(with(nearness_cost, 0.0), cell, from)) return;
     if (!rests) move(from, command);
-    if (!drives(to)) return;
+    if (!drives(to) || (to.layer == layers_ && !has_way_on(to))) return;
     to.bend_excess_mps = std::max(from.bend_excess_mps, bend_mps);
     to.cost = with(nearness_cost, to.touched && !from.touched ? kTouchAfterGoal : 0.0);
     keep(to, to.reached ? cell.after_goal : cell.before_goal);
@@ -346,9 +358,7 @@ class Search {
     found.bend_excess_mps = last.bend_excess_mps;
     if (is_free) found.cost = total(last) + (q_.goal_is_off_path ? kMissedGoal : 0.0);
     for (int i = end; i >= 0; i = nodes_[static_cast<std::size_t>(i)].parent) {
-      const Node& node = nodes_[static_cast<std::size_t>(i)];
-      found.plan.push_back({layer_s() * node.layer, node.ahead_m, node.speed_mps,
-                            node.acceleration_mps2, node.command_mps2});
+      found.plan.push_back(state_of(nodes_[static_cast<std::size_t>(i)]));
     }
     std::ranges::reverse(found.plan);
     return found;

@@ -8,6 +8,7 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/planning/speed/goal_reach.h"
+#include "roadbed/planning/speed/safe_way_on.h"
 #include "roadbed/planning/speed/speed_search.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -65,7 +66,7 @@ class PlainSearch {
       commands.push_back(std::clamp(hold, options_.least_mps2, options_.most_mps2));
       for (const double command : commands) {
         const auto to = drive(from, command, layer);
-        if (!to) continue;
+        if (!to || (layer + 1 == layers_ && !has_way_on(*to))) continue;
         const auto [place, is_new] = kept.emplace(cell(*to), *to);
         if (!is_new && to->cost < place->second.cost) place->second = *to;
       }
@@ -79,6 +80,16 @@ class PlainSearch {
     const double lag = options_.actuator_lag_s;
     return {static_cast<long>((s.speed + lag * (s.acceleration + 12.0)) / 0.6),
             static_cast<long>((s.ahead + lag * s.speed) / 0.75), s.reached};
+  }
+
+  /// Its law has tests of its own.
+  bool has_way_on(const PlainState& s) const {
+    if (s.reached && !q_.goals.empty()) return true;
+    return !planning::who_bars_way_on({.t_s = 0.1 * substeps_ * layers_,
+                                       .ahead_m = s.ahead,
+                                       .speed_mps = s.speed,
+                                       .acceleration_mps2 = s.acceleration},
+                                      q_.occupancy, q_.end_m);
   }
 
   double wanted(const PlainState& s) const {
