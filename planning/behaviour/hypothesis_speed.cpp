@@ -89,6 +89,7 @@ void HypothesisSpeed::search(const PlanningScene& scene, const RiskLevel& risk_l
   if (!hypothesis.risk_level || hypothesis.risk_level->margin_m != risk_level.margin_m) {
     set_occupancy(scene, risk_level.margin_m, hypothesis);
   }
+  limit_speed_in_bends(hypothesis.profile, vehicle_, risk_level.bends);
   hypothesis.answer =
       search_speed(question_of(scene, hypothesis, *hypothesis.occupancy), risk_level.speed);
   hypothesis.risk_level = &risk_level;

@@ -19,11 +19,12 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// How much risk is taken: safety margin to obstacles, and braking.
+/// How much risk is taken: safety margin to obstacles, braking, and speed in bends.
 struct RiskLevel {
   double margin_m;
   SpeedSearchOptions speed;
   bool is_emergency;
+  BendLimits bends = {};
 };
 
 /// One line to the goal, and the path that is kept along it.

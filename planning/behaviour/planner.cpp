@@ -27,13 +27,14 @@ constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kLookForPath_s = 3.0;               // the speed plan that lateral planning is told
 constexpr double kCompareEvery_m = 4.0, kAlike_m = 0.1;  // of two lines
 constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
+constexpr BendLimits kFastBends{.max_lateral_acceleration_mps2 = 3.7};  // of 3.9 that are steered
 
 /// From the most careful on; for those who have to be at their goal in time, and for those who
 /// have not, to whom only those in their way matter.
 constexpr std::array<RiskLevel, 3> kInTime{
     {{.margin_m = 0.4, .speed = {}, .is_emergency = false},
-     {.margin_m = 0.4, .speed = kHardest, .is_emergency = true},
-     {.margin_m = 0.1, .speed = kHardest, .is_emergency = true}}};
+     {.margin_m = 0.4, .speed = kHardest, .is_emergency = true, .bends = kFastBends},
+     {.margin_m = 0.1, .speed = kHardest, .is_emergency = true, .bends = kFastBends}}};
 constexpr std::array<RiskLevel, 2> kOnRoute{
     {{.margin_m = 0.1, .speed = {}, .is_emergency = false},
      {.margin_m = 0.1, .speed = {.least_mps2 = -8.0}, .is_emergency = true}}};

@@ -49,7 +49,6 @@ PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double
                                 const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                                 const BendLimits& limits) {
   PathProfile profile;
-  std::vector<double> curvature;
   Eigen::Vector2d last(0.0, 0.0);
   for (double l_m = 0.0; l_m <= length_m; l_m += l_m < kFineUntil_m ? kFine_m : kWayStep_m) {
     const PlannedPath::Place place = path.place_at(from_s_m + l_m);
@@ -61,15 +60,22 @@ PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double
     profile.station_m.push_back(from_s_m + l_m);
     profile.body.push_back(geometry::body_at(place.pose, vehicle));
     profile.wanted_mps.push_back(ceiling.at(from_s_m + l_m).speed_mps);
-    curvature.push_back(place.curvature_per_m);
+    profile.curvature_per_m.push_back(place.curvature_per_m);
   }
+  limit_speed_in_bends(profile, vehicle, limits);
+  return profile;
+}
+
+void limit_speed_in_bends(PathProfile& profile, const geometry::VehicleShape& vehicle,
+                          const BendLimits& limits) {
+  const std::vector<double>& curvature = profile.curvature_per_m;
+  profile.most_mps.clear();
   for (std::size_t i = 0; i < curvature.size(); ++i) {
     const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, curvature.size() - 1);
     const double apart = std::max(1e-6, profile.ahead_m[b] - profile.ahead_m[a]);
     profile.most_mps.push_back(
         bend_speed_mps(curvature[i], (curvature[b] - curvature[a]) / apart, vehicle, limits));
   }
-  return profile;
 }
 
 std::vector<double> drive_on(const PathProfile& profile, double speed_mps, double until_m) {

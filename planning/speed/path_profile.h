@@ -22,6 +22,7 @@ struct PathProfile {
   std::vector<double> ahead_m;    ///< driven since the first sample, by the rear axle; ascends
   std::vector<double> station_m;  ///< of the reference line
   std::vector<geometry::Rectangle> body;
+  std::vector<double> curvature_per_m;
   std::vector<double> wanted_mps;  ///< by the ceiling of the line
   std::vector<double> most_mps;    ///< that the path's own bends allow
 
@@ -39,6 +40,10 @@ struct PathProfile {
 PathProfile sample_path_profile(const PlannedPath& path, double from_s_m, double length_m,
                                 const SpeedCeiling& ceiling, const geometry::VehicleShape& vehicle,
                                 const BendLimits& limits = {});
+
+/// Sets anew how fast the path's bends may be taken.
+void limit_speed_in_bends(PathProfile& profile, const geometry::VehicleShape& vehicle,
+                          const BendLimits& limits);
 
 /// Distances after 0, 0.1, 0.2 … s of driving on freely: as the cruise control speeds up, to what
 /// the line's ceiling wants, until `until_m` is passed; for 15 s at most.
