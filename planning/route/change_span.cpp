@@ -154,8 +154,9 @@ std::optional<SpanPlan> plan_span(const RoutingCostModel& model, const ChangeSpa
     const LaneChain chain = chain_of(network, lanes);
     // Neighbours that go round in a ring have a shorter chain the other way.
     if (chain.size() != span.changes + 1) return {};
-    if (!std::all_of(chain.begin(), chain.end(),
-                     [&](std::uint32_t lane) { return model.may_enter(lane); })) {
+    if (!std::all_of(chain.begin(), chain.end(), [&](std::uint32_t lane) {
+          return model.may_enter(lane) && !model.is_blocked(lane, {});
+        })) {
       return {};
     }
   }

@@ -68,7 +68,7 @@ struct SpanPlan {
   double room_m = 0.0;            ///< that each of them has
 };
 
-/// None if there is less room than the rules ask for, or a lane may not be entered.
+/// None if there is less room than the rules ask for, or a lane may not be entered or is blocked.
 std::optional<SpanPlan> plan_span(const RoutingCostModel& model, const ChangeSpan& span);
 
 /// Cost of the way from a fraction of the first lane group to a fraction of the last one: a lane

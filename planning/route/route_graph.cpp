@@ -132,6 +132,8 @@ Ticks weigh(const RouteGraph& graph, const RoutingCostModel& model, std::uint32_
     return span != nullptr ? weigh_span(model, *span)
                            : weigh_change(model.network(), model, from, to);
   }
+  const bool is_driven_whole = graph.entry_of_lane[from] == graph.exit_of_lane[from];
+  if (is_driven_whole && model.is_blocked(from, {})) return kNever;
   const double length_m = model.network().lanes[from].length_m;
   return to_ticks(model.travel_cost(from, 0.0, length_m) + model.turn_cost(to),
                   model.options().cost);

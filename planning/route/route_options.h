@@ -20,6 +20,13 @@ struct ManoeuvrePrices {
   double signal = 0.0;  ///< each traffic light that is passed
 };
 
+/// A stretch of a lane that nobody gets through, whichever way, by the lane's own stations. Before
+/// and behind it the lane is driven: it may be left or entered there by a lane change.
+struct BlockedStretch {
+  map::LaneId lane;
+  map::StationRange stations;
+};
+
 struct RouteOptions {
   RouteCost cost = RouteCost::time;
   map::Participant participant = map::Participant::car;
@@ -31,6 +38,9 @@ struct RouteOptions {
   double least_lane_change_m = 10.0;        ///< length that a lane change needs
   double comfortable_lane_change_m = 40.0;  ///< with less room its cost grows in proportion
   std::vector<map::LaneId> avoid;           ///< lanes that are closed
+  /// Lanes that have one are not used for changes over several lane groups; within one lane group
+  /// changes lead to one side, so that nobody changes out of a lane and back into it behind one.
+  std::vector<BlockedStretch> blocked = {};
 };
 
 /// The length of a lane change from on which more of it makes it no cheaper [m].

@@ -26,6 +26,18 @@ void check(const map::RoadMap& road_map, const map::LanePlace& place) {
   }
 }
 
+void check(const map::RoadMap& road_map, const BlockedStretch& stretch) {
+  if (stretch.lane.index >= road_map.lanes().size()) {
+    throw std::invalid_argument("Router: a blocked lane is not in the map");
+  }
+  const auto [from_s_m, to_s_m] = stretch.stations;
+  if (!(from_s_m <= to_s_m)) {
+    throw std::invalid_argument(
+        fmt::format("Router: lane {} is blocked from {} m to {} m, which is no stretch",
+                    road_map.lane(stretch.lane).name, from_s_m, to_s_m));
+  }
+}
+
 bool knows_limit(const RouteNetwork& network, std::uint32_t lane) {
   const auto pieces = network.speeds.of(lane);
   return std::all_of(pieces.begin(), pieces.end(),
@@ -190,6 +202,7 @@ Router::Router(const map::RoadMap& road_map, RouteOptions options)
       throw std::invalid_argument("Router: a closed lane is not in the map");
     }
   }
+  for (const BlockedStretch& stretch : options_.blocked) check(road_map, stretch);
   solver_ = std::make_unique<RouteSolver>(
       std::make_shared<const RouteNetwork>(route_network_of(road_map)), options_);
   measures_ = std::make_unique<const Measures>(solver_->network(), options_);

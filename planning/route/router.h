@@ -43,7 +43,7 @@ struct RouteAnswer {
 class Router {
  public:
   /// Refers to the map. O(points of the map).
-  /// @throws std::invalid_argument if a closed lane is not in the map.
+  /// @throws std::invalid_argument if a closed or blocked lane is not in the map.
   explicit Router(const map::RoadMap& road_map, RouteOptions options = {});
   ~Router();
   Router(Router&&) noexcept;

@@ -39,6 +39,29 @@ RoutingCostModel::RoutingCostModel(const RouteNetwork& network, const RouteOptio
     const std::uint32_t contraflow_twin = network.lanes[lane.index].contraflow_twin;
     if (contraflow_twin != kNoLane) closed_[contraflow_twin] = true;
   }
+  for (const BlockedStretch& stretch : options.blocked) {
+    const NetworkLane& lane = network.lanes.at(stretch.lane.index);
+    const auto [from_s_m, to_s_m] = stretch.stations;
+    FractionRange part;
+    if (lane.length_m > 0.0) part = {from_s_m / lane.length_m, to_s_m / lane.length_m};
+    blocked_.push_back({stretch.lane.index, part});
+    if (lane.contraflow_twin == kNoLane) continue;
+    blocked_.push_back({lane.contraflow_twin, {1.0 - part.to, 1.0 - part.from}});
+  }
+}
+
+std::vector<FractionRange> RoutingCostModel::blocked_of(std::uint32_t lane,
+                                                        FractionRange part) const {
+  std::vector<FractionRange> found;
+  for (const BlockedPart& blocked : blocked_) {
+    const bool is_met = blocked.part.from < part.to && blocked.part.to > part.from;
+    if (blocked.lane == lane && is_met) found.push_back(blocked.part);
+  }
+  return found;
+}
+
+bool RoutingCostModel::is_blocked(std::uint32_t lane, FractionRange part) const {
+  return !blocked_of(lane, part).empty();
 }
 
 double RoutingCostModel::speed_mps(std::uint32_t lane, const SpeedPiece& piece) const {
@@ -96,16 +119,49 @@ double RoutingCostModel::turn_cost(std::uint32_t lane) const {
   }
 }
 
+// Parts of the lane group beside which none of the lanes is blocked that are changed to and from.
+std::vector<FractionRange> RoutingCostModel::free_ranges(std::span<const std::uint32_t> chain,
+                                                         FractionRange range) const {
+  std::vector<FractionRange> between;
+  for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
+    const auto blocked = blocked_of(chain[i], range);
+    between.insert(between.end(), blocked.begin(), blocked.end());
+  }
+  std::ranges::sort(between, {}, &FractionRange::from);
+  std::vector<FractionRange> free;
+  double from = range.from;
+  for (const FractionRange& part : between) {
+    if (part.from > from) free.push_back({from, part.from});
+    from = std::max(from, part.to);
+  }
+  if (from < range.to) free.push_back({from, range.to});
+  return free;
+}
+
+// The first lane is left before what is blocked of it, the last one entered behind.
+ChangeBounds RoutingCostModel::bounds_of(std::span<const std::uint32_t> chain, FractionRange range,
+                                         const FractionRange& free) const {
+  ChangeBounds bounds{.all = free};
+  for (const FractionRange& part : blocked_of(chain.front(), range)) {
+    bounds.first_to = std::min(bounds.first_to, part.from);
+  }
+  for (const FractionRange& part : blocked_of(chain.back(), range)) {
+    bounds.last_from = std::max(bounds.last_from, part.to);
+  }
+  return bounds;
+}
+
 // Each change as early as its windows and the one before allow.
-bool RoutingCostModel::place(std::span<const std::uint32_t> chain, FractionRange range,
+bool RoutingCostModel::place(std::span<const std::uint32_t> chain, const ChangeBounds& bounds,
                              double room_m, std::vector<FractionRange>* placed) const {
-  double fraction = range.from;
+  double fraction = bounds.all.from;
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    const FractionRange range = bounds.of(i, chain.size() - 1);
     const double length_m = network_.lanes[chain[i]].length_m;
     const double needed = (room_m - kRounding_m) / length_m;
     bool fits = false;
     for (const map::StationRange& window : windows_to(network_, chain[i], chain[i + 1])) {
-      const double from = std::max(fraction, window.from_s_m / length_m);
+      const double from = std::max({fraction, range.from, window.from_s_m / length_m});
       if (from + needed > std::min(range.to, window.to_s_m / length_m)) continue;
       fits = true;
       fraction = std::min(range.to, from + room_m / length_m);
@@ -119,33 +175,50 @@ bool RoutingCostModel::place(std::span<const std::uint32_t> chain, FractionRange
 
 std::optional<ChangePlan> RoutingCostModel::plan_changes(std::span<const std::uint32_t> chain,
                                                          FractionRange range) const {
-  double high_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-    if (!may_enter(chain[i + 1])) return {};
-    high_m = std::min(high_m, (range.to - range.from) * network_.lanes[chain[i]].length_m);
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    if (!may_enter(chain[i])) return {};
   }
-  if (chain.size() < 2) return ChangePlan{};
-  if (chain.size() == 2) return plan_change(chain[0], chain[1], range);
+  if (chain.size() < 2) {
+    const bool is_free = chain.empty() || !is_blocked(chain.front(), range);
+    return is_free ? std::optional(ChangePlan{}) : std::nullopt;
+  }
+  if (blocked_.empty()) return plan_within(chain, {.all = range});
+  std::optional<ChangePlan> best;
+  for (const FractionRange& free : free_ranges(chain, range)) {
+    auto plan = plan_within(chain, bounds_of(chain, range, free));
+    if (plan && (!best || plan->room_m > best->room_m)) best = std::move(plan);
+  }
+  return best;
+}
+
+std::optional<ChangePlan> RoutingCostModel::plan_within(std::span<const std::uint32_t> chain,
+                                                        const ChangeBounds& bounds) const {
+  if (chain.size() == 2) return plan_change(chain[0], chain[1], bounds);
+  double high_m = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t lane : chain.first(chain.size() - 1)) {
+    high_m = std::min(high_m, (bounds.all.to - bounds.all.from) * network_.lanes[lane].length_m);
+  }
   double low_m = least_room_m();
-  if (!place(chain, range, low_m, nullptr)) return {};
+  if (!place(chain, bounds, low_m, nullptr)) return {};
   high_m = std::max(low_m, high_m / static_cast<double>(chain.size() - 1));
-  if (!place(chain, range, high_m, nullptr)) {
+  if (!place(chain, bounds, high_m, nullptr)) {
     for (int i = 0; i < kBisections && high_m - low_m > 1e-6; ++i) {
       const double middle_m = 0.5 * (low_m + high_m);
-      (place(chain, range, middle_m, nullptr) ? low_m : high_m) = middle_m;
+      (place(chain, bounds, middle_m, nullptr) ? low_m : high_m) = middle_m;
     }
   } else {
     low_m = high_m;
   }
   ChangePlan plan;
   plan.room_m = low_m;
-  place(chain, range, low_m, &plan.ranges);
+  place(chain, bounds, low_m, &plan.ranges);
   return plan;
 }
 
 std::optional<ChangePlan> RoutingCostModel::plan_change(std::uint32_t from, std::uint32_t to,
-                                                        FractionRange range) const {
+                                                        const ChangeBounds& bounds) const {
   const double length_m = network_.lanes[from].length_m;
+  const FractionRange range = bounds.of(0, 1);
   ChangePlan plan;
   for (const map::StationRange& window : windows_to(network_, from, to)) {
     const double first_m = std::max(range.from * length_m, window.from_s_m);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -36,6 +37,19 @@ struct LaneGroup {
   ChangePlan changes;
 };
 
+/// Where the changes of a lane group may be made: all of them within a part of it, the first one up
+/// to a fraction and the last one from a fraction on.
+struct ChangeBounds {
+  FractionRange all;
+  double first_to = 1.0, last_from = 0.0;
+
+  /// Those of one change among so many.
+  FractionRange of(std::size_t change, std::size_t count) const {
+    return {change + 1 == count ? std::max(all.from, last_from) : all.from,
+            change == 0 ? std::min(all.to, first_to) : all.to};
+  }
+};
+
 /// The rules and costs of travel over a network, by one measure. Refers to its arguments.
 class RoutingCostModel {
  public:
@@ -52,6 +66,9 @@ class RoutingCostModel {
   }
   void close(std::uint32_t lane, bool closed = true) { closed_[lane] = closed; }
 
+  /// Whether a part of the lane, as fractions of its length, is not free to be driven through.
+  bool is_blocked(std::uint32_t lane, FractionRange part) const;
+
   /// Speed on a piece of a lane: the least of limit, bend and vehicle [m/s].
   double speed_mps(std::uint32_t lane, const SpeedPiece& piece) const;
 
@@ -66,7 +83,7 @@ class RoutingCostModel {
 
   /// Room for changes along a chain of neighbours, from its first to its last, within a part of
   /// the lane group: as much for each of them as all can have. None if one would have less than the
-  /// least length, or a lane may not be entered.
+  /// least length, a lane may not be entered, or what is driven of one is blocked.
   std::optional<ChangePlan> plan_changes(std::span<const std::uint32_t> chain,
                                          FractionRange range) const;
 
@@ -84,15 +101,27 @@ class RoutingCostModel {
     return options_.cost == RouteCost::time ? options_.prices_s : options_.prices_m;
   }
   double sum_of_pieces(std::uint32_t lane, double from_s_m, double to_s_m) const;
+  std::vector<FractionRange> blocked_of(std::uint32_t lane, FractionRange part) const;
+  std::vector<FractionRange> free_ranges(std::span<const std::uint32_t> chain,
+                                         FractionRange range) const;
+  ChangeBounds bounds_of(std::span<const std::uint32_t> chain, FractionRange range,
+                         const FractionRange& free) const;
+  std::optional<ChangePlan> plan_within(std::span<const std::uint32_t> chain,
+                                        const ChangeBounds& bounds) const;
   std::optional<ChangePlan> plan_change(std::uint32_t from, std::uint32_t to,
-                                        FractionRange range) const;
-  bool place(std::span<const std::uint32_t> chain, FractionRange range, double room_m,
+                                        const ChangeBounds& bounds) const;
+  bool place(std::span<const std::uint32_t> chain, const ChangeBounds& bounds, double room_m,
              std::vector<FractionRange>* placed) const;
 
   const RouteNetwork& network_;
   const RouteOptions& options_;
   RelaxedRules relaxed_;
   std::vector<bool> closed_;
+  struct BlockedPart {
+    std::uint32_t lane;
+    FractionRange part;
+  };
+  std::vector<BlockedPart> blocked_;
   std::vector<double> whole_cost_;  ///< travel_cost() of whole lanes
 };
 

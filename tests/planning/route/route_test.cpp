@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 #include <stdexcept>
 
 #include "roadbed/map/load_map.h"
@@ -195,6 +197,125 @@ TEST(FindRoute, ChangesLaneInTheMiddleOfThePassageAndCountsItsLengthOnce) {
   EXPECT_NEAR(answer.route->length_m, 130.0, 1e-9);
   EXPECT_NEAR(answer.route->cost_s, 130.0 / 13.9 + 5.0, 1e-9);
   EXPECT_EQ(answer.route->lane_changes, 1);
+}
+
+struct MetrePlace {
+  LaneId lane;
+  int metre;
+  int side;  // to which lanes are changed in this lane group: 1 left, -1 right, 0 none so far
+
+  auto operator<=>(const MetrePlace&) const = default;
+};
+
+// Whether metre by metre a way leads to the goal: on along a lane, over a link at its end, or in
+// 11 m to the lane beside, to one side in each lane group, none of it through what is blocked.
+bool is_reached_by_metres(const RoadMap& road_map, const LanePlace& from, const LanePlace& to,
+                          const RouteOptions& options) {
+  const auto is_free = [&](LaneId lane, double from_s_m, double to_s_m) {
+    return std::ranges::none_of(options.blocked, [&](const BlockedStretch& stretch) {
+      return stretch.lane == lane && stretch.stations.from_s_m < to_s_m &&
+             stretch.stations.to_s_m > from_s_m;
+    });
+  };
+  std::set<MetrePlace> seen;
+  std::vector<MetrePlace> open;
+  const auto reach = [&](const MetrePlace& place) {
+    if (!is_drivable(road_map.lane(place.lane).type)) return;
+    if (seen.insert(place).second) open.push_back(place);
+  };
+  const auto change = [&](const MetrePlace& at, const std::optional<map::Neighbour>& to_lane,
+                          int side) {
+    const int end = at.metre + 11;
+    if (at.side == -side || !to_lane || !to_lane->change_allowed()) return;
+    if (end > road_map.lane(at.lane).length_m() || !is_free(at.lane, at.metre, end)) return;
+    if (is_free(to_lane->lane, at.metre, end)) reach({to_lane->lane, end, side});
+  };
+  reach({from.lane, static_cast<int>(std::ceil(from.s_m)), 0});
+  while (!open.empty()) {
+    const MetrePlace at = open.back();
+    open.pop_back();
+    const double length_m = road_map.lane(at.lane).length_m(), next_m = at.metre + 1.0;
+    const map::LaneLinks& links = road_map.graph().of(at.lane);
+    const bool is_on_goal_lane = at.lane == to.lane && at.metre <= to.s_m;
+    if (is_on_goal_lane && is_free(at.lane, at.metre, to.s_m)) return true;
+    if (next_m <= length_m && is_free(at.lane, at.metre, next_m)) {
+      reach({at.lane, at.metre + 1, at.side});
+    }
+    if (next_m > length_m && is_free(at.lane, at.metre, length_m)) {
+      for (const LaneId next : links.successors) reach({next, 0, 0});
+    }
+    change(at, links.left, 1);
+    change(at, links.right, -1);
+  }
+  return false;
+}
+
+void expect_past(const RoadMap& road_map, const std::vector<BlockedStretch>& blocked,
+                 const Route& route) {
+  for (const RouteLeg& leg : route.legs) {
+    for (const BlockedStretch& stretch : blocked) {
+      if (stretch.lane != leg.lane) continue;
+      EXPECT_TRUE(leg.to_s_m <= stretch.stations.from_s_m + 1e-9 ||
+                  leg.from_s_m >= stretch.stations.to_s_m - 1e-9)
+          << road_map.lane(leg.lane).name;
+    }
+  }
+}
+
+TEST(FindRoute, LeadsPastWhatIsBlockedWhereverTryingMetreByMetreDoes) {
+  std::mt19937 random(20261123);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  Tally tally;
+  int detours = 0;
+  for (int trial = 0; trial < 12; ++trial) {
+    const RoadMap road_map = random_grid(random, 3, 2);
+    RouteOptions options;
+    for (int i = 0; i < 6; ++i) {
+      const LanePlace at = random_place(random, road_map);
+      options.blocked.push_back({at.lane, {at.s_m, at.s_m + 6.0 * unit(random)}});
+    }
+    Router router(road_map, options), open(road_map);
+    for (int i = 0; i < 40; ++i) {
+      const LanePlace from = random_place(random, road_map), to = random_place(random, road_map);
+      const RouteAnswer answer = router.find(from, to);
+      const std::optional<Route> without = open.find(from, to).route;
+      tally.none += !answer.route && without;
+      if (!answer.route) {
+        EXPECT_FALSE(is_reached_by_metres(road_map, from, to, options))
+            << road_map.lane(from.lane).name << "@" << from.s_m << " to "
+            << road_map.lane(to.lane).name << "@" << to.s_m;
+        continue;
+      }
+      ++tally.found;
+      expect_connected(road_map, *answer.route, from, to, options);
+      expect_past(road_map, options.blocked, *answer.route);
+      ASSERT_TRUE(without);
+      EXPECT_GE(answer.route->cost_s, without->cost_s - 1e-3);
+      detours += answer.route->cost_s > without->cost_s + 1.0;
+    }
+  }
+  EXPECT_GT(tally.found, 100);
+  EXPECT_GT(tally.none, 20);
+  EXPECT_GT(detours, 10);
+}
+
+TEST(FindRoute, LeavesABlockedLaneBeforeTheBlockAndSaysSoWhereItCannot) {
+  const TwoLanes lanes;
+  const RoadMap road_map = lanes.made.build();
+  RouteOptions options;
+  options.blocked = {{lanes.left, {60.0, 65.0}}};
+  const LanePlace from{lanes.left, 20.0, 0.0}, to{lanes.after_right, 50.0, 0.0};
+  const RouteAnswer answer = find_route(road_map, from, to, options);
+  ASSERT_TRUE(answer.route) << answer.reason;
+  EXPECT_NEAR(answer.route->legs[0].to_s_m, 40.0, 1e-9);
+  EXPECT_NEAR(answer.route->legs[0].change_window->to_s_m, 60.0, 1e-9);
+  EXPECT_NEAR(answer.route->cost_s, 130.0 / 13.9 + 5.0, 1e-9);
+  options.blocked = {{lanes.left, {29.0, 65.0}}};
+  const RouteAnswer none = find_route(road_map, from, to, options);
+  EXPECT_FALSE(none.route);
+  EXPECT_NE(none.reason.find("between them stand closed lanes"), std::string::npos) << none.reason;
+  options.blocked = {{lanes.left, {66.0, 65.0}}};
+  EXPECT_THROW(Router(road_map, options), std::invalid_argument);
 }
 
 TEST(FindRoute, NeedsTheLengthOfALaneChange) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -98,6 +99,87 @@ TEST(PlanChanges, FindsAboutTheRoomThatTryingEveryPlaceFinds) {
   }
   EXPECT_GT(planned, 20);
   EXPECT_GT(refused, 2);
+}
+
+// Whether a lane is driven from one fraction to another without meeting what is blocked of it.
+bool is_free(const std::vector<BlockedStretch>& blocked, std::size_t lane, double from, double to) {
+  return std::ranges::none_of(blocked, [&](const BlockedStretch& stretch) {
+    return stretch.lane.index == lane && stretch.stations.from_s_m < 100.0 * to - 1e-9 &&
+           stretch.stations.to_s_m > 100.0 * from + 1e-9;
+  });
+}
+
+// The same past stretches that are blocked, of lanes of 100 m: the lane that is left is driven from
+// where it was entered to the end of the change.
+bool fits_past(const std::vector<BlockedStretch>& blocked, std::size_t lanes, std::size_t change,
+               double entered, double fraction, double to, double room_m) {
+  if (change + 1 == lanes) return is_free(blocked, change, entered, to);
+  for (double at = fraction; at + 0.01 * room_m <= to + 1e-9; at += 0.005) {
+    const double end = at + 0.01 * room_m;
+    if (!is_free(blocked, change, entered, end)) return false;
+    if (fits_past(blocked, lanes, change + 1, at, end, to, room_m)) return true;
+  }
+  return false;
+}
+
+struct BlockedTally {
+  int planned = 0, refused = 0;
+};
+
+void plan_past_random_blocks(std::mt19937& random, std::size_t lanes, BlockedTally& tally) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const std::vector<std::vector<map::StationRange>> open(lanes - 1, {{0.0, 100.0}});
+  const RouteNetwork network = lane_group(std::vector<double>(lanes, 100.0), open);
+  RouteOptions options;
+  const std::size_t count = 1 + random() % 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double from_m = 100.0 * unit(random);
+    const map::LaneId lane{static_cast<std::uint32_t>(random() % lanes)};
+    options.blocked.push_back({lane, {from_m, from_m + 8.0 * unit(random)}});
+  }
+  const RoutingCostModel rules(network, options);
+  std::vector<std::uint32_t> chain;
+  for (std::uint32_t i = 0; i < lanes; ++i) chain.push_back(i);
+  const FractionRange range{0.3 * unit(random), 0.7 + 0.3 * unit(random)};
+  const auto plan = rules.plan_changes(chain, range);
+  const auto fits_with = [&](double room_m) {
+    return fits_past(options.blocked, lanes, 0, range.from, range.from, range.to, room_m);
+  };
+  if (!plan) {
+    ++tally.refused;
+    EXPECT_FALSE(fits_with(options.least_lane_change_m + 1.1));
+    return;
+  }
+  ++tally.planned;
+  double entered = range.from;
+  for (std::size_t i = 0; i < plan->ranges.size(); ++i) {
+    EXPECT_TRUE(is_free(options.blocked, i, entered, plan->ranges[i].to));
+    entered = plan->ranges[i].from;
+  }
+  EXPECT_TRUE(is_free(options.blocked, lanes - 1, entered, range.to));
+  EXPECT_FALSE(fits_with(plan->room_m + 1.1));
+}
+
+TEST(PlanChanges, LeavesABlockedLaneBeforeAndEntersItBehindAsTryingEveryPlaceDoes) {
+  std::mt19937 random(20261123);
+  BlockedTally tally;
+  for (int trial = 0; trial < 400; ++trial) {
+    plan_past_random_blocks(random, 2U + static_cast<unsigned>(trial % 2), tally);
+  }
+  EXPECT_GT(tally.planned, 200);
+  EXPECT_GT(tally.refused, 30);
+}
+
+TEST(PlanChanges, ALaneThatIsBlockedIsDrivenBeforeAndBehind) {
+  const RouteNetwork network = lane_group({100.0}, {});
+  RouteOptions options;
+  options.blocked = {{map::LaneId{0}, {40.0, 50.0}}};
+  const RoutingCostModel rules(network, options);
+  const std::vector<std::uint32_t> chain{0};
+  EXPECT_TRUE(rules.plan_changes(chain, {0.0, 0.4}));
+  EXPECT_FALSE(rules.plan_changes(chain, {0.0, 0.401}));
+  EXPECT_FALSE(rules.plan_changes(chain, {0.499, 1.0}));
+  EXPECT_TRUE(rules.plan_changes(chain, {0.5, 1.0}));
 }
 
 TEST(PlanChanges, EachOfSeveralChangesHasItsShareOfAPlainPassage) {
