@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -141,6 +142,21 @@ Plan PlanningCycle::plan(const SafetyMargins& margins, const EndOffsetRange& end
   }
   return plan;
 }
+
+Plan PlanningCycle::plan_and_judge_all(const SafetyMargins& margins,
+                                       const EndOffsetRange& ends) const {
+  PlanOptions options = impl_->options;
+  options.keep_candidates = true;
+  Plan plan = PlanningCycle(input(), impl_->evaluator.vehicle(), options).plan(margins, ends);
+  const auto is_asked_for = [&](const Candidate& candidate) {
+    return candidate.end_d_m >= ends.least_d_m - kLimitSlack &&
+           candidate.end_d_m <= ends.most_d_m + kLimitSlack;
+  };
+  std::erase_if(plan.candidates, std::not_fn(is_asked_for));
+  return plan;
+}
+
+const PlanInput& PlanningCycle::input() const { return impl_->evaluator.input(); }
 
 CandidateGrid PlanningCycle::judge(const SafetyMargins& margins, const EndOffsetRange& ends,
                                    const Plan& plan, std::size_t length_stride) {

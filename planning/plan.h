@@ -43,6 +43,12 @@ class PlanningCycle {
   /// @throws std::invalid_argument also if the grid has no such end.
   Plan plan(const SafetyMargins& margins, const EndOffsetRange& ends = {});
 
+  /// The same with what became of every candidate that is asked for, for more work: the whole grid
+  /// is judged anew.
+  Plan plan_and_judge_all(const SafetyMargins& margins, const EndOffsetRange& ends = {}) const;
+
+  const PlanInput& input() const;
+
   /// What became of the candidates of every `length_stride`-th length, with these margins and ends.
   /// @param plan  that was found with them.
   CandidateGrid judge(const SafetyMargins& margins, const EndOffsetRange& ends, const Plan& plan,

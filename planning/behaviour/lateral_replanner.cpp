@@ -44,6 +44,17 @@ LineView straight_past(const ReferenceLine& line, double end_m) {
 
 }  // namespace
 
+ExplainedPlan::ExplainedPlan(const PlanInput& asked, Plan answer)
+    : obstacles(asked.obstacles),
+      input{.line = asked.line,
+            .start = asked.start,
+            .start_t_s = asked.start_t_s,
+            .speed = asked.speed,
+            .obstacles = obstacles,
+            .static_field = asked.static_field,
+            .origin_in_source = asked.origin_in_source},
+      plan(std::move(answer)) {}
+
 LateralReplanner::LateralReplanner(const geometry::VehicleShape& vehicle, const DrivingTask& task,
                                    const ReferenceLine& line, const Bounds& bounds)
     : vehicle_(vehicle),
@@ -159,7 +170,8 @@ LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
             .checked_m = question.ends.most_m,
             .margins = level.margins,
             .ends = ends};
-    if (bounds_.keeps_candidates) last.cycle = {cycles, cycle.get()};
+    last.explains = question.explains;
+    if (bounds_.keeps_candidates || last.explains) last.cycle = {cycles, cycle.get()};
     const bool waits = !bounds_.squeezes_past && last.plan.meets_something();
     if (last.plan.chosen || waits) break;
   }
@@ -199,11 +211,18 @@ PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
   });
 }
 
+std::shared_ptr<const ExplainedPlan> LateralReplanner::explain(const Proposal& proposal) {
+  Plan plan = proposal.cycle->plan_and_judge_all(proposal.margins, proposal.ends);
+  plan.reason = proposal.plan.reason;
+  return std::make_shared<const ExplainedPlan>(proposal.cycle->input(), std::move(plan));
+}
+
 void LateralReplanner::take(const Proposal& proposal) {
   candidates_.reset();
-  if (proposal.cycle) {
+  if (bounds_.keeps_candidates) {
     candidates_ = proposal.cycle->judge(proposal.margins, proposal.ends, proposal.plan);
   }
+  explained_ = proposal.explains ? explain(proposal) : nullptr;
   cycles_.reset();  // they ask for the path so far
   plan_ = proposal.plan;
   beyond_the_edge_m_ = proposal.beyond_the_edge_m;

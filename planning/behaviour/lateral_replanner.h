@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/lateral/plan_types.h"
@@ -9,6 +10,19 @@
 #include "roadbed/planning/plan.h"
 
 namespace roadbed::planning::inline behaviour {
+
+/// The question of a cycle, and what became of every candidate.
+struct ExplainedPlan {
+  /// @param asked  its obstacles are copied; what is seen of the line and of occupied space is kept
+  ///               by reference.
+  ExplainedPlan(const PlanInput& asked, Plan answer);
+  ExplainedPlan(const ExplainedPlan&) = delete;
+  ExplainedPlan& operator=(const ExplainedPlan&) = delete;
+
+  std::vector<Obstacle> obstacles;
+  PlanInput input;  ///< but for the last plan
+  Plan plan;        ///< with its candidates
+};
 
 /// The path that is being driven, from cycle to cycle: plans on from the last plan while the
 /// vehicle follows it well enough, and keeps the last path when nothing is feasible.
@@ -44,6 +58,7 @@ class LateralReplanner {
     const std::vector<Obstacle>& obstacles;
     bool checks_completion =
         true;  ///< a maneuver among moving traffic has to be completable (maneuver_completion.h)
+    bool explains = false;  ///< what is taken is explained, see explained()
   };
 
   /// End offsets that candidates may have.
@@ -56,8 +71,10 @@ class LateralReplanner {
     Plan plan;
     double beyond_the_edge_m = 0.0;
     double checked_m = 0.0;  ///< from the start on
-    /// What found it, and how, if candidates are kept; valid as long as the question is.
+    /// What found it, and how, if candidates are kept or explained; valid as long as the question
+    /// is.
     std::shared_ptr<PlanningCycle> cycle = nullptr;
+    bool explains = false;
     SafetyMargins margins = {};
     EndOffsetRange ends = {};
   };
@@ -86,6 +103,8 @@ class LateralReplanner {
   const Plan& last_plan() const { return plan_; }
   /// What became of the candidates of the last cycle, if they are kept.
   const std::optional<CandidateGrid>& candidates() const { return candidates_; }
+  /// Of the last cycle, if its question asked for it.
+  const std::shared_ptr<const ExplainedPlan>& explained() const { return explained_; }
   bool from_measurement() const { return from_measurement_; }
 
   /// How far the body was allowed past the corridor's edge, because nothing keeps to it [m].
@@ -115,6 +134,7 @@ class LateralReplanner {
   };
   struct Cycles;
 
+  static std::shared_ptr<const ExplainedPlan> explain(const Proposal& proposal);
   LateralState start_state(const VehicleState& measured);
   std::vector<FallbackLevel> fallback_levels(const Question& question, bool may_leave_lanes) const;
   std::shared_ptr<Cycles> cycles_for(const Question& question) const;
@@ -133,6 +153,7 @@ class LateralReplanner {
   LateralState start_;
   Plan plan_;
   std::optional<CandidateGrid> candidates_;
+  std::shared_ptr<const ExplainedPlan> explained_;
   std::optional<PlannedPath> path_;
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;

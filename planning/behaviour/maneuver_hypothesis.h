@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/reference/reference_line.h"
@@ -35,15 +36,6 @@ struct GoalLine {
   std::vector<GoalStretch> stretches;
   std::vector<StopPoint> lights;
   LateralReplanner replanner;
-};
-
-/// What a hypothesis does to those who are in the way.
-enum class Maneuver {
-  keep_lane,         ///< as the lateral planner chooses among all its candidates
-  pass_within_lane,  ///< the same at the speed of the free road, past somebody slower
-  pass_in_lane,      ///< past slower traffic, in the next lane of the own direction
-  overtake,          ///< the same through the lane of oncoming traffic
-  beside,            ///< the path ends beside the line, or on another line
 };
 
 /// A path to ask the lateral planner for.

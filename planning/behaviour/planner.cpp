@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
+#include "roadbed/planning/behaviour/why_lost.h"
 #include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/road_end.h"
 
@@ -129,6 +131,7 @@ class Planner::Impl {
     take(best);
     PlannerCommand command =
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
+    command.hypotheses = std::move(outcomes_);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
     last_set_speed_mps_ = command.set_speed_mps;
@@ -244,7 +247,8 @@ class Planner::Impl {
     LateralReplanner::Question question{.t_s = view.t_s,
                                         .measured = view.measured,
                                         .speed = speed_plan(view.measured),
-                                        .obstacles = obstacles};
+                                        .obstacles = obstacles,
+                                        .explains = view.explains};
     if (task_.goal) question.ends = ends_at(view.measured.speed_mps);
     return question;
   }
@@ -270,11 +274,13 @@ class Planner::Impl {
                                      const PassingDecision& passing) {
     std::vector<ManeuverHypothesis> all;
     std::size_t best = 0;
+    outcomes_ = not_asked_for(passing);
     add(scene, first_queries(goal_line(), question, passing), all, best);
     const bool is_too_near = !all[best].answer.is_free && all[best].occupancy->is_blocked(0, 0.0);
     if (task_.goal && is_too_near) search_at_levels(scene, all, best);  // as it is on any path
     if (task_.goal && !is_good(all[best])) add_others(scene, question, all, best);
     search_at_levels(scene, all, best);
+    std::ranges::move(outcomes_of(all, best, traffic_), std::back_inserter(outcomes_));
     return std::move(all[best]);
   }
 
@@ -305,7 +311,10 @@ class Planner::Impl {
       if (!all.empty() && is_good(all[best])) return;
       ManeuverHypothesis found = hypothesis_of(scene, query);
       const bool is_needed = all.empty() && &query == &queries.back();
-      if (!found.has_candidate() && !is_needed) continue;
+      if (!found.has_candidate() && !is_needed) {
+        outcomes_.push_back(without_path(found));
+        continue;
+      }
       set_first_speed(scene, found);
       all.push_back(std::move(found));
       if (is_better(all.back(), all[best])) best = all.size() - 1;
@@ -433,6 +442,7 @@ class Planner::Impl {
   HypothesisSpeed speed_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
+  std::vector<HypothesisOutcome> outcomes_;  ///< of this cycle
 };
 
 Planner::Planner(const PlannerSetup& setup) : impl_(std::make_unique<Impl>(setup)) {}

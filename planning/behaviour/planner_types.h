@@ -2,10 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/lateral/planned_path.h"
 
@@ -16,6 +18,7 @@ struct PlannerView {
   double t_s = 0.0;
   const VehicleState& measured;
   SpeedController& speed_controller;
+  bool explains = false;  ///< keep what became of every candidate (LateralReplanner::explained())
 };
 
 /// What it wants until the next cycle.
@@ -25,7 +28,8 @@ struct PlannerCommand {
   Behaviour behaviour = Behaviour::cruise;
   std::string reason;
   std::optional<DriveLead> lead;
-  bool saturated = false;  ///< the cruise control asked for all it may
+  bool saturated = false;                          ///< the cruise control asked for all it may
+  std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
 };
 
 struct PlannerOptions {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -108,6 +109,46 @@ TEST(PlanningCycle, CountsOnlyTheCandidatesThatItWasAskedFor) {
   for (const std::size_t count : plan.rejected) rejected += count;
   EXPECT_EQ(rejected, 5u * 16u);
   EXPECT_NE(plan.reason.find("none of 80 candidates"), std::string::npos) << plan.reason;
+}
+
+TEST(PlanningCycle, JudgesAllThatIsAskedForAsPlansOfOneCandidateEachDo) {
+  std::mt19937 random(24);
+  int feasible = 0, rejected = 0;
+  for (int i = 0; i < 8; ++i) {
+    const CycleScene scene = random_cycle_scene(random);
+    const PlanInput input = scene.input();
+    const VehicleShape vehicle;
+    PlanningCycle cycle(input, vehicle, coarse_cycle_options());
+    const CycleQuestion asked = random_cycle_question(random);
+    const Plan plan = cycle.plan(asked.margins, asked.ends);
+    const Plan judged = cycle.plan_and_judge_all(asked.margins, asked.ends);
+    ASSERT_EQ(judged.chosen.has_value(), plan.chosen.has_value()) << i;
+    if (plan.chosen) {
+      EXPECT_EQ(judged.chosen->cost, plan.chosen->cost) << i;
+    }
+    double cheapest = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : judged.candidates) {
+      EXPECT_GE(candidate.end_d_m, asked.ends.least_d_m - 1e-9);
+      EXPECT_LE(candidate.end_d_m, asked.ends.most_d_m + 1e-9);
+      const bool is_feasible = candidate.rejection == Rejection::none;
+      if (is_feasible) cheapest = std::min(cheapest, candidate.cost);
+      // By itself it is chosen if, and only if, it is feasible; the longest one's way is checked.
+      if (candidate.end_l_m < coarse_cycle_options().max_l_m - 0.5) continue;
+      PlanOptions alone = coarse_cycle_options();
+      alone.border_margin_m = asked.margins.border_margin_m;
+      alone.clearance_m = asked.margins.clearance_m;
+      alone.min_d_m = alone.max_d_m = candidate.end_d_m;
+      alone.min_l_m = alone.max_l_m = candidate.end_l_m;
+      EXPECT_EQ(plan_path(input, vehicle, alone).chosen.has_value(), is_feasible)
+          << i << ": " << candidate.end_d_m;
+      ++(is_feasible ? feasible : rejected);
+    }
+    if (plan.chosen) {
+      EXPECT_NEAR(cheapest, plan.chosen->cost, 1e-9) << i;
+    }
+  }
+  EXPECT_GT(feasible, 10);
+  EXPECT_GT(rejected, 10);
 }
 
 TEST(PlanningCycle, RefusesEndsThatTheGridDoesNotHave) {
