@@ -43,8 +43,8 @@ TEST_F(SimulateCommand, ReachesTheGoalAndWritesTheSameBytesAgain) {
   const ProgramRun run = simulate(short_drive(), "a");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("goal reached after"));
-  EXPECT_THAT(files_below(out("a")),
-              ElementsAre("drive.svg", "metrics.json", "report.html", "trajectory.csv"));
+  EXPECT_THAT(files_below(out("a")), ElementsAre("cycles.jsonl", "drive.svg", "metrics.json",
+                                                 "replay.json", "report.html", "trajectory.csv"));
   const json metrics = json::parse(bytes_of(out("a") / "metrics.json"));
   EXPECT_EQ(metrics["goal_reached"], true);
   EXPECT_EQ(metrics["largest_off_road_m"], 0.0);
@@ -62,7 +62,7 @@ TEST_F(SimulateCommand, AGoalThatIsNotReachedIsStatusOneWithItsOutputs) {
   const ProgramRun run = simulate(scenario, "a");
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.out, HasSubstr("before the goal"));
-  EXPECT_EQ(files_below(out("a")).size(), 4U);
+  EXPECT_EQ(files_below(out("a")).size(), 6U);
 }
 
 TEST_F(SimulateCommand, OutputsAreOnlyReplacedWithForce) {
@@ -111,7 +111,7 @@ TEST_F(SimulateCommand, FolderDrivesEveryScenarioAndABadOneIsARow) {
   EXPECT_EQ(one.out, two.out);
   EXPECT_THAT(one.out, HasSubstr("\n1 of 3 reach their goal\n"));
   const std::vector<std::string> files = files_below(out("one"));
-  EXPECT_EQ(files.size(), 9U);
+  EXPECT_EQ(files.size(), 13U);
   EXPECT_EQ(files, files_below(out("two")));
   for (const std::string& file : files) {
     EXPECT_EQ(bytes_of(out("one") / file), bytes_of(out("two") / file)) << file;

@@ -15,7 +15,6 @@
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/report/drive_files.h"
 #include "roadbed/tools/simulation/scenario.h"
 
@@ -29,6 +28,7 @@ using DrivenFile = decltype(DrivenScenario::files)::value_type;
 /// tell that it is not this drive's.
 void write_files(const DrivenScenario& driven, const fs::path& folder) {
   for (const auto& [name, bytes] : driven.files) map::write_output(folder / name, bytes);
+  map::write_output(folder / kDriveRecordName, write_drive_record(driven.record, folder));
   if (std::ranges::find(driven.files, "solution.xml", &DrivenFile::first) == driven.files.end()) {
     fs::remove(folder / "solution.xml");
   }
@@ -138,8 +138,9 @@ class SimulateCommand : public Command {
         .reads(files_named_by_scenario);
     arguments
         .add("-o,--output", folder_,
-             "Folder for trajectory.csv, metrics.json, report.html and drive.svg, for CommonRoad "
-             "solution.xml too; of a folder, one for each scenario, and drives.csv")
+             "Folder for trajectory.csv, cycles.jsonl, metrics.json, report.html, drive.svg and "
+             "replay.json, for CommonRoad solution.xml too; of a folder, one for "
+             "each scenario, and drives.csv")
         .required()
         .writes("/");
     arguments
@@ -192,15 +193,8 @@ class SimulateCommand : public Command {
   }
 
   void read_changes() {
-    ScenarioChanges& changes = choice_.changes;
-    if (!choice_.vehicle_file.empty()) {
-      changes.vehicle = read_vehicle_shape_json(choice_.vehicle_file);
-    }
-    if (!choice_.noise_file.empty()) changes.noise = read_noise_json(choice_.noise_file);
-    if (!choice_.planner_file.empty()) {
-      changes.planner = read_planner_options(choice_.planner_file);
-    }
-    if (!seed_.empty()) changes.seed = parse_seed(seed_);
+    choice_.read_files();
+    if (!seed_.empty()) choice_.changes.seed = parse_seed(seed_);
   }
 
   Exit run_one(const Streams& streams, const CommonOptions& common) const {

@@ -123,6 +123,13 @@ double JsonNode::number_or(std::string_view key, double otherwise, Range range) 
   return member ? member->number(range) : otherwise;
 }
 
+bool JsonNode::boolean() const {
+  if (!value_->is_boolean()) {
+    refuse(fmt::format("is {}", value_->type_name()), "true or false", "write one of them");
+  }
+  return value_->get<bool>();
+}
+
 std::string JsonNode::text() const {
   if (!value_->is_string()) {
     refuse(fmt::format("is {}", value_->type_name()), "a string", "write \"…\"");

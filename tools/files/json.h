@@ -49,6 +49,8 @@ class JsonNode {
   /// Number of a member, or `otherwise` if it is missing.
   double number_or(std::string_view key, double otherwise, Range range) const;
 
+  bool boolean() const;
+
   /// A string that is not empty.
   std::string text() const;
 

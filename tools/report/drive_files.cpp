@@ -7,8 +7,10 @@
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
+#include "roadbed/tools/simulation/cycle_log.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/metrics.h"
 #include "roadbed/tools/simulation/world.h"
@@ -18,20 +20,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ReportSource source(const std::string& role, const fs::path& file) {
-  return {.role = role, .name = file.filename().string(), .sha256 = certified_file(file).sha256};
+std::vector<DriveSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {
+  std::vector<DriveSource> sources;
+  const auto add = [&](const std::string& role, const fs::path& file) {
+    if (!file.empty()) sources.push_back({role, file, certified_file(file).sha256});
+  };
+  add("scenario", scenario.file);
+  if (scenario.map_file != scenario.file) add("map", scenario.map_file);
+  for (const fs::path& file : scenario.occupancy_files) add("cloud", file);
+  add("vehicle", choice.vehicle_file);
+  add("noise", choice.noise_file);
+  add("planner options", choice.planner_file);
+  return sources;
 }
 
-std::vector<ReportSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {
-  std::vector<ReportSource> sources{source("scenario", scenario.file)};
-  if (scenario.map_file != scenario.file) sources.push_back(source("map", scenario.map_file));
-  for (const fs::path& file : scenario.occupancy_files) sources.push_back(source("cloud", file));
-  if (!choice.vehicle_file.empty()) sources.push_back(source("vehicle", choice.vehicle_file));
-  if (!choice.noise_file.empty()) sources.push_back(source("noise", choice.noise_file));
-  if (!choice.planner_file.empty()) {
-    sources.push_back(source("planner options", choice.planner_file));
+DriveRecord record_of(const Scenario& scenario, const DriveChoice& choice) {
+  return {.program = name_and_version(),
+          .sources = sources_of(scenario, choice),
+          .predicts = choice.predicts,
+          .drops_ego_recording = choice.changes.drops_ego_recording,
+          .seed = choice.changes.seed};
+}
+
+std::vector<ReportSource> shown(const std::vector<DriveSource>& sources) {
+  std::vector<ReportSource> shown;
+  for (const auto& [role, file, sha256] : sources) {
+    shown.push_back({.role = role, .name = file.filename().string(), .sha256 = sha256});
   }
-  return sources;
+  return shown;
 }
 
 std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const World& world,
@@ -59,32 +75,32 @@ std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   return command + " -o DIR";
 }
 
-struct Driven {
+DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& choice) {
+  const auto& [scenario, world, problem] = ready;
   DrivenScenario result;
-  Drive drive;
-};
-
-Driven drive_and_describe(const Scenario& scenario, World& world, const DriveChoice& choice) {
-  Driven driven;
-  DrivenScenario& result = driven.result;
-  driven.drive =
+  result.record = record_of(scenario, choice);
+  const Drive driven =
       drive(scenario, world,
             {.planner = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
              .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
   result.name = scenario.name;
-  result.verdict = driven.drive.verdict;
-  result.audit = audit_of(scenario, world, driven.drive);
-  const ReportInput report = report_of(scenario, world, driven.drive,
+  result.verdict = driven.verdict;
+  result.audit = audit_of(scenario, world, driven);
+  const ReportInput report = report_of(scenario, world, driven,
                                        {.command = command_of(scenario, choice),
-                                        .version = name_and_version(),
-                                        .sources = sources_of(scenario, choice),
+                                        .version = result.record.program,
+                                        .sources = shown(result.record.sources),
                                         .audit = result.audit});
   result.files = {
-      {"trajectory.csv", write_trajectory_csv(driven.drive.trajectory)},
-      {"metrics.json", metrics_of(scenario, world, driven.drive, result.audit).dump(2) + "\n"},
+      {"trajectory.csv", write_trajectory_csv(driven.trajectory)},
+      {"cycles.jsonl", cycle_log(driven)},
+      {"metrics.json", metrics_of(scenario, world, driven, result.audit).dump(2) + "\n"},
       {"report.html", drive_report_html(report)},
       {"drive.svg", drive_scene_svg(report)}};
-  return driven;
+  if (problem != nullptr && !choice.changes.vehicle) {
+    result.files.emplace_back("solution.xml", solution_xml(*problem, driven));
+  }
+  return result;
 }
 
 /// An .xml that is no CommonRoad scenario is not meant to be JSON.
@@ -98,21 +114,32 @@ void refuse_other_xml(const fs::path& file) {
 
 }  // namespace
 
-DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice,
-                              const Inputs& inputs) {
+void DriveChoice::read_files() {
+  if (!vehicle_file.empty()) changes.vehicle = read_vehicle_shape_json(vehicle_file);
+  if (!noise_file.empty()) changes.noise = read_noise_json(noise_file);
+  if (!planner_file.empty()) changes.planner = read_planner_options(planner_file);
+}
+
+void with_scenario(const fs::path& file, const DriveChoice& choice, const Inputs& inputs,
+                   const std::function<void(const ReadyDrive&)>& use) {
   if (is_common_road(file)) {
     CommonRoadDrive problem = read_common_road_drive(file, choice.changes, inputs);
-    Driven driven = drive_and_describe(problem.scenario, problem.world, choice);
-    if (!choice.changes.vehicle) {
-      driven.result.files.emplace_back("solution.xml", solution_xml(problem, driven.drive));
-    }
-    return std::move(driven.result);
+    use({problem.scenario, problem.world, &problem});
+    return;
   }
   refuse_other_xml(file);
   Scenario scenario = read_scenario(file);
   choice.changes.apply_to(scenario);
   World world = make_world(scenario, inputs);
-  return drive_and_describe(scenario, world, choice).result;
+  use({scenario, world});
+}
+
+DrivenScenario drive_scenario(const fs::path& file, const DriveChoice& choice,
+                              const Inputs& inputs) {
+  DrivenScenario driven;
+  with_scenario(file, choice, inputs,
+                [&](const ReadyDrive& ready) { driven = drive_and_describe(ready, choice); });
+  return driven;
 }
 
 }  // namespace roadbed::tools::report

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,8 +9,10 @@
 
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/inputs.h"
+#include "roadbed/tools/report/drive_record.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/world.h"
 
 namespace roadbed::tools::inline report {
 
@@ -19,6 +22,7 @@ struct DrivenScenario {
   DriveVerdict verdict;
   std::optional<planning::AuditReport> audit;
   std::vector<std::pair<std::string, std::string>> files;  ///< name and bytes, for one folder
+  DriveRecord record;                                      ///< for the same
   std::vector<double> cycle_ms;                            ///< wall clock of each planning cycle
 };
 
@@ -28,10 +32,26 @@ struct DriveChoice {
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
   ScenarioChanges changes = {};   ///< of what the file says
   std::filesystem::path vehicle_file = {}, noise_file = {}, planner_file = {};  ///< their sources
+
+  /// Reads these files into the changes.
+  /// @throws InputError if one is unusable.
+  void read_files();
 };
 
-/// Reads a scenario file, roadbed's own or CommonRoad's, drives it, and makes its outputs:
-/// trajectory.csv, metrics.json, report.html, drive.svg, and for CommonRoad solution.xml, unless
+/// A scenario that is ready to be driven; of a CommonRoad file with its problem, else without.
+struct ReadyDrive {
+  Scenario& scenario;
+  World& world;
+  const CommonRoadDrive* problem = nullptr;
+};
+
+/// Reads a scenario file, roadbed's own or CommonRoad's, for `use`.
+/// @throws InputError if the scenario is unusable.
+void with_scenario(const std::filesystem::path& file, const DriveChoice& choice,
+                   const Inputs& inputs, const std::function<void(const ReadyDrive&)>& use);
+
+/// Reads a scenario file, drives it, and makes its outputs: trajectory.csv, cycles.jsonl,
+/// metrics.json, report.html, drive.svg, replay.json, and for CommonRoad solution.xml, unless
 /// the vehicle is another than the one that it names.
 /// @throws InputError if the scenario is unusable.
 DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {},

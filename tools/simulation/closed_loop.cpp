@@ -112,6 +112,7 @@ class ClosedLoop {
       flow_.step({geometry::body_at(truth_.map_from_vehicle, scenario_.vehicle), truth_.speed_mps});
       plan_and_decide();
       record();
+      if (is_last_cycle()) return left();
       for (int i = 0; i < kControlStepsPerCycle && !is_over_; ++i) control_step();
     }
     finish();
@@ -127,6 +128,18 @@ class ClosedLoop {
   }
 
   double t_s() const { return kControlStep_s * steps_; }
+
+  /// Of the one that is being planned, or was planned last.
+  bool is_last_cycle() const {
+    const auto cycle = static_cast<std::size_t>(steps_ / kControlStepsPerCycle);
+    return options_.last_cycle == cycle;
+  }
+
+  Drive left() {
+    drive_.explained = replanner().explained();
+    drive_.trajectory = geometry::Trajectory(std::move(rows_));
+    return std::move(drive_);
+  }
 
   /// Along the lane, as far as the speed allows at the start.
   double start_steering_rad() const {
@@ -144,7 +157,10 @@ class ClosedLoop {
   void plan_and_decide() {
     const auto begin = std::chrono::steady_clock::now();
     const planning::VehicleState measured = sensors_.measure(truth_);
-    command_ = planner_.decide({.t_s = t_s(), .measured = measured, .speed_controller = cruise_});
+    command_ = planner_.decide({.t_s = t_s(),
+                                .measured = measured,
+                                .speed_controller = cruise_,
+                                .explains = is_last_cycle()});
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     if (options_.on_cycle) options_.on_cycle(took.count());
     front_s_m_ = replanner().s_m();
@@ -162,7 +178,8 @@ class ClosedLoop {
                      .grid = replanner().candidates(),
                      .plan_reason = replanner().last_plan().reason,
                      .beyond_the_edge_m = replanner().beyond_the_edge_m(),
-                     .lead = command_.lead};
+                     .lead = command_.lead,
+                     .hypotheses = command_.hypotheses};
     for (const geometry::TrajectoryPoint& point : replanner().last_plan().trajectory.points()) {
       cycle.path.push_back(world_.road_map.to_source({point.x_m, point.y_m}));
     }

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/lateral/candidate_grid.h"
 #include "roadbed/planning/lateral/plan_types.h"
@@ -34,6 +36,7 @@ struct DriveCycle {
   double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<planning::DriveLead> lead = {};
+  std::vector<planning::HypothesisOutcome> hypotheses = {};
 };
 
 /// What is known at each row of the trajectory.
@@ -77,6 +80,10 @@ struct Drive {
 
   /// Ratio of control steps in which the cruise control saturates at ±max_command.
   double saturated_ratio = 0.0;
+
+  /// What the last cycle was decided on, if the loop was asked for it; it sees the world's lines
+  /// and occupied space.
+  std::shared_ptr<const planning::ExplainedPlan> explained = nullptr;
 };
 
 /// What is worth telling of a cycle after the one before it: nothing feasible, an emergency,
@@ -89,6 +96,9 @@ struct LoopOptions {
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
   planning::PlannerOptions planner = {};
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
+  /// The drive is left, without a verdict, when this cycle is planned; what it was decided on is
+  /// kept. Until then all is as it would be without.
+  std::optional<std::size_t> last_cycle = {};
 };
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an

@@ -25,6 +25,8 @@ constexpr Range kDuration{0.1, 3600.0};
 constexpr Range kSize{0.05, 100.0};
 constexpr Range kDeviation{0.0, 100.0};
 constexpr Range kOffset{-100.0, 100.0};
+// Every whole number up to it is a double, which JSON numbers are.
+constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
 
 ScenarioPlace place(const JsonNode& node) { return {node.text(), node.pointer()}; }
 
@@ -188,10 +190,7 @@ planning::DrivingOptions options(const JsonNode& node) {
 
 bool has_pedals(const JsonNode& options, bool otherwise) {
   const auto pedals = options.find("pedals");
-  if (pedals && !pedals->value().is_boolean()) {
-    pedals->refuse("is no truth value", "true or false", "correct it");
-  }
-  return pedals ? pedals->value().get<bool>() : otherwise;
+  return pedals ? pedals->boolean() : otherwise;
 }
 
 ScenarioNoise noise_in(const JsonNode& node) {
@@ -206,17 +205,6 @@ ScenarioNoise noise_in(const JsonNode& node) {
           .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
           .dropouts = dropouts ? time_spans(*dropouts) : std::vector<planning::TimeSpan>{},
           .dropout_ratio = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
-}
-
-// Every whole number up to it is a double, which JSON numbers are.
-constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
-
-std::uint64_t seed(const JsonNode& node) {
-  const double number = node.number({0.0, static_cast<double>(kLargestSeed)});
-  if (number != std::floor(number)) {
-    node.refuse(fmt::format("is {}", number), "a whole number", "round it");
-  }
-  return static_cast<std::uint64_t>(number);
 }
 
 ScenarioWayPoints way_points(const JsonNode& root, const JsonNode& list) {
@@ -259,7 +247,7 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
     scenario.occupancy_files = occupancy_files(*node, scenario.file.parent_path());
   }
   if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle_shape_in(*node);
-  if (const auto node = root.find("seed")) scenario.seed = seed(*node);
+  if (const auto node = root.find("seed")) scenario.seed = seed_in(*node);
   if (const auto node = root.find("noise")) scenario.noise = noise_in(*node);
   if (const auto node = root.find("options")) {
     scenario.options = options(*node);
@@ -337,6 +325,14 @@ void ScenarioChanges::apply_to(Scenario& scenario) const {
                            .remedy = "leave --seed out, or give --noise"});
   }
   scenario.seed = *seed;
+}
+
+std::uint64_t seed_in(const JsonNode& node) {
+  const double number = node.number({0.0, static_cast<double>(kLargestSeed)});
+  if (number != std::floor(number)) {
+    node.refuse(fmt::format("is {}", number), "a whole number", "round it");
+  }
+  return static_cast<std::uint64_t>(number);
 }
 
 std::optional<std::uint64_t> parse_seed(std::string_view text) {

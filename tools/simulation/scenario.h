@@ -130,6 +130,10 @@ struct ScenarioChanges {
 /// any other text.
 std::optional<std::uint64_t> parse_seed(std::string_view text);
 
+/// The same as a JSON number.
+/// @throws InputError naming its place.
+std::uint64_t seed_in(const JsonNode& node);
+
 /// Reads noise: one JSON object with the keys of a scenario's `noise`.
 /// @throws InputError naming the key, or the byte where the text is not JSON.
 ScenarioNoise read_noise_json(const std::filesystem::path& file);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/simulation/drive.h"
+
+namespace roadbed::tools::inline simulation {
+
+/// What was decided in one planning cycle, and why: keys in README.md. Numbers are written so that
+/// reading them gives the same ones, bit for bit.
+/// @param row  of the drive, at that time.
+Json cycle_json(const DriveCycle& cycle, const DriveSample& row);
+
+/// All cycles of a drive, one line of JSON each.
+std::string cycle_log(const Drive& drive);
+
+}  // namespace roadbed::tools::simulation
