@@ -28,25 +28,24 @@ double look_ahead_m(double speed_mps, const DecisionOptions& options) {
 
 }  // namespace
 
-CruiseLaw::CruiseLaw(const PlannerSetup& setup, const SpeedCeiling& ceiling)
+CruiseLaw::CruiseLaw(const PlannerSetup& setup)
     : vehicle_(setup.vehicle),
       task_(setup.task),
-      ceiling_(ceiling),
       right_of_way_(setup.vehicle, setup.driving, setup.task) {
   decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
   decision_options_.headway_s = setup.driving.headway_s;
   decision_options_.standstill_gap_m = setup.driving.standstill_gap_m;
 }
 
-std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view,
-                                              const LateralReplanner& replanner,
-                                              const Traffic& traffic) {
-  const PlannedPath path = replanner.expected_path();
+std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view, double s_m,
+                                              const GoalLine& on, const Traffic& traffic) {
+  const PlannedPath path = on.replanner.expected_path();
   return right_of_way_.look({.t_s = view.t_s,
-                             .s_m = replanner.s_m(),
+                             .s_m = s_m,
                              .speed_mps = view.measured.speed_mps,
                              .path = path,
-                             .ceiling = ceiling_,
+                             .path_s_m = on.replanner.s_m(),
+                             .ceiling = on.ceiling,
                              .traffic = traffic,
                              .acceleration_mps2 = view.measured.acceleration_mps2});
 }
@@ -97,7 +96,7 @@ std::vector<bool> CruiseLaw::ignored_on(const PlannedPath& path, const Question&
   constexpr std::size_t kSteps = 60;
   const double speed = q.view.measured.speed_mps;
   const PathProfile profile =
-      sample_path_profile(path, q.replanner.s_m(), kAhead_m, ceiling_, vehicle_);
+      sample_path_profile(path, q.replanner().s_m(), kAhead_m, q.on.ceiling, vehicle_);
   std::vector<double> ahead = drive_on(profile, speed, kAhead_m);
   ahead.resize(std::min(ahead.size(), kSteps));
   const int last = static_cast<int>(ahead.size()) - 1;
@@ -124,8 +123,8 @@ double CruiseLaw::kept_gap_m(double speed_mps) const {
 /// Who is beyond the place to halt at is none.
 std::optional<Lead> CruiseLaw::lead_ahead(const Question& q,
                                           const std::optional<StopConstraint>& halt) const {
-  const LateralReplanner& replanner = q.replanner;
-  const double to_goal_m = task_.line.goal_s_m() - replanner.s_m();
+  const LateralReplanner& replanner = q.replanner();
+  const double to_goal_m = q.on.line.goal_s_m() - replanner.s_m();
   const double look_m = std::min(look_ahead_m(q.view.measured.speed_mps, decision_options_),
                                  std::max(0.0, to_goal_m) + vehicle_.front_m());
   const bool stays_beside =
@@ -156,9 +155,9 @@ std::optional<Lead> CruiseLaw::remembered(const PlannerView& view) const {
 
 SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead,
                               const std::optional<StopConstraint>& halt) const {
-  SpeedAnswer answer = choose_speed({.ceiling = ceiling_,
-                                     .s_m = q.replanner.s_m(),
-                                     .goal_s_m = task_.line.goal_s_m(),
+  SpeedAnswer answer = choose_speed({.ceiling = q.on.ceiling,
+                                     .s_m = q.replanner().s_m(),
+                                     .goal_s_m = q.on.line.goal_s_m(),
                                      .speed_mps = q.view.measured.speed_mps,
                                      .acceleration_mps2 = q.view.measured.acceleration_mps2,
                                      .lead = lead,
@@ -172,8 +171,9 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
     answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
   }
   const Merging::Decision& merging = q.passing.merging;
-  if (merging.most_mps && *merging.most_mps < answer.set.speed_mps) {
-    answer.set = {.speed_mps = *merging.most_mps, .acceleration_mps2 = 0.0};
+  const bool slows = merging.most_mps && *merging.most_mps < answer.set.speed_mps;
+  if (slows) answer.set = {.speed_mps = *merging.most_mps, .acceleration_mps2 = 0.0};
+  if (!merging.reason.empty() && (slows || answer.behaviour == Behaviour::cruise)) {
     answer.behaviour = Behaviour::yield;
     answer.reason = merging.reason;
   }
@@ -183,9 +183,9 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
 /// How far the kept path goes when nothing is feasible. A lead on it bounds the speed by itself.
 std::optional<double> CruiseLaw::path_left_m(const Question& q,
                                              const std::optional<Lead>& lead) const {
-  if (q.replanner.last_plan().chosen) return std::nullopt;
-  if (q.replanner.something_is_in_the_way() && !lead) return 0.0;
-  return q.replanner.checked_ahead_m();
+  if (q.replanner().last_plan().chosen) return std::nullopt;
+  if (q.replanner().something_is_in_the_way() && !lead) return 0.0;
+  return q.replanner().checked_ahead_m();
 }
 
 std::string CruiseLaw::lead_name(const Lead& lead) const {
@@ -197,10 +197,11 @@ void CruiseLaw::explain(const Question& q, const SpeedAnswer& answer,
                         PlannerCommand& command) const {
   command.behaviour = answer.behaviour;
   command.reason = answer.reason;
-  const double offset_m = q.replanner.path().lateral_at(q.replanner.s_m()).d_m;
-  const auto& chosen = q.replanner.last_plan().chosen;
+  const double offset_m = q.replanner().path().lateral_at(q.replanner().s_m()).d_m;
+  const auto& chosen = q.replanner().last_plan().chosen;
   const double end_m = chosen ? chosen->end_d_m : offset_m;
   if (answer.behaviour == Behaviour::cruise &&
+      q.passing.merging.along == Merging::Along::route_line &&
       std::max(std::abs(offset_m), std::abs(end_m)) > kBesideLine_m) {
     command.behaviour = Behaviour::pass;
     command.reason = fmt::format("the way is free {:.1f} m {} of the reference line",
@@ -261,8 +262,8 @@ void CruiseLaw::brake_for(const Lead& lead, double speed_mps, PlannerCommand& co
 /// The cruise control cannot ask for what this halt takes.
 void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
                           PlannerCommand& command) const {
-  const auto braking =
-      emergency_stop_mps2(q.view.measured.speed_mps, halt.s_m + kBeforeHalt_m - q.replanner.s_m());
+  const auto braking = emergency_stop_mps2(q.view.measured.speed_mps,
+                                           halt.s_m + kBeforeHalt_m - q.replanner().s_m());
   if (!braking || -*braking > command.acceleration_mps2) return;
   command.acceleration_mps2 = -*braking;
   command.behaviour = Behaviour::emergency;

@@ -15,7 +15,6 @@
 #include "roadbed/planning/behaviour/right_of_way.h"
 #include "roadbed/planning/behaviour/within_lane_passing.h"
 #include "roadbed/planning/obstacles/traffic.h"
-#include "roadbed/planning/reference/speed_ceiling.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -31,21 +30,25 @@ struct PassingDecision {
 /// whoever is ahead, and braking beyond what that may ask for.
 class CruiseLaw {
  public:
-  CruiseLaw(const PlannerSetup& setup, const SpeedCeiling& ceiling);
+  explicit CruiseLaw(const PlannerSetup& setup);
 
-  /// Where a rule of the road asks to wait; to be asked once a cycle, before a path is taken.
-  std::optional<StopConstraint> look(const PlannerView& view, const LateralReplanner& replanner,
+  /// Where a rule of the road asks to wait, by stations of the task's line; to be asked once a
+  /// cycle, before a path is taken.
+  /// @param s_m  of the rear axle, on the task's line.
+  std::optional<StopConstraint> look(const PlannerView& view, double s_m, const GoalLine& on,
                                      const Traffic& traffic);
 
   struct Question {
     const PlannerView& view;
-    const LateralReplanner& replanner;  ///< its path is the one to drive
-    const Traffic& truth;               ///< to be measured
-    const Traffic& traffic;             ///< as foreseen
+    const GoalLine& on;      ///< its path is the one to drive
+    const Traffic& truth;    ///< to be measured
+    const Traffic& traffic;  ///< as foreseen
     const PassingDecision& passing;
     Maneuver maneuver = Maneuver::keep_lane;  ///< that the path is of
     std::vector<bool> no_lead;                ///< per obstacle: it crosses the path in time
-    std::optional<StopConstraint> halt;       ///< of look()
+    std::optional<StopConstraint> halt;       ///< by stations of the line
+
+    const LateralReplanner& replanner() const { return on.replanner; }
   };
   PlannerCommand command(const Question& question);
 
@@ -72,7 +75,6 @@ class CruiseLaw {
 
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
-  const SpeedCeiling& ceiling_;
   DecisionOptions decision_options_;
   RightOfWay right_of_way_;
   bool follows_ = false;  ///< in the last cycle

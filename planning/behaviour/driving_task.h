@@ -25,6 +25,7 @@ struct DrivingTask {
   geometry::Pose2 start;                             ///< of the ego's rear axle
   Route route;
   ReferenceLine line;
+  ReferenceLineOptions line_options = {};   ///< that a route's line is drawn with
   std::vector<Obstacle> obstacles;          ///< motions last for the duration of the drive
   std::optional<TimedGoal> goal = {};       ///< none: to stand at the end of the route
   std::vector<LightCycle> lights = {};      ///< what the traffic lights show

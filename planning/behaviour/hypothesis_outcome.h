@@ -12,6 +12,7 @@ enum class Maneuver {
   pass_within_lane,  ///< the same at the speed of the free road, past somebody slower
   pass_in_lane,      ///< past slower traffic, in the next lane of the own direction
   overtake,          ///< the same through the lane of oncoming traffic
+  merge,             ///< along the next lane, from the own one into a gap there
   beside,            ///< the path ends beside the line, or on another line
 };
 inline std::string_view to_string(Maneuver maneuver) {
@@ -24,6 +25,8 @@ inline std::string_view to_string(Maneuver maneuver) {
       return "pass in the next lane";
     case Maneuver::overtake:
       return "overtake";
+    case Maneuver::merge:
+      return "merge";
     case Maneuver::beside:
       return "beside";
   }

@@ -79,6 +79,21 @@ LateralState LateralReplanner::start_state(const VehicleState& measured) {
   return from_measurement_ ? here : planned;
 }
 
+/// Its path is taken to go on beside this line as it is there now.
+void LateralReplanner::take_over(const LateralReplanner& before) {
+  s_m_ = before.s_m_;
+  if (!before.path_) return;
+  const PlannedPath::Place driven = before.path().place_at(before.s_m_);
+  const LateralState now =
+      lateral_state(reference_, driven.pose, driven.curvature_per_m, before.s_m_);
+  path_end_s_m_ = checked_to_s_m_ = now.s_m;
+  path_.emplace(reference_, [now](double s_m) {
+    LateralState state = now;
+    state.s_m = s_m;
+    return state;
+  });
+}
+
 PlanInput LateralReplanner::input_for(const Question& question) const {
   PlanInput input{.line = line_,
                   .start = start_,

@@ -85,6 +85,10 @@ class LateralReplanner {
     cycles_.reset();
   }
 
+  /// Drives on along this line, from the path that was driven along another one.
+  /// @pre both are located, `before` at this cycle
+  void take_over(const LateralReplanner& before);
+
   /// Until the next call of locate() every question but its offsets is the same one.
   /// The cheapest candidate at the first fallback level that has a feasible one, else what was
   /// found at the last.

@@ -13,6 +13,7 @@ constexpr double kSettled_s = 1.0;
 constexpr double kFollowerBraking_mps2 = 2.0;
 constexpr double kMergeAhead_m = 1.0, kMergeAhead_s = 0.5;
 constexpr double kMergeSpeedStep_mps = 0.5, kSlowestMerge_mps = 1.0;
+constexpr double kForEachSlower_s = 0.3;  // m/s
 
 /// A change of speed on the way.
 struct SpeedChange {
@@ -32,10 +33,10 @@ struct MergeArrival {
 
 /// By way of one speed to another; none: that takes more than there is. Who slows down to the gap's
 /// speed has it some time before.
-std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double by_mps,
-                                       double at_mps) {
+std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double to_enter_m,
+                                       double by_mps, double at_mps) {
   const double settled_s = at_mps < by_mps ? kSettled_s : 0.0;
-  const double way_m = std::max(0.0, vehicle.to_enter_m - settled_s * at_mps);
+  const double way_m = std::max(0.0, to_enter_m - settled_s * at_mps);
   const SpeedChange first = speed_change(vehicle.speed_mps, by_mps, kComfortBraking_mps2);
   const SpeedChange last = speed_change(by_mps, at_mps, kIntoGap_mps2);
   const double kept_m = way_m - first.length_m - last.length_m;
@@ -45,8 +46,8 @@ std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double by_
   }
   if (first.length_m > 0.0) return std::nullopt;
   const double rate_mps2 = at_mps > by_mps ? kComfortSpeedUp_mps2 : -kIntoGap_mps2;
-  const double speed_mps = std::sqrt(
-      std::max(0.0, by_mps * by_mps + 2.0 * rate_mps2 * std::max(0.0, vehicle.to_enter_m)));
+  const double speed_mps =
+      std::sqrt(std::max(0.0, by_mps * by_mps + 2.0 * rate_mps2 * std::max(0.0, to_enter_m)));
   return MergeArrival{(speed_mps - by_mps) / rate_mps2, speed_mps, at_mps};
 }
 
@@ -54,10 +55,10 @@ using MergeMovers = std::vector<MergeMover>;
 
 /// Between the movers i − 1 and i of the list.
 MergeGap merge_gap_at(const MergingVehicle& vehicle, const MergeMovers& movers, std::size_t i,
-                      const MergeArrival& arrival) {
-  MergeGap gap{.speed_mps = arrival.next_mps, .after_s = arrival.after_s};
+                      double enter_m, const MergeArrival& arrival) {
+  MergeGap gap{.speed_mps = arrival.next_mps, .to_enter_m = enter_m, .after_s = arrival.after_s};
   const auto to_enter_m = [&](const MergeMover& mover) {
-    return mover.to_enter_m - mover.speed_mps * arrival.after_s;
+    return enter_m + mover.behind_m - mover.speed_mps * arrival.after_s;
   };
   double lacks_ahead_m = 0.0, lacks_behind_m = 0.0;
   if (i > 0) {
@@ -100,10 +101,24 @@ bool is_same_gap(const MergeGap& gap, const std::optional<MergeGap>& taken) {
   return taken && gap.ahead == taken->ahead && gap.behind == taken->behind;
 }
 
-/// Of the ways into one gap, or any: the first that is good, else the one that lacks least.
-void improve(std::optional<MergeGap>& best, const MergeGap& gap) {
-  if (!best || gap.missing_m < best->missing_m) best = gap;
+/// Until the merging point, speed that is lost by then counted in.
+double lateness_s(const MergingVehicle& vehicle, const MergeGap& gap) {
+  return gap.after_s + kForEachSlower_s * std::max(0.0, vehicle.speed_mps - gap.speed_mps);
 }
+
+/// The best so far, of the ways into one gap, or any.
+struct BestGap {
+  std::optional<MergeGap> gap = {};
+  double late_s = 0.0;
+
+  /// Of those that miss nothing the soonest, else the one that misses least.
+  void improve(const MergeGap& other, double other_late_s) {
+    const bool is_better =
+        !gap ||
+        (other.is_good && gap->is_good ? other_late_s < late_s : other.missing_m < gap->missing_m);
+    if (is_better) *this = {other, other_late_s};
+  }
+};
 
 }  // namespace
 
@@ -126,23 +141,28 @@ double room_behind_m(double own_mps, double behind_mps) {
 
 MergeGap choose_merge_gap(const MergingVehicle& vehicle, const MergeMovers& movers,
                           const std::optional<MergeGap>& taken) {
-  constexpr double kLittle_m = 2.0;  // room that is short by so much is no reason to give up a gap
-  std::optional<MergeGap> best, kept;
-  const auto look_at_gaps = [&](double by_mps) {
+  BestGap best, kept;
+  const auto look_at_gaps = [&](double to_enter_m, double by_mps, double within_s) {
     for (std::size_t i = 0; i <= movers.size(); ++i) {
-      const auto there = arrival_by(vehicle, by_mps, speed_in_gap_mps(vehicle, movers, i));
-      if (!there) continue;
-      const MergeGap gap = merge_gap_at(vehicle, movers, i, *there);
-      improve(best, gap);
-      if (is_same_gap(gap, taken)) improve(kept, gap);
+      const auto there =
+          arrival_by(vehicle, to_enter_m, by_mps, speed_in_gap_mps(vehicle, movers, i));
+      if (!there || there->after_s > within_s) continue;
+      const MergeGap gap = merge_gap_at(vehicle, movers, i, to_enter_m, *there);
+      const double late_s = lateness_s(vehicle, gap);
+      best.improve(gap, late_s);
+      if (is_same_gap(gap, taken)) kept.improve(gap, late_s);
     }
   };
-  std::ranges::for_each(speeds_to_try(vehicle), look_at_gaps);
-  // Too near to take on any other speed before the merging point.
-  if (!best) look_at_gaps(vehicle.speed_mps);
-  if (!kept || kept->missing_m > kLittle_m) return best.value();
-  kept->is_good = true;
-  return *kept;
+  const std::vector<double> speeds = speeds_to_try(vehicle);
+  for (const double to_enter_m : vehicle.to_enter_m) {
+    for (const double by_mps : speeds) look_at_gaps(to_enter_m, by_mps, vehicle.within_s);
+  }
+  // Too near to take on any other speed before the merging point, or too far.
+  constexpr double kEver_s = std::numeric_limits<double>::infinity();
+  if (!best.gap) look_at_gaps(vehicle.to_enter_m.front(), vehicle.speed_mps, kEver_s);
+  if (!kept.gap || kept.gap->missing_m > vehicle.bears_m) return best.gap.value();
+  kept.gap->is_good = true;
+  return *kept.gap;
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -11,7 +11,6 @@ namespace {
 using Offsets = LateralReplanner::Offsets;
 using Question = LateralReplanner::Question;
 
-constexpr double kChange_s = 3.0;          // to change lanes in
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
 constexpr double kMerging_m = 0.8;         // beside the line
@@ -24,8 +23,8 @@ constexpr std::array<Offsets, 2> kOtherLanes{{{-3.5, -2.6}, {2.6, 3.5}}};
 /// A change to an offset takes a while, at any speed.
 PathQuery at_offset(GoalLine& on, Maneuver maneuver, double offset_m, Question question) {
   const double speed = question.speed.speed_mps;
-  question.ends.least_m = std::max(question.ends.least_m, kChange_s * speed);
-  question.ends.most_m = std::max(question.ends.most_m, (kChange_s + 1.0) * speed);
+  question.ends.least_m = change_length_m(speed);
+  question.ends.most_m = std::max(question.ends.most_m, question.ends.least_m + speed);
   question.checks_completion = false;
   return {.goal_line = &on,
           .maneuver = maneuver,
@@ -96,6 +95,9 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     Question at_free_speed = question;
     at_free_speed.speed.target_mps = on.ceiling.at(on.replanner.s_m()).speed_mps;
     queries.push_back(at_offset(on, Maneuver::pass_in_lane, *lane.offset_m, at_free_speed));
+  }
+  if (passing.merging.along == Merging::Along::next_lane) {
+    queries.push_back(at_offset(on, Maneuver::merge, 0.0, question));
   }
   PathQuery keep{.goal_line = &on,
                  .maneuver = Maneuver::keep_lane,

@@ -108,23 +108,25 @@ LateralReplanner::Ends ends_at(double speed_mps) {
 class Planner::Impl {
  public:
   explicit Impl(const PlannerSetup& setup)
-      : vehicle_(setup.vehicle),
+      : setup_(setup),
+        vehicle_(setup.vehicle),
         task_(setup.task),
         predicts_(setup.planner.predicts),
         clearance_m_(setup.driving.clearance_m),
         goal_lines_(goal_lines_of(setup)),
-        cruise_(setup, goal_lines_.front().ceiling),
+        cruise_(setup),
         overtaking_(vehicle_, task_, goal_lines_.front().ceiling),
         lane_passing_(vehicle_, task_, goal_lines_.front().ceiling),
         merging_(vehicle_, task_, goal_lines_.front().ceiling),
         speed_(setup, cruise_.options()) {}
 
-  const LateralReplanner& replanner() const { return goal_lines_[current_].replanner; }
+  const LateralReplanner& replanner() const { return current_->replanner; }
 
   PlannerCommand decide(const PlannerView& view) {
     foresee(view);
     goal_line().replanner.locate(view.measured);
     const PassingDecision passing = passing_at(view);
+    drive_along(passing.merging.along, view);
     const PlanningScene scene = scene_at(view, passing.merging);
     const std::vector<Obstacle> obstacles = obstacles_to_plan_for(scene);
     const ManeuverHypothesis best = best_hypothesis(scene, question_at(view, obstacles), passing);
@@ -139,7 +141,32 @@ class Planner::Impl {
   }
 
  private:
-  GoalLine& goal_line() { return goal_lines_[current_]; }
+  GoalLine& goal_line() { return *current_; }
+  GoalLine& first_line() { return goal_lines_.front(); }
+
+  /// From here on, as merging asks.
+  void drive_along(Merging::Along along, const PlannerView& view) {
+    if (task_.goal) return;
+    const std::shared_ptr<const MergeLines>& lines = merging_.lines();
+    if (merge_lines_ && merge_lines_->lines != lines) {
+      change_to(first_line(), view);
+      merge_lines_.reset();
+    }
+    if (lines && !merge_lines_) {
+      merge_lines_.emplace(LinesToMerge{lines, goal_line_on(lines->own_lane, {}, setup_),
+                                        goal_line_on(lines->next_lane, {}, setup_)});
+    }
+    if (along == Merging::Along::route_line) change_to(first_line(), view);
+    if (along == Merging::Along::own_lane) change_to(merge_lines_->own_lane, view);
+    if (along == Merging::Along::next_lane) change_to(merge_lines_->next_lane, view);
+  }
+
+  void change_to(GoalLine& on, const PlannerView& view) {
+    if (&on == current_) return;
+    on.replanner.take_over(current_->replanner);
+    on.replanner.locate(view.measured);
+    current_ = &on;
+  }
 
   // What will be where.
 
@@ -157,16 +184,15 @@ class Planner::Impl {
     traffic_ = predicted_->traffic();
   }
 
-  geometry::LinePosition place_of(const PlannerView& view) {
-    GoalLine& on = goal_line();
-    return on.line.project(view.measured.map_from_vehicle.position(), on.replanner.s_m());
+  geometry::LinePosition place_on(const GoalLine& on, const PlannerView& view) const {
+    return on.line.project(view.measured.map_from_vehicle.position(), current_->replanner.s_m());
   }
 
   /// Who follows keeps its own distance; who crosses is a matter of the speed, not of the path.
   void tell_others_apart(PlanningScene& scene) {
     if (task_.goal) return;
     const PlannerView& view = scene.view;
-    const geometry::LinePosition at = place_of(view);
+    const geometry::LinePosition at = place_on(goal_line(), view);
     const VehicleOnLine vehicle{goal_line().line, at.s_m, at.d_m, vehicle_.width_m};
     for (const Obstacle& other : traffic_.obstacles) {
       scene.no_matter.push_back(!other.is_static() && is_following(other, view.t_s, vehicle));
@@ -176,10 +202,12 @@ class Planner::Impl {
 
   PassingDecision passing_at(const PlannerView& view) {
     if (task_.goal) return {};
-    const ViewOnLine on_line{view.t_s, place_of(view), view.measured.speed_mps, traffic_};
+    const geometry::LinePosition at = place_on(first_line(), view);
+    const ViewOnLine on_line{view.t_s, at, view.measured.speed_mps, traffic_};
     PassingDecision passing;
+    passing.merging = merging_.look(on_line, replanner().s_m());
+    if (passing.merging.along != Merging::Along::route_line) return passing;
     passing.overtaking = overtaking_.look(on_line);
-    passing.merging = merging_.look(on_line);
     if (!passing.overtaking.overtaken && !passing.merging.is_near()) {
       passing.in_lane = lane_passing_.look(on_line);
     }
@@ -211,7 +239,10 @@ class Planner::Impl {
     scene.bodies =
         TrafficBodies(traffic_, view.t_s, speed_.steps(view.t_s), {scene.crosses, clearance_m_});
     if (task_.goal) return scene;
-    scene.halt = cruise_.look(view, replanner(), traffic_);
+    scene.halt = cruise_.look(view, place_on(first_line(), view).s_m, goal_line(), traffic_);
+    if (scene.halt && current_ != &first_line()) {  // as far ahead on the line that is driven
+      scene.halt->s_m += replanner().s_m() - place_on(first_line(), view).s_m;
+    }
     if (merging.halt && (!scene.halt || merging.halt->s_m < scene.halt->s_m)) {
       scene.halt = merging.halt;
     }
@@ -376,7 +407,7 @@ class Planner::Impl {
   // What becomes of the best.
 
   void take(const ManeuverHypothesis& best) {
-    current_ = static_cast<std::size_t>(best.goal_line - goal_lines_.data());
+    current_ = best.goal_line;
     goal_line().replanner.take(best.proposal);
     last_plan_ = best.answer.plan;
   }
@@ -384,7 +415,7 @@ class Planner::Impl {
   PlannerCommand cruised(const ManeuverHypothesis& best, const PlanningScene& scene,
                          const PassingDecision& passing) {
     PlannerCommand command = cruise_.command({.view = scene.view,
-                                              .replanner = replanner(),
+                                              .on = goal_line(),
                                               .truth = truth_,
                                               .traffic = traffic_,
                                               .passing = passing,
@@ -425,6 +456,7 @@ class Planner::Impl {
                         : fmt::format(", and {:.1f} s is free at best", best.answer.free_until_s));
   }
 
+  PlannerSetup setup_;
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
   bool predicts_;
@@ -434,11 +466,16 @@ class Planner::Impl {
   Traffic truth_;                                   ///< with that room
   Traffic traffic_;                   ///< what is planned against: the true one, or as foreseen
   std::vector<GoalLine> goal_lines_;  ///< the task's line first
-  std::size_t current_ = 0;           ///< that is driven
+  GoalLine* current_ = &goal_lines_.front();  ///< that is driven
   CruiseLaw cruise_;
   Overtaking overtaking_;
   LanePassing lane_passing_;
   Merging merging_;
+  struct LinesToMerge {
+    std::shared_ptr<const MergeLines> lines;
+    GoalLine own_lane, next_lane;
+  };
+  std::optional<LinesToMerge> merge_lines_;
   HypothesisSpeed speed_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;

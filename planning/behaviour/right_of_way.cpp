@@ -178,13 +178,14 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
   const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
                          (joins ? kJoining_m : 0.0);  // of the rear axle
-  const PathProfile profile = sample_path_profile(view.path, view.s_m, std::max(1.0, until_m) + 2.0,
-                                                  view.ceiling, vehicle_);
+  const PathProfile profile = sample_path_profile(
+      view.path, view.path_s_m, std::max(1.0, until_m) + 2.0, view.ceiling, vehicle_);
   const std::vector<double> ahead = drive_on(profile, view.speed_mps, until_m);
   const auto steps = static_cast<int>(ahead.size());
   const StGraph occupancy(profile, view.traffic, view.t_s, steps + gap.after, kCrossingMargin_m);
-  const VehicleOnLine vehicle{task_.line, view.s_m, view.path.lateral_at(view.s_m).d_m,
-                              vehicle_.width_m};
+  const geometry::LinePosition at =
+      task_.line.project(view.path.pose_at(view.path_s_m).position(), view.s_m);
+  const VehicleOnLine vehicle{task_.line, view.s_m, at.d_m, vehicle_.width_m};
   std::vector<bool> following;
   for (const Obstacle& obstacle : view.traffic.obstacles) {
     following.push_back(is_following(obstacle, view.t_s, vehicle));

@@ -28,8 +28,9 @@ class RightOfWay {
  public:
   /// What is known at one cycle.
   struct View {
-    double t_s, s_m, speed_mps;
+    double t_s, s_m, speed_mps;  ///< station of the task's line
     const PlannedPath& path;
+    double path_s_m;  ///< station of the path's line
     const SpeedCeiling& ceiling;
     Traffic traffic;
     double acceleration_mps2 = 0.0;

@@ -32,6 +32,7 @@ ReferenceLine ReferenceLine::along(const map::RoadMap& road_map, const Route& ro
   const RoutePath path = path_along(road_map, route,
                                     {.step_m = options.step_m,
                                      .lane_change_length_m = options.lane_change_length_m,
+                                     .placed_change = options.placed_change,
                                      .extend_m = options.extend_m});
   RouteCurve drawn = draw_curve(path, centreline_of(path), fit_options(options));
   auto data = std::make_shared<ReferenceLineData>();

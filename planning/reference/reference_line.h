@@ -13,6 +13,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/reference/reference_point.h"
 #include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/route_path.h"
 
 namespace roadbed::planning::inline reference {
 
@@ -23,6 +24,7 @@ struct ReferenceLineOptions {
   double max_smoothing_m = 0.3;        ///< largest move off the centreline, or of a way-point
   double max_curvature_per_m = 0.2;    ///< the vehicle can steer
   double lane_change_length_m = 40.0;  ///< a lane change takes, where there is room
+  std::optional<PlacedChange> placed_change = {};  ///< not made in the middle of its window
   double default_speed_mps = 50.0 / 3.6;
   double extend_m = 30.0;  ///< how far the line goes on past the goal
   /// Who is to drive along it. Corners of way-points are rounded for it at the speed below (none:

@@ -38,8 +38,11 @@ struct Stretch {
 
 class Stretches {
  public:
-  Stretches(const map::RoadMap& road_map, const Route& route, double wanted_m)
-      : road_map_(road_map), route_(route), wanted_m_(wanted_m) {}
+  Stretches(const map::RoadMap& road_map, const Route& route, const RoutePathOptions& options)
+      : road_map_(road_map),
+        route_(route),
+        wanted_m_(options.lane_change_length_m),
+        placed_(options.placed_change) {}
 
   std::vector<Stretch> build() && {
     bool joins = false;
@@ -79,18 +82,28 @@ class Stretches {
     }
   }
 
-  // A change that takes several stretches goes over all of them about its own middle.
+  // A change that takes several stretches goes over all of them about its own middle, and so does
+  // one that is not made in the middle of its window.
   void spread(std::size_t leg) {
     const std::vector<ChangePart> parts = parts_of_change(road_map_, route_, leg);
-    if (parts.size() < 2) return;
-    const map::StationRange window = driven_window(road_map_, route_.legs[leg]);
-    const double middle_m = 0.5 * (window.from_s_m + window.to_s_m);
-    const double half_m = 0.5 * std::min(wanted_m_, window.to_s_m - window.from_s_m);
+    const bool is_placed = placed_ && placed_->leg == leg;
+    if (parts.empty() || (parts.size() < 2 && !is_placed)) return;
+    const Crossing in_m = crossing_m(leg, is_placed);
     for (const ChangePart& part : parts) {
       const double length_m = length_of(part.from);
       place(made_[stretch_of_leg_[part.leg]], part,
-            {(middle_m - part.offset_m) / length_m, half_m / length_m});
+            {(in_m.middle - part.offset_m) / length_m, in_m.half / length_m});
     }
+  }
+
+  // By stations of the leg's lane.
+  Crossing crossing_m(std::size_t leg, bool is_placed) const {
+    const map::StationRange window = driven_window(road_map_, route_.legs[leg]);
+    const double wanted_m = is_placed ? placed_->length_m : wanted_m_;
+    const double half_m = 0.5 * std::min(wanted_m, window.to_s_m - window.from_s_m);
+    if (!is_placed) return {0.5 * (window.from_s_m + window.to_s_m), half_m};
+    const bool is_early = placed_->at == PlacedChange::At::window_start;
+    return {is_early ? window.from_s_m + half_m : window.to_s_m - half_m, half_m};
   }
 
   // Puts a crossing where its lanes stand, or beside the lanes of the stretch.
@@ -112,6 +125,7 @@ class Stretches {
   const map::RoadMap& road_map_;
   const Route& route_;
   double wanted_m_;
+  std::optional<PlacedChange> placed_;
   std::vector<Stretch> made_;
   std::vector<std::size_t> stretch_of_leg_;
 };
@@ -272,8 +286,7 @@ class Builder {
 RoutePath path_along(const map::RoadMap& road_map, const Route& route,
                      const RoutePathOptions& options) {
   if (route.legs.empty()) throw std::invalid_argument("path_along: the route has no leg");
-  const std::vector<Stretch> stretches =
-      Stretches(road_map, route, options.lane_change_length_m).build();
+  const std::vector<Stretch> stretches = Stretches(road_map, route, options).build();
   Builder builder(road_map, options);
   builder.lead(stretches.front());
   for (const Stretch& stretch : stretches) builder.follow(stretch);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
@@ -8,9 +10,17 @@
 
 namespace roadbed::planning::inline route {
 
+/// Where in its window one lane change of a route is made, in place of the middle.
+struct PlacedChange {
+  std::size_t leg = 0;  ///< that the change leaves
+  enum class At { window_start, window_end } at = At::window_start;
+  double length_m = 40.0;  ///< that it takes, where there is room
+};
+
 struct RoutePathOptions {
   double step_m = 0.5;
   double lane_change_length_m = 40.0;
+  std::optional<PlacedChange> placed_change = {};  ///< none: all in the middle of their windows
   double lead_m = 10.0;    ///< of the first lane behind the start, as far as there is some
   double extend_m = 30.0;  ///< past the goal
 };

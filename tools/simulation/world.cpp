@@ -10,7 +10,7 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/merging.h"
+#include "roadbed/planning/behaviour/merge_places.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -53,11 +53,11 @@ Route route_or_refuse(const Scenario& scenario, const map::RoadMap& road_map,
 struct Course {
   Route route;
   ReferenceLine line;
+  planning::ReferenceLineOptions line_options = {};
 };
 
 /// A lane change takes a while at any speed: the faster it is driven, the longer the line's.
-ReferenceLine line_along(const Scenario& scenario, const map::RoadMap& road_map,
-                         const Route& route) {
+Course course_along(const Scenario& scenario, const map::RoadMap& road_map, Route route) {
   constexpr double kChange_s = 3.5;
   planning::ReferenceLineOptions options{.corner_vehicle = scenario.vehicle};
   ReferenceLine line = ReferenceLine::along(road_map, route, options);
@@ -66,9 +66,11 @@ ReferenceLine line_along(const Scenario& scenario, const map::RoadMap& road_map,
     fastest_mps = std::max(fastest_mps, line.corridor_at(place.enter_s_m).speed_limit_mps);
   }
   const double length_m = kChange_s * std::min(fastest_mps, scenario.options.desired_speed_mps);
-  if (length_m <= options.lane_change_length_m) return line;
-  options.lane_change_length_m = length_m;
-  return ReferenceLine::along(road_map, route, options);
+  if (length_m > options.lane_change_length_m) {
+    options.lane_change_length_m = length_m;
+    line = ReferenceLine::along(road_map, route, options);
+  }
+  return {std::move(route), std::move(line), options};
 }
 
 Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const Place& start) {
@@ -77,8 +79,7 @@ Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const
   Route route = route_or_refuse(
       scenario, road_map,
       {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
-  ReferenceLine line = line_along(scenario, road_map, route);
-  return {std::move(route), std::move(line)};
+  return course_along(scenario, road_map, std::move(route));
 }
 
 /// A point need not be on the road.
@@ -260,6 +261,7 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
                .start = start.map_from_vehicle,
                .route = std::move(course.route),
                .line = std::move(course.line),
+               .line_options = course.line_options,
                .obstacles = std::move(obstacles),
                .lights = scenario.lights,
                .stop_points = std::move(places)},

@@ -40,6 +40,7 @@ class WaitingAtAPlace : public testing::Test {
                        .s_m = kPlace_m - left_m - scenario_.vehicle.front_m(),
                        .speed_mps = speed_mps,
                        .path = path,
+                       .path_s_m = kPlace_m - left_m - scenario_.vehicle.front_m(),
                        .ceiling = ceiling_of(world_.line, scenario_.vehicle, scenario_.options),
                        .traffic = planning::Traffic{world_.obstacles}});
   }
