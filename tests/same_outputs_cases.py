@@ -214,6 +214,9 @@ def own_cases():
                 "simulate data/scenarios/stop_and_go.json -o c --seed 8 --timings timings.csv",
                 "simulate data/scenarios/parked_car.json -o d --seed x"], car)
     yield Case("simulate/candidates", ["simulate data/scenarios/lane_change.json -o a --candidates"])
+    yield Case("plan/replay", ["simulate data/scenarios/pass_car.json -o drive --quiet",
+                               "plan drive@4.25 -o plan --explain", "plan drive@17 -o json --json",
+                               "plan drive@99 -o none", "plan drive@x -o none", "plan data@0 -o none"])
     audit = f"audit --occupancy {OCTREE}"
     yield Case("audit/drive",
                ["simulate data/drive.json -o drive", f"{audit} --trajectory drive/trajectory.csv "

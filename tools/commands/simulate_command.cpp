@@ -137,10 +137,11 @@ class SimulateCommand : public Command {
         .required()
         .reads(files_named_by_scenario);
     arguments
-        .add("-o,--output", folder_,
-             "Folder for trajectory.csv, cycles.jsonl, metrics.json, report.html, drive.svg and "
-             "replay.json, for CommonRoad solution.xml too; of a folder, one for "
-             "each scenario, and drives.csv")
+        .add(
+            "-o,--output", folder_,
+            "Folder for trajectory.csv, cycles.jsonl, metrics.json, report.html, drive.svg and "
+            "replay.json (for `plan DIR@T`), for CommonRoad solution.xml too; of a folder, one for "
+            "each scenario, and drives.csv")
         .required()
         .writes("/");
     arguments

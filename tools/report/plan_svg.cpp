@@ -190,10 +190,10 @@ std::vector<double> shown_times(const PlanPicture& picture) {
 
 std::string planned_obstacles_svg(const PlanPicture& picture, const PlanView& view) {
   std::string standing, moving, now;
-  for (const planning::Obstacle& obstacle : picture.input.obstacles) {
+  for (const planning::Obstacle& obstacle : picture.obstacles) {
     for (const double t_s : shown_times(picture)) {
       const geometry::Rectangle body = planning::rectangle_at(obstacle, t_s);
-      if (!is_shown(view, body)) continue;
+      if (!obstacle.is_there(t_s) || !is_shown(view, body)) continue;
       const bool first = t_s == picture.input.start_t_s;
       if (obstacle.is_static() && !first) continue;
       (obstacle.is_static() ? standing : first ? now : moving) += body_data(view, body);

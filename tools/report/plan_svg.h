@@ -14,7 +14,8 @@ struct PlanPicture {
   const planning::PlanInput& input;
   const planning::Plan& plan;  ///< with its candidates
   const geometry::VehicleShape& vehicle;
-  std::vector<map::Box2> occupied;  ///< source coordinates
+  const std::vector<planning::Obstacle>& obstacles;  ///< that are drawn
+  std::vector<map::Box2> occupied;                   ///< source coordinates
   std::string title;
 };
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/report/drive_replay.h"
+#include "roadbed/tools/simulation/world.h"
+
+namespace roadbed::tools::inline commands {
+
+/// A planning cycle, and what it was planned in.
+struct PlannedCycle {
+  const World& world;
+  const geometry::VehicleShape& vehicle;
+  const planning::PlanInput& input;
+  const planning::Plan& plan;  ///< with its candidates
+  const planning::CostTerms& weights;
+  std::string title;
+};
+
+/// Writes candidates.csv, plan.svg and, if there is one, the plan's trajectory.csv.
+void write_plan(const PlannedCycle& cycle, const std::filesystem::path& folder);
+
+Json plan_json(const planning::Plan& plan);
+
+/// @param explain  with each term's share of the cost.
+void print_plan(std::ostream& out, const PlannedCycle& cycle, bool explain);
+
+/// What was decided in a cycle of a drive, and what became of each hypothesis.
+void print_decision(std::ostream& out, const ReplayedCycle& cycle);
+
+}  // namespace roadbed::tools::commands
