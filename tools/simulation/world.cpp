@@ -10,7 +10,7 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/merge_places.h"
+#include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -56,30 +56,15 @@ struct Course {
   planning::ReferenceLineOptions line_options = {};
 };
 
-/// A lane change takes a while at any speed: the faster it is driven, the longer the line's.
-Course course_along(const Scenario& scenario, const map::RoadMap& road_map, Route route) {
-  constexpr double kChange_s = 3.5;
-  planning::ReferenceLineOptions options{.corner_vehicle = scenario.vehicle};
-  ReferenceLine line = ReferenceLine::along(road_map, route, options);
-  double fastest_mps = 0.0;
-  for (const planning::MergePlace& place : planning::merge_places(road_map, route, line)) {
-    fastest_mps = std::max(fastest_mps, line.corridor_at(place.enter_s_m).speed_limit_mps);
-  }
-  const double length_m = kChange_s * std::min(fastest_mps, scenario.options.desired_speed_mps);
-  if (length_m > options.lane_change_length_m) {
-    options.lane_change_length_m = length_m;
-    line = ReferenceLine::along(road_map, route, options);
-  }
-  return {std::move(route), std::move(line), options};
-}
-
 Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const Place& start) {
   // Without a heading the vehicle stands as its lane runs.
   const bool against = start.sense == planning::Sense::against;
   Route route = route_or_refuse(
       scenario, road_map,
       {start.on_lane, against ? planning::Sense::against : planning::Sense::along}, scenario.goal);
-  return course_along(scenario, road_map, std::move(route));
+  planning::RouteLine drawn =
+      planning::line_along(road_map, route, scenario.vehicle, scenario.options.desired_speed_mps);
+  return {std::move(route), std::move(drawn.line), drawn.options};
 }
 
 /// A point need not be on the road.
