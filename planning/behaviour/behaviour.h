@@ -11,7 +11,7 @@ enum class Behaviour {
   pass,       ///< beside the reference line, because something stands or moves on it
   follow,     ///< behind a lead
   yield,      ///< waits at a light or sign, or for those who have the right of way
-  stop,       ///< comes to rest: at the goal, or because no candidate is left
+  stop,       ///< comes to rest: at the goal, because no candidate is left, or the road is blocked
   emergency,  ///< the safety layer brakes harder than the cruise control may
 };
 inline std::string_view to_string(Behaviour behaviour) {

@@ -33,6 +33,7 @@ struct DrivingTask {
   /// To the goal too, from lanes beside the start that may be changed to there.
   std::vector<ReferenceLine> other_lines = {};
   std::vector<std::vector<StopPoint>> other_stop_points = {};  ///< on each other line
+  std::vector<std::size_t> blockers = {};  ///< obstacles that the route leads past, another way
 
   /// Obstacles that are there at a time.
   std::vector<Obstacle> obstacles_at(double t_s) const {

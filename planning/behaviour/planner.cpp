@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/planning/behaviour/blocked_road.h"
 #include "roadbed/planning/behaviour/cruise_law.h"
 #include "roadbed/planning/behaviour/hypothesis_speed.h"
 #include "roadbed/planning/behaviour/lane_passing.h"
@@ -118,7 +119,8 @@ class Planner::Impl {
         overtaking_(vehicle_, task_, goal_lines_.front().ceiling),
         lane_passing_(vehicle_, task_, goal_lines_.front().ceiling),
         merging_(vehicle_, task_, goal_lines_.front().ceiling),
-        speed_(setup, cruise_.options()) {}
+        speed_(setup, cruise_.options()),
+        blocked_road_(vehicle_, setup.driving, task_) {}
 
   const LateralReplanner& replanner() const { return current_->replanner; }
 
@@ -134,6 +136,7 @@ class Planner::Impl {
     PlannerCommand command =
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     command.hypotheses = std::move(outcomes_);
+    if (!task_.goal) look_at_blocked_road(view, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
     last_set_speed_mps_ = command.set_speed_mps;
@@ -456,6 +459,34 @@ class Planner::Impl {
                         : fmt::format(", and {:.1f} s is free at best", best.answer.free_until_s));
   }
 
+  void look_at_blocked_road(const PlannerView& view, PlannerCommand& command) {
+    std::optional<BlockedRoad::Decision> blocked =
+        blocked_road_.look({.t_s = view.t_s,
+                            .measured = view.measured,
+                            .traffic = truth_,
+                            .ahead = who_is_in_the_way(view, command),
+                            .waits_for_rule = command.behaviour == Behaviour::yield});
+    if (!blocked) return;
+    command.behaviour = Behaviour::stop;
+    command.reason = std::move(blocked->reason);
+    command.is_news = blocked->is_news;
+    command.detour = std::move(blocked->detour);
+  }
+
+  /// The lead; where no path keeps its clearance, who would be nearer than that.
+  std::optional<std::size_t> who_is_in_the_way(const PlannerView& view,
+                                               const PlannerCommand& command) const {
+    if (command.lead) {
+      const auto lead = std::ranges::find(task_.obstacles, command.lead->id, &Obstacle::id);
+      return static_cast<std::size_t>(lead - task_.obstacles.begin());
+    }
+    if (replanner().last_plan().chosen) return std::nullopt;
+    const std::optional<Lead> nearest =
+        find_lead(replanner().expected_path(), replanner().s_m(), PlanOptions{}.max_l_m,
+                  truth_.obstacles, view.t_s, vehicle_, clearance_m_);
+    return nearest ? std::optional(nearest->obstacle) : std::nullopt;
+  }
+
   PlannerSetup setup_;
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
@@ -477,6 +508,7 @@ class Planner::Impl {
   };
   std::optional<LinesToMerge> merge_lines_;
   HypothesisSpeed speed_;
+  BlockedRoad blocked_road_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
   std::vector<HypothesisOutcome> outcomes_;  ///< of this cycle

@@ -6,6 +6,7 @@
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/behaviour.h"
+#include "roadbed/planning/behaviour/detour.h"
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
@@ -30,6 +31,9 @@ struct PlannerCommand {
   std::optional<DriveLead> lead;
   bool saturated = false;                          ///< the cruise control asked for all it may
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
+  bool is_news = false;                            ///< the reason is worth an event
+  /// To be put into the task before the next decision, by a planner of its own.
+  std::optional<Detour> detour = {};
 };
 
 struct PlannerOptions {

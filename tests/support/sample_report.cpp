@@ -198,7 +198,7 @@ tools::ReportInput sample_report() {
                        lane_between("12/0/-2", LaneType::shoulder, -3.5, -5.0),
                        lane_between("12/0/2", LaneType::sidewalk, 3.5, 5.5)};
   input.scene.route = {line_beside(-1.75, false, 410.0)};
-  input.scene.reference = line_beside(-1.75, false, 410.0);
+  input.scene.references = {line_beside(-1.75, false, 410.0)};
   input.scene.goal = beside(405.0, -1.75).position();
   input.scene.occupied = wall();
   input.drive.trajectory = ego_drive();

@@ -191,6 +191,31 @@ TEST(BadInput, ScenarioThatCannotBeUsedIsRefusedAndLeavesNoFolder) {
   }
 }
 
+TEST(BadInput, GoalBehindAClosedRoadIsANoWithItsReason) {
+  std::string closed = bytes_of(data_folder() / "scenarios" / "closed_road.json");
+  closed = replaced(closed, "../town.xodr", data_folder() / "town.xodr");
+  closed = replaced(closed, "\"duration_s\": 150.0", "\"duration_s\": 50.0");
+  closed = replaced(closed, "lane:2202/0/-1@9.2", "lane:2/3/1@30");
+  closed = replaced(closed, "\"width_m\": 4.2", "\"width_m\": 9.0");
+  const std::vector<BadMap> scenarios{
+      {"far_behind.json", closed},
+      {"right_behind.json", replaced(closed, "lane:1/3/-1@60", "lane:2/3/1@32")},
+      {"within.json", replaced(closed, "lane:1/3/-1@60", "lane:2/3/1@30")},
+  };
+  for (const BadMap& scenario : scenarios) {
+    SCOPED_TRACE(scenario.name);
+    const TemporaryFolder folder;
+    const std::string file = folder.write(scenario.name, scenario.bytes);
+    const ProgramRun run = run_roadbed({"simulate", file, "-o", folder / "out", "--quiet"});
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_EQ(std::ranges::count(run.out, '\n'), 1) << run.out;
+    EXPECT_NE(run.out.find("the road is blocked: barrier road works has not moved for 10 s; no "
+                           "other route: no lane sequence leads from lane 2/3/1"),
+              std::string::npos)
+        << run.out;
+  }
+}
+
 TEST(BadInput, DriveThatCannotBeUsedIsRefusedByAudit) {
   const TemporaryFolder folder;
   const std::string walls = folder / "walls.bt";

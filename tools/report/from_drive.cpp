@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "roadbed/tools/report/surroundings.h"
 
@@ -64,8 +65,12 @@ map::HeightBand height_band(const geometry::VehicleShape& vehicle) {
 ReportScene scene_of(const Scenario& scenario, const World& world, const Drive& drive) {
   ReportScene scene;
   scene.vehicle = scenario.vehicle;
-  scene.route = route_lines(world.road_map, world.route);
-  scene.reference = reference_points(world.road_map, world.line);
+  const auto add = [&](const planning::Route& route, const planning::ReferenceLine& line) {
+    std::ranges::move(route_lines(world.road_map, route), std::back_inserter(scene.route));
+    scene.references.push_back(reference_points(world.road_map, line));
+  };
+  for (const GivenUpRoute& before : drive.given_up) add(before.route, before.line);
+  add(world.route, world.line);
   scene.goal = route_goal(world.road_map, world.route);
   scene.lanes = lanes_in(world.road_map, box_around(scene.route, drive, kMapMargin_m));
   if (world.occupancy) {

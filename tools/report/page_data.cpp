@@ -210,8 +210,16 @@ std::string note_of(const DriveCycle& cycle) {
                            cycle.chosen->end_l_m);
 }
 
-Json coded_cycle(const DriveCycle& cycle, Json path, const planning::CostTerms& weights) {
+// Which of the lines was driven along.
+std::ptrdiff_t line_at(const Drive& drive, double t_s) {
+  return std::ranges::count_if(drive.given_up,
+                               [&](const GivenUpRoute& route) { return route.until_s <= t_s; });
+}
+
+Json coded_cycle(const Drive& drive, const DriveCycle& cycle, Json path,
+                 const planning::CostTerms& weights) {
   return {{"t", cycle.t_s},
+          {"line", line_at(drive, cycle.t_s)},
           {"note", note_of(cycle)},
           {"reason", cycle.reason},
           {"path", std::move(path)},
@@ -254,7 +262,7 @@ std::string page_data_json(const ReportInput& input) {
       {"vehicle", coded_vehicle(input)},
       {"lanes", coded_lanes(input, origin)},
       {"route", list_of(input.scene.route, line)},
-      {"reference", line(input.scene.reference)},
+      {"references", list_of(input.scene.references, line)},
       {"goal", input.scene.goal ? coded_line({*input.scene.goal}, origin) : Json(nullptr)},
       {"occupied", list_of(input.scene.occupied,
                            [&](const map::Box2& box) {
@@ -266,7 +274,7 @@ std::string page_data_json(const ReportInput& input) {
                [&](const planning::ObstacleInSource& one) { return coded_obstacle(one, origin); })},
       {"plans", list_of(input.drive.cycles,
                         [&](const DriveCycle& cycle) {
-                          return coded_cycle(cycle, line(cycle.path), input.weights);
+                          return coded_cycle(input.drive, cycle, line(cycle.path), input.weights);
                         })},
       {"costNames", names_of<planning::CostTerm>(input.drive, planning::kCostTerms)},
       {"causeNames", names_of<planning::Rejection>(input.drive, planning::kRejections)},

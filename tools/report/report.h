@@ -94,8 +94,8 @@ struct ReportVerdict {
 /// What is around a drive.
 struct ReportScene {
   std::vector<ReportLane> lanes;
-  std::vector<LineInSource> route;  ///< centrelines of its legs
-  LineInSource reference;
+  std::vector<LineInSource> route;       ///< centrelines of its legs; of routes given up, as driven
+  std::vector<LineInSource> references;  ///< line of each route in turn, that of the last one last
   std::optional<Eigen::Vector2d> goal;
   std::vector<map::Box2> occupied;  ///< cells near the drive, in plan
   geometry::VehicleShape vehicle;

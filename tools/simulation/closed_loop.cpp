@@ -35,6 +35,23 @@ double most_steering_rad(double speed_mps, double lateral_mps2,
                   std::atan(vehicle.wheelbase_m * lateral_mps2 / squared));
 }
 
+/// A route as far as a length along it.
+planning::Route first_part(planning::Route route, double length_m) {
+  double left_m = length_m;
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    planning::RouteLeg& leg = route.legs[i];
+    if (left_m < leg.length_m) {
+      const double part = std::max(0.0, left_m) / leg.length_m;
+      leg.to_s_m = leg.from_s_m + part * (leg.to_s_m - leg.from_s_m);
+      leg.exit = planning::LegExit::goal;
+      route.legs.resize(i + 1);
+      break;
+    }
+    left_m -= leg.length_m;
+  }
+  return route;
+}
+
 /// The cruise control behind the sensors of the lead.
 class MeasuredCruise : public planning::SpeedController {
  public:
@@ -157,6 +174,8 @@ class ClosedLoop {
   void plan_and_decide() {
     const auto begin = std::chrono::steady_clock::now();
     const planning::VehicleState measured = sensors_.measure(truth_);
+    const bool has_new_route = command_.detour.has_value();
+    if (has_new_route) take(*std::move(command_.detour));
     command_ = planner_.decide({.t_s = t_s(),
                                 .measured = measured,
                                 .speed_controller = cruise_,
@@ -165,14 +184,31 @@ class ClosedLoop {
     if (options_.on_cycle) options_.on_cycle(took.count());
     front_s_m_ = replanner().s_m();
     saturated_ += command_.saturated ? 1 : 0;
-    log_cycle();
+    log_cycle(has_new_route);
   }
 
-  void log_cycle() {
+  /// The vehicle goes on from where it stands; stations of the samples do, too.
+  void take(planning::Detour detour) {
+    const double left_s_m = drive_.last_line_from_s_m + true_s_m();
+    drive_.given_up.push_back({t_s(), first_part(std::move(world_.route), s_m_), world_.line});
+    world_.route = std::move(detour.route);
+    world_.line = std::move(detour.line.line);
+    world_.line_options = detour.line.options;
+    world_.stop_points = std::move(detour.stop_points);
+    world_.blockers = std::move(detour.blockers);
+    planner_ = planning::Planner(setup());
+    s_m_ = 0.0;
+    drive_.last_line_from_s_m = left_s_m - true_s_m();
+    if (foot_) foot_->take_grades(GradeProfile(world_.road_map, world_.route, world_.line));
+  }
+
+  void log_cycle(bool has_new_route) {
     DriveCycle cycle{.t_s = t_s(),
                      .behaviour = command_.behaviour,
                      .reason = command_.reason,
-                     .from_measurement = replanner().from_measurement() && !drive_.cycles.empty(),
+                     .is_news = command_.is_news,
+                     .from_measurement =
+                         replanner().from_measurement() && !drive_.cycles.empty() && !has_new_route,
                      .chosen = replanner().last_plan().chosen,
                      .start = replanner().last_plan().start,
                      .grid = replanner().candidates(),
@@ -317,7 +353,7 @@ class ClosedLoop {
     const double s_m = true_s_m();
     const control::TrackingError error = tracking_error_of(truth_.map_from_vehicle);
     drive_.samples.push_back({.t_s = t_s(),
-                              .s_m = s_m,
+                              .s_m = drive_.last_line_from_s_m + s_m,
                               .set_speed_mps = command_.set_speed_mps,
                               .speed_limit_mps = world_.line.corridor_at(s_m).speed_limit_mps,
                               .command_mps2 = command_.acceleration_mps2,
@@ -330,7 +366,7 @@ class ClosedLoop {
   }
 
   const Scenario& scenario_;
-  const World& world_;
+  World& world_;  ///< its route becomes another one where the road is blocked
   const LoopOptions& options_;
   TrafficFlow flow_;
   Sensors sensors_;

@@ -27,6 +27,7 @@ struct DriveCycle {
   double t_s = 0.0;
   planning::Behaviour behaviour = planning::Behaviour::cruise;
   std::string reason = {};        ///< "car p1 is 22.4 m ahead"
+  bool is_news = false;           ///< the reason is worth an event
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
       {};                             ///< none: nothing feasible, the last path is kept
@@ -42,7 +43,7 @@ struct DriveCycle {
 /// What is known at each row of the trajectory.
 struct DriveSample {
   double t_s = 0.0;
-  double s_m = 0.0;                    ///< station on the reference line
+  double s_m = 0.0;  ///< station on the reference line; it goes on where another route is taken
   double set_speed_mps = 0.0;          ///< what the cruise control is asked for
   double speed_limit_mps = 0.0;        ///< of the map
   double command_mps2 = 0.0;           ///< desired acceleration
@@ -71,12 +72,21 @@ struct DriveVerdict {
   std::string text;  ///< "goal reached after 41.2 s, 0.12 m from it"
 };
 
+/// A route that was given up for another one, as far as it was driven, and its line.
+struct GivenUpRoute {
+  double until_s = 0.0;
+  planning::Route route;
+  planning::ReferenceLine line;
+};
+
 struct Drive {
   geometry::Trajectory trajectory;   ///< true state, rear axle, every 0.1 s from t = 0
   std::vector<DriveSample> samples;  ///< one per row of the trajectory
   std::vector<DriveCycle> cycles;    ///< by time
   std::vector<DriveEvent> events;    ///< by time
   DriveVerdict verdict;
+  std::vector<GivenUpRoute> given_up;  ///< by time; the world's is the last route
+  double last_line_from_s_m = 0.0;     ///< station of the samples where that one's line begins
 
   /// Ratio of control steps in which the cruise control saturates at ±max_command.
   double saturated_ratio = 0.0;
@@ -103,7 +113,8 @@ struct LoopOptions {
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an
 /// obstacle is touched, or the time is up. Deterministic: same scenario, same drive.
-/// @param world  the motions of its drivers become what they did.
+/// @param world  the motions of its drivers become what they did; route, line and stop points those
+///               of the last route that was taken.
 Drive drive(const Scenario& scenario, World& world, const LoopOptions& options = {});
 
 /// A drive as a CommonRoad solution (KS model, vehicle 2, cost function SM1): the states of the

@@ -234,7 +234,7 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
       {"collision", drive.verdict.outcome == Outcome::collision},
       {"duration_s", drive.verdict.at_s},
       {"driven_m", driven_m(drive.trajectory)},
-      {"to_goal_m", world.line.goal_s_m() - drive.samples.back().s_m},
+      {"to_goal_m", drive.last_line_from_s_m + world.line.goal_s_m() - drive.samples.back().s_m},
   };
   for (const ordered_json& part : {least_clearance(drive), safety_metrics(scenario, world, drive),
                                    motion(drive), comfort(drive), tracking(drive), cycles(drive)}) {

@@ -38,6 +38,9 @@ class PedalModel {
   /// Acceleration after a step [m/s²].
   double press(double desired_mps2, double speed_mps, double s_m, double step_s);
 
+  /// Goes on along another line.
+  void take_grades(GradeProfile grades) { grades_ = std::move(grades); }
+
   const control::Pedals& pedals() const { return pedals_; }
 
  private:

@@ -311,6 +311,29 @@ TEST(ScenarioDrives, NarrowingIsPassedAfterWhoComesTheOtherWay) {
   EXPECT_GT(d.passes_x_at_s(150.0), (205.0 - 152.0) / 7.0 - 3.0);
 }
 
+TEST(ScenarioDrives, ClosedRoadIsLeftForAnotherRouteAfterTenSeconds) {
+  const Driven d = driven("closed_road");
+  expect_arrives(d, 0.29);
+  const DriveCycle* blocked = d.first(planning::Behaviour::stop, "the road is blocked: barrier");
+  ASSERT_NE(blocked, nullptr);
+  EXPECT_THAT(blocked->reason,
+              testing::HasSubstr("another route by lane 2200/0/-1 is taken, 832 m, 496 m"));
+  EXPECT_TRUE(std::ranges::any_of(d.drive.events, [&](const DriveEvent& event) {
+    return event.t_s == blocked->t_s && event.text == blocked->reason;
+  }));
+  for (double ago_s = 0.0; ago_s < 9.95; ago_s += 0.1) {
+    EXPECT_LT(d.speed_at(blocked->t_s - ago_s), 0.3) << ago_s << " s before";
+  }
+  EXPECT_GT(d.speed_at(blocked->t_s - 10.5), 0.3) << "not for longer than it has to";
+  ASSERT_EQ(d.drive.given_up.size(), 1U);
+  EXPECT_EQ(d.world.road_map.lane(d.drive.given_up[0].route.legs.back().lane).name, "21/0/-1");
+  // By the country road, which the first route did not use; the barrier is never passed.
+  const auto& rows = d.drive.trajectory.points();
+  EXPECT_TRUE(std::ranges::any_of(rows, [](const auto& row) { return row.y_m < 20.0; }));
+  EXPECT_TRUE(std::ranges::none_of(
+      rows, [](const auto& row) { return row.x_m > 320.0 && row.x_m < 474.0 && row.y_m > 195.0; }));
+}
+
 TEST(ScenarioDrives, RampIsLeftIntoAGap) {
   const Driven d = driven("on_ramp");
   expect_arrives(d, 1.0);

@@ -71,8 +71,9 @@ function drawPlan(pen) {
 
 function drawCandidates(pen) {
   const plan = planAt(pen.scene, pen.t);
-  if (!plan || !plan.grid || pen.scene.line.points.length < 2) return;
-  for (const {cause, points} of shownCandidates(pen.scene.line, plan)) {
+  const line = plan && pen.scene.lines[plan.line];
+  if (!plan || !plan.grid || !line || line.points.length < 2) return;
+  for (const {cause, points} of shownCandidates(line, plan)) {
     strokePoints(pen, points, pen.ink(causeInk(cause).slice(2)), pixels(pen, cause === 0 ? 1.2 : 0.6));
   }
 }

@@ -48,7 +48,8 @@ function decodeObstacle(coded) {
 function decodePlan(coded) {
   const [s, d, slope, curvature] = coded.start;
   const costs = (one) => one && {...one, costs: one.costs.map((cost) => cost / 1000)};
-  return {t: coded.t, note: coded.note, reason: coded.reason, path: decodeLine(coded.path),
+  return {t: coded.t, line: coded.line, note: coded.note, reason: coded.reason,
+          path: decodeLine(coded.path),
           start: {s: s / 1e3, d: d / 1e3, slope: slope / 1e5, curvature: curvature / 1e6},
           chosen: costs(coded.chosen), runner: costs(coded.runner),
           grid: coded.grid && {...coded.grid, causes: decodeRuns(coded.grid.runs)}};
@@ -80,7 +81,7 @@ function homeOf(drivePoints, routeLines, lanes) {
 function decodeScene(data) {
   const lanes = data.lanes.map(decodeLane), drive = decodeMotion(data.drive);
   const drivePoints = drive.x.map((x, i) => [x, drive.y[i]]);
-  const routeLines = data.route.map(decodeLine), reference = decodeLine(data.reference);
+  const routeLines = data.route.map(decodeLine), references = data.references.map(decodeLine);
   const plans = data.plans.map(decodePlan), goal = data.goal ? decodeLine(data.goal)[0] : null;
   return {
     origin: data.origin, vehicle: data.vehicle, lanes, drive, drivePoints,
@@ -88,8 +89,8 @@ function decodeScene(data) {
     areas: areasByLook(lanes),
     borders: pathOfLines(lanes.flatMap((lane) => [lane.left, lane.right])),
     centres: pathOfLines(lanes.map((lane) => lane.centre)),
-    route: pathOfLines(routeLines), reference: pathOfLines([reference]),
-    line: {points: reference, stations: stationsOf(reference)},
+    route: pathOfLines(routeLines), reference: pathOfLines(references),
+    lines: references.map((points) => ({points, stations: stationsOf(points)})),
     occupied: pathOfBoxes(data.occupied.map(decodeLine)),
     drivePath: pathOfLines([drivePoints]), footprints: footprintsOf(drive, data.vehicle),
     obstacles: data.obstacles.map(decodeObstacle),

@@ -1,0 +1,126 @@
+#include "roadbed/planning/behaviour/blocked_road.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/planning/obstacles/movers_on_line.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kHasStopped_mps = 0.3;  // of the vehicle, measured
+constexpr double kPatience_s = 10.0, kPatienceAtLine_s = 60.0;
+constexpr double kQueueGap_m = 15.0;  // between two of a queue, and before a line
+constexpr double kBeforeLight_m = 30.0;
+
+/// Who stands next before a place of a queue, beside that one's middle.
+const MoverOnLine* next_ahead(const std::vector<MoverOnLine>& movers, const MoverOnLine& last,
+                              const Traffic& traffic, double t_s) {
+  const MoverOnLine* nearest = nullptr;
+  for (const MoverOnLine& mover : movers) {
+    const bool is_ahead = mover.s_m > last.s_m && mover.rear_m() < last.front_m() + kQueueGap_m;
+    const double apart_m = std::abs(mover.d_m - last.d_m);
+    if (!is_ahead || apart_m > mover.half_width_m + last.half_width_m) continue;
+    if (!is_standing(traffic.obstacles[mover.obstacle], t_s)) continue;
+    if (nearest == nullptr || mover.s_m < nearest->s_m) nearest = &mover;
+  }
+  return nearest;
+}
+
+/// Where a route leaves another one; its first lane where it only comes back to it.
+map::LaneId first_new_lane(const Route& route, const Route& other) {
+  const auto is_new = [&](const RouteLeg& leg) {
+    return std::ranges::find(other.legs, leg.lane, &RouteLeg::lane) == other.legs.end();
+  };
+  const auto found = std::ranges::find_if(route.legs, is_new);
+  return found == route.legs.end() ? route.legs.front().lane : found->lane;
+}
+
+}  // namespace
+
+std::vector<std::size_t> BlockedRoad::queue_ahead(const View& view, double& front_s_m) const {
+  const bool waits =
+      view.ahead && !view.waits_for_rule && view.measured.speed_mps < kHasStopped_mps;
+  if (!waits || !is_standing(view.traffic.obstacles[*view.ahead], view.t_s)) return {};
+  const std::vector<MoverOnLine> movers =
+      movers_on_line(task_.line, view.traffic, view.t_s, /*with_standing=*/true);
+  const auto first = std::ranges::find(movers, *view.ahead, &MoverOnLine::obstacle);
+  std::vector<std::size_t> queue;
+  for (const MoverOnLine* at = &*first; at != nullptr;
+       at = next_ahead(movers, *at, view.traffic, view.t_s)) {
+    queue.push_back(at->obstacle);
+    front_s_m = at->front_m();
+  }
+  return queue;
+}
+
+bool BlockedRoad::has_moved_on(const View& view) const {
+  return std::ranges::any_of(queue_, [&](std::size_t other) {
+    return !is_standing(view.traffic.obstacles[other], view.t_s);
+  });
+}
+
+bool BlockedRoad::stands_at_light(const View& view, double queue_front_s_m) const {
+  const double own_s_m = task_.line.project(view.measured.map_from_vehicle.position()).s_m;
+  return std::ranges::any_of(task_.stop_points, [&](const StopPoint& place) {
+    return place.kind == StopKind::light && place.s_m > own_s_m + vehicle_.front_m() &&
+           place.s_m < queue_front_s_m + kBeforeLight_m &&
+           colour_at(task_.lights[*place.light], view.t_s) != LightColour::green;
+  });
+}
+
+double BlockedRoad::patience_s(double queue_front_s_m) const {
+  const bool is_at_line = std::ranges::any_of(task_.stop_points, [&](const StopPoint& place) {
+    return place.kind != StopKind::light && place.s_m > queue_front_s_m - vehicle_.length_m &&
+           place.s_m < queue_front_s_m + kQueueGap_m;
+  });
+  return is_at_line ? kPatienceAtLine_s : kPatience_s;
+}
+
+std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {
+  double front_s_m = 0.0;
+  std::vector<std::size_t> queue = queue_ahead(view, front_s_m);
+  const bool is_same = !queue.empty() && !queue_.empty() && queue.front() == queue_.front();
+  if (!is_same || has_moved_on(view) || stands_at_light(view, front_s_m)) {
+    since_s_ = view.t_s;
+    reason_.clear();
+  }
+  queue_ = std::move(queue);
+  if (queue_.empty() || view.t_s - since_s_ < patience_s(front_s_m)) return std::nullopt;
+  if (!reason_.empty()) return Decision{reason_, false, std::nullopt};
+  DetourAnswer answer = ask(view);
+  reason_ = describe(view, answer);
+  return Decision{reason_, true, std::move(answer.detour)};
+}
+
+DetourAnswer BlockedRoad::ask(const View& view) const {
+  if (task_.route.legs.empty()) return {{}, "a line of way-points is no route"};
+  std::vector<std::size_t> blockers = queue_;
+  for (const std::size_t known : task_.blockers) {
+    if (is_standing(task_.obstacles[known], view.t_s) && std::ranges::count(blockers, known) == 0) {
+      blockers.push_back(known);
+    }
+  }
+  return find_detour({.task = task_,
+                      .vehicle = vehicle_,
+                      .driving = driving_,
+                      .measured = view.measured,
+                      .t_s = view.t_s,
+                      .blockers = std::move(blockers)});
+}
+
+std::string BlockedRoad::describe(const View& view, const DetourAnswer& answer) const {
+  const Obstacle& first = task_.obstacles[queue_.front()];
+  const std::string who = fmt::format("the road is blocked: {} {} has not moved for {:.0f} s",
+                                      first.kind, first.id, view.t_s - since_s_);
+  if (!answer.detour) return who + "; no other route: " + answer.reason;
+  const Route& route = answer.detour->route;
+  return fmt::format(
+      "{}; another route by lane {} is taken, {:.0f} m, {:.0f} m and {:.0f} s longer", who,
+      task_.road_map.lane(first_new_lane(route, task_.route)).name, route.length_m,
+      answer.detour->longer_m, answer.detour->longer_s);
+}
+
+}  // namespace roadbed::planning::behaviour

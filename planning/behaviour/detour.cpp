@@ -1,0 +1,192 @@
+#include "roadbed/planning/behaviour/detour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/index/road_map_index.h"
+#include "roadbed/planning/behaviour/lateral_replanner.h"
+#include "roadbed/planning/route/match_place.h"
+#include "roadbed/planning/route/router.h"
+
+namespace roadbed::planning::inline behaviour {
+namespace {
+
+constexpr double kRaster_m = 0.25, kMostParts = 200.0;  // at which a body is looked at
+constexpr double kAlongLane_rad = 0.35;                 // of a vehicle that drives along a lane
+
+/// What a body takes of a lane: stations, and offsets of its sides.
+struct TakenPart {
+  double from_s_m = std::numeric_limits<double>::infinity(), to_s_m = -from_s_m;
+  double right_d_m = from_s_m, left_d_m = -from_s_m;
+  bool is_on_lane = false;
+
+  void add(const geometry::LinePosition& at, double half_width_m) {
+    right_d_m = std::min(right_d_m, at.d_m);
+    left_d_m = std::max(left_d_m, at.d_m);
+    if (std::abs(at.d_m) >= half_width_m) return;
+    is_on_lane = true;
+    from_s_m = std::min(from_s_m, at.s_m);
+    to_s_m = std::max(to_s_m, at.s_m);
+  }
+};
+
+int parts_of(double length_m) {
+  return static_cast<int>(std::clamp(std::ceil(length_m / kRaster_m), 1.0, kMostParts));
+}
+
+TakenPart part_taken(const map::Lane& lane, const geometry::Rectangle& body) {
+  TakenPart taken;
+  const Eigen::Vector2d across(-body.axis.y(), body.axis.x());
+  const int rows = parts_of(2.0 * body.half_length_m), columns = parts_of(2.0 * body.half_width_m);
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; j <= columns; ++j) {
+      const Eigen::Vector2d point = body.centre +
+                                    (2.0 * i / rows - 1.0) * body.half_length_m * body.axis +
+                                    (2.0 * j / columns - 1.0) * body.half_width_m * across;
+      const geometry::LinePosition at = lane.centre.in_map.project(point);
+      if (at.s_m <= 0.0 || at.s_m >= lane.length_m()) continue;  // before the lane, or behind it
+      taken.add(at, 0.5 * lane.width_m(at.s_m));
+    }
+  }
+  return taken;
+}
+
+bool is_on(const Route& route, map::LaneId lane) {
+  return std::ranges::any_of(route.legs, [&](const RouteLeg& leg) { return leg.lane == lane; });
+}
+
+/// Lanes that the vehicle stands on and along.
+std::vector<RoutePlace> starts_of(const DetourQuestion& q) {
+  const geometry::Pose2& pose = q.measured.map_from_vehicle;
+  std::vector<RoutePlace> starts;
+  for (const PlaceCandidate& found :
+       match_place(q.task.road_map, pose.position(), pose.heading_rad)) {
+    const bool may =
+        found.verdict == MatchVerdict::chosen || found.verdict == MatchVerdict::possible;
+    const double turn_rad = geometry::wrap_angle(found.heading_rad - pose.heading_rad);
+    if (!may || found.distance_m > 0.0 || std::abs(turn_rad) > kAlongLane_rad) continue;
+    const bool against = found.sense == Sense::against;
+    starts.push_back({found.place, against ? Sense::against : Sense::along});
+  }
+  return starts;
+}
+
+RoutePlace goal_of(const Route& route) {
+  const RouteLeg& last = route.legs.back();
+  return {{last.lane, last.to_s_m, 0.0}, last.reversed ? Sense::against : Sense::along};
+}
+
+RouteOptions options_without(const DetourQuestion& q) {
+  RouteOptions options;
+  for (const std::size_t blocker : q.blockers) {
+    const auto closed = stretches_closed_by(q.task.obstacles[blocker], q);
+    options.blocked.insert(options.blocked.end(), closed.begin(), closed.end());
+  }
+  return options;
+}
+
+/// Those who stand, the blockers among them: who moves may be gone when the vehicle comes there.
+std::vector<Obstacle> standing(const DetourQuestion& q) {
+  std::vector<Obstacle> found;
+  for (const Obstacle& obstacle : q.task.obstacles) {
+    if (!is_standing(obstacle, q.t_s)) continue;
+    found.push_back(obstacle);
+    found.back().motion = geometry::Trajectory({obstacle.motion.at(q.t_s)});
+  }
+  return found;
+}
+
+/// Whether a path leads onto a line from where the vehicle stands, within the line's corridor.
+bool can_be_joined(const DetourQuestion& q, const ReferenceLine& line) {
+  LateralReplanner replanner(q.vehicle, q.task, line,
+                             {.tracking_error_m = 0.0,
+                              .heading_error_rad = 0.0,
+                              .margin_levels = {{0.0, q.driving.clearance_m}},
+                              .weights = q.driving.weights});
+  replanner.locate(q.measured);
+  const std::vector<Obstacle> obstacles = standing(q);
+  const LateralReplanner::Question question{.t_s = q.t_s,
+                                            .measured = q.measured,
+                                            .speed = {.speed_mps = q.measured.speed_mps},
+                                            .obstacles = obstacles};
+  return replanner.propose(question, {}).plan.chosen.has_value();
+}
+
+/// A route, and which of the lanes under the vehicle it begins on.
+struct Found {
+  RoutePlace from;
+  Route route;
+};
+
+std::vector<Found> routes_past(const DetourQuestion& q, const RoutePlace& goal,
+                               std::string& reason) {
+  Router router(q.task.road_map, options_without(q));
+  std::vector<Found> routes;
+  for (const RoutePlace& from : starts_of(q)) {
+    RouteAnswer answer = router.find(from, goal);
+    if (reason.empty()) reason = std::move(answer.reason);
+    if (answer.route) routes.push_back({from, *std::move(answer.route)});
+  }
+  if (routes.empty() && reason.empty()) reason = "the vehicle stands along no lane";
+  std::ranges::stable_sort(routes, {}, [](const Found& found) { return found.route.cost_s; });
+  return routes;
+}
+
+}  // namespace
+
+bool is_standing(const Obstacle& obstacle, double t_s) {
+  constexpr double kStands_mps = 0.3;
+  return obstacle.is_there(t_s) &&
+         (obstacle.is_static() || std::abs(obstacle.motion.at(t_s).speed_mps) < kStands_mps);
+}
+
+std::vector<BlockedStretch> stretches_closed_by(const Obstacle& obstacle, const DetourQuestion& q) {
+  const geometry::Rectangle body = rectangle_at(obstacle, q.t_s);
+  const Eigen::Vector2d reach(body.radius_m(), body.radius_m());
+  const double needed_m = q.vehicle.width_m + 2.0 * q.driving.clearance_m;
+  std::vector<BlockedStretch> closed;
+  for (const map::LaneId id : q.task.road_map.index().lanes.in_box(
+           body.centre - reach, body.centre + reach, map::LaneTypes::drivable())) {
+    const map::Lane& lane = q.task.road_map.lane(id);
+    const TakenPart taken = part_taken(lane, body);
+    if (!taken.is_on_lane) continue;
+    const double half_m = 0.5 * lane.width_m(0.5 * (taken.from_s_m + taken.to_s_m));
+    const double room_m = std::max(half_m - taken.left_d_m, half_m + taken.right_d_m);
+    if (room_m >= needed_m && !is_on(q.task.route, id)) continue;
+    const double behind_m = lane.one_way ? q.vehicle.rear_overhang_m : q.vehicle.front_m();
+    closed.push_back({id,
+                      {taken.from_s_m - q.vehicle.front_m() - q.driving.clearance_m,
+                       taken.to_s_m + behind_m + q.driving.clearance_m}});
+  }
+  return closed;
+}
+
+DetourAnswer find_detour(const DetourQuestion& q) {
+  const RoutePlace goal = goal_of(q.task.route);
+  DetourAnswer answer;
+  for (Found& found : routes_past(q, goal, answer.reason)) {
+    RouteLine line =
+        line_along(q.task.road_map, found.route, q.vehicle, q.driving.desired_speed_mps);
+    if (!can_be_joined(q, line.line)) {
+      answer.reason = "no path leads past what stands there onto the way round";
+      continue;
+    }
+    const RouteAnswer open = find_route(q.task.road_map, found.from, goal);
+    std::vector<StopPoint> places =
+        stop_points(q.task.road_map, found.route, line.line, q.task.lights);
+    Detour detour{.route = std::move(found.route),
+                  .line = std::move(line),
+                  .stop_points = std::move(places),
+                  .blockers = q.blockers};
+    detour.longer_s = detour.route.cost_s - open.route.value().cost_s;
+    detour.longer_m = detour.route.length_m - open.route.value().length_m;
+    return {std::move(detour), ""};
+  }
+  return answer;
+}
+
+}  // namespace roadbed::planning::behaviour

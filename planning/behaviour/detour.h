@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/route_line.h"
+#include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/route/route_options.h"
+
+namespace roadbed::planning::inline behaviour {
+
+/// Another way to the goal of a task, from where the vehicle stands.
+struct Detour {
+  Route route;
+  RouteLine line;
+  std::vector<StopPoint> stop_points;
+  std::vector<std::size_t> blockers;      ///< obstacles that it avoids
+  double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is blocked, by the route's costs
+};
+
+/// A way round, or why there is none.
+struct DetourAnswer {
+  std::optional<Detour> detour;
+  std::string reason;  ///< one line; empty if there is one
+};
+
+struct DetourQuestion {
+  const DrivingTask& task;
+  const geometry::VehicleShape& vehicle;
+  const DrivingOptions& driving;
+  const VehicleState& measured;
+  double t_s;
+  std::vector<std::size_t> blockers;  ///< obstacles that stand for ever
+};
+
+/// Whether an obstacle is there and does not move, now.
+bool is_standing(const Obstacle& obstacle, double t_s);
+
+/// Stretches of the map's lanes that an obstacle closes, for the rear axle of a vehicle: where it
+/// leaves less room within the lane than the vehicle and its clearance to both sides take. On the
+/// lanes of the route it is in the way wherever it is.
+std::vector<BlockedStretch> stretches_closed_by(const Obstacle& obstacle,
+                                                const DetourQuestion& question);
+
+/// The cheapest route to the task's goal that passes none of the blockers and that the vehicle can
+/// join by driving on: from any lane that it stands on and along (lanes that part overlap at
+/// first), left before the blocker by a lane change or at the lane's end, and with a path that
+/// leads onto it past all who stand. Two route searches for each of those lanes, on networks made
+/// now.
+/// @pre the task has a route
+DetourAnswer find_detour(const DetourQuestion& question);
+
+}  // namespace roadbed::planning::behaviour
