@@ -238,14 +238,15 @@ void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) cons
 /// In a gap that is safe the gap to keep may open slowly, so that nobody behind has to brake for
 /// it.
 void CruiseLaw::ease(const Question& q, const Lead& lead, PlannerCommand& command) const {
-  constexpr double kBrakesHard_mps2 = -0.5, kOpens_mps = 0.5;
+  constexpr double kBrakesHard_mps2 = -0.5, kOpens_mps = 0.5, kStandingLead_mps = 1.0;
   const bool opens = lead.speed_mps > q.view.measured.speed_mps + kOpens_mps;
   if (q.passing.merging.merged_behind != lead.obstacle || command.behaviour != Behaviour::follow) {
     return;
   }
   const bool has_room =
       lead.gap_m > room_ahead_m(q.view.measured.speed_mps, lead.speed_mps) - kEasedRoom_m;
-  if (!has_room || lead.acceleration_mps2 < kBrakesHard_mps2) return;
+  const bool stands = lead.speed_mps < kStandingLead_mps;
+  if (!has_room || stands || lead.acceleration_mps2 < kBrakesHard_mps2) return;
   command.acceleration_mps2 = std::max(command.acceleration_mps2, opens ? 0.0 : -0.4);
 }
 

@@ -135,6 +135,20 @@ TEST(BlockedRoadDrives, ALaneIsLeftBeforeTheBarrierWhereThereIsRoomToChange) {
   expect_keeps_the_rules(d);
 }
 
+TEST(BlockedRoadDrives, WhoStandsInTheLaneThatIsMergedIntoIsBrakedForInTime) {
+  Scenario scenario = closed_road();
+  scenario.start = {"lane:30/2/-2@5", "/ego/start"};
+  scenario.start_speed_mps = 10.0;
+  scenario.obstacles = {barrier("ramp", "lane:3002/0/-1@8")};
+  scenario.options.standstill_gap_m = 20.0;
+  scenario.duration_s = 20.0;
+  const Driven d = driven(scenario);
+  for (const DriveCycle& cycle : d.drive.cycles) {
+    EXPECT_NE(cycle.behaviour, planning::Behaviour::emergency) << cycle.t_s << cycle.reason;
+  }
+  EXPECT_NEAR(d.drive.cycles.back().lead->gap_m, 20.0, 1.0);
+}
+
 /// Two cars that wait at the light before the crossroads until it is green.
 TEST(BlockedRoadDrives, AQueueAtARedLightIsWaitedBehind) {
   Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / "red_light.json");
