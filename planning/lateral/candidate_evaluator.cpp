@@ -53,11 +53,42 @@ struct Frame {
   Eigen::Vector2d in_map, tangent, normal;
 };
 
-// The station nearest to a length, of equally spaced ones.
-std::size_t nearest(const std::vector<Station>& stations, double l_m) {
+// A place among equally spaced stations.
+struct Between {
+  std::size_t station;  // the last one that is not farther
+  double fraction;      // of the way to the next
+};
+
+// The nearest to a length, of the stations and of what divides the ways between them into parts.
+Between nearest(const std::vector<Station>& stations, double l_m, int parts) {
   const double last = static_cast<double>(stations.size() - 1);
   const double fraction = std::clamp(l_m / stations.back().l_m, 0.0, 1.0);
-  return static_cast<std::size_t>(std::lround(fraction * last));
+  const long part = std::lround(fraction * last * parts);
+  return {static_cast<std::size_t>(part / parts), static_cast<double>(part % parts) / parts};
+}
+
+// As a drive goes from one of its points to the next: position and heading are linear.
+CandidateBody interpolate(const CandidateBody& a, const CandidateBody& b, double fraction,
+                          const VehicleShape& vehicle) {
+  const auto between = [&](const auto& from, const auto& to) {
+    return from + fraction * (to - from);
+  };
+  const double axle_m = a.body.half_length_m - vehicle.rear_overhang_m;
+  const Eigen::Vector2d &from = a.body.axis, &to = b.body.axis;
+  const double turn_rad =
+      fraction * std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+  CandidateBody at = a;
+  at.body.axis =
+      std::cos(turn_rad) * from + std::sin(turn_rad) * Eigen::Vector2d(-from.y(), from.x());
+  at.body.centre =
+      between((a.body.centre - axle_m * from).eval(), (b.body.centre - axle_m * to).eval()) +
+      axle_m * at.body.axis;
+  at.s_m = between(a.s_m, b.s_m);
+  at.l_m = between(a.l_m, b.l_m);
+  at.t_s = between(a.t_s, b.t_s);
+  at.driven_m = between(a.driven_m, b.driven_m);
+  at.is_there = a.is_there && b.is_there;
+  return at;
 }
 
 // From a candidate's last station past its end, beside the line at d_e, over those of the stations
@@ -206,9 +237,22 @@ const std::vector<LinearPoint>& CandidateEvaluator::linear(std::size_t batch) {
 
 std::vector<CandidateBody> CandidateEvaluator::bodies(std::size_t batch,
                                                       std::span<const double> end_d_m, double l_m,
-                                                      bool with_lengths) {
-  if (l_m > grid_.end_l_m()[batch]) return bodies_past_end(batch, end_d_m, l_m, with_lengths);
-  return bodies_at(batch, nearest(stations(batch), l_m), end_d_m, with_lengths);
+                                                      const BodyQuestion& asked) {
+  const bool is_past_end = l_m > grid_.end_l_m()[batch];
+  const auto bodies_of = [&](std::size_t station) {
+    return is_past_end ? bodies_past_end(batch, station, end_d_m, asked.with_lengths)
+                       : bodies_at(batch, station, end_d_m, asked.with_lengths);
+  };
+  const Between at =
+      nearest(stations(is_past_end ? grid_.length_count() - 1 : batch), l_m, asked.parts);
+  if (at.fraction == 0.0) return bodies_of(at.station);
+  std::vector<CandidateBody> bodies = bodies_of(at.station);
+  const std::vector<CandidateBody> next = bodies_of(at.station + 1);
+  if (bodies.empty()) return next;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bodies[i] = interpolate(bodies[i], next[i], at.fraction, vehicle_);
+  }
+  return bodies;
 }
 
 std::vector<CandidateBody> CandidateEvaluator::bodies_at(std::size_t batch, std::size_t station,
@@ -237,11 +281,12 @@ std::vector<CandidateBody> CandidateEvaluator::bodies_at(std::size_t batch, std:
 }
 
 std::vector<CandidateBody> CandidateEvaluator::bodies_past_end(std::size_t batch,
+                                                               std::size_t station,
                                                                std::span<const double> end_d_m,
-                                                               double l_m, bool with_lengths) {
+                                                               bool with_lengths) {
   const std::vector<Station>& longest = stations(grid_.length_count() - 1);
   const double from_m = past_end_from_m(grid_.end_l_m()[batch]);
-  const std::span ahead(longest.data(), nearest(longest, l_m) + 1);
+  const std::span ahead(longest.data(), station + 1);
   std::vector<CandidateBody> bodies;
   if (!(ahead.back().l_m > from_m)) return bodies;
   const Frame frame(ahead.back().line);

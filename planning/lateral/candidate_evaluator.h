@@ -95,19 +95,22 @@ class CandidateEvaluator {
   /// The same of a point of a drive.
   double excess_m(const CandidateDrive& drive, std::size_t point) const;
 
+  struct BodyQuestion {
+    bool with_lengths = false;  ///< time and length from the start are asked for
+    int parts = 1;              ///< that the way between two stations is divided into
+  };
   /// The bodies of some offsets of a batch (at most kSimdWidth) at one of its stations, or past its
-  /// end at one of the longest batch: at the one nearest to a length. None where that is no point
-  /// of a candidate's drive.
-  /// @param with_lengths  time and length from the start are asked for.
+  /// end at one of the longest batch, or between two of them: at the place nearest to a length.
+  /// None where that is not on a candidate's drive.
   std::vector<CandidateBody> bodies(std::size_t batch, std::span<const double> end_d_m, double l_m,
-                                    bool with_lengths);
+                                    const BodyQuestion& asked);
 
  private:
   double start_excess_m() const;
   std::vector<CandidateBody> bodies_at(std::size_t batch, std::size_t station,
                                        std::span<const double> end_d_m, bool with_lengths);
-  std::vector<CandidateBody> bodies_past_end(std::size_t batch, std::span<const double> end_d_m,
-                                             double l_m, bool with_lengths);
+  std::vector<CandidateBody> bodies_past_end(std::size_t batch, std::size_t station,
+                                             std::span<const double> end_d_m, bool with_lengths);
 
   const PlanInput& input_;
   const geometry::VehicleShape& vehicle_;

@@ -85,7 +85,7 @@ class GridJudge {
   bool leaves_road(std::size_t offset, std::size_t point) {
     const double e = end_d_m(offset);
     const std::vector<CandidateBody> bodies =
-        evaluator_.bodies(batch_, std::span(&e, 1), drives_.stations[point]->l_m, false);
+        evaluator_.bodies(batch_, std::span(&e, 1), drives_.stations[point]->l_m, {});
     if (bodies.empty() || !bodies.front().is_there) return false;
     return evaluator_.excess_m(bodies.front()) > kLimitSlack;
   }

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,39 +9,9 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/obstacles/obstacle.h"
-#include "roadbed/planning/obstacles/prediction.h"
+#include "roadbed/planning/lateral/collision_things.h"
 
 namespace roadbed::planning::inline lateral {
-
-struct CollisionOptions {
-  int circles = 3;           ///< that cover the vehicle, for the first look
-  double clearance_m = 0.3;  ///< to keep from everything
-  /// Where a drive begins cannot be chosen any more: what it begins nearer to than the clearance
-  /// has to be kept as far from as there, and the whole clearance after this way. Linear between.
-  double recovery_m = 10.0;
-  double tolerance_m = 0.02;  ///< see CollisionChecker::is_free
-  double horizon_s = 5.0;     ///< moving obstacles are checked this far ahead
-};
-
-/// What stands and moves around, ready to be asked for many drives. Lengths in the map's frame.
-struct CollisionScene {
-  const std::vector<Obstacle>& obstacles;
-  const map::ClearanceField* field = nullptr;  ///< none: no occupancy
-  Eigen::Vector2d origin_in_source{0, 0};      ///< source = map + origin, for the field
-  double start_t_s = 0.0;
-  std::span<const PredictedObstacle> predicted = {};  ///< besides `obstacles`
-  /// If given, only what moves counts, and of that what this holds for: of its centre at the start.
-  std::function<bool(const geometry::Pose2&)> counts = {};
-};
-
-/// Where a drive comes too near to something.
-struct Contact {
-  std::size_t segment = 0;  ///< of the drive: between its points `segment` and `segment` + 1
-  std::size_t with = 0;     ///< what it was; means something to the same checker only
-  geometry::Rectangle standing = {};  ///< the body or cell, unless it was something that moves
-};
 
 /// Distances of a driving vehicle to obstacles, at every moment of the drive.
 class CollisionChecker {
@@ -77,8 +45,12 @@ class CollisionChecker {
   /// where that is not looked at any more.
   double distance_m(const Contact& other, const geometry::Rectangle& body, double t_s) const;
 
-  /// Whether a drive that has the body there at that time cannot be free, because of what another
-  /// drive came too near to: a quick first look at drives that are much alike.
+  /// Parts of a drive's segments, at whose ends one that is found free surely keeps clearance +
+  /// tolerance from what another drive came too near to.
+  static int parts(const Contact& other);
+
+  /// Whether a drive that has the body there at that time, at such an end, cannot be free, because
+  /// of what another drive came too near to: a quick first look at drives that are much alike.
   /// @param driven_m  on the drive before; may be off by a centimetre.
   bool surely_hits(const Contact& other, const geometry::Rectangle& body, double t_s,
                    double driven_m) const;
@@ -98,8 +70,7 @@ class CollisionChecker {
   void set_clearance(double clearance_m);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<CollisionThings> things_;
 };
 
 }  // namespace roadbed::planning::lateral

@@ -102,19 +102,23 @@ std::optional<double> FeasibilityCheck::edge_place_m(const CandidateDrive& drive
   return place_m;
 }
 
-// Where the body comes nearest to what it comes too near to.
+// From the contact on, as long as the body comes nearer yet.
 double FeasibilityCheck::contact_place_m(const CandidateDrive& drive,
                                          const Contact& contact) const {
-  const auto distance_m = [&](std::size_t i) {
-    const geometry::Rectangle body =
-        geometry::body_at(drive.points[i].pose(), evaluator_.vehicle());
-    return evaluator_.collision().distance_m(contact, body, drive.points[i].t_s);
+  const auto distance_m = [&](const geometry::TrajectoryPoint& at) {
+    const geometry::Rectangle body = geometry::body_at(at.pose(), evaluator_.vehicle());
+    return evaluator_.collision().distance_m(contact, body, at.t_s);
   };
-  std::size_t nearest = contact.segment;
-  for (std::size_t i = contact.segment + 1; i < drive.points.size(); ++i) {
-    if (distance_m(i) < distance_m(nearest)) nearest = i;
+  const std::size_t a = contact.segment, b = a + 1;
+  double place_m = std::lerp(drive.stations[a].l_m, drive.stations[b].l_m, contact.fraction);
+  double least_m = distance_m(interpolate(drive.points[a], drive.points[b], contact.fraction));
+  for (std::size_t i = b; i < drive.points.size(); ++i) {
+    const double next_m = distance_m(drive.points[i]);
+    if (next_m >= least_m) break;
+    least_m = next_m;
+    place_m = drive.stations[i].l_m;
   }
-  return drive.stations[nearest].l_m;
+  return place_m;
 }
 
 std::uint8_t FeasibilityCheck::who_fails(const Place& place, std::size_t batch,
@@ -122,7 +126,9 @@ std::uint8_t FeasibilityCheck::who_fails(const Place& place, std::size_t batch,
   const std::vector<double>& end_d_m = evaluator_.grid().end_d_m();
   const std::size_t count = std::min(kSimdWidth, end_d_m.size() - first_offset);
   const std::vector<CandidateBody> bodies = evaluator_.bodies(
-      batch, std::span(end_d_m).subspan(first_offset, count), place.l_m, place.contact.has_value());
+      batch, std::span(end_d_m).subspan(first_offset, count), place.l_m,
+      {.with_lengths = place.contact.has_value(),
+       .parts = place.contact ? evaluator_.collision().parts(*place.contact) : 1});
   unsigned who = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].is_there && fails(place, bodies[i])) who |= 1U << i;

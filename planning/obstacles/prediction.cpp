@@ -52,6 +52,22 @@ double fastest_mps(const Trajectory& motion, double radius_m, double from_s, dou
   return fastest;
 }
 
+// Position and heading are linear between points, so that they are farthest off at one of them.
+double bend_m(const Trajectory& motion, double radius_m, double from_s, double to_s) {
+  const auto& points = motion.points();
+  const TrajectoryPoint a = motion.at(from_s), b = motion.at(to_s);
+  double most_m = 0.0;
+  for (auto at = std::ranges::upper_bound(points, from_s, {}, &TrajectoryPoint::t_s);
+       at != points.end() && at->t_s < to_s; ++at) {
+    const double fraction = (at->t_s - from_s) / (to_s - from_s);
+    const TrajectoryPoint on_chord = interpolate(a, b, fraction);
+    most_m = std::max(most_m, std::hypot(at->x_m - on_chord.x_m, at->y_m - on_chord.y_m) +
+                                  radius_m * std::abs(at->heading_rad - on_chord.heading_rad));
+  }
+  const double turn_rad = b.heading_rad - a.heading_rad;
+  return most_m + 0.125 * radius_m * turn_rad * turn_rad;
+}
+
 Prediction Prediction::recorded(Trajectory motion) {
   if (motion.empty()) throw std::invalid_argument("Prediction: a recorded motion has no point");
   const auto kept = std::make_shared<const Trajectory>(std::move(motion));

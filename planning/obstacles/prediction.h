@@ -63,4 +63,8 @@ using PredictedObstacle = ObstacleIn<Frame::map, Prediction>;
 /// Greatest speed of a point within `radius_m` of a trajectory's pose between two times [m/s].
 double fastest_mps(const geometry::Trajectory& motion, double radius_m, double from_s, double to_s);
 
+/// How far, between two times, a point within `radius_m` of a trajectory's pose may be from where
+/// it would be on a straight line between its places at these times, at a constant speed [m].
+double bend_m(const geometry::Trajectory& motion, double radius_m, double from_s, double to_s);
+
 }  // namespace roadbed::planning::obstacles

@@ -208,6 +208,89 @@ TEST(CollisionChecker, KeepsTheClearanceToWhatABendPassesClosely) {
   EXPECT_GT(colliding, 50);
 }
 
+// Beside the vehicle, at nearly its speed, about as near as is allowed.
+Obstacle cyclist_beside(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<TrajectoryPoint> track{
+      {.t_s = -1.0, .x_m = 1.0 + 3.0 * unit(random), .y_m = -1.45 + 0.2 * unit(random)}};
+  for (int i = 0; i < 20; ++i) {
+    TrajectoryPoint next = track.back();
+    next.t_s += 0.35;
+    next.heading_rad += 0.03 * unit(random);
+    next.x_m += 0.35 * 4.0 * std::cos(next.heading_rad);
+    next.y_m += 0.35 * 4.0 * std::sin(next.heading_rad);
+    track.push_back(next);
+  }
+  return {.id = "cyclist", .length_m = 1.8, .width_m = 0.6, .motion = Trajectory(track)};
+}
+
+// Drives that differ only in how fast they leave the line.
+std::vector<TrajectoryPoint> drive_to_the_left(double left_m) {
+  std::vector<TrajectoryPoint> drive;
+  for (int i = 0; i <= 25; ++i) {
+    const double x = 1.0 * i;
+    drive.push_back({.t_s = x / 6.0,
+                     .x_m = x,
+                     .y_m = left_m * x * x / 200.0,
+                     .heading_rad = std::atan(left_m * x / 100.0),
+                     .speed_mps = 6.0});
+  }
+  return drive;
+}
+
+TEST(CollisionChecker, KeepsTheClearanceToWhatMovesBesideTheVehicle) {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int free = 0, colliding = 0;
+  for (int scene = 0; scene < 400; ++scene) {
+    const std::vector<Obstacle> cyclist{cyclist_beside(random)};
+    ++(is_free_as_sampled(drive_to_the_left(unit(random)), cyclist, scene) ? free : colliding);
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(colliding, 50);
+}
+
+// All along a drive, at the ends of the parts of its segments.
+bool is_surely_hit(const CollisionChecker& checker, const Contact& other,
+                   const std::vector<TrajectoryPoint>& drive) {
+  double driven_m = 0.0;
+  for (std::size_t i = 0; i + 1 < drive.size(); ++i) {
+    const double leg_m =
+        std::hypot(drive[i + 1].x_m - drive[i].x_m, drive[i + 1].y_m - drive[i].y_m);
+    for (int part = 0; part <= CollisionChecker::parts(other); ++part) {
+      const double fraction = static_cast<double>(part) / CollisionChecker::parts(other);
+      const TrajectoryPoint at = interpolate(drive[i], drive[i + 1], fraction);
+      const auto body = geometry::body_at(at.pose(), VehicleShape{});
+      if (checker.surely_hits(other, body, at.t_s, driven_m + fraction * leg_m)) return true;
+    }
+    driven_m += leg_m;
+  }
+  return false;
+}
+
+TEST(CollisionChecker, FindsNoDriveFreeThatSurelyHitsWhatAnotherDriveCameTooNearTo) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int hit = 0, colliding = 0;
+  for (int scene = 0; scene < 400; ++scene) {
+    std::vector<Obstacle> things{cyclist_beside(random)};
+    if (scene % 2 == 0) things = {thing(12.0, -1.3 + 0.2 * unit(random), 0.8, 0.6, unit(random))};
+    const CollisionScene at{.obstacles = things};
+    const CollisionChecker checker(at, VehicleShape{}, {});
+    const auto other = checker.first_contact(drive_to_the_left(-0.2));
+    if (!other) continue;
+    for (int i = 0; i < 5; ++i) {
+      const auto drive = drive_to_the_left(0.5 + unit(random));
+      const bool is_hit = is_surely_hit(checker, *other, drive);
+      EXPECT_TRUE(!is_hit || checker.first_contact(drive)) << "scene " << scene;
+      hit += is_hit ? 1 : 0;
+      colliding += checker.first_contact(drive) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hit, 200);
+  EXPECT_GE(hit, colliding * 95 / 100) << "of " << colliding;  // the first look finds nearly all
+}
+
 TEST(StaticObstacles, BoundIsBelowTheDistanceAndNear) {
   std::mt19937 random(19);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,6 +18,39 @@ namespace {
 using geometry::Pose2;
 using geometry::Trajectory;
 using geometry::TrajectoryPoint;
+
+// A corner of a body 4 m long and 2 m wide.
+Eigen::Vector2d corner_at(const Trajectory& motion, double t_s) {
+  return motion.at(t_s).pose() * Eigen::Vector2d(2.0, -1.0);
+}
+
+TEST(Bend, IsTheMostThatACornerLeavesItsChordByOrALittleMore) {
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  double used = 0.0;  // of the bound, by the worst
+  for (int i = 0; i < 200; ++i) {
+    std::vector<TrajectoryPoint> points{{.heading_rad = 3.0 * unit(random)}};
+    for (int k = 0; k < 6; ++k) {
+      TrajectoryPoint next = points.back();
+      next.t_s += 0.5 + 0.4 * unit(random);
+      next.x_m += 3.0 * unit(random);
+      next.y_m += 3.0 * unit(random);
+      next.heading_rad += (i % 2) * 0.4 * unit(random);
+      points.push_back(next);
+    }
+    const Trajectory motion(points);
+    const double from_s = 0.7 + unit(random), to_s = from_s + 0.1 + 2.0 * std::abs(unit(random));
+    const Eigen::Vector2d a = corner_at(motion, from_s), b = corner_at(motion, to_s);
+    const double bound_m = bend_m(motion, std::hypot(2.0, 1.0), from_s, to_s);
+    for (int k = 0; k <= 500; ++k) {
+      const double t_s = from_s + (to_s - from_s) * k / 500.0;
+      const double off_m = (corner_at(motion, t_s) - (a + k / 500.0 * (b - a))).norm();
+      EXPECT_LE(off_m, bound_m + 1e-12);
+      if (bound_m > 0.0) used = std::max(used, off_m / bound_m);
+    }
+  }
+  EXPECT_GT(used, 0.99);
+}
 
 ObservedMotion random_motion(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
