@@ -18,6 +18,8 @@ constexpr double kCoarseGrid_m = 0.6;  // between ends of what is tried after th
 constexpr double kCrawl_mps = 1.5, kBraking_mps2 = 5.0;
 constexpr double kHoldStep_m = 1.0;
 constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
+constexpr double kLeastKnot_m = 0.2, kMostSlope = 1.5;
+constexpr double kSettle_m = 15.0, kSettle_s = 2.0;  // the longer of the two, past the last knot
 
 /// 1 up to `from`, 0 from `from` + kReturn_m on.
 double fade(double s_m, double from_m) {
@@ -214,6 +216,9 @@ PlannedPath LateralReplanner::kept_path() const {
 
 PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
   if (!proposal.plan.chosen) return kept_path();
+  if (proposal.knots) {
+    return PlannedPath(reference_, [knots = proposal.knots](double s_m) { return knots->at(s_m); });
+  }
   if (!bounds_.squeezes_past || std::abs(proposal.plan.chosen->end_d_m) < kHeldOffset_m) {
     return PlannedPath(reference_,
                        [kept = proposal.plan](double s_m) { return kept.lateral_at(s_m); });
@@ -232,12 +237,43 @@ std::shared_ptr<const ExplainedPlan> LateralReplanner::explain(const Proposal& p
   return std::make_shared<const ExplainedPlan>(proposal.cycle->input(), std::move(plan));
 }
 
+std::optional<LateralReplanner::Proposal> LateralReplanner::through(
+    std::span<const VehicleState> drive) const {
+  std::vector<LateralState> knots;
+  double near_s_m = s_m_;
+  for (const VehicleState& state : drive) {
+    const double curvature = std::tan(state.steering_rad) / vehicle_.wheelbase_m;
+    const LateralState knot =
+        lateral_state(reference_, state.map_from_vehicle, curvature, near_s_m);
+    if (std::abs(knot.d_slope) > kMostSlope) return std::nullopt;
+    near_s_m = knot.s_m;
+    if (knots.empty() || knot.s_m > knots.back().s_m + kLeastKnot_m) knots.push_back(knot);
+  }
+  if (knots.size() < 2) return std::nullopt;
+  const LateralState first = knots.front(), last = knots.back();
+  const double settle_m = std::max(kSettle_m, kSettle_s * drive.back().speed_mps);
+  knots.push_back({.s_m = last.s_m + settle_m, .d_m = last.d_m + 0.5 * settle_m * last.d_slope});
+  Proposal found;
+  found.plan.chosen =
+      Candidate{.end_d_m = knots.back().d_m, .end_l_m = knots.back().s_m - first.s_m};
+  found.plan.start = first;
+  found.checked_m = last.s_m - first.s_m;
+  found.knots = std::make_shared<const KnottedOffset>(std::move(knots));
+  return found;
+}
+
+std::optional<LateralReplanner::Proposal> LateralReplanner::kept_drive() const {
+  const bool is_on_it = drive_ && !from_measurement_ && s_m_ < drive_->knots->knots().back().s_m;
+  return is_on_it ? drive_ : std::nullopt;
+}
+
 void LateralReplanner::take(const Proposal& proposal) {
+  drive_ = proposal.knots ? std::optional(proposal) : std::nullopt;
   candidates_.reset();
-  if (bounds_.keeps_candidates) {
+  if (bounds_.keeps_candidates && proposal.cycle) {
     candidates_ = proposal.cycle->judge(proposal.margins, proposal.ends, proposal.plan);
   }
-  explained_ = proposal.explains ? explain(proposal) : nullptr;
+  explained_ = proposal.explains && proposal.cycle ? explain(proposal) : nullptr;
   cycles_.reset();  // they ask for the path so far
   plan_ = proposal.plan;
   beyond_the_edge_m_ = proposal.beyond_the_edge_m;

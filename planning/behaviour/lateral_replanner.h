@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/lateral/knotted_offset.h"
 #include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/plan.h"
@@ -77,6 +79,8 @@ class LateralReplanner {
     bool explains = false;
     SafetyMargins margins = {};
     EndOffsetRange ends = {};
+    /// Of a path through several knots, in place of the plan's quintic.
+    std::shared_ptr<const KnottedOffset> knots = nullptr;
   };
 
   /// Where the vehicle is: the start of what is proposed until the next call.
@@ -96,6 +100,12 @@ class LateralReplanner {
   ///                         if not, it is one of several tries, on a coarser grid.
   Proposal propose(const Question& question, const Offsets& offsets,
                    bool may_leave_lanes = true) const;
+  /// The path of a drive that was found otherwise, led on beside the line past its end; none where
+  /// the drive does not go along the line.
+  /// @param drive  states of the rear axle, at most 0.1 s apart, from the vehicle's own on.
+  std::optional<Proposal> through(std::span<const VehicleState> drive) const;
+  /// What was taken last, if that is such a path, and the vehicle is on it; it can be taken again.
+  std::optional<Proposal> kept_drive() const;
   void take(const Proposal& proposal);
   /// The path of a proposal; without a candidate the one that is kept.
   PlannedPath path_of(const Proposal& proposal) const;
@@ -159,6 +169,7 @@ class LateralReplanner {
   std::optional<CandidateGrid> candidates_;
   std::shared_ptr<const ExplainedPlan> explained_;
   std::optional<PlannedPath> path_;
+  std::optional<Proposal> drive_;  ///< that path_ is the path of, if it has knots
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;
   double s_m_ = 0.0;

@@ -22,15 +22,17 @@
 #include "roadbed/planning/behaviour/why_lost.h"
 #include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/road_end.h"
+#include "roadbed/planning/speed/drive_search.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
 
+constexpr double kSearchEvery_s = 0.2;               // for a drive, while nothing else is any good
 constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kLookForPath_s = 3.0;               // the speed plan that lateral planning is told
 constexpr double kCompareEvery_m = 4.0, kAlike_m = 0.1;  // of two lines
 constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
-constexpr BendLimits kFastBends{.max_lateral_acceleration_mps2 = 3.7};  // of 3.9 that are steered
+constexpr BendLimits kFastBends{.max_lateral_acceleration_mps2 = 3.8};  // of 3.9 that are steered
 
 /// From the most careful on; for those who have to be at their goal in time, and for those who
 /// have not, to whom only those in their way matter.
@@ -310,12 +312,57 @@ class Planner::Impl {
     std::size_t best = 0;
     outcomes_ = not_asked_for(passing);
     add(scene, first_queries(goal_line(), question, passing), all, best);
+    if (task_.goal && !is_good(all[best])) {
+      if (auto kept = goal_line().replanner.kept_drive()) {
+        add_drive(scene, goal_line(), std::move(*kept), all, best);
+      }
+    }
     const bool is_too_near = !all[best].answer.is_free && all[best].occupancy->is_blocked(0, 0.0);
     if (task_.goal && is_too_near) search_at_levels(scene, all, best);  // as it is on any path
     if (task_.goal && !is_good(all[best])) add_others(scene, question, all, best);
     search_at_levels(scene, all, best);
+    if (task_.goal && !is_good(all[best])) find_drive(scene, all, best);
     std::ranges::move(outcomes_of(all, best, traffic_), std::back_inserter(outcomes_));
     return std::move(all[best]);
+  }
+
+  /// In place and time at once, as the last resort; along the line that it keeps nearest to.
+  void find_drive(const PlanningScene& scene, std::vector<ManeuverHypothesis>& all,
+                  std::size_t& best) {
+    if (scene.view.t_s < next_search_s_) return;
+    next_search_s_ = scene.view.t_s + kSearchEvery_s;
+    const std::vector<VehicleState> drive = search_drive({.vehicle = vehicle_,
+                                                          .road_map = task_.road_map,
+                                                          .bodies = scene.bodies,
+                                                          .goal = *task_.goal,
+                                                          .start = scene.view.measured,
+                                                          .now_s = scene.view.t_s});
+    if (drive.empty()) return;
+    GoalLine* nearest = nullptr;
+    std::optional<LateralReplanner::Proposal> along;
+    for (GoalLine& line : goal_lines_) {
+      if (&line != &goal_line()) line.replanner.locate(scene.view.measured);
+      auto found = line.replanner.through(drive);
+      if (!found || (along && ends_beside_m(*found) >= ends_beside_m(*along))) continue;
+      nearest = &line;
+      along = std::move(found);
+    }
+    if (nearest) add_drive(scene, *nearest, std::move(*along), all, best);
+  }
+
+  static double ends_beside_m(const LateralReplanner::Proposal& proposal) {
+    return std::abs(proposal.plan.chosen->end_d_m);
+  }
+
+  /// Searched for its speed at the levels from which such a path is driven.
+  void add_drive(const PlanningScene& scene, GoalLine& on, LateralReplanner::Proposal proposal,
+                 std::vector<ManeuverHypothesis>& all, std::size_t& best) {
+    all.push_back(hypothesis_on(scene, on, Maneuver::beside, std::move(proposal)));
+    for (const RiskLevel& level : kInTime) {
+      if (!level.is_emergency || is_good(all.back())) continue;
+      speed_.search(scene, level, all.back());
+    }
+    if (is_better(all.back(), all[best])) best = all.size() - 1;
   }
 
   /// One that is drivable is searched again only if some speed could reach its goal.
@@ -376,19 +423,24 @@ class Planner::Impl {
 
   ManeuverHypothesis hypothesis_of(const PlanningScene& scene, const PathQuery& query) {
     GoalLine& on = *query.goal_line;
-    LateralReplanner::Proposal proposal =
-        on.replanner.propose(query.question, query.offsets, query.may_leave_lanes);
-    const bool leads_back = !task_.goal && query.maneuver == Maneuver::keep_lane;
+    return hypothesis_on(
+        scene, on, query.maneuver,
+        on.replanner.propose(query.question, query.offsets, query.may_leave_lanes));
+  }
+
+  ManeuverHypothesis hypothesis_on(const PlanningScene& scene, GoalLine& on, Maneuver maneuver,
+                                   LateralReplanner::Proposal proposal) {
+    const bool leads_back = !task_.goal && maneuver == Maneuver::keep_lane;
     const PlannedPath path =
         leads_back ? on.replanner.expected_path_of(proposal) : on.replanner.path_of(proposal);
     PathProfile profile = sample_path_profile(
         path, on.replanner.s_m(), speed_.look_ahead_m(scene.view), on.ceiling, vehicle_);
     const bool may_leave_road =
-        task_.goal && (!proposal.plan.chosen || proposal.beyond_the_edge_m > 0.0);
+        task_.goal && (!proposal.plan.chosen || proposal.knots || proposal.beyond_the_edge_m > 0.0);
     const double on_road = may_leave_road ? on_road_m(profile, task_.road_map)
                                           : std::numeric_limits<double>::infinity();
     return {.goal_line = &on,
-            .maneuver = query.maneuver,
+            .maneuver = maneuver,
             .proposal = std::move(proposal),
             .profile = std::move(profile),
             .on_road_m = on_road};
@@ -509,6 +561,7 @@ class Planner::Impl {
   std::optional<LinesToMerge> merge_lines_;
   HypothesisSpeed speed_;
   BlockedRoad blocked_road_;
+  double next_search_s_ = 0.0;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
   std::vector<HypothesisOutcome> outcomes_;  ///< of this cycle
