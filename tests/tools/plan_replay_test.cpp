@@ -84,6 +84,18 @@ TEST_F(PlanReplay, IsTheCycleOfTheLogAtEveryTime) {
   }
 }
 
+// Its last row, at the end, is that of no cycle.
+TEST_F(PlanReplay, AtTheEndOfADriveThatTimesOutIsTheLastCycle) {
+  json scenario = json::parse(bytes_of(own("parked_car.json")));
+  scenario["map"] = (data_folder() / "town.xodr").string();
+  scenario["duration_s"] = 1.5;
+  EXPECT_EQ(simulate(folder_.write("short.json", scenario.dump())).status, 1);
+  EXPECT_EQ(lines_of(drive() / "cycles.jsonl").size(), 15U);
+  expect_replayed("1.4", 14);
+  expect_replayed("1.5", 14);
+  EXPECT_THAT(replay(at("1.51")).err, HasSubstr("has no cycle at 1.51 s, needs 0 to 1.5 s"));
+}
+
 TEST_F(PlanReplay, ShowsACarThatIsPassedAsTheDriveWithCandidatesDid) {
   ASSERT_EQ(simulate(own("pass_car.json"), {"--candidates"}).status, 0);
   const std::vector<std::string> cycles = lines_of(drive() / "cycles.jsonl");
@@ -259,7 +271,7 @@ std::vector<std::vector<std::string>> examples_of(const std::string& command) {
 }
 
 TEST_F(PlanReplay, IsWhatTheExampleOfTheHelpDoes) {
-  ASSERT_EQ(simulate((data_folder() / "drive.json").string()).status, 0);
+  ASSERT_EQ(simulate(own("pass_car.json")).status, 0);
   const auto examples = examples_of("plan");
   ASSERT_FALSE(examples.empty());
   std::vector<std::string> words = examples.back();
