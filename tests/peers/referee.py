@@ -14,7 +14,7 @@ shares no code with roadbed:
     solution   solution.xml loads with commonroad-io and holds the same drive
     blind      the same with all traffic deleted before planning, judged with it: who succeeds so has
                not needed to see anybody
-Prints a table, and how many succeed only because they see the traffic. Exit status 1 if a drive
+Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and how many succeed only because they see the traffic. Exit status 1 if a drive
 collides of which roadbed says that it does not, ends in an exception, passes 4 m/s² of lateral
 acceleration in a success, or a solution does not load."""
 import copy
@@ -38,6 +38,8 @@ from commonroad_dc.feasibility.feasibility_checker import state_transition_feasi
 from commonroad_dc.feasibility.vehicle_dynamics import VehicleDynamics
 from commonroad_dc import pycrcc
 from vehiclemodels.vehicle_parameters import setup_vehicle_parameters
+
+from solvable import verdict
 
 warnings.filterwarnings("ignore")
 VEHICLE = 2
@@ -170,6 +172,7 @@ def run(roadbed, output, scenario_file):
     if done.returncode in (0, 1) and done.stdout:
         result.update(judge(scenario_file, folder))
         result["blind"] = run_blind(roadbed, output, scenario_file)
+        result["solvable"] = None if is_good(result) else verdict(scenario_file)
     return result
 
 
@@ -186,6 +189,8 @@ def print_table(names, results):
         print(f"{name:28} {mark(r['goal']):5} {mark(r['collision']):5} {mark(r['road']):5} "
               f"{mark(r['feasible']):5} {mark(r['blind']):5} {r['steps']:5}  {r['a_lat']:5.2f}  {r['a_lon']:5.2f}  "
               f"{r['said']}")
+        if r["solvable"]:
+            print(f"{'':28} {r['solvable']}")
     judged = [r for r in results if "goal" in r]
     good = [r for r in judged if is_good(r)]
     print(f"{len(results)} scenarios: {len(good)} reach the goal without collision on the road, "
