@@ -1,6 +1,6 @@
 #include "roadbed/tools/program.h"
 
-#include <fmt/format.h>
+#include <fmt/ostream.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/cli/help_text.h"
+#include "roadbed/tools/cli/standard_error.h"
 #include "roadbed/tools/cli/standard_output.h"
 #include "roadbed/tools/commands/commands.h"
 
@@ -71,11 +72,11 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
   try {
     return command.run({std::cout, std::cerr}, common);
   } catch (const map::InputError& error) {
-    fmt::print(stderr, "roadbed: {}\n", error.what());
+    fmt::print(std::cerr, "roadbed: {}\n", error.what());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "roadbed: out of memory\n");
+    fmt::print(std::cerr, "roadbed: out of memory\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "roadbed: internal error: {}; please report it with the command line\n",
+    fmt::print(std::cerr, "roadbed: internal error: {}; please report it with the command line\n",
                error.what());
   }
   return Exit::failed;
@@ -127,9 +128,10 @@ int run_command_line(int argc, char** argv) {
 int run_program(int argc, char** argv) {
   hold_closed_streams();
   StandardOutput standard_output;
+  const StandardError standard_error;
   const int status = run_command_line(argc, argv);
   if (standard_output.finish()) return status;
-  fmt::print(stderr, "roadbed: {}\n", standard_output.fault());
+  fmt::print(std::cerr, "roadbed: {}\n", standard_output.fault());
   return status == static_cast<int>(Exit::ok) ? static_cast<int>(Exit::failed) : status;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/map/files/visible_text.h"
+
 namespace roadbed::map::commonroad {
 namespace {
 
@@ -91,7 +93,7 @@ std::string text_of(pugi::xml_node node) {
   const std::string text = node.child_value();
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+  return one_line(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
 }
 
 std::vector<std::string> texts(pugi::xml_node parent, const char* child) {

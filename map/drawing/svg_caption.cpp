@@ -21,7 +21,7 @@ class Caption {
             std::string_view more = {}) {
     drawing_.canvas.add(
         fmt::format(R"(<text x="{:.2f}" y="{:.2f}" font-size="{:.3f}" {}>{}</text>)", x(x_px),
-                    y(y_px), size_px * px_, more, xml_text(words)));
+                    y(y_px), size_px * px_, more, html_text(words)));
   }
   void path(const std::string& data_px, std::string_view attributes) {
     drawing_.canvas.add(

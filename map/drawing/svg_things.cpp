@@ -63,7 +63,7 @@ void draw_outline(Drawing& drawing, const MapObject& object) {
 std::string signal_symbol(const Drawing& drawing, const Signal& signal) {
   const Vector2d at = drawing.canvas.to_picture(signal.in_map);
   const double r = drawing.sheet.stroke_m(0.4, 1.15);
-  const std::string title = xml_text(signal.source_id + " " + signal.name);
+  const std::string title = html_text(signal.source_id + " " + signal.name);
   if (!signal.dynamic) {
     return fmt::format(
         R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" fill="#ffffff" stroke="#c8372d" )"
@@ -128,7 +128,7 @@ void draw_names(Drawing& drawing) {
     const std::string data = drawing.canvas.ring(lane.polygon);
     if (data.empty()) continue;
     drawing.canvas.add(fmt::format("<path d=\"{}\"><title>{} · {} · {:.1f} m</title></path>", data,
-                                   xml_text(lane.name), to_string(lane.type), lane.length_m()));
+                                   html_text(lane.name), to_string(lane.type), lane.length_m()));
   }
   drawing.canvas.add("</g>");
 }

@@ -66,7 +66,7 @@ void draw_mark(Drawing& drawing, const SvgMark& mark) {
   drawing.canvas.add(fmt::format(
       R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" fill="{}" fill-opacity="0.35" stroke="{}" )"
       R"(stroke-width="{:.3f}"><title>{}</title></circle>)",
-      place.x(), place.y(), 6.0 * px, mark.colour, mark.colour, 1.5 * px, xml_text(mark.title)));
+      place.x(), place.y(), 6.0 * px, mark.colour, mark.colour, 1.5 * px, html_text(mark.title)));
 }
 
 std::string document(const Drawing& drawing) {

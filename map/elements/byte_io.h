@@ -17,6 +17,7 @@
 #include "roadbed/map/elements/id.h"
 #include "roadbed/map/elements/lane.h"
 #include "roadbed/map/elements/map_content.h"
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline elements {
 
@@ -114,6 +115,7 @@ class ByteReader {
   void operator()(std::string& text) {
     const std::size_t size = count(1);
     text = bytes_.substr(0, size);
+    make_one_line(text);  // a compiled map may be another one's
     bytes_.remove_prefix(size);
   }
   template <typename T, typename Each>

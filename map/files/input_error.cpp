@@ -1,26 +1,19 @@
 #include "roadbed/map/files/input_error.h"
 
-#include <fmt/format.h>
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline files {
 namespace {
 
-// Keeps the message on one line whatever bytes the input held.
+// Keeps the message on one line whatever the input held.
 std::string printable(const std::string& text) {
   constexpr std::size_t longest = 400;
-  std::string line;
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      line += fmt::format("\\x{:02x}", byte);
-    } else {
-      line += c;
-    }
-  }
-  return text.size() > longest ? line + "…" : line;
+  if (text.size() <= longest) return one_line(text);
+  const std::string start = text.substr(0, longest);
+  return one_line(start.substr(0, size_of_whole_characters(start))) + "…";
 }
 
-std::string one_line(const InputError::Parts& parts) {
+std::string message_of(const InputError::Parts& parts) {
   std::string message = printable(parts.file);
   const auto append = [&message](const char* sign, const std::string& part) {
     if (!part.empty()) message.append(sign).append(printable(part));
@@ -36,6 +29,6 @@ std::string one_line(const InputError::Parts& parts) {
 }  // namespace
 
 InputError::InputError(const Parts& parts)
-    : std::runtime_error(one_line(parts)), parts_(std::make_shared<const Parts>(parts)) {}
+    : std::runtime_error(message_of(parts)), parts_(std::make_shared<const Parts>(parts)) {}
 
 }  // namespace roadbed::map::files

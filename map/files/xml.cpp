@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::map::inline files {
 namespace {
@@ -79,7 +80,7 @@ void drop_prefix(pugi::xml_node root) {
 XmlDocument::XmlDocument(std::string bytes, std::string name)
     : name_(std::move(name)),
       size_bytes_(bytes.size()),
-      text_(std::make_unique<std::string>(std::move(bytes))),
+      text_(std::make_unique<std::string>(without_controls(std::move(bytes)))),
       line_starts_(*text_) {
   check_size(*text_, name_);
   // Text is kept in its element: a node less for each.

@@ -12,7 +12,8 @@ namespace roadbed::map::inline files {
 
 /// An XML document that knows the line of each element, and reads attributes strictly.
 /// External entities are never fetched and entity definitions never expanded. A namespace prefix of
-/// the root is taken off the names of all elements.
+/// the root is taken off the names of all elements. Values of attributes are one line
+/// (`without_controls`).
 class XmlDocument {
  public:
   /// @param name  stands for the file in messages.

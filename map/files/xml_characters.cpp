@@ -1,5 +1,7 @@
 #include "roadbed/map/files/xml_characters.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,6 +10,8 @@
 #include <pugixml.hpp>
 #include <sstream>
 #include <utility>
+
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline files {
 namespace {
@@ -60,29 +64,6 @@ bool append_reference(std::string_view name, std::string& text) {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
-bool continues(std::string_view text, std::size_t at) {
-  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
-}
-
-unsigned char byte_at(std::string_view text, std::size_t at) {
-  return at < text.size() ? static_cast<unsigned char>(text[at]) : 0;
-}
-
-// Length of the well-formed UTF-8 sequence at a place, 0 if there is none (Unicode table 3-7).
-std::size_t sequence_length(std::string_view text, std::size_t at) {
-  const unsigned char first = byte_at(text, at), second = byte_at(text, at + 1);
-  if (first < 0x80) return 1;
-  if (first < 0xC2 || first > 0xF4 || !continues(text, at + 1)) return 0;
-  if (first < 0xE0) return 2;
-  if (!continues(text, at + 2)) return 0;
-  if (first == 0xE0 && second < 0xA0) return 0;
-  if (first == 0xED && second > 0x9F) return 0;  // surrogates
-  if (first < 0xF0) return 3;
-  if (first == 0xF0 && second < 0x90) return 0;
-  if (first == 0xF4 && second > 0x8F) return 0;
-  return continues(text, at + 3) ? 4 : 0;
-}
-
 enum class Markup { xml, html };
 
 std::string_view entity(char letter, Markup markup) {
@@ -102,31 +83,69 @@ std::string_view entity(char letter, Markup markup) {
   }
 }
 
-// What stands for a control character, empty if it stays.
-std::string_view control(char letter, Markup markup) {
-  const auto code = static_cast<unsigned char>(letter);
-  if (markup == Markup::xml) return code < 0x20 ? " " : std::string_view();
-  const bool stays = (code >= 0x20 && code != 0x7F) || letter == '\t' || letter == '\n';
-  return stays ? std::string_view() : kReplacement;
+// What stands for a character that is not written as it is, empty if it stays.
+std::string instead_of(char32_t code, Markup markup) {
+  if (code < 0x80) {
+    const std::string_view named = entity(static_cast<char>(code), markup);
+    if (!named.empty()) return std::string(named);
+  }
+  if (code == 0xFFFE || code == 0xFFFF) return std::string(kReplacement);
+  const bool is_space = code == '\t' || code == '\n';
+  if (markup == Markup::xml) {
+    if (code < 0x20) return " ";
+    return is_hidden(code) ? fmt::format("&#x{:x};", static_cast<unsigned>(code)) : std::string();
+  }
+  if (code < 0x20 || code == 0x7F) return is_space ? std::string() : std::string(kReplacement);
+  return is_hidden(code) ? fmt::format("\\u{:04x}", static_cast<unsigned>(code)) : std::string();
 }
 
 std::string escaped(std::string_view text, Markup markup) {
   std::string result;
   result.reserve(text.size());
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = sequence_length(text, at);
-    if (length == 0) {
-      result += kReplacement;
-    } else if (const auto replaced = entity(text[at], markup); !replaced.empty()) {
-      result += replaced;
-    } else if (const auto instead = control(text[at], markup); !instead.empty()) {
-      result += instead;
-    } else {
-      result += text.substr(at, length);
-    }
-    at += length == 0 ? 1 : length;
+    const Utf8Character character = character_at(text, at);
+    const std::string instead =
+        character.size == 0 ? std::string(kReplacement) : instead_of(character.code, markup);
+    const std::size_t size = std::max<std::size_t>(character.size, 1);
+    result += instead.empty() ? text.substr(at, size) : std::string_view(instead);
+    at += size;
   }
   return result;
+}
+
+bool is_raw_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7F;
+}
+
+bool may_hold_controls(std::string_view xml) {
+  bool any = false;
+  for (const char c : xml) any |= is_raw_control(c);
+  return any || xml.find("&#") != xml.npos;
+}
+
+struct Reference {
+  std::size_t size = 0;  // 0: there is none
+  char control = '\0';
+};
+
+// The reference to a control character that a text begins with. Numbers wrap as pugixml's do, which
+// takes any count of digits.
+Reference control_reference(std::string_view text) {
+  if (!text.starts_with("&#")) return {};
+  const bool hexadecimal = text.substr(2).starts_with('x');
+  const std::size_t begin = hexadecimal ? 3 : 2;
+  std::size_t end = begin;
+  std::uint32_t code = 0;
+  for (; end < text.size() && std::isxdigit(static_cast<unsigned char>(text[end])) != 0; ++end) {
+    const auto digit = static_cast<std::uint32_t>(text[end] <= '9' ? text[end] - '0'
+                                                                   : (text[end] | 0x20) - 'a' + 10);
+    if (digit >= 10 && !hexadecimal) return {};
+    code = (hexadecimal ? 16 : 10) * code + digit;
+  }
+  const bool is_control = code < 0x20 || code == 0x7F;
+  if (end == begin || !text.substr(end).starts_with(';') || !is_control) return {};
+  return {end + 1, static_cast<char>(code)};
 }
 
 }  // namespace
@@ -147,6 +166,7 @@ std::string decode_xml(std::string_view raw) {
       text += c;
     }
   }
+  make_one_line(text);  // also of what stood there by number
   return text;
 }
 
@@ -170,6 +190,27 @@ bool is_other_encoding(std::string_view bytes) {
   for (char& c : declaration) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return declaration.find("8859-1") != std::string::npos ||
          declaration.find("latin1") != std::string::npos;
+}
+
+std::string without_controls(std::string bytes) {
+  const bool is_wide = bytes.starts_with("\xfe\xff") || bytes.starts_with("\xff\xfe") ||
+                       std::string_view(bytes).substr(0, 2).find('\0') != std::string_view::npos;
+  if (is_wide) bytes = in_utf8(std::move(bytes));
+  if (!may_hold_controls(bytes)) return bytes;
+  std::string text;
+  text.reserve(bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const Reference reference = control_reference(std::string_view(bytes).substr(i));
+    if (reference.size > 0) {
+      text += one_line(std::string(1, reference.control));
+      i += reference.size - 1;
+    } else if (is_raw_control(bytes[i])) {
+      text += one_line(std::string(1, bytes[i]));
+    } else {
+      text += bytes[i];
+    }
+  }
+  return text;
 }
 
 std::string in_utf8(std::string bytes) {

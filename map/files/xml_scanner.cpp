@@ -24,7 +24,7 @@ constexpr std::array<std::uint8_t, 256> kinds() {
     const bool sign = c == '_' || c == ':' || c == '-' || c == '.';
     if (letter || sign || (c >= '0' && c <= '9')) table[c] |= in_name;
     if (c == ' ' || c == '\t' || c == '\r' || c == '\n') table[c] |= space;
-    if (c == '&' || c == '\t' || c == '\r' || c == '\n') table[c] |= decodes;
+    if (c == '&' || c < 0x20 || c == 0x7F) table[c] |= decodes;
   }
   return table;
 }

@@ -9,6 +9,8 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::geojson {
 namespace {
@@ -82,7 +84,7 @@ class Parser {
     const Json& crs = root["crs"];
     if (crs.is_object() && crs.contains("properties") && crs["properties"].is_object()) {
       const Json& name = crs["properties"].value("name", Json());
-      if (name.is_string()) document_.crs = name.get<std::string>();
+      if (name.is_string()) document_.crs = one_line(name.get<std::string>());
     }
     if (!crs.is_null() && document_.crs.empty()) {
       refuse("the member crs names no system", "null, or properties with a name",
@@ -96,8 +98,8 @@ class Parser {
   }
 
   static std::string text_of(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (value.is_string()) return one_line(value.get<std::string>());
+    return json_text(value);
   }
 
   void add_feature(const Json& feature) {
@@ -110,7 +112,7 @@ class Parser {
     record.id = feature.contains("id") ? text_of(feature["id"]) : std::to_string(record.number);
     if (feature.contains("properties") && feature["properties"].is_object()) {
       for (const auto& [key, value] : feature["properties"].items()) {
-        if (!value.is_null()) record.properties.emplace_back(key, text_of(value));
+        if (!value.is_null()) record.properties.emplace_back(one_line(key), text_of(value));
       }
     }
     if (feature.contains("geometry")) add_geometry(feature["geometry"], 0, record);

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "roadbed/map/files/json_text.h"
+
 namespace roadbed::map::inline gis {
 namespace {
 
@@ -15,7 +17,7 @@ void check(int status, const std::string& what) {
 }
 
 std::string json_list(const std::vector<std::string>& texts) {
-  return nlohmann::json(texts).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(nlohmann::json(texts));
 }
 
 }  // namespace

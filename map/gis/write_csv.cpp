@@ -5,25 +5,16 @@
 #include <iterator>
 
 #include "roadbed/map/derived/surface.h"
+#include "roadbed/map/files/csv_field.h"
 
 namespace roadbed::map::inline gis {
 namespace {
 
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string result = "\"";
-  for (const char c : field) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
 /// The four columns that all rows of a lane share.
 std::string lane_columns(const RoadMap& road_map, const Lane& lane) {
   const std::string road = lane.road ? road_map.road(*lane.road).source_id : "";
-  return fmt::format("{},{},{},{}", quoted(road), lane.origin.section,
-                     quoted(lane.origin.source_id), to_string(lane.type));
+  return fmt::format("{},{},{},{}", csv_field(road), lane.origin.section,
+                     csv_field(lane.origin.source_id), to_string(lane.type));
 }
 
 void add_line(const RoadMap& road_map, const std::string& columns, std::string_view which,

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "roadbed/geometry/index/hilbert.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/gis/packed_tree.h"
 
@@ -162,7 +163,7 @@ std::vector<std::uint8_t> properties(const std::vector<Value>& values) {
     if (const auto* held = std::get_if<std::string>(&values[i])) add_text(*held, bytes);
     if (const auto* held = std::get_if<std::vector<std::string>>(&values[i])) {
       const nlohmann::json list(*held);
-      add_text(list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), bytes);
+      add_text(json_text(list), bytes);
     }
   }
   return bytes;

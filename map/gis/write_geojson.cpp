@@ -6,15 +6,15 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "roadbed/map/files/json_text.h"
+
 namespace roadbed::map::inline gis {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 /// Names of sources are not always valid UTF-8; JSON has to be.
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string text_of(const Json& json) { return json_text(json); }
 
 Json json_of(const Value& value) {
   return std::visit(

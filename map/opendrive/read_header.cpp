@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "roadbed/map/files/visible_text.h"
+
 namespace roadbed::map::opendrive {
 namespace {
 
@@ -34,7 +36,7 @@ std::string text_of(pugi::xml_node node) {
   }
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+  return one_line(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
 }
 
 // Whether the text is of a kind that names a CRS at all: a PROJ string, a code, or WKT.

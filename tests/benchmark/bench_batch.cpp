@@ -130,7 +130,7 @@ void run_batch(const Lines& lines, int threads) {
   std::filesystem::create_directory(folder / "out");
   tools::ResultStore store(folder / "out");
   std::ostringstream err;
-  tools::ProgressBar progress(err, 0, false);
+  tools::ProgressBar progress(0, false);
   const tools::BatchOptions options{.jobs_file = jobs,
                                     .folder = folder / "out",
                                     .threads = threads,

@@ -9,6 +9,7 @@
 #include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/planning/audit/swept_drive.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/reference/reference_line.h"
@@ -100,7 +101,7 @@ std::string AuditSubjects::fault(bool has_map) const {
 
 std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map) const {
   if (is_folder()) return in_folder();
-  if (!is_swept()) return {{.name = trajectory_.string(), .file = trajectory_}};
+  if (!is_swept()) return {{.name = map::one_line(trajectory_.string()), .file = trajectory_}};
   return {lane_.empty() ? route(*road_map) : lane(*road_map)};
 }
 
@@ -111,7 +112,8 @@ std::vector<AuditSubject> AuditSubjects::in_folder() const {
            trajectory_, fs::directory_options::skip_permission_denied, unreadable)) {
     if (!entry.is_regular_file() || !is_drive(entry.path(), trajectory_)) continue;
     subjects.push_back(
-        {.name = entry.path().lexically_relative(trajectory_).string(), .file = entry.path()});
+        {.name = map::one_line(entry.path().lexically_relative(trajectory_).string()),
+         .file = entry.path()});
   }
   if (subjects.empty()) {
     refuse_subject(trajectory_.string(), "no drive",

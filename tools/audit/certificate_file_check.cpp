@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/occupancy/ground/drive_ground.h"
 #include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
@@ -272,7 +273,7 @@ bool check_certificate_file(const fs::path& certificate, const CertificateDemand
   CertificateCheck check(certificate, demands, inputs);
   const bool holds = check.run();
   if (json) {
-    out << check.json().dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << map::json_text(check.json(), 2) << '\n';
   } else {
     check.print(out);
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/sha256.h"
 #include "roadbed/map/occupancy/ground/ground.h"
@@ -125,9 +126,7 @@ Json conflicts_json(const std::vector<Conflict>& conflicts) {
 }
 
 // File names may hold bytes that are no UTF-8.
-std::string dumped(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string dumped(const Json& value) { return map::json_text(value); }
 
 // One value per line of the long lists would make files of a hundred thousand lines.
 std::string text_of(const Json& document) {

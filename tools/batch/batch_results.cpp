@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/build_id.h"
@@ -139,8 +140,8 @@ std::string row(const WorstCase& job) {
   return fmt::format(
       "<tr><td class=\"line\">{}</td><td class=\"status {}\">{} {}</td><td>{}</td>"
       "<td class=\"about\">{}</td><td class=\"files\">{}</td></tr>\n",
-      job.line, look.css_class, look.sign, look.word, map::html_text(job.text),
-      map::html_text(job.about), links(job));
+      job.line, look.css_class, look.sign, look.word, map::html_text(map::one_line(job.text)),
+      map::html_text(map::one_line(job.about)), links(job));
 }
 
 std::string section(const std::string& kind, const KindSummary& summary) {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/batch/job_result.h"
 #include "roadbed/tools/cli/build_id.h"
 
@@ -129,7 +130,7 @@ std::string BatchSummary::document(std::size_t most_worst) const {
   for (const auto& [kind, summary] : kinds_) {
     whole["kinds"][kind.empty() ? "(no job)" : kind] = kind_json(summary, most_worst);
   }
-  return whole.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return map::json_text(whole, 2) + "\n";
 }
 
 std::string with_commas(std::size_t number) {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/tools/batch/job.h"
 
 namespace roadbed::tools::inline batch {
@@ -17,9 +19,7 @@ using nlohmann::json;
 
 constexpr int kUsage = 2;
 
-std::string json_text(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
+std::string json_text(const json& value) { return map::json_text(value); }
 
 // Members in this order, so that a reader sees first what became of the job.
 std::string line(const JobResult& result, const json& kind, const std::string& rest) {
@@ -33,7 +33,7 @@ std::string line(const JobResult& result, const json& kind, const std::string& r
 }
 
 std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
+  text = map::one_line(std::move(text));
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
 }

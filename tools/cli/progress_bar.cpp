@@ -1,8 +1,8 @@
 #include "roadbed/tools/cli/progress_bar.h"
 
-#include <fmt/ostream.h>
+#include <fmt/format.h>
 
-#include <ostream>
+#include <cstdio>
 
 namespace roadbed::tools::inline cli {
 
@@ -28,9 +28,8 @@ void ProgressBar::draw() {
   if (!is_last && now - drawn_ < pause) return;
   drawn_ = now;
   const std::size_t full = width * done_ / all_;
-  fmt::print(err_, "\r[{:#<{}}{:.<{}}] {}/{}{:<14}{}", "", full, "", width - full, done_, all_,
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{}{:<14}{}", "", full, "", width - full, done_, all_,
              is_last ? "" : time_left(now), is_last ? "\n" : "");
-  err_.flush();
 }
 
 std::string ProgressBar::time_left(Clock::time_point now) const {

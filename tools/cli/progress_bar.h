@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <iosfwd>
 #include <mutex>
 #include <string>
 
@@ -12,9 +11,9 @@ namespace roadbed::tools::inline cli {
 /// will take at the pace so far; may be told so by several threads.
 class ProgressBar {
  public:
+  /// On standard error as it is, past what makes texts visible there: a bar begins its line anew.
   /// @param is_shown  false: nothing is printed.
-  ProgressBar(std::ostream& err, std::size_t all, bool is_shown)
-      : err_(err), all_(all), is_shown_(is_shown) {}
+  ProgressBar(std::size_t all, bool is_shown) : all_(all), is_shown_(is_shown) {}
 
   void done_one();
 
@@ -27,7 +26,6 @@ class ProgressBar {
   void draw();
   std::string time_left(Clock::time_point now) const;
 
-  std::ostream& err_;
   std::size_t all_, done_ = 0, skipped_ = 0;
   bool is_shown_;
   Clock::time_point start_ = Clock::now(), drawn_ = {};

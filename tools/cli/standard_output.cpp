@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <iostream>
 
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 
 namespace roadbed::tools::inline cli {
@@ -24,11 +26,11 @@ StandardOutput::StandardOutput()
 }
 
 StandardOutput::~StandardOutput() {
-  write_pending();
+  write_pending(true);
   std::cout.rdbuf(before_);
 }
 
-bool StandardOutput::finish() { return write_pending(); }
+bool StandardOutput::finish() { return write_pending(true); }
 
 std::string StandardOutput::fault() const {
   return map::OutputError(
@@ -56,18 +58,31 @@ std::streamsize StandardOutput::xsputn(const char* text, std::streamsize size) {
 
 int StandardOutput::sync() { return write_pending() ? 0 : -1; }
 
-bool StandardOutput::write_pending() {
-  const char* from = pbase();
-  while (error_ == 0 && from < pptr()) {
-    const ssize_t size = ::write(STDOUT_FILENO, from, static_cast<std::size_t>(pptr() - from));
+// A character whose end is still to come stays in the buffer.
+bool StandardOutput::write_pending(bool with_cut_character) {
+  const std::string_view pending(pbase(), static_cast<std::size_t>(pptr() - pbase()));
+  if (pending.empty()) return error_ == 0;
+  const std::size_t whole =
+      with_cut_character ? pending.size() : map::size_of_whole_characters(pending);
+  shown_.clear();
+  map::append_visible(pending.substr(0, whole), shown_);
+  write(shown_);
+  const std::string cut(pending.substr(whole));
+  setp(pbase(), epptr());
+  std::ranges::copy(cut, pbase());
+  pbump(static_cast<int>(cut.size()));
+  return error_ == 0;
+}
+
+void StandardOutput::write(std::string_view text) {
+  while (error_ == 0 && !text.empty()) {
+    const ssize_t size = ::write(STDOUT_FILENO, text.data(), text.size());
     if (size >= 0) {
-      from += size;
+      text.remove_prefix(static_cast<std::size_t>(size));
     } else if (errno != EINTR) {
       error_ = errno;
     }
   }
-  if (pptr() != pbase()) setp(pbase(), epptr());
-  return error_ == 0;
 }
 
 void hold_closed_streams() {

@@ -2,12 +2,14 @@
 
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roadbed::tools::inline cli {
 
 /// Standard output in place of std::cout's own buffer, which forgets why it could not be written.
-/// What fails once takes nothing more. On a terminal everything appears at once.
+/// What fails once takes nothing more. On a terminal everything appears at once. Whatever is
+/// printed comes out as visible text (map/files/visible_text.h).
 class StandardOutput : public std::streambuf {
  public:
   StandardOutput();
@@ -27,9 +29,11 @@ class StandardOutput : public std::streambuf {
   int sync() override;
 
  private:
-  bool write_pending();
+  bool write_pending(bool with_cut_character = false);
+  void write(std::string_view text);
 
   std::vector<char> buffer_;
+  std::string shown_;
   bool is_terminal_;
   std::streambuf* before_;
   int error_ = 0;  // errno of the first write that failed

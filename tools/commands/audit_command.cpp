@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
@@ -252,7 +253,7 @@ class AuditCommand : public Command {
                              .found = "is about one drive, and --trajectory is a folder",
                              .remedy = "give one file"});
     }
-    ProgressBar progress(streams.err, subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    ProgressBar progress(subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits = audit_all(
         *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
     for (const AuditedDrive& audited : audits) {
@@ -306,7 +307,7 @@ class AuditCommand : public Command {
 
   // File names may hold bytes that are no UTF-8.
   static std::string text_of_json(const nlohmann::ordered_json& json) {
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return map::json_text(json, 2) + "\n";
   }
 
   // What a picture of a drive can show.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/tools/files/json.h"
@@ -17,12 +18,12 @@ using Eigen::Vector2d;
 
 std::string audit_case(const AuditedDrive& audited, const std::string& occupancy) {
   std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")",
-                                 map::xml_text(occupancy), map::xml_text(audited.name));
+                                 map::html_text(occupancy), map::html_text(audited.name));
   if (!audited.fault.empty()) {
     return text + fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n",
-                              map::xml_text(audited.fault));
+                              map::html_text(audited.fault));
   }
-  const std::string report = map::xml_text(audit_text(audited.audit.report));
+  const std::string report = map::html_text(audit_text(audited.audit.report));
   if (audited.is_clear()) {
     return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", report);
   }
@@ -102,7 +103,7 @@ std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::str
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
       "  <testsuite name=\"roadbed audit {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
-      map::xml_text(occupancy), all, all - clear - errors, errors);
+      map::html_text(occupancy), all, all - clear - errors, errors);
   for (const AuditedDrive& audited : audits) text += audit_case(audited, occupancy);
   return text + "  </testsuite>\n</testsuites>\n";
 }
@@ -122,9 +123,7 @@ std::string audits_geojson(const std::vector<AuditedDrive>& audits,
       add_conflict(features, audited, conflict, parts);
     }
   }
-  const auto text_of = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
+  const auto text_of = [](const Json& json) { return map::json_text(json); };
   std::string text = "{\"type\":\"FeatureCollection\",\n";
   if (!crs.empty()) {
     text +=

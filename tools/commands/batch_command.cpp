@@ -142,8 +142,7 @@ class BatchCommand : public Command {
     const BatchOptions how = options(common);
     UnfinishedMark mark(folder_);
     ResultStore store(folder_);
-    ProgressBar progress(streams.err, count_jobs(jobs_file_),
-                         !common.quiet && ::isatty(STDERR_FILENO) == 1);
+    ProgressBar progress(count_jobs(jobs_file_), !common.quiet && ::isatty(STDERR_FILENO) == 1);
     BatchRun run(how, job_kinds(), store, progress);
     run.run();
     if (!run.is_complete()) {

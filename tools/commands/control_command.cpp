@@ -8,6 +8,7 @@
 
 #include "roadbed/control/cruise_design.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools::inline commands {
@@ -118,7 +119,7 @@ class ControlCommand : public Command {
         .whole = control::loop_string_gain(design, options_.step_s, delay_steps_),
         .delay_s = options_.step_s * delay_steps_};
     if (json_) {
-      streams.out << design_json(design, string).dump(2) << '\n';
+      streams.out << map::json_text(design_json(design, string), 2) << '\n';
     } else {
       print_design(streams.out, design, string);
     }

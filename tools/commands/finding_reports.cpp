@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "roadbed/map/drawing/write_svg.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/validation/rule.h"
 
@@ -17,9 +18,7 @@ namespace {
 using map::Validation;
 using map::validation::Finding;
 
-std::string document_text(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string document_text(const Json& json) { return map::json_text(json, 2) + "\n"; }
 
 Json finding_json(const Validation& validation, const Finding& finding) {
   Json json = {{"rule", finding.rule}};
@@ -72,17 +71,17 @@ std::string test_case(const Validation& validation, const std::string& file,
   for (const Finding* finding : findings) {
     (is_fault(finding) ? faults : notes) += line_of(validation, *finding) + "\n";
   }
-  std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")", map::xml_text(file),
-                                 map::xml_text(rule));
+  std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")", map::html_text(file),
+                                 map::html_text(rule));
   if (findings.empty()) return text + "/>\n";
   text += ">\n";
   if (!faults.empty()) {
     const auto number = std::count_if(findings.begin(), findings.end(), is_fault);
     text += fmt::format("      <failure message=\"{} found\">{}</failure>\n", number,
-                        map::xml_text(faults));
+                        map::html_text(faults));
   }
   if (!notes.empty()) {
-    text += fmt::format("      <system-out>{}</system-out>\n", map::xml_text(notes));
+    text += fmt::format("      <system-out>{}</system-out>\n", map::html_text(notes));
   }
   return text + "    </testcase>\n";
 }
@@ -184,7 +183,7 @@ std::string findings_junit(const Validation& validation, const std::string& file
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
       "  <testsuite name=\"roadbed validate {}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n",
-      map::xml_text(file), groups.size(), failures);
+      map::html_text(file), groups.size(), failures);
   for (const auto& [rule, findings] : groups) text += test_case(validation, file, rule, findings);
   return text + "  </testsuite>\n</testsuites>\n";
 }

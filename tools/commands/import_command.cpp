@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_network.h"
@@ -107,7 +108,7 @@ class ImportCommand : public Command {
                     {"junctions", road_map.junctions().size()},
                     {"signals", road_map.signals().size()},
                     {"faults", faults_of(road_map)}};
-    out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << map::json_text(json, 2) << '\n';
   }
 
   void report(std::ostream& err, const map::RoadMap& road_map) const {

@@ -11,6 +11,7 @@
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/derived/surface.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
@@ -227,7 +228,7 @@ class InfoCommand : public Command {
     }
     if (verify_) info["verified"] = verified_json(map::verify_compiled_map(input_));
     if (json_) {
-      streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+      streams.out << map::json_text(info, 2) << '\n';
     } else {
       print_info(streams.out, info);
     }

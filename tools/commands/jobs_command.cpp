@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/batch_summary.h"
@@ -42,10 +43,9 @@ constexpr std::size_t kMostJobs = 100'000'000, kMostValues = 10'000'000;
 
 std::string line_of_job(const Json& job) {
   try {
-    return job.dump();
+    return map::visible_text(job.dump());
   } catch (const Json::type_error&) {  // another name would not be found again
-    refuse_jobs(job.dump(-1, ' ', false, Json::error_handler_t::replace),
-                "holds a text that is no UTF-8", "rename the file");
+    refuse_jobs(map::json_text(job), "holds a text that is no UTF-8", "rename the file");
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "roadbed/map/derived/lane_frame.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/commands.h"
@@ -121,8 +122,7 @@ class LocateCommand : public Command {
       all_found = all_found && !answers.back()["lanes"].empty();
     }
     if (json_) {
-      fmt::print(streams.out, "{}\n",
-                 Json{{"points", answers}}.dump(2, ' ', false, Json::error_handler_t::replace));
+      fmt::print(streams.out, "{}\n", map::json_text(Json{{"points", answers}}, 2));
     } else {
       for (const Json& answer : answers) print_places(streams.out, answer);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/derived/map_diff.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
@@ -64,7 +65,7 @@ class MapDiffCommand : public Command {
       Json list = Json::array();
       for (const auto& change : changes) list.push_back(change_json(change));
       const Json document = {{"equal", changes.empty()}, {"changes", std::move(list)}};
-      fmt::print(streams.out, "{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+      fmt::print(streams.out, "{}\n", map::json_text(document, 2));
     } else {
       for (const auto& change : changes) print_differences(streams.out, change);
       fmt::print(streams.out, "{} change{}\n", changes.size(), changes.size() == 1 ? "" : "s");

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
@@ -141,7 +142,7 @@ std::string report_text(const std::string& key, const Json& value) {
     return fmt::format("{}, {}, {}", value.at("x_m").get<double>(), value.at("y_m").get<double>(),
                        value.at("z_m").get<double>());
   }
-  return value.dump();
+  return map::json_text(value);
 }
 
 class OccupancyInfoCommand : public Command {
@@ -159,7 +160,7 @@ class OccupancyInfoCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions&) override {
     const Json info = info_of_input();
     if (json_) {
-      streams.out << info.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+      streams.out << map::json_text(info, 2) << '\n';
     } else {
       for (const auto& [key, value] : info.items()) {
         fmt::print(streams.out, "{:<14}{}\n", key, report_text(key, value));

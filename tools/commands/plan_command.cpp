@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
@@ -112,7 +113,7 @@ class PlanCommand : public Command {
                              .title = scenario.name};
     write_plan(cycle, folder_);
     if (json_) {
-      fmt::print(streams.out, "{}\n", plan_json(plan).dump(2));
+      fmt::print(streams.out, "{}\n", map::json_text(plan_json(plan), 2));
     } else {
       print_plan(streams.out, cycle, explain_);
       if (explain_) print_circles(streams.out, scenario.vehicle, circles_);

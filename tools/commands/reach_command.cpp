@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_area.h"
@@ -40,8 +41,9 @@ std::string reached_csv(const map::RoadMap& road_map,
                         const std::vector<planning::ReachedLane>& reached, const char* unit) {
   std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed\n", unit);
   for (const planning::ReachedLane& lane : reached) {
-    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n", road_map.lane(lane.part.lane).name,
-                        lane.part.from_s_m, lane.part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
+    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n",
+                        map::csv_field(road_map.lane(lane.part.lane).name), lane.part.from_s_m,
+                        lane.part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
   }
   return text;
 }

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
@@ -30,7 +32,8 @@ using Metrics = std::map<std::string, std::optional<double>>;
 void collect(const nlohmann::json& value, const std::string& name, Metrics& metrics) {
   if (value.is_object()) {
     for (const auto& [key, part] : value.items()) {
-      collect(part, name.empty() ? key : name + "." + key, metrics);
+      const std::string shown = map::one_line(key);
+      collect(part, name.empty() ? shown : name + "." + shown, metrics);
     }
   } else if (value.is_number()) {
     metrics[name] = value.get<double>();
@@ -154,7 +157,7 @@ class ReportCommand : public Command {
     for (const Bound& bound : exceeded) {
       over.push_back({{"metric", bound.metric}, {"max", bound.most}});
     }
-    out << ordered_json{{"metrics", metrics}, {"exceeded", over}}.dump(2) << '\n';
+    out << map::json_text(ordered_json{{"metrics", metrics}, {"exceeded", over}}, 2) << '\n';
   }
 
   fs::path a_, b_;

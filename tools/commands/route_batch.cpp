@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/route/hierarchy_search.h"
@@ -13,7 +14,6 @@
 #include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/route_output.h"
-#include "roadbed/tools/files/csv.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/points_csv.h"
 
@@ -125,16 +125,16 @@ class Batch {
     Cell cell;
     cell.found = true;
     cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
-                           csv_field(row.from), csv_field(row.to), route.cost_s, route.cost_m,
-                           route.length_m, route.lane_changes, csv_field(lanes));
+                           map::csv_field(row.from), map::csv_field(row.to), route.cost_s,
+                           route.cost_m, route.length_m, route.lane_changes, map::csv_field(lanes));
     if (options_.json) cell.json = with_row(route_json(road_map_, route), row);
     return cell;
   }
 
   Cell none(const PairRow& row, const std::string& reason) const {
     Cell cell;
-    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, csv_field(row.from), csv_field(row.to),
-                           csv_field(reason));
+    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, map::csv_field(row.from),
+                           map::csv_field(row.to), map::csv_field(reason));
     if (options_.json) cell.json = with_row({{"found", false}, {"reason", reason}}, row);
     return cell;
   }
@@ -168,8 +168,8 @@ class Batch {
     const double cost = static_cast<double>(ticks) / planning::ticks_per_unit(measure);
     Cell cell;
     cell.found = ticks != planning::kNever;
-    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, csv_field(from.from),
-                           csv_field(to.to), cell.found ? 1 : 0,
+    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, map::csv_field(from.from),
+                           map::csv_field(to.to), cell.found ? 1 : 0,
                            cell.found ? fmt::format("{:.4f}", cost) : "");
     if (!options_.json) return cell;
     Json json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};

@@ -7,7 +7,9 @@
 #include <algorithm>
 
 #include "roadbed/map/drawing/svg.h"
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/index/road_map_index.h"
 #include "roadbed/planning/route/guidance.h"
 #include "roadbed/planning/route/route_area.h"
@@ -147,9 +149,7 @@ std::string lanes_around(const map::RoadMap& road_map, const map::SvgCanvas& can
 
 }  // namespace
 
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+std::string text_of(const Json& json, int indent) { return map::json_text(json, indent); }
 
 Json route_json(const map::RoadMap& road_map, const planning::Route& route) {
   Json lanes = Json::array(), told = Json::array(), stops = Json::array();
@@ -248,9 +248,9 @@ std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::
               ? fmt::format("{:.3f},{:.3f}", leg.change_window->from_s_m, leg.change_window->to_s_m)
               : ",";
       text += fmt::format("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{:.4f},{:.4f},{},{}\n", i, j,
-                          road_map.lane(leg.lane).name, leg.from_s_m, leg.to_s_m, word(leg.exit),
-                          word(leg.turn), window, leg.length_m, leg.cost_s, leg.cost_m,
-                          leg.limit_known ? 1 : 0, leg.reversed ? 1 : 0);
+                          map::csv_field(road_map.lane(leg.lane).name), leg.from_s_m, leg.to_s_m,
+                          word(leg.exit), word(leg.turn), window, leg.length_m, leg.cost_s,
+                          leg.cost_m, leg.limit_known ? 1 : 0, leg.reversed ? 1 : 0);
     }
   }
   return text;

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/in_threads.h"
@@ -119,10 +122,8 @@ void drive_all(std::vector<ScenarioRow>& rows, const DriveOptions& options, Prog
 std::string table_csv(const std::vector<ScenarioRow>& rows) {
   std::string csv = "scenario,outcome,at_s,text\n";
   for (const ScenarioRow& row : rows) {
-    std::string text = row.text;
-    std::ranges::replace(text, '"', '\'');
-    csv +=
-        fmt::format("{},{},{:.2f},\"{}\"\n", row.file.stem().string(), row.outcome, row.at_s, text);
+    csv += fmt::format("{},{},{:.2f},{}\n", map::csv_field(row.file.stem().string()), row.outcome,
+                       row.at_s, map::csv_field(row.text));
   }
   return csv;
 }
@@ -230,7 +231,7 @@ class SimulateCommand : public Command {
                              .remedy = "give another folder"});
     }
     map::make_output_folder(folder_, force_);
-    ProgressBar progress(streams.err, rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
+    ProgressBar progress(rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     drive_all(rows, {folder_, choice_, common.inputs, common.threads}, progress);
     map::write_output(folder_ / "drives.csv", table_csv(rows));
     if (!timings_file_.empty()) map::write_output(timings_file_, folder_timings_csv(rows));
@@ -242,8 +243,8 @@ class SimulateCommand : public Command {
   static std::string folder_timings_csv(const std::vector<ScenarioRow>& rows) {
     std::string csv = "scenario,median_ms,slowest_ms\n";
     for (const ScenarioRow& row : rows) {
-      csv += fmt::format("{},{:.3f},{:.3f}\n", row.file.stem().string(), row.median_ms,
-                         row.slowest_ms);
+      csv += fmt::format("{},{:.3f},{:.3f}\n", map::csv_field(row.file.stem().string()),
+                         row.median_ms, row.slowest_ms);
     }
     return csv;
   }
@@ -256,12 +257,13 @@ class SimulateCommand : public Command {
                         {"at_s", row.at_s},
                         {"text", row.text}});
     }
-    out << Json{{"drives", drives}}.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << map::json_text(Json{{"drives", drives}}, 2) << '\n';
   }
 
   static void print_table(std::ostream& out, const std::vector<ScenarioRow>& rows) {
     for (const ScenarioRow& row : rows) {
-      fmt::print(out, "{:32} {:13} {}\n", row.file.stem().string(), row.outcome, row.text);
+      fmt::print(out, "{:32} {:13} {}\n", map::one_line(row.file.stem().string()), row.outcome,
+                 map::one_line(row.text));
     }
     fmt::print(out, "{} of {} reach their goal\n",
                std::ranges::count_if(rows, &ScenarioRow::is_good), rows.size());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tools/commands/commands.h"
@@ -50,7 +51,7 @@ class ValidateCommand : public Command {
     }
     const Validation validation = map::validate_file(input_, options_);
     if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
-    const std::string name = input_.filename().string();
+    const std::string name = map::one_line(input_.filename().string());
     streams.out << (json_ ? findings_json(validation) : findings_text(validation, name));
     write_files(streams, validation);
     return fails(validation) ? Exit::failed : Exit::ok;
@@ -91,7 +92,7 @@ class ValidateCommand : public Command {
   }
 
   void write_files(const Streams& streams, const Validation& validation) const {
-    const std::string name = input_.filename().string();
+    const std::string name = map::one_line(input_.filename().string());
     const std::string source = input_.generic_string();
     if (!junit_.empty()) map::write_output(junit_, findings_junit(validation, name));
     if (!sarif_.empty()) map::write_output(sarif_, findings_sarif(validation, source));

@@ -47,13 +47,6 @@ std::vector<std::string> csv_fields(std::string_view line) {
   }
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string made = "\"";
-  for (const char sign : text) made += sign == '"' ? "\"\"" : std::string(1, sign);
-  return made + "\"";
-}
-
 CsvReader::CsvReader(std::string_view bytes, std::string name)
     : rest_(bytes), name_(std::move(name)) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";

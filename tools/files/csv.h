@@ -12,9 +12,6 @@ namespace roadbed::tools::inline files {
 /// count, what stands in quotes is taken as it is.
 std::vector<std::string> csv_fields(std::string_view line);
 
-/// A field as CSV writes it: in quotes where it holds commas or quotes.
-std::string csv_field(const std::string& text);
-
 /// Goes through a table: a header line that names the columns, then a row a line. Byte order mark,
 /// carriage returns and empty lines do not count.
 class CsvReader {

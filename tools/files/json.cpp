@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::tools::inline files {
 namespace {
@@ -139,14 +140,11 @@ std::string JsonNode::text() const {
   return text;
 }
 
+std::string JsonNode::name() const { return map::one_line(text()); }
+
 std::string JsonNode::one_line() const {
-  constexpr unsigned char first_printable = 0x20, del = 0x7f;
   std::string line = text();
-  const auto is_control = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < first_printable || byte == del;
-  };
-  if (std::ranges::any_of(line, is_control)) {
+  if (map::one_line(line) != line) {
     refuse("has a control character", "one line of text", "take it out");
   }
   return line;

@@ -54,7 +54,10 @@ class JsonNode {
   /// A string that is not empty.
   std::string text() const;
 
-  /// The same without control characters, so that it cannot forge lines of an output.
+  /// The same, made one line (map/files/visible_text.h): of what is printed by this name.
+  std::string name() const;
+
+  /// The same, refused where it has control characters: of what is looked for by this name.
   std::string one_line() const;
 
   [[noreturn]] void refuse(const std::string& found, const std::string& needed,

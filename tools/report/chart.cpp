@@ -9,8 +9,8 @@
 #include <iterator>
 
 #include "roadbed/map/drawing/svg.h"
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/xml_characters.h"
-#include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -200,7 +200,7 @@ std::string chart_csv(const Chart& chart) {
   fmt::memory_buffer csv;
   fmt::format_to(std::back_inserter(csv), "series,x,y\n");
   for (const Series& series : chart.series) {
-    const std::string name = csv_field(series.name);
+    const std::string name = map::csv_field(series.name);
     for (const Vector2d& point : series.points) {
       fmt::format_to(std::back_inserter(csv), "{},{},{}\n", name, point.x(), point.y());
     }

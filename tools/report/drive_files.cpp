@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
@@ -92,11 +93,13 @@ DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& ch
                                         .sources = shown(result.record.sources),
                                         .audit = result.audit});
   result.files = {
-      {"trajectory.csv", write_trajectory_csv(driven.trajectory)},
-      {"cycles.jsonl", cycle_log(driven)},
-      {"metrics.json", metrics_of(scenario, world, driven, result.audit).dump(2) + "\n"},
-      {"report.html", drive_report_html(report)},
-      {"drive.svg", drive_scene_svg(report)}};
+    {"trajectory.csv", write_trajectory_csv(driven.trajectory)},
+    {"cycles.jsonl", cycle_log(driven)},
+    {"metrics.json",
+     map::json_text(metrics_of(scenario, world, driven, result.audit), 2) + "
+                                                                            "},
+         {"report.html", drive_report_html(report)},
+     {"drive.svg", drive_scene_svg(report)}};
   if (problem != nullptr && !choice.changes.vehicle) {
     result.files.emplace_back("solution.xml", solution_xml(*problem, driven));
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline report {
@@ -293,7 +294,7 @@ std::string page_data_json(const ReportInput& input) {
                                           {"reason", decision.reason}};
                             })},
   };
-  return data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return map::json_text(data);
 }
 
 std::string escape_json_for_script(std::string_view json) {

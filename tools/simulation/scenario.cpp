@@ -109,8 +109,8 @@ TrafficObstacle traffic(const JsonNode& node) {
 ScenarioObstacle obstacle(const JsonNode& node) {
   node.require_object({"id", "kind", "length_m", "width_m", "parked", "scripted", "traffic"});
   ScenarioObstacle result;
-  result.id = node.at("id").text();
-  if (const auto kind = node.find("kind")) result.kind = kind->text();
+  result.id = node.at("id").name();
+  if (const auto kind = node.find("kind")) result.kind = kind->name();
   result.length_m = node.number_or("length_m", result.length_m, kSize);
   result.width_m = node.number_or("width_m", result.width_m, kSize);
   const auto stands = node.find("parked");
@@ -171,7 +171,7 @@ std::vector<planning::LightCycle> lights(const JsonNode& list) {
     node.require_object({"signals", "offset_s", "phases"});
     planning::LightCycle light{.signals = {}, .pointer = node.pointer(), .phases = {}};
     for (const JsonNode& signal : not_empty(node.at("signals"))) {
-      light.signals.push_back(signal.text());
+      light.signals.push_back(signal.name());
     }
     light.offset_s = node.number_or("offset_s", 0.0, {-3600.0, 3600.0});
     for (const JsonNode& phase : not_empty(node.at("phases"))) {
@@ -242,7 +242,7 @@ void read_ego(const JsonNode& node, Scenario& scenario) {
 }
 
 void read_optional_parts(const JsonNode& root, Scenario& scenario) {
-  if (const auto node = root.find("name")) scenario.name = node->text();
+  if (const auto node = root.find("name")) scenario.name = node->name();
   if (const auto node = root.find("occupancy")) {
     scenario.occupancy_files = occupancy_files(*node, scenario.file.parent_path());
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/map/files/visible_text.h"
+
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
 
@@ -102,7 +104,7 @@ PointCloud relative_to_origin(RawCloud raw) {
     take_doubles(raw.points_in_source, cloud);
   }
   cloud.format = std::move(raw.format);
-  cloud.crs = std::move(raw.crs);
+  cloud.crs = one_line(std::move(raw.crs));
   cloud.unit = raw.unit;
   cloud.dropped_not_finite = raw.dropped_not_finite;
   take_sensors(raw, cloud);

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/files/visible_text.h"
+
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
 
@@ -196,12 +198,6 @@ OctreeBytes written(const CellBlocks& blocks) {
   return writer.take();
 }
 
-std::string on_one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return text;
-}
-
 }  // namespace
 
 std::string octree_header(OctreeForm form, const OctreeHeader& header) {
@@ -214,7 +210,7 @@ std::string octree_header(OctreeForm form, const OctreeHeader& header) {
       "# Octomap OcTree {}file\n# roadbed origin {} {} {} {}\n{}id OcTree\nsize {}\nres {}\n"
       "data\n",
       form == OctreeForm::bt ? "binary " : "", origin.x(), origin.y(), origin.z(),
-      on_one_line(header.crs), seen_through, header.nodes, header.resolution_m);
+      one_line(header.crs), seen_through, header.nodes, header.resolution_m);
 }
 
 OctreeBytes bt_data(const CellBlocks& blocks) { return written<BtWriter>(blocks); }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
@@ -105,7 +106,7 @@ class OctreeParser {
       file_.origin_in_source[axis] = *value;
     }
     if (!line.empty()) line.remove_prefix(1);
-    file_.crs = line;
+    file_.crs = one_line(std::string(line));
   }
 
   void read_seen_through(std::string_view line) {

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
@@ -138,7 +140,7 @@ class IndexReader {
   std::string text(const Json& json, const char* key) const {
     const Json& value = at(json, key);
     if (!value.is_string()) refuse_index(name_, key, "is no text", "text");
-    return value.get<std::string>();
+    return one_line(value.get<std::string>());
   }
 
   const Json& list(const Json& json, const char* key) const {
@@ -193,7 +195,7 @@ std::string write_tiles_index(const TilesIndex& index) {
                                     {"min_m", json_of(tile.bounds.min_in_source)},
                                     {"max_m", json_of(tile.bounds.max_in_source)}});
   }
-  return json.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 TilesIndex parse_tiles_index(std::string_view bytes, const std::string& name) {

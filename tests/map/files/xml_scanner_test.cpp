@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/files/xml_characters.h"
 
 namespace roadbed::map {
@@ -53,7 +54,7 @@ void walk(pugi::xml_node node, int depth, Elements& elements,
   attributes.emplace_back();
   for (const pugi::xml_attribute attribute : node.attributes()) {
     attributes.back().emplace_back(attribute.name());
-    line += fmt::format(" [{}]", node.attribute(attribute.name()).value());
+    line += fmt::format(" [{}]", one_line(node.attribute(attribute.name()).value()));
   }
   elements.push_back(line);
   for (const pugi::xml_node child : node.children()) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
 
 namespace roadbed::tools {
@@ -21,7 +22,7 @@ TEST(Csv, FieldsInQuotesKeepCommasSpacesAndQuotes) {
 
 TEST(Csv, WhatAFieldIsWrittenAsReadsBackTheSame) {
   for (const std::string text : {"plain", "with, comma", "\"quoted\"", ",\"", "lane:1/0/-1@3.5"}) {
-    EXPECT_THAT(csv_fields("x," + csv_field(text) + ",y"), ElementsAre("x", text, "y"));
+    EXPECT_THAT(csv_fields("x," + map::csv_field(text) + ",y"), ElementsAre("x", text, "y"));
   }
 }
 
