@@ -14,6 +14,7 @@ from roadbed_cluster.batch import Batch, BatchFailed
 from roadbed_cluster.cluster_options import ClusterOptions
 from roadbed_cluster.errors import RunStopped, UnusableResults, UsageError
 from roadbed_cluster.run import RunOptions, run
+from roadbed_cluster.visible import visible
 
 _RUN_EXAMPLE = """\
 example:
@@ -91,7 +92,7 @@ def _tables(options: argparse.Namespace) -> int:
     from roadbed_cluster.tables import write_tables
 
     for path in write_tables(options.folder):
-        print(path)
+        print(visible(str(path)))
     return 0
 
 
@@ -104,7 +105,7 @@ def _program(given: str) -> tuple[str, ...]:
 
 
 def _say(message: str, status: int) -> int:
-    print(f"roadbed-cluster: {' '.join(message.split())}", file=sys.stderr)
+    print(f"roadbed-cluster: {visible(message)}", file=sys.stderr)
     return status
 
 

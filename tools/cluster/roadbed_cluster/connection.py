@@ -1,6 +1,7 @@
 """The way to a cluster: one of its own on 127.0.0.1, or a scheduler that runs already."""
 
 import logging
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
@@ -9,6 +10,7 @@ from distributed import Client, LocalCluster, Security
 
 from roadbed_cluster.cluster_options import ClusterOptions
 from roadbed_cluster.errors import RunStopped
+from roadbed_cluster.scratch import leave_module_path, own_scratch
 from roadbed_cluster.work import end_idle_processes
 
 _TIMEOUT_S = 10.0
@@ -17,6 +19,7 @@ _CONFIG = {
     "distributed.scheduler.http.routes": [],
     "distributed.scheduler.allowed-failures": 0,  # a worker's death is told at once
     "distributed.worker.http.routes": [],
+    "distributed.worker.preload": ["roadbed_cluster.scratch"],
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
     "distributed.worker.memory.pause": False,
@@ -30,7 +33,7 @@ def connect(options: ClusterOptions) -> Iterator[Client]:
     """Give a client of the cluster; a cluster of its own ends with it.
 
     A cluster of its own listens on 127.0.0.1 only, encrypted, and takes only clients that hold a
-    key made for this run and kept in memory.
+    key made for this run and kept in memory. What it keeps on disk nobody else can reach.
 
     Raises:
         RunStopped: if the scheduler cannot be reached, or none can be started.
@@ -39,7 +42,10 @@ def connect(options: ClusterOptions) -> Iterator[Client]:
     with dask.config.set(_CONFIG):
         _silence()
         if options.scheduler is None:
-            with _own_cluster(options) as cluster, Client(cluster) as client:
+            # Nor do its processes import from the folder that the run is started in.
+            os.environ["PYTHONSAFEPATH"] = "1"
+            with own_scratch(), _own_cluster(options) as cluster, Client(cluster) as client:
+                leave_module_path()  # the scheduler and the nannies are in this process
                 yield client
             return
         try:

@@ -12,6 +12,7 @@ from roadbed_cluster.errors import UsageError
 from roadbed_cluster.journal import MARK, Journal
 from roadbed_cluster.progress import Progress
 from roadbed_cluster.serve import ServeOptions, WrongWorker, version_of
+from roadbed_cluster.visible import visible
 
 
 @dataclass(frozen=True)
@@ -83,4 +84,5 @@ def _run_missing(batch: Batch, version: str, cluster: ClusterOptions, options: R
 
 def _say(by_status: dict[str, int], seconds: float) -> None:
     parts = ", ".join(f"{count} {status}" for status, count in sorted(by_status.items()))
-    print(f"{sum(by_status.values())} jobs in {seconds:.1f} s: {parts}", file=sys.stderr)
+    done = sum(by_status.values())
+    print(visible(f"{done} jobs in {seconds:.1f} s: {parts}"), file=sys.stderr)
