@@ -134,7 +134,7 @@ class PlanCommand : public Command {
     if (json_) {
       Json document = {{"cycle", cycle_json(decided, row)}};
       document.update(plan_json(cycle.plan));
-      out << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+      out << map::json_text(document, 2) << '\n';
     } else {
       print_decision(out, replayed);
       print_plan(out, cycle, explain_);

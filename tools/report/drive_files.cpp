@@ -93,13 +93,11 @@ DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& ch
                                         .sources = shown(result.record.sources),
                                         .audit = result.audit});
   result.files = {
-    {"trajectory.csv", write_trajectory_csv(driven.trajectory)},
-    {"cycles.jsonl", cycle_log(driven)},
-    {"metrics.json",
-     map::json_text(metrics_of(scenario, world, driven, result.audit), 2) + "
-                                                                            "},
-         {"report.html", drive_report_html(report)},
-     {"drive.svg", drive_scene_svg(report)}};
+      {"trajectory.csv", write_trajectory_csv(driven.trajectory)},
+      {"cycles.jsonl", cycle_log(driven)},
+      {"metrics.json", map::json_text(metrics_of(scenario, world, driven, result.audit), 2) + "\n"},
+      {"report.html", drive_report_html(report)},
+      {"drive.svg", drive_scene_svg(report)}};
   if (problem != nullptr && !choice.changes.vehicle) {
     result.files.emplace_back("solution.xml", solution_xml(*problem, driven));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -91,7 +92,7 @@ std::string write_drive_record(const DriveRecord& record, const fs::path& folder
                {"predict", record.predicts},
                {"drop_ego_recording", record.drops_ego_recording}};
   if (record.seed) json["seed"] = *record.seed;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return map::json_text(json, 2) + "\n";
 }
 
 DriveRecord parse_drive_record(std::string_view bytes, const fs::path& file) {

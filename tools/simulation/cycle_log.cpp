@@ -1,5 +1,7 @@
 #include "roadbed/tools/simulation/cycle_log.h"
 
+#include "roadbed/map/files/json_text.h"
+
 namespace roadbed::tools::inline simulation {
 namespace {
 
@@ -54,9 +56,7 @@ Json cycle_json(const DriveCycle& cycle, const DriveSample& row) {
 std::string cycle_log(const Drive& drive) {
   std::string lines;
   for (std::size_t i = 0; i < drive.cycles.size(); ++i) {
-    lines += cycle_json(drive.cycles[i], drive.samples[i])
-                 .dump(-1, ' ', false, Json::error_handler_t::replace);
-    lines += '\n';
+    lines += map::json_text(cycle_json(drive.cycles[i], drive.samples[i])) + "\n";
   }
   return lines;
 }
