@@ -134,7 +134,7 @@ PlanOptions LateralReplanner::options_for(const Question& question, const Offset
   options.l_step_m = l_step_m;
   options.min_l_m = question.ends.least_m;
   options.max_l_m = question.ends.most_m;
-  options.keep_stations = bounds_.keeps_candidates;
+  options.keep_stations = true;  // what collides is looked for at them again
   options.weights = bounds_.weights;
   if (!question.checks_completion) options.completion_horizon_s = 0.0;
   return options;
