@@ -14,9 +14,10 @@ shares no code with roadbed:
     solution   solution.xml loads with commonroad-io and holds the same drive
     blind      the same with all traffic deleted before planning, judged with it: who succeeds so has
                not needed to see anybody
-Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and how many succeed only because they see the traffic. Exit status 1 if a drive
-collides of which roadbed says that it does not, ends in an exception, passes 4 m/s² of lateral
-acceleration in a success, or a solution does not load."""
+Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and
+how many succeed only because they see the traffic. Exit status 1 if a drive collides of which
+roadbed says that it does not, ends in an exception, passes 4 m/s² of lateral acceleration in a
+success, or a solution does not load."""
 import copy
 import csv
 import json

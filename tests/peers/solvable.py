@@ -3,18 +3,18 @@
 
 usage: solvable.py SCENARIO.xml...
 
-Limits: vehicle 2 of CommonRoad with its engine, 11.5 m/s² in all, its steering and steering rate; at
-most 4 m/s² to the side; the road's surface and the recorded traffic as the checker sees them. First
-come proofs that no drive does it, each an over-approximation of what can be driven:
+Limits: vehicle 2 of CommonRoad with its engine, 11.5 m/s² in all, its steering and steering rate;
+at most 4 m/s² to the side; the road's surface and the recorded traffic as the checker sees them.
+First come proofs that no drive does it, each by an over-approximation of what can be driven:
     no goal   the problem states none
     start     the body is off the road, or touches somebody, before it moves
     apart     what is not road parts all that a disc as wide as the body can reach from the goal
     too far   as fast as the engine allows, straight on, ends before the goal at its last time
-Then a drive is searched for: in layers of two time steps each state is led on by 7 shares of what can
-be done to the side times 7 of what can be along, of states that are alike one is kept, by turns the
-nearest to the goal and any, if the checker finds its body free at every step. First with no more than 8 m/s² of
-braking and 4 m/s² of speeding up, then with all that the vehicle has. A drive that is found is a proof;
-that none is found is none, and says "open"."""
+Then a drive is searched for: in layers of two time steps each state is led on by 7 shares of what
+can be done to the side times 7 of what can be along; of states that are alike one is kept, by turns
+the nearest to the goal and any, if the checker finds its body free at every step. First with no
+more than 8 m/s² of braking and 4 m/s² of speeding up, then with all that the vehicle has. A drive
+that is found is a proof; that none is found is none, and says "open"."""
 import sys
 import warnings
 from pathlib import Path
@@ -140,7 +140,8 @@ def too_far(problem):
     miss_m = least_m - driven_m - 2.0 * CENTRE_AHEAD_M
     if miss_m <= 0.0:
         return None
-    return f"too far: {least_m:.1f} m within {duration_s:.1f} s, and no more than {driven_m:.1f} m can be"
+    return (f"too far: {least_m:.1f} m within {duration_s:.1f} s, and no more than "
+            f"{driven_m:.1f} m can be")
 
 
 def proof(problem):
@@ -189,7 +190,7 @@ def follow(states, lateral, along, limits_mps2, step_s):
 
 
 def successors(states, limits_mps2, step_s, steps):
-    """What the vehicle can do within some steps: the states at each of them, and from which each."""
+    """What the vehicle can do within some steps: its states at each, and which each comes from."""
     many = len(SHARES)**2
     parent = np.repeat(np.arange(len(states)), many)
     lateral = np.tile(np.repeat(SHARES, len(SHARES)), len(states))

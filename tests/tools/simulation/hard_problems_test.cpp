@@ -62,5 +62,16 @@ TEST(HardProblems, OtherLaneThatLeadsToTheGoalIsTakenWhereTheOwnIsBlocked) {
   EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << drive.verdict.text;
 }
 
+// Out, in and out again ahead of who comes from behind; round what stands 24 m ahead at 20 m/s.
+TEST(HardProblems, DriveIsSearchedWhereNoPathBesideTheLineIsAnyGood) {
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  for (const char* name : {"ESP_Ceuta-5_1_T-1.xml", "ZAM_Over-1_1.xml"}) {
+    const Drive drive = driven(folder, name);
+    EXPECT_EQ(drive.verdict.outcome, Outcome::goal_reached) << name << drive.verdict.text;
+    const auto& worst = std::ranges::max(drive.samples, {}, &DriveSample::off_road_m);
+    EXPECT_EQ(worst.off_road_m, 0.0) << name << worst.t_s;
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::tools
