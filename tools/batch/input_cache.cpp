@@ -46,11 +46,12 @@ std::string InputCache::state_of(const std::vector<std::filesystem::path>& files
 }
 
 bool InputCache::shrink(std::uint64_t limit) const {
-  // Slots are handed out under the lock that is held here.
+  // Slots are handed out under the lock that is held here. Who has one may be waiting for this
+  // lock, so that nobody is waited for.
   const auto is_idle = [](const std::shared_ptr<Slot>& slot) {
     if (slot.use_count() > 1) return false;
-    const std::scoped_lock lock(slot->mutex);
-    return slot->thing.use_count() <= 1;
+    const std::unique_lock lock(slot->mutex, std::try_to_lock);
+    return lock.owns_lock() && slot->thing.use_count() <= 1;
   };
   bool has_shrunk = false;
   while (resident_() > limit) {
