@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/behaviour/stop_points.h"
@@ -26,16 +27,6 @@ struct RiskLevel {
   SpeedSearchOptions speed;
   bool is_emergency;
   BendLimits bends = {};
-};
-
-/// One line to the goal, and the path that is kept along it.
-struct GoalLine {
-  const ReferenceLine& line;
-  double road_end_s_m;  ///< see road_end.h
-  SpeedCeiling ceiling;
-  std::vector<GoalStretch> stretches;
-  std::vector<StopPoint> lights;
-  LateralReplanner replanner;
 };
 
 /// A path to ask the lateral planner for.
