@@ -25,12 +25,20 @@ bool are_apart(const Rectangle& a, const Rectangle& b) {
          separated_along(b.axis, a, b) || separated_along(left_of(b.axis), a, b);
 }
 
-double nearest_corner_m(const Rectangle& rectangle, const Rectangle& of) {
-  double nearest_m = distance_m(rectangle, of.centre) + of.radius_m();
+double squared_distance_m2(const Rectangle& rectangle, const Eigen::Vector2d& point) {
+  const Eigen::Vector2d offset = point - rectangle.centre;
+  const double along = std::abs(offset.dot(rectangle.axis)) - rectangle.half_length_m;
+  const double across = std::abs(offset.dot(left_of(rectangle.axis))) - rectangle.half_width_m;
+  const double beyond = std::max(along, 0.0), beside = std::max(across, 0.0);
+  return beyond * beyond + beside * beside;
+}
+
+double squared_to_nearest_corner_m2(const Rectangle& rectangle, const Rectangle& of) {
+  double nearest_m2 = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& corner : of.corners()) {
-    nearest_m = std::min(nearest_m, distance_m(rectangle, corner));
+    nearest_m2 = std::min(nearest_m2, squared_distance_m2(rectangle, corner));
   }
-  return nearest_m;
+  return nearest_m2;
 }
 
 // Across and along the rectangle, from its centre.
@@ -83,17 +91,14 @@ Rectangle body_at(const Pose2& pose, const VehicleShape& shape) {
 }
 
 double distance_m(const Rectangle& rectangle, const Eigen::Vector2d& point) {
-  const Eigen::Vector2d offset = point - rectangle.centre;
-  const double along = std::abs(offset.dot(rectangle.axis)) - rectangle.half_length_m;
-  const double across = std::abs(offset.dot(left_of(rectangle.axis))) - rectangle.half_width_m;
-  const double beyond = std::max(along, 0.0), beside = std::max(across, 0.0);
-  return std::sqrt(beyond * beyond + beside * beside);
+  return std::sqrt(squared_distance_m2(rectangle, point));
 }
 
 double distance_m(const Rectangle& a, const Rectangle& b) {
   if (!are_apart(a, b)) return 0.0;
   // Disjoint convex shapes are nearest at a corner of one of them.
-  return std::min(nearest_corner_m(a, b), nearest_corner_m(b, a));
+  return std::sqrt(
+      std::min(squared_to_nearest_corner_m2(a, b), squared_to_nearest_corner_m2(b, a)));
 }
 
 std::string_view side_towards(const Rectangle& thing, const Rectangle& body) {

@@ -215,10 +215,17 @@ bool CollisionThings::is_far(std::size_t with, const Rectangle& cover, double fr
   if (with == kStanding) return standing_.distance_m(cover) > enough_m;
   if (with == kOccupied) return is_far_from_occupied(cover, enough_m);
   const Mover& other = mover(with);
+  const double reach_m =
+      cover.radius_m() + 0.5 * std::hypot(other.length_m, other.width_m) + enough_m;
   const double to_s = std::min(to_t_s, other.until_s);
   double t_s = from_t_s;
   while (t_s <= to_s) {
-    const double slack_m = geometry::distance_m(cover, other.body_at(t_s)) - enough_m;
+    const geometry::Pose2 centre = other.centre_at(t_s);
+    double slack_m = (centre.position() - cover.centre).norm() - reach_m;
+    if (slack_m < reach_m) {
+      const Rectangle body = body_around(centre, other.length_m, other.width_m);
+      slack_m = geometry::distance_m(cover, body) - enough_m;
+    }
     if (slack_m < kLeastStep_m) return false;
     if (other.rate_mps == 0.0) return true;
     t_s += slack_m / other.rate_mps;
