@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/derived/rule_index.h"
+#include "roadbed/planning/behaviour/lane_join.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -18,24 +17,10 @@ namespace {
 using map::LaneId;
 using map::RulePlace;
 
-constexpr std::array<std::string_view, 4> kStopSigns{"206", "de206", "r1-1", "usr1-1"};
-constexpr std::array<std::string_view, 4> kGiveWaySigns{"205", "de205", "r1-2", "usr1-2"};
 constexpr double kOncoming_rad = 2.4;  // headings this far apart meet
 constexpr double kTurns_rad = 0.8;     // by less a lane goes straight on
 constexpr double kBeforeConflict_m = 0.5;
 constexpr double kSameWaitingPlace_m = 0.5;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  return text;
-}
-
-bool is_one_of(const map::Signal& signal, std::span<const std::string_view> types) {
-  const std::string type = lower(signal.type), subtype = lower(signal.subtype);
-  return std::ranges::any_of(types, [&](std::string_view t) { return t == type || t == subtype; });
-}
 
 std::vector<LaneId> lanes_of(const Route& route) {
   std::vector<LaneId> lanes;
@@ -73,7 +58,9 @@ class Finder {
         look_at_signal(road_map_.signals()[rule.index], rule.s_m);
       }
     }
-    look_at_regulations();
+    const std::optional<LaneJoin> join = join_to_give_way_at(road_map_, leg().lane);
+    look_at_regulations(join);
+    if (join) look_at_join(*join);
     const bool turns = leg().turn == Turn::left || leg().turn == Turn::right;
     if (turns && road_map_.lane(leg().lane).junction) look_at_turn();
   }
@@ -91,9 +78,9 @@ class Finder {
     if (!seen_.insert(signal.source_id).second) return;
     if (const std::optional<std::size_t> light = light_of(signal)) {
       add(StopKind::light, s_m, "light " + signal.source_id, light);
-    } else if (is_one_of(signal, kStopSigns)) {
+    } else if (is_stop_sign(signal)) {
       add(StopKind::stop_sign, s_m, "stop sign " + signal.source_id);
-    } else if (is_one_of(signal, kGiveWaySigns)) {
+    } else if (is_give_way_sign(signal)) {
       add(StopKind::give_way, s_m, "give way sign " + signal.source_id);
     }
   }
@@ -105,26 +92,41 @@ class Finder {
     return std::nullopt;
   }
 
-  void look_at_regulations() {
+  void look_at_regulations(const std::optional<LaneJoin>& join) {
     for (const std::size_t index : rules_.at(leg().lane, leg().from_s_m).regulations) {
       const map::Regulation& regulation = road_map_.regulations()[index];
       if (regulation.type != "right_of_way") continue;
       const bool yields = std::ranges::any_of(regulation.members, [&](const auto& member) {
         return member.role == "yield" && member.lane == leg().lane;
       });
-      if (yields) add(StopKind::give_way, line_of(regulation), "rule " + regulation.source_id);
+      if (yields)
+        add(StopKind::give_way, line_of(regulation, join), "rule " + regulation.source_id);
     }
   }
 
-  /// Station of the regulation's stop line on the leg's lane; without one, of the lane's end.
-  double line_of(const map::Regulation& regulation) const {
+  /// A sign or regulation that asks to give way there has been seen already.
+  void look_at_join(const LaneJoin& join) {
+    const double s_m = station(leg().lane, join.from_s_m);
+    const bool is_known = std::ranges::any_of(places_, [&](const StopPoint& place) {
+      const bool gives_way = place.kind == StopKind::give_way || place.kind == StopKind::stop_sign;
+      return gives_way && place.s_m < s_m && s_m < place.clear_s_m;
+    });
+    if (is_known) return;
+    add(StopKind::give_way, std::max(0.0, join.from_s_m - kBeforeConflict_m),
+        "join with lane " + road_map_.lane(join.other).name);
+    places_.back().clear_s_m = station(leg().lane, leg().to_s_m);
+  }
+
+  /// Station of the regulation's stop line on the leg's lane; without one, of the place where it
+  /// joins the other, or of the lane's end.
+  double line_of(const map::Regulation& regulation, const std::optional<LaneJoin>& join) const {
     const geometry::Polyline& centre = road_map_.lane(leg().lane).centre.in_map;
     for (const map::RegulationMember& member : regulation.members) {
       if (member.role == "ref_line" && !member.in_map.empty()) {
         return centre.project(member.in_map.front().head<2>()).s_m;
       }
     }
-    return centre.length_m();
+    return join ? std::max(0.0, join->from_s_m - kBeforeConflict_m) : centre.length_m();
   }
 
   void look_at_turn() {

@@ -50,6 +50,7 @@ struct StopPoint {
 ///   several at one line are several places, and all have to be green;
 /// - signs "stop" and "give way" (German 206 and 205, R1-1 and R1-2 of the Vienna convention's
 ///   American counterpart), and regulations "right_of_way" by which a lane yields;
+/// - joins of two lanes at which the route's one gives way (lane_join.h): ramps;
 /// - turns in a junction, where they cross the lane of oncoming traffic: to the
 ///   left where one drives on the right, to the right where one drives on the left.
 /// O(legs · rules of a lane), and the map's conflicts once if there is a turn.
