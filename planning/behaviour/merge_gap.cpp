@@ -44,11 +44,14 @@ std::optional<MergeArrival> arrival_by(const MergingVehicle& vehicle, double to_
     const double after_s = first.duration_s + kept_m / by_mps + last.duration_s + settled_s;
     return MergeArrival{after_s, at_mps, by_mps};
   }
-  if (first.length_m > 0.0) return std::nullopt;
-  const double rate_mps2 = at_mps > by_mps ? kComfortSpeedUp_mps2 : -kIntoGap_mps2;
-  const double speed_mps =
-      std::sqrt(std::max(0.0, by_mps * by_mps + 2.0 * rate_mps2 * std::max(0.0, to_enter_m)));
-  return MergeArrival{(speed_mps - by_mps) / rate_mps2, speed_mps, at_mps};
+  // Who speeds up goes on with that in the gap; who is too fast has to slow down before.
+  const bool speeds_up = at_mps > by_mps;
+  const double left_m = std::max(0.0, to_enter_m) - first.length_m;
+  if (first.length_m > 0.0 && (left_m < 0.0 || !speeds_up)) return std::nullopt;
+  const double rate_mps2 = speeds_up ? kComfortSpeedUp_mps2 : -kIntoGap_mps2;
+  const double speed_mps = std::sqrt(std::max(0.0, by_mps * by_mps + 2.0 * rate_mps2 * left_m));
+  const double after_s = first.duration_s + (speed_mps - by_mps) / rate_mps2;
+  return MergeArrival{after_s, speed_mps, by_mps < vehicle.speed_mps ? by_mps : at_mps};
 }
 
 using MergeMovers = std::vector<MergeMover>;

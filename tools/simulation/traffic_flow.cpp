@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "roadbed/planning/behaviour/lead.h"
@@ -53,8 +54,13 @@ TrafficFlow::TrafficFlow(const std::vector<LaneDriver>& drivers,
 }
 
 void TrafficFlow::step(const DrivenBody& vehicle) {
+  const std::vector<Body> around = movers(vehicle);
+  take_turns(around);
   std::vector<double> braking;
-  for (const Car& car : cars_) braking.push_back(braking_mps2(car, ahead_of(car, vehicle)));
+  for (const Car& car : cars_) {
+    braking.push_back(
+        std::min(braking_mps2(car, ahead_of(car, vehicle)), letting_in_mps2(car, around)));
+  }
   ++steps_;
   for (std::size_t i = 0; i < cars_.size(); ++i) drive(cars_[i], braking[i]);
 }
@@ -95,6 +101,75 @@ double TrafficFlow::braking_mps2(const Car& car, const Ahead& ahead) const {
   const double z = wanted_m / std::max(kLeastGap_m, ahead.gap_m);
   if (z < 1.0) return kInfinity_m;
   return std::max(options_.speeds_up_mps2 * (1.0 - z * z), -options_.hardest_mps2);
+}
+
+std::vector<TrafficFlow::Body> TrafficFlow::movers(const DrivenBody& vehicle) const {
+  std::vector<Body> all;
+  const double t_s = kStep_s * steps_;
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (obstacles_[i].is_static()) continue;
+    all.push_back({i, rectangle_at(obstacles_[i], t_s), obstacles_[i].motion.at(t_s).speed_mps});
+  }
+  all.push_back({obstacles_.size(), vehicle.body, vehicle.speed_mps});
+  return all;
+}
+
+/// Of the front bumper.
+double TrafficFlow::to_end_m(const Car& car, const LaneEndBeside& beside) const {
+  return beside.at.s_m - car.s_m - 0.5 * obstacles_[car.obstacle].length_m;
+}
+
+/// Those in a lane that ends beside a car's way, the foremost first.
+std::vector<ZipBody> TrafficFlow::waiting_at(const Car& car, const LaneEndBeside& beside,
+                                             const std::vector<Body>& movers) const {
+  constexpr double kInItsLane_m = 1.2;
+  const Eigen::Vector2d end_in_map = car.driver->way(beside.at.s_m).position();
+  std::vector<ZipBody> waiting;
+  for (const Body& other : movers) {
+    if ((other.body.centre - end_in_map).norm() > ZipMerge::kSeenFrom_m) continue;
+    const geometry::LinePosition at = car.driver->place_of(other.body.centre);
+    const double front_m = beside.at.s_m - at.s_m - other.body.half_length_m;
+    if (std::abs(at.d_m - beside.at.d_m) > kInItsLane_m || front_m > ZipMerge::kInTurn_m) continue;
+    waiting.push_back({other.id, front_m, 2.0 * other.body.half_length_m, other.speed_mps});
+  }
+  std::ranges::stable_sort(waiting, {}, &ZipBody::to_end_m);
+  return waiting;
+}
+
+void TrafficFlow::take_turns(const std::vector<Body>& movers) {
+  struct Queue {
+    const Car& sees;
+    const LaneEndBeside& beside;
+    std::vector<ZipBody> drivers;
+  };
+  std::map<std::size_t, Queue> queues;
+  for (const Car& car : cars_) {
+    for (const LaneEndBeside& beside : car.driver->lane_ends) {
+      const double left_m = to_end_m(car, beside);
+      if (left_m < 0.0 || left_m > ZipMerge::kSeenFrom_m) continue;
+      Queue& queue = queues.try_emplace(beside.end, Queue{car, beside, {}}).first->second;
+      queue.drivers.push_back(
+          {car.obstacle, left_m, obstacles_[car.obstacle].length_m, car.speed_mps});
+    }
+  }
+  for (auto& [end, queue] : queues) {
+    std::ranges::stable_sort(queue.drivers, {}, &ZipBody::to_end_m);
+    zip_.update(end, queue.drivers, waiting_at(queue.sees, queue.beside, movers));
+  }
+}
+
+/// As braking_mps2(), behind who is let in and is not in the own lane yet.
+double TrafficFlow::letting_in_mps2(const Car& car, const std::vector<Body>& movers) const {
+  for (const LaneEndBeside& beside : car.driver->lane_ends) {
+    const auto who = zip_.let_in(beside.end, car.obstacle);
+    if (!who) continue;
+    for (const ZipBody& waits : waiting_at(car, beside, movers)) {
+      if (waits.id != *who) continue;
+      const double gap_m = to_end_m(car, beside) - waits.to_end_m - waits.length_m;
+      return std::max(braking_mps2(car, {gap_m, waits.speed_mps}), -ZipMerge::kMostBraking_mps2);
+    }
+  }
+  return kInfinity_m;
 }
 
 void TrafficFlow::drive(Car& car, double braking) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,8 +10,15 @@
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/scenario.h"
+#include "roadbed/tools/simulation/zip_merge.h"
 
 namespace roadbed::tools::inline simulation {
+
+/// The end of a lane beside a way.
+struct LaneEndBeside {
+  std::size_t end = 0;        ///< the same for all ways
+  geometry::LinePosition at;  ///< of the lane's middle, by the way
+};
 
 /// Somebody who drives along lanes at wanted speeds, and keeps a distance from whoever is ahead.
 struct LaneDriver {
@@ -20,6 +28,7 @@ struct LaneDriver {
   /// Place of a point along the way and beside it.
   std::function<geometry::LinePosition(const Eigen::Vector2d& point)> place_of;
   std::vector<TimedSpeed> speeds;
+  std::vector<LaneEndBeside> lane_ends = {};  ///< who comes from there is let in in turn
 };
 
 /// The body of the vehicle that is simulated, and its speed along its axis.
@@ -33,6 +42,8 @@ struct DrivenBody {
 ///
 ///     s* = s₀ + max(0, v T + v Δv / (2 √(a b))),   z = s* / s
 ///     dv/dt = a (1 − z²) where z ≥ 1; else as wanted
+///
+/// Where the lane beside ends, they let others in in turn (ZipMerge).
 ///
 /// Who is not hindered drives exactly as its speeds say. Its future, as far as others foresee it,
 /// is that of its speeds; that of somebody who has been hindered is its present speed.
@@ -65,18 +76,31 @@ class TrafficFlow {
     double s_m, speed_mps;
     bool hindered;  ///< at any time so far
   };
+  /// Everybody who moves, the vehicle last.
+  struct Body {
+    std::size_t id;
+    geometry::Rectangle body;
+    double speed_mps;
+  };
   struct Ahead {
     double gap_m, speed_mps;
   };
 
   Ahead ahead_of(const Car& car, const DrivenBody& vehicle) const;
   double braking_mps2(const Car& car, const Ahead& ahead) const;
+  std::vector<Body> movers(const DrivenBody& vehicle) const;
+  double to_end_m(const Car& car, const LaneEndBeside& beside) const;
+  std::vector<ZipBody> waiting_at(const Car& car, const LaneEndBeside& beside,
+                                  const std::vector<Body>& movers) const;
+  void take_turns(const std::vector<Body>& movers);
+  double letting_in_mps2(const Car& car, const std::vector<Body>& movers) const;
   void drive(Car& car, double braking_mps2);
   void foresee(const Car& car);
 
   std::vector<planning::Obstacle>& obstacles_;
   Options options_;
   std::vector<Car> cars_;
+  ZipMerge zip_;
   int steps_ = 0;
 };
 

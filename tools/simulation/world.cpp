@@ -112,7 +112,7 @@ Course through_way_points(const Scenario& scenario, const map::RoadMap& road_map
 class ObstacleMaker {
  public:
   ObstacleMaker(const Scenario& scenario, const map::RoadMap& road_map)
-      : scenario_(scenario), road_map_(road_map) {}
+      : scenario_(scenario), road_map_(road_map), lane_ends_(lane_ends(road_map)) {}
 
   Obstacle make(const ScenarioObstacle& from) const {
     Obstacle obstacle{.id = from.id,
@@ -128,6 +128,7 @@ class ObstacleMaker {
     const map::LanePlace start = find(scenario_, road_map_, traffic.start).on_lane;
     LaneDriver driver = traffic.to ? along_route(traffic, start) : along_lanes(traffic, start);
     driver.obstacle = id;
+    driver.lane_ends = lane_ends_beside(driver);
     return driver;
   }
 
@@ -156,7 +157,7 @@ class ObstacleMaker {
   }
 
   geometry::Trajectory motion(const TrafficObstacle& traffic) const {
-    const LaneDriver driver = driver_of("", traffic);
+    const LaneDriver driver = driver_of({}, traffic);
     return drive_along(driver.way, driver.way_length_m, driver.speeds, known_s());
   }
 
@@ -185,10 +186,25 @@ class ObstacleMaker {
             .speeds = traffic.speeds};
   }
 
+  /// Up to two lanes' width away.
+  std::vector<LaneEndBeside> lane_ends_beside(const LaneDriver& driver) const {
+    constexpr double kLeast_m = 1.5, kMost_m = 6.0, kAlong = 0.8;
+    std::vector<LaneEndBeside> beside;
+    for (std::size_t i = 0; i < lane_ends_.size(); ++i) {
+      const geometry::LinePosition at = driver.place_of(lane_ends_[i].position());
+      const Pose2 foot = driver.way(at.s_m);
+      const double away_m = (foot.position() - lane_ends_[i].position()).norm();
+      const bool is_along = std::cos(foot.heading_rad - lane_ends_[i].heading_rad) > kAlong;
+      if (is_along && away_m > kLeast_m && away_m < kMost_m) beside.push_back({i, at});
+    }
+    return beside;
+  }
+
   double known_s() const { return scenario_.duration_s + TrafficFlow::kForeseenFor_s; }
 
   const Scenario& scenario_;
   const map::RoadMap& road_map_;
+  std::vector<Pose2> lane_ends_;
 };
 
 /// A light that the map does not have would never be seen.

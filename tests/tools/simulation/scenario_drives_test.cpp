@@ -115,6 +115,53 @@ TEST(ScenarioDrives, WayPointsThatMakeNoLineAreRefusedAtTheirPlace) {
               HasSubstr("/half_width_m: 0.7 m to each side"));
 }
 
+/// Of the obstacle that is nearest to the vehicle at a time, ahead or behind in its lane.
+std::string next_to(const Driven& d, double t_s, bool ahead) {
+  std::string id;
+  double least_m = 1e9;
+  const double x_m = d.drive.trajectory.at(t_s).x_m;
+  for (const planning::Obstacle& other : d.world.obstacles) {
+    const double away_m = (ahead ? 1.0 : -1.0) * (other.motion.at(t_s).x_m - x_m);
+    if (away_m > 0.0 && away_m < least_m) least_m = away_m, id = other.id;
+  }
+  return id;
+}
+
+TEST(ScenarioDrives, AtTheEndOfTheLaneOneCarOfTheQueueLetsTheVehicleIn) {
+  const Driven d = driven("zip");
+  expect_arrives(d, 1.0);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "no gap to merge into: "), nullptr);
+  // The lane ends at x = 660 m; from 640 m on it waits, and at most two pass it.
+  EXPECT_LT(d.passes_x_at_s(645.0) - d.passes_x_at_s(639.0), 10.0);
+  const double merged_s = d.passes_x_at_s(662.0);
+  EXPECT_NEAR(d.drive.trajectory.at(merged_s).y_m, -1.75, 0.5);
+  EXPECT_EQ(next_to(d, merged_s, true), "queue 14");
+  EXPECT_EQ(next_to(d, merged_s, false), "queue 15");
+  // The one that lets it in follows; everybody else had no more reason to brake than before.
+  double hardest_mps2 = 0.0;
+  for (const planning::Obstacle& other : d.world.obstacles) {
+    for (double t_s = 0.5; t_s < 50.0; t_s += 0.1) {
+      const double braked_mps =
+          other.motion.at(t_s - 0.5).speed_mps - other.motion.at(t_s).speed_mps;
+      hardest_mps2 = std::max(hardest_mps2, braked_mps / 0.5);
+    }
+  }
+  EXPECT_LT(hardest_mps2, 2.1);
+}
+
+TEST(ScenarioDrives, RampGivesWayToTheRoadThatItJoins) {
+  const Driven d = driven("ramp");
+  expect_arrives(d, 1.0);
+  EXPECT_NE(d.first(planning::Behaviour::yield, "join with lane 1000/0/-2: car bypass 2"), nullptr);
+  // It joins between x = 325 m and 360 m, without making anybody brake.
+  const double joined_s = d.passes_x_at_s(360.0);
+  EXPECT_EQ(next_to(d, joined_s, true), "bypass 4");
+  EXPECT_GT(d.speed_at(joined_s), 8.0);
+  for (const planning::Obstacle& other : d.world.obstacles) {
+    EXPECT_NEAR(other.motion.at(joined_s + 2.0).speed_mps, 16.0, 0.1) << other.id;
+  }
+}
+
 TEST(ScenarioDrives, RedLightIsStoppedAtAndGreenIsDrivenOnAt) {
   const Driven d = driven("red_light");
   expect_arrives(d, 1.0);
