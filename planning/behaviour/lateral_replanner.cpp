@@ -46,9 +46,11 @@ LineView straight_past(const ReferenceLine& line, double end_m) {
 
 }  // namespace
 
-ExplainedPlan::ExplainedPlan(const PlanInput& asked, Plan answer)
-    : obstacles(asked.obstacles),
-      input{.line = asked.line,
+ExplainedPlan::ExplainedPlan(const ReferenceLine& on_line, double end_m, const PlanInput& asked,
+                             Plan answer)
+    : line(on_line),
+      obstacles(asked.obstacles),
+      input{.line = straight_past(line, end_m),
             .start = asked.start,
             .start_t_s = asked.start_t_s,
             .speed = asked.speed,
@@ -63,8 +65,8 @@ LateralReplanner::LateralReplanner(const geometry::VehicleShape& vehicle, const 
       task_(task),
       reference_(line),
       bounds_(bounds),
-      line_(straight_past(
-          line, task.goal ? line.length_m() : line.goal_s_m() + vehicle.front_m() + 1.0)) {}
+      line_end_m_(task.goal ? line.length_m() : line.goal_s_m() + vehicle.front_m() + 1.0),
+      line_(straight_past(line, line_end_m_)) {}
 
 LateralState LateralReplanner::start_state(const VehicleState& measured) {
   const double curvature = std::tan(measured.steering_rad) / vehicle_.wheelbase_m;
@@ -231,10 +233,11 @@ PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
   });
 }
 
-std::shared_ptr<const ExplainedPlan> LateralReplanner::explain(const Proposal& proposal) {
+std::shared_ptr<const ExplainedPlan> LateralReplanner::explain(const Proposal& proposal) const {
   Plan plan = proposal.cycle->plan_and_judge_all(proposal.margins, proposal.ends);
   plan.reason = proposal.plan.reason;
-  return std::make_shared<const ExplainedPlan>(proposal.cycle->input(), std::move(plan));
+  return std::make_shared<const ExplainedPlan>(reference_, line_end_m_, proposal.cycle->input(),
+                                               std::move(plan));
 }
 
 std::optional<LateralReplanner::Proposal> LateralReplanner::through(

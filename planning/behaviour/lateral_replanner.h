@@ -15,12 +15,15 @@ namespace roadbed::planning::inline behaviour {
 
 /// The question of a cycle, and what became of every candidate.
 struct ExplainedPlan {
-  /// @param asked  its obstacles are copied; what is seen of the line and of occupied space is kept
-  ///               by reference.
-  ExplainedPlan(const PlanInput& asked, Plan answer);
+  /// @param on_line, end_m  that it was planned on: past the end it goes on straight. A copy is
+  /// kept,
+  ///                     since the planner's lines may be gone before.
+  /// @param asked  its obstacles are copied; occupied space is kept by reference.
+  ExplainedPlan(const ReferenceLine& on_line, double end_m, const PlanInput& asked, Plan answer);
   ExplainedPlan(const ExplainedPlan&) = delete;
   ExplainedPlan& operator=(const ExplainedPlan&) = delete;
 
+  ReferenceLine line;
   std::vector<Obstacle> obstacles;
   PlanInput input;  ///< but for the last plan
   Plan plan;        ///< with its candidates
@@ -148,7 +151,7 @@ class LateralReplanner {
   };
   struct Cycles;
 
-  static std::shared_ptr<const ExplainedPlan> explain(const Proposal& proposal);
+  std::shared_ptr<const ExplainedPlan> explain(const Proposal& proposal) const;
   LateralState start_state(const VehicleState& measured);
   std::vector<FallbackLevel> fallback_levels(const Question& question, bool may_leave_lanes) const;
   std::shared_ptr<Cycles> cycles_for(const Question& question) const;
@@ -163,6 +166,7 @@ class LateralReplanner {
   const DrivingTask& task_;
   const ReferenceLine& reference_;
   Bounds bounds_;
+  double line_end_m_;  ///< past it the line is seen to go on straight
   LineView line_;
   LateralState start_;
   Plan plan_;

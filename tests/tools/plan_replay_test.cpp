@@ -72,7 +72,8 @@ class PlanReplay : public testing::Test {
 };
 
 TEST_F(PlanReplay, IsTheCycleOfTheLogAtEveryTime) {
-  for (const char* name : {"pass_car.json", "narrow_gap.json", "red_light.json", "overtake.json"}) {
+  for (const char* name : {"pass_car.json", "narrow_gap.json", "red_light.json", "overtake.json",
+                           "lane_change.json"}) {
     simulate(own(name), {"--force"});
     const std::vector<std::string> cycles = lines_of(drive() / "cycles.jsonl");
     expect_replayed("0", 0);

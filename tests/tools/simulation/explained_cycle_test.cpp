@@ -1,6 +1,7 @@
 // The last cycle of a drive that is left early, against the same cycle of the whole drive.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -55,13 +56,20 @@ TEST_P(ExplainedCycle, IsTheOneOfTheWholeDriveWithEveryCandidateThatItKeeps) {
     if (chosen) {
       EXPECT_EQ(plan.chosen->cost, chosen->cost);
     }
-    EXPECT_EQ(left.drive.explained->input.start_t_s, whole.drive.cycles[last].t_s);
+    const planning::PlanInput& input = left.drive.explained->input;
+    const planning::ReferencePoint at = input.line.at(input.start.s_m);
+    const Eigen::Vector2d to_left{-std::sin(at.heading_rad), std::cos(at.heading_rad)};
+    if (chosen) {
+      const Eigen::Vector2d first = plan.trajectory.points().front().pose().position();
+      EXPECT_LT((at.in_map + input.start.d_m * to_left - first).norm(), 1e-6) << last;
+    }
+    EXPECT_EQ(input.start_t_s, whole.drive.cycles[last].t_s);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(OwnScenarios, ExplainedCycle,
                          testing::Values("pass_car", "pass_lorry", "overtake", "narrowing",
-                                         "narrow_gap", "stop_and_go"),
+                                         "narrow_gap", "stop_and_go", "lane_change"),
                          [](const auto& scenario) { return std::string(scenario.param); });
 
 TEST(ExplainedCycle, IsLeftOutOfADriveThatEndsBefore) {
