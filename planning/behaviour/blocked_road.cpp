@@ -29,15 +29,6 @@ const MoverOnLine* next_ahead(const std::vector<MoverOnLine>& movers, const Move
   return nearest;
 }
 
-/// Where a route leaves another one; its first lane where it only comes back to it.
-map::LaneId first_new_lane(const Route& route, const Route& other) {
-  const auto is_new = [&](const RouteLeg& leg) {
-    return std::ranges::find(other.legs, leg.lane, &RouteLeg::lane) == other.legs.end();
-  };
-  const auto found = std::ranges::find_if(route.legs, is_new);
-  return found == route.legs.end() ? route.legs.front().lane : found->lane;
-}
-
 }  // namespace
 
 std::vector<std::size_t> BlockedRoad::queue_ahead(const View& view, double& front_s_m) const {
@@ -117,10 +108,9 @@ std::string BlockedRoad::describe(const View& view, const DetourAnswer& answer) 
                                       first.kind, first.id, view.t_s - since_s_);
   if (!answer.detour) return who + "; no other route: " + answer.reason;
   const Route& route = answer.detour->route;
-  return fmt::format(
-      "{}; another route by lane {} is taken, {:.0f} m, {:.0f} m and {:.0f} s longer", who,
-      task_.road_map.lane(first_new_lane(route, task_.route)).name, route.length_m,
-      answer.detour->longer_m, answer.detour->longer_s);
+  return fmt::format("{}; another route by lane {} is taken, {:.0f} m ({:+.0f} m, {:+.0f} s)", who,
+                     task_.road_map.lane(answer.detour->by_lane).name, route.length_m,
+                     answer.detour->longer_m, answer.detour->longer_s);
 }
 
 }  // namespace roadbed::planning::behaviour

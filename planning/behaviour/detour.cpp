@@ -15,6 +15,7 @@
 namespace roadbed::planning::inline behaviour {
 namespace {
 
+constexpr std::size_t kMostTried = 8;                   // routes that no path leads onto
 constexpr double kRaster_m = 0.25, kMostParts = 200.0;  // at which a body is looked at
 constexpr double kAlongLane_rad = 0.35;                 // of a vehicle that drives along a lane
 
@@ -100,12 +101,12 @@ std::vector<Obstacle> standing(const DetourQuestion& q) {
   return found;
 }
 
-/// Whether a path leads onto a line from where the vehicle stands, within the line's corridor.
+/// Whether a path leads onto a line from where the vehicle stands.
 bool can_be_joined(const DetourQuestion& q, const ReferenceLine& line) {
   LateralReplanner replanner(q.vehicle, q.task, line,
                              {.tracking_error_m = 0.0,
                               .heading_error_rad = 0.0,
-                              .margin_levels = {{0.0, q.driving.clearance_m}},
+                              .margin_levels = margin_levels_on_route(q.driving.clearance_m),
                               .weights = q.driving.weights});
   replanner.locate(q.measured);
   const std::vector<Obstacle> obstacles = standing(q);
@@ -122,18 +123,43 @@ struct Found {
   Route route;
 };
 
-std::vector<Found> routes_past(const DetourQuestion& q, const RoutePlace& goal,
-                               std::string& reason) {
-  Router router(q.task.road_map, options_without(q));
-  std::vector<Found> routes;
-  for (const RoutePlace& from : starts_of(q)) {
-    RouteAnswer answer = router.find(from, goal);
-    if (reason.empty()) reason = std::move(answer.reason);
-    if (answer.route) routes.push_back({from, *std::move(answer.route)});
+/// The cheapest one from any of those lanes; if there is none, `reason` says why.
+std::optional<Found> cheapest_route(const DetourQuestion& q, const RouteOptions& options,
+                                    std::string& reason) {
+  Router router(q.task.road_map, options);
+  std::optional<Found> best;
+  reason = "the vehicle stands along no lane";
+  const std::vector<RoutePlace> starts = starts_of(q);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    RouteAnswer answer = router.find(starts[i], goal_of(q.task.route));
+    if (i == 0) reason = std::move(answer.reason);
+    const bool is_cheaper = answer.route && (!best || answer.route->cost_s < best->route.cost_s);
+    if (is_cheaper) best = Found{starts[i], *std::move(answer.route)};
   }
-  if (routes.empty() && reason.empty()) reason = "the vehicle stands along no lane";
-  std::ranges::stable_sort(routes, {}, [](const Found& found) { return found.route.cost_s; });
-  return routes;
+  return best;
+}
+
+/// The first lane of a route that another one does not use; its first where there is none.
+map::LaneId first_new_lane(const Route& route, const Route& other) {
+  const auto is_new = [&](const RouteLeg& leg) { return !is_on(other, leg.lane); };
+  const auto found = std::ranges::find_if(route.legs, is_new);
+  return found == route.legs.end() ? route.legs.front().lane : found->lane;
+}
+
+/// Compared with the route that there would be if nobody stood in the way.
+Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::LaneId by_lane) {
+  std::string reason;
+  const Route open = cheapest_route(q, {}, reason).value().route;
+  std::vector<StopPoint> places =
+      stop_points(q.task.road_map, found.route, line.line, q.task.lights);
+  Detour detour{.route = std::move(found.route),
+                .line = std::move(line),
+                .stop_points = std::move(places),
+                .blockers = q.blockers,
+                .by_lane = by_lane};
+  detour.longer_s = detour.route.cost_s - open.cost_s;
+  detour.longer_m = detour.route.length_m - open.length_m;
+  return detour;
 }
 
 }  // namespace
@@ -166,27 +192,22 @@ std::vector<BlockedStretch> stretches_closed_by(const Obstacle& obstacle, const 
 }
 
 DetourAnswer find_detour(const DetourQuestion& q) {
-  const RoutePlace goal = goal_of(q.task.route);
-  DetourAnswer answer;
-  for (Found& found : routes_past(q, goal, answer.reason)) {
+  RouteOptions options = options_without(q);
+  std::string reason, not_joined;
+  for (std::size_t tried = 0; tried < kMostTried; ++tried) {
+    std::optional<Found> found = cheapest_route(q, options, reason);
+    if (!found) break;
+    const map::LaneId by_lane = first_new_lane(found->route, q.task.route);
     RouteLine line =
-        line_along(q.task.road_map, found.route, q.vehicle, q.driving.desired_speed_mps);
-    if (!can_be_joined(q, line.line)) {
-      answer.reason = "no path leads past what stands there onto the way round";
-      continue;
+        line_along(q.task.road_map, found->route, q.vehicle, q.driving.desired_speed_mps);
+    if (can_be_joined(q, line.line)) {
+      return {detour_along(q, *std::move(found), std::move(line), by_lane), ""};
     }
-    const RouteAnswer open = find_route(q.task.road_map, found.from, goal);
-    std::vector<StopPoint> places =
-        stop_points(q.task.road_map, found.route, line.line, q.task.lights);
-    Detour detour{.route = std::move(found.route),
-                  .line = std::move(line),
-                  .stop_points = std::move(places),
-                  .blockers = q.blockers};
-    detour.longer_s = detour.route.cost_s - open.route.value().cost_s;
-    detour.longer_m = detour.route.length_m - open.route.value().length_m;
-    return {std::move(detour), ""};
+    not_joined += (tried == 0 ? "" : ", ") + q.task.road_map.lane(by_lane).name;
+    options.avoid.push_back(by_lane);
   }
-  return answer;
+  if (!not_joined.empty()) reason = "no path leads past what stands there to lane " + not_joined;
+  return {{}, std::move(reason)};
 }
 
 }  // namespace roadbed::planning::behaviour

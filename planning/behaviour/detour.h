@@ -17,6 +17,7 @@ struct Detour {
   RouteLine line;
   std::vector<StopPoint> stop_points;
   std::vector<std::size_t> blockers;      ///< obstacles that it avoids
+  map::LaneId by_lane;                    ///< its first that the blocked route does not use
   double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is blocked, by the route's costs
 };
 
@@ -47,8 +48,8 @@ std::vector<BlockedStretch> stretches_closed_by(const Obstacle& obstacle,
 /// The cheapest route to the task's goal that passes none of the blockers and that the vehicle can
 /// join by driving on: from any lane that it stands on and along (lanes that part overlap at
 /// first), left before the blocker by a lane change or at the lane's end, and with a path that
-/// leads onto it past all who stand. Two route searches for each of those lanes, on networks made
-/// now.
+/// leads onto it past all who stand; of the first eight. A route search for each of those lanes and
+/// routes, on networks made now.
 /// @pre the task has a route
 DetourAnswer find_detour(const DetourQuestion& question);
 

@@ -20,9 +20,7 @@ LateralReplanner::Bounds replanner_bounds(const PlannerSetup& setup) {
     bounds.margin_levels = {{0.2, 0.3}, {0.05, 0.12}, {-0.05, 0.2}, {-0.15, 0.2}, {-0.6, 0.12}};
     bounds.squeezes_past = true;
   } else {
-    // In the sharpest turns of real maps no body keeps to its lane; the road is wider there.
-    const double clearance_m = setup.driving.clearance_m;
-    bounds.margin_levels = {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
+    bounds.margin_levels = margin_levels_on_route(setup.driving.clearance_m);
   }
   return bounds;
 }

@@ -29,6 +29,12 @@ struct ExplainedPlan {
   Plan plan;        ///< with its candidates
 };
 
+/// Margins that are tried in turn on the way to a place: in the sharpest turns of real maps no body
+/// keeps to its lane; the road is wider there.
+inline std::vector<SafetyMargins> margin_levels_on_route(double clearance_m) {
+  return {{0.0, clearance_m}, {-0.3, clearance_m}, {-0.6, clearance_m}};
+}
+
 /// The path that is being driven, from cycle to cycle: plans on from the last plan while the
 /// vehicle follows it well enough, and keeps the last path when nothing is feasible.
 class LateralReplanner {

@@ -106,6 +106,27 @@ TEST(BlockedRoadDrives, BehindALorryThatStandsInTheStreetThereIsNoOtherRouteAndI
   expect_keeps_the_rules(d);
 }
 
+/// The roundabout's exit and its ring part slowly: what counts is where the vehicle has come to.
+TEST(BlockedRoadDrives, AnExitThatHasBeenEnteredIsLeftWhereAPathStillLeadsOut) {
+  const auto with_barrier_at = [](double s_m) {
+    Scenario scenario = closed_road();
+    scenario.obstacles = {barrier("works", fmt::format("lane:2202/0/-1@{}", s_m))};
+    scenario.duration_s = 40.0;
+    return driven(scenario);
+  };
+  const Driven in_mouth = with_barrier_at(10.0);
+  ASSERT_EQ(in_mouth.drive.given_up.size(), 1U);
+  EXPECT_EQ(in_mouth.world.road_map.lane(in_mouth.world.route.legs[0].lane).name, "2200/0/-1");
+  EXPECT_THAT(in_mouth.blocked().at(0).text, HasSubstr("(+49")) << "against the blocked way";
+  EXPECT_GT(in_mouth.drive.samples.back().s_m, 100.0);
+  const Driven half_in = with_barrier_at(12.0);
+  EXPECT_THAT(half_in.blocked().at(0).text,
+              HasSubstr("no other route: no path leads past what stands there to lane 2200/0/-1"));
+  const Driven in_exit = with_barrier_at(15.0);
+  EXPECT_THAT(in_exit.blocked().at(0).text,
+              HasSubstr("no lane sequence leads from lane 2202/0/-1 to lane 1/3/-1"));
+}
+
 TEST(BlockedRoadDrives, WhatClosedTheFirstWayIsKnownWhereTheSecondIsClosedToo) {
   Scenario scenario = closed_road();
   scenario.goal = {"lane:3/0/-1@20", "/goal"};

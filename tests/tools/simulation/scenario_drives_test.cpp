@@ -363,8 +363,9 @@ TEST(ScenarioDrives, ClosedRoadIsLeftForAnotherRouteAfterTenSeconds) {
   expect_arrives(d, 0.29);
   const DriveCycle* blocked = d.first(planning::Behaviour::stop, "the road is blocked: barrier");
   ASSERT_NE(blocked, nullptr);
-  EXPECT_THAT(blocked->reason,
-              testing::HasSubstr("another route by lane 2200/0/-1 is taken, 832 m, 496 m"));
+  EXPECT_THAT(
+      blocked->reason,
+      testing::HasSubstr("another route by lane 2200/0/-1 is taken, 832 m (+496 m, +43 s)"));
   EXPECT_TRUE(std::ranges::any_of(d.drive.events, [&](const DriveEvent& event) {
     return event.t_s == blocked->t_s && event.text == blocked->reason;
   }));
