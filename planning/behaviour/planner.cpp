@@ -267,7 +267,8 @@ class Planner::Impl {
     command.detour = std::move(blocked->detour);
   }
 
-  /// The lead; where no path keeps its clearance, who would be nearer than that.
+  /// The lead; where no path keeps its clearance, who would be nearer than that on the path that is
+  /// kept, or on the line.
   std::optional<std::size_t> who_is_in_the_way(const PlannerView& view,
                                                const PlannerCommand& command) const {
     if (command.lead) {
@@ -275,10 +276,14 @@ class Planner::Impl {
       return static_cast<std::size_t>(lead - task_.obstacles.begin());
     }
     if (replanner().last_plan().chosen) return std::nullopt;
-    const std::optional<Lead> nearest =
-        find_lead(replanner().expected_path(), replanner().s_m(), PlanOptions{}.max_l_m,
-                  truth_.obstacles, view.t_s, vehicle_, clearance_m_);
-    return nearest ? std::optional(nearest->obstacle) : std::nullopt;
+    const PlannedPath line(lines_.driven().line,
+                           [](double s_m) { return LateralState{.s_m = s_m}; });
+    for (const PlannedPath& path : {replanner().expected_path(), line}) {
+      const auto nearest = find_lead(path, replanner().s_m(), PlanOptions{}.max_l_m,
+                                     truth_.obstacles, view.t_s, vehicle_, clearance_m_);
+      if (nearest) return nearest->obstacle;
+    }
+    return std::nullopt;
   }
 
   const geometry::VehicleShape& vehicle_;
