@@ -44,7 +44,7 @@ ManeuverHypothesis Hypotheses::best(const PlanningScene& scene,
   add(scene, first_queries(lines_.driven(), question, passing));
   if (task_.goal && !is_good(best_of_all())) {
     if (auto kept = lines_.driven().replanner.kept_drive()) {
-      add_drive(scene, lines_.driven(), std::move(*kept));
+      add_drive(scene, question, lines_.driven(), std::move(*kept));
     }
   }
   const bool is_too_near =
@@ -52,13 +52,14 @@ ManeuverHypothesis Hypotheses::best(const PlanningScene& scene,
   if (task_.goal && is_too_near) search_at_levels(scene);  // as it is on any path
   if (task_.goal && !is_good(best_of_all())) add_others(scene, question);
   search_at_levels(scene);
-  if (task_.goal && !is_good(best_of_all())) find_drive(scene);
+  if (task_.goal && !is_good(best_of_all())) find_drive(scene, question);
   std::ranges::move(outcomes_of(all_, best_, scene.traffic), std::back_inserter(outcomes_));
   return std::move(best_of_all());
 }
 
 /// In place and time at once, as the last resort; along the line that it keeps nearest to.
-void Hypotheses::find_drive(const PlanningScene& scene) {
+void Hypotheses::find_drive(const PlanningScene& scene,
+                            const LateralReplanner::Question& question) {
   if (scene.view.t_s < next_search_s_) return;
   next_search_s_ = scene.view.t_s + kSearchEvery_s;
   const std::vector<VehicleState> drive = search_drive({.vehicle = vehicle_,
@@ -72,17 +73,18 @@ void Hypotheses::find_drive(const PlanningScene& scene) {
   std::optional<LateralReplanner::Proposal> along;
   for (GoalLine& line : lines_.all()) {
     if (&line != &lines_.driven()) line.replanner.locate(scene.view.measured);
-    auto found = line.replanner.through(drive);
+    auto found = line.replanner.through(drive, scene.view.t_s);
     if (!found || (along && ends_beside_m(*found) >= ends_beside_m(*along))) continue;
     nearest = &line;
     along = std::move(found);
   }
-  if (nearest) add_drive(scene, *nearest, std::move(*along));
+  if (nearest) add_drive(scene, question, *nearest, std::move(*along));
 }
 
 /// Searched for its speed at the levels from which such a path is driven.
-void Hypotheses::add_drive(const PlanningScene& scene, GoalLine& on,
-                           LateralReplanner::Proposal proposal) {
+void Hypotheses::add_drive(const PlanningScene& scene, const LateralReplanner::Question& question,
+                           GoalLine& on, LateralReplanner::Proposal proposal) {
+  on.replanner.explain_by_candidates(question, proposal);
   all_.push_back(hypothesis_on(scene, on, Maneuver::beside, std::move(proposal)));
   for (const RiskLevel& level : kInTime) {
     if (!level.is_emergency || is_good(all_.back())) continue;

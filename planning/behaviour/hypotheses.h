@@ -28,8 +28,9 @@ class Hypotheses {
   std::vector<HypothesisOutcome> take_outcomes() { return std::move(outcomes_); }
 
  private:
-  void find_drive(const PlanningScene& scene);
-  void add_drive(const PlanningScene& scene, GoalLine& on, LateralReplanner::Proposal proposal);
+  void find_drive(const PlanningScene& scene, const LateralReplanner::Question& question);
+  void add_drive(const PlanningScene& scene, const LateralReplanner::Question& question,
+                 GoalLine& on, LateralReplanner::Proposal proposal);
   void search_at_levels(const PlanningScene& scene);
   std::vector<PathQuery> first_queries(GoalLine& on, const LateralReplanner::Question& question,
                                        const PassingDecision& passing = {}) const;

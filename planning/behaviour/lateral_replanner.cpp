@@ -236,19 +236,34 @@ PlannedPath LateralReplanner::path_of(const Proposal& proposal) const {
 std::shared_ptr<const ExplainedPlan> LateralReplanner::explain(const Proposal& proposal) const {
   Plan plan = proposal.cycle->plan_and_judge_all(proposal.margins, proposal.ends);
   plan.reason = proposal.plan.reason;
+  if (proposal.knots) {
+    plan.chosen = proposal.plan.chosen;
+    plan.trajectory = proposal.plan.trajectory;
+  }
   return std::make_shared<const ExplainedPlan>(reference_, line_end_m_, proposal.cycle->input(),
                                                std::move(plan));
 }
 
 std::optional<LateralReplanner::Proposal> LateralReplanner::through(
-    std::span<const VehicleState> drive) const {
+    std::span<const VehicleState> drive, double start_s) const {
   std::vector<LateralState> knots;
+  std::vector<geometry::TrajectoryPoint> points;
   double near_s_m = s_m_;
   for (const VehicleState& state : drive) {
     const double curvature = std::tan(state.steering_rad) / vehicle_.wheelbase_m;
     const LateralState knot =
         lateral_state(reference_, state.map_from_vehicle, curvature, near_s_m);
     if (std::abs(knot.d_slope) > kMostSlope) return std::nullopt;
+    const double t_s =
+        start_s + geometry::kLongitudinal.cycle_s * static_cast<double>(points.size());
+    points.push_back({.t_s = t_s,
+                      .x_m = state.map_from_vehicle.x_m,
+                      .y_m = state.map_from_vehicle.y_m,
+                      .heading_rad = state.map_from_vehicle.heading_rad,
+                      .speed_mps = state.speed_mps,
+                      .acceleration_mps2 = state.acceleration_mps2,
+                      .steering_rad = state.steering_rad,
+                      .curvature_per_m = curvature});
     near_s_m = knot.s_m;
     if (knots.empty() || knot.s_m > knots.back().s_m + kLeastKnot_m) knots.push_back(knot);
   }
@@ -260,6 +275,7 @@ std::optional<LateralReplanner::Proposal> LateralReplanner::through(
   found.plan.chosen =
       Candidate{.end_d_m = knots.back().d_m, .end_l_m = knots.back().s_m - first.s_m};
   found.plan.start = first;
+  found.plan.trajectory = geometry::Trajectory(std::move(points));
   found.checked_m = last.s_m - first.s_m;
   found.knots = std::make_shared<const KnottedOffset>(std::move(knots));
   return found;
@@ -268,6 +284,15 @@ std::optional<LateralReplanner::Proposal> LateralReplanner::through(
 std::optional<LateralReplanner::Proposal> LateralReplanner::kept_drive() const {
   const bool is_on_it = drive_ && !from_measurement_ && s_m_ < drive_->knots->knots().back().s_m;
   return is_on_it ? drive_ : std::nullopt;
+}
+
+void LateralReplanner::explain_by_candidates(const Question& question, Proposal& drive) const {
+  if (!question.explains) return;
+  const Proposal instead = propose(question, {});
+  drive.explains = true;
+  drive.cycle = instead.cycle;
+  drive.margins = instead.margins;
+  drive.ends = instead.ends;
 }
 
 void LateralReplanner::take(const Proposal& proposal) {

@@ -111,10 +111,12 @@ class LateralReplanner {
                    bool may_leave_lanes = true) const;
   /// The path of a drive that was found otherwise, led on beside the line past its end; none where
   /// the drive does not go along the line.
-  /// @param drive  states of the rear axle, at most 0.1 s apart, from the vehicle's own on.
-  std::optional<Proposal> through(std::span<const VehicleState> drive) const;
+  /// @param drive  states of the rear axle every 0.1 s, from the vehicle's own at `start_s` on.
+  std::optional<Proposal> through(std::span<const VehicleState> drive, double start_s) const;
   /// What was taken last, if that is such a path, and the vehicle is on it; it can be taken again.
   std::optional<Proposal> kept_drive() const;
+  /// The candidates that were looked at instead, to explain such a path by if that is asked for.
+  void explain_by_candidates(const Question& question, Proposal& drive) const;
   void take(const Proposal& proposal);
   /// The path of a proposal; without a candidate the one that is kept.
   PlannedPath path_of(const Proposal& proposal) const;
