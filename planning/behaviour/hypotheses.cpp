@@ -43,7 +43,8 @@ ManeuverHypothesis Hypotheses::best(const PlanningScene& scene,
   outcomes_ = not_asked_for(passing);
   add(scene, first_queries(lines_.driven(), question, passing));
   if (task_.goal && !is_good(best_of_all())) {
-    if (auto kept = lines_.driven().replanner.kept_drive()) {
+    if (auto kept =
+            lines_.driven().replanner.kept_drive(scene.view.t_s, scene.view.measured.speed_mps)) {
       add_drive(scene, question, lines_.driven(), std::move(*kept));
     }
   }

@@ -15,6 +15,7 @@ namespace {
 constexpr double kReturn_m = 20.0;
 constexpr double kFineGrid_m = 0.2;
 constexpr double kCoarseGrid_m = 0.6;  // between ends of what is tried after the first plan
+constexpr double kDrawnStep_m = 0.5;   // of a kept drive
 constexpr double kCrawl_mps = 1.5, kBraking_mps2 = 5.0;
 constexpr double kHoldStep_m = 1.0;
 constexpr double kHeldOffset_m = 1.2;  // more is another lane, or partly
@@ -281,9 +282,27 @@ std::optional<LateralReplanner::Proposal> LateralReplanner::through(
   return found;
 }
 
-std::optional<LateralReplanner::Proposal> LateralReplanner::kept_drive() const {
-  const bool is_on_it = drive_ && !from_measurement_ && s_m_ < drive_->knots->knots().back().s_m;
-  return is_on_it ? drive_ : std::nullopt;
+std::optional<LateralReplanner::Proposal> LateralReplanner::kept_drive(double now_s,
+                                                                       double speed_mps) const {
+  if (!drive_ || from_measurement_) return std::nullopt;
+  const double end_s_m = drive_->knots->knots().back().s_m;
+  if (s_m_ >= end_s_m) return std::nullopt;
+  Proposal kept = *drive_;
+  const PlannedPath path = path_of(kept);
+  std::vector<geometry::TrajectoryPoint> points;
+  double t_s = now_s;
+  for (double s_m = s_m_; s_m < end_s_m; s_m += kDrawnStep_m) {
+    const PlannedPath::Place place = path.place_at(s_m);
+    points.push_back({.t_s = t_s,
+                      .x_m = place.pose.x_m,
+                      .y_m = place.pose.y_m,
+                      .heading_rad = place.pose.heading_rad,
+                      .speed_mps = speed_mps,
+                      .curvature_per_m = place.curvature_per_m});
+    t_s += kDrawnStep_m * place.stretch / std::max(kCrawl_mps, speed_mps);
+  }
+  kept.plan.trajectory = geometry::Trajectory(std::move(points));
+  return kept;
 }
 
 void LateralReplanner::explain_by_candidates(const Question& question, Proposal& drive) const {

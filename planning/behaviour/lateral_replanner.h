@@ -114,7 +114,8 @@ class LateralReplanner {
   /// @param drive  states of the rear axle every 0.1 s, from the vehicle's own at `start_s` on.
   std::optional<Proposal> through(std::span<const VehicleState> drive, double start_s) const;
   /// What was taken last, if that is such a path, and the vehicle is on it; it can be taken again.
-  std::optional<Proposal> kept_drive() const;
+  /// Its trajectory goes on from now at the speed of now.
+  std::optional<Proposal> kept_drive(double now_s, double speed_mps) const;
   /// The candidates that were looked at instead, to explain such a path by if that is asked for.
   void explain_by_candidates(const Question& question, Proposal& drive) const;
   void take(const Proposal& proposal);
