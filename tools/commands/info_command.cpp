@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <string>
 
 #include "roadbed/map/commonroad/scenario.h"
@@ -75,10 +76,13 @@ Json map_bounds_json(const map::RoadMap& road_map, const map::MapTotals& totals)
   return {{"min_x_m", low.x()}, {"min_y_m", low.y()}, {"max_x_m", high.x()}, {"max_y_m", high.y()}};
 }
 
+// By name each once; adding to an ordered object looks through all members for the name.
 Json unused_counts(const map::RoadMap& road_map) {
-  Json json = Json::object();
-  for (const map::UnusedContent& unused : road_map.unused()) json[unused.name] = unused.count;
-  return json;
+  std::map<std::string, std::size_t> counts;
+  for (const map::UnusedContent& unused : road_map.unused()) counts[unused.name] = unused.count;
+  Json::object_t members;
+  for (const auto& [name, count] : counts) members.push_back({name, count});
+  return members;
 }
 
 Json info_json(const map::RoadMap& road_map) {
