@@ -110,7 +110,7 @@ std::vector<AuditSubject> AuditSubjects::in_folder() const {
   std::error_code unreadable;
   for (const auto& entry : fs::recursive_directory_iterator(
            trajectory_, fs::directory_options::skip_permission_denied, unreadable)) {
-    if (!entry.is_regular_file() || !is_drive(entry.path(), trajectory_)) continue;
+    if (!entry.is_regular_file(unreadable) || !is_drive(entry.path(), trajectory_)) continue;
     subjects.push_back(
         {.name = map::one_line(entry.path().lexically_relative(trajectory_).string()),
          .file = entry.path()});

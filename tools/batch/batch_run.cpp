@@ -102,6 +102,7 @@ BatchRun::BatchRun(const BatchOptions& options, const JobKinds& kinds, ResultSto
       store_(store),
       progress_(progress),
       kinds_(kinds),
+      files_(StopSignal::is_asked),
       inputs_(std::make_shared<const InputCache>(files_, options.memory_bytes / 2,
                                                  [this] { return resident(); })),
       timings_(options.folder / "timings.jsonl"),
@@ -148,12 +149,18 @@ void BatchRun::bring(const Taken& taken, JobRunner& runner) {
   };
   if (line.is_too_long) return keep_bad(too_long(line));
   std::optional<Job> job;
+  std::string hash;
   try {
     job = parse_job(line.text, kinds_);
+    hash = hash_of(*job, files_);
   } catch (const map::InputError& error) {
     return keep_bad(error.what());
   }
-  const std::string hash = hash_of(*job, files_);
+  if (StopSignal::is_asked()) {  // perhaps before all was read
+    const std::scoped_lock lock(mutex_);
+    is_complete_ = false;
+    return;
+  }
   if (!claim(taken.index, *parse_hash(hash))) return;
   if (options_.merges) {
     const std::scoped_lock lock(mutex_);

@@ -255,5 +255,19 @@ TEST(BatchFaults, SaysThatTheDiskIsFullWhereAFolderOfScenariosFindsNoRoom) {
   EXPECT_TRUE(result["files"].empty());
 }
 
+TEST(BatchFaults, RefusesAnInputThatTheSystemMakesUpWhenItIsRead) {
+  const TemporaryFolder inputs, folder;
+  std::string lines;
+  for (const char* input : {"/proc", "/proc/kmsg", "/proc/self/mem", "/sys"}) {
+    lines += json{{"job", "validate"}, {"inputs", {input}}}.dump() + "\n";
+  }
+  const ProgramRun run = batch(inputs.write("jobs.jsonl", lines), folder.path());
+  EXPECT_EQ(run.status, 1);
+  const std::vector<json> results = results_in(folder.path());
+  ASSERT_EQ(results.size(), 4u);
+  for (const json& result : results) EXPECT_EQ(result["status"], "failed") << result;
+  EXPECT_THAT(results[0]["reason"].get<std::string>(), HasSubstr("/proc: is a folder of the"));
+}
+
 }  // namespace
 }  // namespace roadbed::tests
