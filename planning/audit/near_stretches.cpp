@@ -6,7 +6,11 @@
 namespace roadbed::planning::inline audit {
 namespace {
 
-constexpr double kMostSpans = 1e6;  // in a drive that is too near all along
+// In a drive that is too near all along; a segment may be any way long.
+double most_spans(std::size_t segments) {
+  constexpr double most = 1e6, free = 1e5, each = 100.0;
+  return std::min(most, free + each * static_cast<double>(segments));
+}
 
 // Two conflicts with an undecided time between them are one.
 void add(std::vector<Conflict>& conflicts, const Conflict& next) {
@@ -28,7 +32,7 @@ NearStretchSearch::NearStretchSearch(const ClearanceProbe& probe, double clearan
     : probe_(probe), clearance_m_(clearance_m), tolerance_m_(tolerance_m) {
   double whole_m = 0.0;
   for (std::size_t i = 0; i < probe.segments(); ++i) whole_m += probe.motion_bound_m({i, 0.0, 1.0});
-  tolerance_m_ = std::max(tolerance_m_, whole_m / kMostSpans);
+  tolerance_m_ = std::max(tolerance_m_, whole_m / most_spans(probe.segments()));
 }
 
 void NearStretchSearch::search(std::size_t to) {

@@ -46,13 +46,18 @@ PlanGrid::PlanGrid(const SlabsIn& slabs_in, const GridExtent& extent, std::int64
     : cell_m_(cell_m),
       per_cell_(1.0 / cell_m),
       extent_(extent),
-      layers_(static_cast<std::uint16_t>(layers)),
-      known_layers_(extent.seen.count()) {
-  std::vector<std::uint8_t> occupied(known_layers_.size());
+      layers_(static_cast<std::uint16_t>(layers)) {
+  std::vector<std::uint8_t> occupied;
   for (const CellRange& strip : strips_of(extent.seen)) {
-    for (const Slab& slab : slabs_in(strip)) paint(slab, strip, occupied);
+    for (const Slab& slab : slabs_in(strip)) {
+      if (is_blank()) {
+        known_layers_.resize(extent.seen.count());
+        occupied.resize(known_layers_.size());
+      }
+      paint(slab, strip, occupied);
+    }
   }
-  occupied_ = layer_of(occupied);
+  if (!is_blank()) occupied_ = layer_of(occupied);
 }
 
 // Leaves do not overlap, so that the layers of free ones add up.
@@ -102,6 +107,9 @@ double PlanGrid::bound_m(const Cell& cell, const Eigen::Vector2d& point, const L
 }
 
 double PlanGrid::lower_bound_m(const Eigen::Vector2d& point, ObstacleKind kind) const {
+  if (is_blank()) {
+    return kind == ObstacleKind::unknown ? 0.0 : std::numeric_limits<double>::infinity();
+  }
   const Cell cell = cell_at(point);
   if (!extent_.held.holds(cell.x, cell.y)) return bound_from_outside_m(point, kind);
   const double inside_m = bound_m(cell, point, layer(kind));
@@ -164,8 +172,20 @@ double PlanGrid::reach_m(const geometry::Rectangle& rectangle, double within_m,
   return reach_m;
 }
 
+// All cells are unknown: those that the rectangle may touch are enough to find the one that a grid
+// of all would tell.
+NearCell PlanGrid::nearest_in_blank(const geometry::Rectangle& rectangle) const {
+  const CellRange touched = RectangleCover::cells_touched(rectangle, cell_m_).grown(1);
+  const CellBits all(touched, std::vector<std::uint8_t>(touched.count(), 1));
+  return *nearest_set_cell(all, cell_m_, rectangle, 0.0);
+}
+
 std::optional<NearCell> PlanGrid::nearest_inside(const geometry::Rectangle& rectangle,
                                                  double within_m, ObstacleKind kind) const {
+  if (is_blank()) {
+    if (kind == ObstacleKind::occupied || extent_.seen.empty()) return std::nullopt;
+    return nearest_in_blank(rectangle);
+  }
   if (extent_.seen.empty()) return std::nullopt;
   const Layer& cells = layer(kind);
   const Cell cell = cell_at(rectangle.centre);
@@ -226,7 +246,7 @@ const PlanGrid::Measured& PlanGrid::measured() const {
 // A body mostly is over measured space: the search goes farther only where it is not.
 std::optional<NearCell> PlanGrid::nearest_measured(const geometry::Rectangle& rectangle,
                                                    double within_m) const {
-  if (extent_.seen.empty()) return std::nullopt;
+  if (is_blank()) return std::nullopt;
   const CellBits& cells = measured().in_part;
   if (auto under = nearest_set_cell(cells, cell_m_, rectangle, 0.0)) return under;
   return nearest_set_cell(cells, cell_m_, rectangle, within_m);
@@ -239,7 +259,7 @@ std::vector<NearCell> PlanGrid::cells_at(const geometry::Rectangle& rectangle,
   const CellRange touched = RectangleCover::cells_touched(rectangle, cell_m_);
   for (std::int64_t y = touched.from_y; y < touched.to_y; ++y) {
     for (std::int64_t x = touched.from_x; x < touched.to_x; ++x) {
-      const bool is_seen = extent_.seen.holds(x, y);
+      const bool is_seen = !is_blank() && extent_.seen.holds(x, y);
       const bool holds = is_unknown ? !is_seen || known_layers_[extent_.seen.index(x, y)] < layers_
                                     : is_seen && occupied_.bits.next_in_row(y, x, x).has_value();
       if (holds) cells.push_back({0.0, x, y});
@@ -249,11 +269,13 @@ std::vector<NearCell> PlanGrid::cells_at(const geometry::Rectangle& rectangle,
 }
 
 bool PlanGrid::is_any_unknown(const CellRange& cells) const {
+  if (is_blank()) return true;
   const CellRange inside = cells.cut(extent_.seen);
   return inside.count() < cells.count() || any_in(measured().not_in_all, inside);
 }
 
 bool PlanGrid::is_any_measured(const CellRange& cells) const {
+  if (is_blank()) return false;
   const CellRange inside = cells.cut(extent_.seen);
   return !inside.empty() && any_in(measured().in_part, inside);
 }

@@ -79,6 +79,8 @@ class PlanGrid {
   };
 
   Cell cell_at(const Eigen::Vector2d& point) const;
+  /// Whether nothing was measured: then no cell is kept, as a drive may go far through such space.
+  bool is_blank() const { return known_layers_.empty(); }
   void paint(const Slab& slab, const CellRange& range, std::vector<std::uint8_t>& occupied);
   Layer layer_of(const std::vector<std::uint8_t>& set) const;
   const Layer& layer(ObstacleKind kind) const;
@@ -91,6 +93,7 @@ class PlanGrid {
   double upper_bound_m(const Eigen::Vector2d& point, const Layer& layer) const;
   double reach_m(const geometry::Rectangle& rectangle, double within_m, const Layer& layer) const;
   NearCell nearest_outside(const geometry::Rectangle& rectangle) const;
+  NearCell nearest_in_blank(const geometry::Rectangle& rectangle) const;
   std::optional<NearCell> nearest_inside(const geometry::Rectangle& rectangle, double within_m,
                                          ObstacleKind kind) const;
 

@@ -363,5 +363,25 @@ TEST(ClearanceField, UnknownShareOfARotatedVehicleEqualsDenseSampling) {
   }
 }
 
+// As grids its tiles would take 40 GB, one after the other.
+TEST(ClearanceField, FarFromAllThatWasMeasuredIsUnknownAndKeepsNoCells) {
+  std::mt19937 random(5);
+  const OccupancyMap occupancy = scans_between_hits(random, 15.0);
+  const ClearanceField field(occupancy, kBand,
+                             FieldRegion{.around = {{4000.0, -40.0}, {2e6, 0.0}}});
+  const VehicleShape shape;
+  for (double x = 10'000.0; x < 1.9e6; x += 1000.0) {
+    const Pose2 pose(x, -20.03, 0.3);
+    ASSERT_EQ(field.unknown_fraction(pose, shape), 1.0);
+    ASSERT_FALSE(field.nearest(pose, shape, 50.0));
+    ASSERT_EQ(field.distance_bound_m(pose.position()), field.horizon_m());
+    const auto unknown = field.nearest(pose, shape, 50.0, ObstacleKind::unknown);
+    ASSERT_TRUE(unknown);
+    ASSERT_EQ(unknown->distance_m, 0.0);
+    ASSERT_FALSE(field.nearest_measured(geometry::body_at(pose, shape), 20.0));
+  }
+  EXPECT_LT(field.unknown_fraction(Pose2(5000.0, -20.0, 0.0), shape), 1.0);
+}
+
 }  // namespace
 }  // namespace roadbed::map
