@@ -28,6 +28,13 @@ double stopping_m(const PlannerView& view) {
   return speed * usual.actuator_lag_s - 0.5 * speed * speed / usual.least_mps2;
 }
 
+std::string why_emergency(double command_mps2) {
+  if (std::abs(command_mps2) > SpeedSearchOptions{}.most_mps2) {
+    return fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command_mps2);
+  }
+  return "nothing within ¼ g and gentle bends reaches the goal or is free";
+}
+
 /// Who is nearest ahead on the path.
 std::optional<DriveLead> lead_on(const StGraph& occupancy, const PlanningScene& scene) {
   const StInterval* nearest = nullptr;
@@ -186,8 +193,7 @@ void HypothesisSpeed::explain(const ManeuverHypothesis& best, const PlanningScen
     command.reason = fmt::format("no way on is free: {:.1f} s at best", best.answer.free_until_s);
   } else if (best.risk_level->is_emergency) {
     command.behaviour = Behaviour::emergency;
-    command.reason =
-        fmt::format("¼ g is not enough: {:.1f} m/s² asked for", command.acceleration_mps2);
+    command.reason = why_emergency(command.acceleration_mps2);
   } else if (goal_is_past(t_s) || !has_goal) {
     command.behaviour = Behaviour::stop;
     command.reason = has_goal ? "the goal's time is over" : "no goal is asked for";

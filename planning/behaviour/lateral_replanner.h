@@ -15,10 +15,9 @@ namespace roadbed::planning::inline behaviour {
 
 /// The question of a cycle, and what became of every candidate.
 struct ExplainedPlan {
-  /// @param on_line, end_m  that it was planned on: past the end it goes on straight. A copy is
-  /// kept,
-  ///                     since the planner's lines may be gone before.
-  /// @param asked  its obstacles are copied; occupied space is kept by reference.
+  /// The line and the obstacles are copied, as the planner's may be gone before; occupied space is
+  /// kept by reference.
+  /// @param on_line, end_m  that it was planned on: past the end it goes on straight.
   ExplainedPlan(const ReferenceLine& on_line, double end_m, const PlanInput& asked, Plan answer);
   ExplainedPlan(const ExplainedPlan&) = delete;
   ExplainedPlan& operator=(const ExplainedPlan&) = delete;

@@ -195,10 +195,11 @@ class DriveSearch {
                                        state.speed_mps / kAlike_mps,
                                        lateral_mps2 / kAlikeLateral_mps2,
                                        state.acceleration_mps2 / kAlikeAlong_mps2};
-    constexpr std::uint64_t kMiddle = 512;
+    constexpr double kMiddle = 512.0;
     std::uint64_t cell = 0;
     for (const double place : places) {
-      cell = cell * 2 * kMiddle + static_cast<std::uint64_t>(kMiddle + std::floor(place));
+      const double column = std::clamp(kMiddle + std::floor(place), 0.0, 2.0 * kMiddle - 1.0);
+      cell = cell * 1024 + static_cast<std::uint64_t>(column);
     }
     return cell;
   }

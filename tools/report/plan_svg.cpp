@@ -242,31 +242,41 @@ std::string axes_svg(const PlanView& view) {
   return map::svg_path("axis", ticks) + labels;
 }
 
-std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& view) {
+struct LegendKey {
+  std::string css_class, words;
+};
+
+std::vector<LegendKey> legend_of(const planning::Plan& plan) {
   std::array<std::size_t, planning::kRejections> counts{};
-  for (const Candidate& candidate : picture.plan.candidates) {
+  for (const Candidate& candidate : plan.candidates) {
     ++counts[static_cast<std::size_t>(candidate.rejection)];
   }
-  const double top_px = kTitle_px + view.height_px + 16.0;
-  std::string svg;
-  double x_px = kSide_px;
+  std::vector<LegendKey> keys;
   for (const CandidateLook& look : kCandidateLooks) {
-    const std::string words =
-        fmt::format("{} ({})", look.words, counts[static_cast<std::size_t>(look.rejection)]);
-    svg += map::svg_path(
-        fmt::format("{} key", look.css_class),
-        fmt::format("M{} {}h22", map::svg_number(x_px), map::svg_number(top_px - 4.0)));
-    svg += map::svg_text("", {x_px + 28.0, top_px}, words);
-    x_px += 46.0 + 6.6 * static_cast<double>(words.size());
+    const std::size_t count = counts[static_cast<std::size_t>(look.rejection)];
+    keys.push_back(
+        {fmt::format("{} key", look.css_class), fmt::format("{} ({})", look.words, count)});
   }
-  const std::array<std::pair<const char*, const char*>, 2> lines = {
-      {{"chosen", "chosen, with the vehicle at whole seconds"}, {"line", "reference line"}}};
-  x_px = kSide_px;
-  for (const auto& [css_class, words] : lines) {
-    svg += map::svg_path(
-        css_class, fmt::format("M{} {}h22", map::svg_number(x_px), map::svg_number(top_px + 18.0)));
-    svg += map::svg_text("", {x_px + 28.0, top_px + 22.0}, words);
-    x_px += 320.0;
+  keys.push_back({"chosen", "chosen, with the vehicle at whole seconds"});
+  keys.push_back({"line", "reference line"});
+  return keys;
+}
+
+/// In rows, none of which is cut in a font whose letters are 7 px wide.
+std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& view) {
+  constexpr double kKey_px = 28.0, kLetter_px = 7.0, kBetween_px = 16.0, kRow_px = 22.0;
+  std::string svg;
+  double x_px = kSide_px, y_px = kTitle_px + view.height_px + 16.0;
+  for (const LegendKey& key : legend_of(picture.plan)) {
+    const double width_px = kKey_px + kLetter_px * static_cast<double>(key.words.size());
+    if (x_px + width_px > kPlanWidth_px) {
+      x_px = kSide_px;
+      y_px += kRow_px;
+    }
+    svg += map::svg_path(key.css_class, fmt::format("M{} {}h22", map::svg_number(x_px),
+                                                    map::svg_number(y_px - 4.0)));
+    svg += map::svg_text("", {x_px + kKey_px, y_px}, key.words);
+    x_px += width_px + kBetween_px;
   }
   return svg;
 }

@@ -4,26 +4,13 @@
 
 #include <utility>
 
+#include "roadbed/tests/support/straight_profile.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {
 namespace {
 
 constexpr double kMargin_m = 0.1;
-
-/// Straight along the x axis, 12 m/s wanted all along.
-planning::PathProfile straight() {
-  planning::PathProfile profile;
-  for (int i = 0; i <= 400; ++i) {
-    const double ahead = 0.5 * i;
-    profile.ahead_m.push_back(ahead);
-    profile.station_m.push_back(ahead);
-    profile.body.push_back(geometry::body_at({ahead, 0.0, 0.0}, {}));
-    profile.wanted_mps.push_back(12.0);
-    profile.most_mps.push_back(12.0);
-  }
-  return profile;
-}
 
 planning::Obstacle moving(geometry::Pose2 from, double speed_mps) {
   planning::Obstacle other{.id = "other", .motion = {}};
@@ -34,7 +21,7 @@ planning::Obstacle moving(geometry::Pose2 from, double speed_mps) {
 
 planning::CruiseForecast forecast(std::vector<planning::Obstacle> others, bool crosses,
                                   double stop_m = 1e3, int steps = 150) {
-  const planning::PathProfile profile = straight();
+  const planning::PathProfile profile = tests::straight_profile(12.0, 12.0);
   const std::vector<bool> marks(others.size(), crosses), none(others.size(), false);
   const planning::StGraph occupancy(profile, {others}, 0.0, steps, kMargin_m);
   return planning::forecast_cruise({.profile = profile,

@@ -8,26 +8,13 @@
 
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/planning/speed/speed_search.h"
+#include "roadbed/tests/support/straight_profile.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools {
 namespace {
 
 constexpr double kBraking_mps2 = 8.0, kFar_m = 1e4, kMargin_m = 0.3;
-
-/// Straight along the x axis.
-planning::PathProfile straight(double wanted_mps) {
-  planning::PathProfile profile;
-  for (int i = 0; i <= 400; ++i) {
-    const double ahead = 0.5 * i;
-    profile.ahead_m.push_back(ahead);
-    profile.station_m.push_back(ahead);
-    profile.body.push_back(geometry::body_at({ahead, 0.0, 0.0}, {}));
-    profile.wanted_mps.push_back(wanted_mps);
-    profile.most_mps.push_back(60.0);
-  }
-  return profile;
-}
 
 /// Drives along the x axis; its centre is at `x_m` after 1 s.
 planning::Obstacle moving(double x_m, double speed_mps) {
@@ -60,7 +47,7 @@ TEST(SafeWayOn, IsThereWhereBrakingEndsBeforeTheOther) {
       other_mps(-15.0, 20.0);
   int safe = 0, barred = 0;
   for (int i = 0; i < 400; ++i) {
-    const planning::PathProfile profile = straight(12.0);
+    const planning::PathProfile profile = tests::straight_profile(12.0);
     const double x = x_m(random), other = other_mps(random);
     const planning::SpeedState own{
         .t_s = 1.0, .speed_mps = own_mps(random), .acceleration_mps2 = own_mps2(random)};
@@ -80,7 +67,7 @@ TEST(SafeWayOn, IsThereWhereBrakingEndsBeforeTheOther) {
 }
 
 TEST(SafeWayOn, EndsBeforeTheRoadDoes) {
-  const planning::PathProfile profile = straight(12.0);
+  const planning::PathProfile profile = tests::straight_profile(12.0);
   const planning::StGraph nobody(profile, {}, 0.0, 10, kMargin_m);
   const double stop_m = 12.0 * geometry::kLongitudinal.actuator_lag_s + 72.0 / kBraking_mps2;
   const planning::SpeedState last{.t_s = 1.0, .ahead_m = 20.0, .speed_mps = 12.0};
@@ -89,7 +76,7 @@ TEST(SafeWayOn, EndsBeforeTheRoadDoes) {
 }
 
 TEST(SafeWayOn, WhoIsIgnoredBarsNothing) {
-  const planning::PathProfile profile = straight(12.0);
+  const planning::PathProfile profile = tests::straight_profile(12.0);
   const std::vector<planning::Obstacle> others{moving(12.0, 0.0)};
   const planning::StGraph occupancy(profile, {others}, 0.0, 10, kMargin_m);
   const planning::SpeedState last{.t_s = 1.0, .speed_mps = 15.0};
@@ -100,7 +87,7 @@ TEST(SafeWayOn, WhoIsIgnoredBarsNothing) {
 TEST(SafeWayOn, EverySpeedThatIsFoundHasOneWhateverItsHorizon) {
   for (const double x_m : {35.0, 45.0, 60.0}) {
     for (const double horizon_s : {1.0, 1.5, 2.0, 3.0}) {
-      const planning::PathProfile profile = straight(20.0);
+      const planning::PathProfile profile = tests::straight_profile(20.0);
       const std::vector<planning::Obstacle> others{moving(x_m, 0.0)};
       const planning::StGraph occupancy(profile, {others}, 0.0, 40, kMargin_m);
       const planning::SpeedSearchAnswer found =

@@ -7,6 +7,7 @@
 
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/tests/support/straight_profile.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
@@ -14,20 +15,6 @@ namespace roadbed::tools {
 namespace {
 
 constexpr double kWanted_mps = 12.0;
-
-/// A straight way along the x axis, 150 m long.
-planning::PathProfile straight_way() {
-  planning::PathProfile way;
-  for (int i = 0; i <= 300; ++i) {
-    const double ahead = 0.5 * i;
-    way.ahead_m.push_back(ahead);
-    way.station_m.push_back(ahead);
-    way.body.push_back(geometry::body_at({ahead, 0.0, 0.0}, {}));
-    way.wanted_mps.push_back(kWanted_mps);
-    way.most_mps.push_back(60.0);
-  }
-  return way;
-}
 
 World world_with(std::vector<planning::Obstacle> obstacles) {
   return tests::straight_world(
@@ -52,7 +39,7 @@ struct Case {
 
 planning::SpeedSearchAnswer answer(const Case& asked) {
   const World world = world_with(asked.obstacles);
-  const planning::PathProfile way = straight_way();
+  const planning::PathProfile way = tests::straight_profile(kWanted_mps);
   const planning::StGraph occupancy(way, planning::Traffic{world.obstacles}, 0.0, 120, 0.3);
   return search_speed({.profile = way,
                        .occupancy = occupancy,
