@@ -7,13 +7,11 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <new>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/cli/help_text.h"
 #include "roadbed/tools/cli/standard_error.h"
@@ -71,15 +69,11 @@ struct Registered {
 Exit run_guarded(Command& command, const CommonOptions& common) {
   try {
     return command.run({std::cout, std::cerr}, common);
-  } catch (const map::InputError& error) {
-    fmt::print(std::cerr, "roadbed: {}\n", error.what());
-  } catch (const std::bad_alloc&) {
-    fmt::print(std::cerr, "roadbed: out of memory\n");
   } catch (const std::exception& error) {
-    fmt::print(std::cerr, "roadbed: internal error: {}; please report it with the command line\n",
-               error.what());
+    const Failure failure = failure_of(error);
+    fmt::print(std::cerr, "roadbed: {}\n", failure.text);
+    return failure.exit;
   }
-  return Exit::failed;
 }
 
 int run_command_line(int argc, char** argv) {
@@ -132,7 +126,7 @@ int run_program(int argc, char** argv) {
   const int status = run_command_line(argc, argv);
   if (standard_output.finish()) return status;
   fmt::print(std::cerr, "roadbed: {}\n", standard_output.fault());
-  return status == static_cast<int>(Exit::ok) ? static_cast<int>(Exit::failed) : status;
+  return status <= static_cast<int>(Exit::no) ? static_cast<int>(Exit::unusable) : status;
 }
 
 }  // namespace roadbed::tools

@@ -1,4 +1,4 @@
-// Every command on input that it cannot use: exit status 1, one line on stderr that names the file,
+// Every command on input that it cannot use: exit status 3, one line on stderr that names the file,
 // nothing on stdout, nothing written.
 
 #include <gtest/gtest.h>

@@ -1,46 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/program_commands.h"
 
 namespace roadbed::tests {
 namespace {
-
-std::vector<std::string> help_lines(std::vector<std::string> words) {
-  words.push_back("--help");
-  const ProgramRun run = run_roadbed(words);
-  EXPECT_EQ(run.status, 0) << run.err;
-  std::vector<std::string> lines;
-  std::istringstream stream(run.out);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// The names that stand under "Subcommands:".
-std::vector<std::string> commands_in(const std::vector<std::string>& help) {
-  std::vector<std::string> names;
-  auto line = std::ranges::find(help, "Subcommands:");
-  if (line == help.end()) return names;
-  for (++line; line != help.end() && line->starts_with("  "); ++line) {
-    if ((*line)[2] != ' ') names.push_back(line->substr(2, line->find(' ', 2) - 2));
-  }
-  return names;
-}
-
-/// Every command's words, those of its parts too: {"occupancy", "build"}.
-std::vector<std::vector<std::string>> all_commands() {
-  std::vector<std::vector<std::string>> commands;
-  for (const std::string& name : commands_in(help_lines({}))) {
-    commands.push_back({name});
-    for (const std::string& part : commands_in(help_lines({name})))
-      commands.push_back({name, part});
-  }
-  return commands;
-}
 
 std::size_t columns_of(const std::string& line) {
   return static_cast<std::size_t>(

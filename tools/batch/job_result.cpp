@@ -11,13 +11,12 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/tools/batch/job.h"
+#include "roadbed/tools/cli/command.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kUsage = 2;
 
 std::string json_text(const json& value) { return map::json_text(value); }
 
@@ -100,7 +99,7 @@ std::string line_of(const Job& job, const JobResult& result) {
 }
 
 std::string line_of_bad_line(std::string_view text, const std::string& reason) {
-  return line(failure(hash_of_bad_line(text), Cause::line, kUsage, reason), nullptr,
+  return line(failure(hash_of_bad_line(text), Cause::line, static_cast<int>(Exit::usage), reason), nullptr,
               R"(,"inputs":[],"options":{},"outputs":[])");
 }
 

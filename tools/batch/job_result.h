@@ -42,7 +42,7 @@ bool may_pass(Cause cause);
 struct JobResult {
   std::string hash;
   JobStatus status = JobStatus::failed;
-  std::optional<int> exit = {};     ///< none where the process died
+  std::optional<int> exit = {};     ///< the command's; none where it did not end, or not run
   std::string reason = {};          ///< of `no` and `failed`, one line
   std::optional<Cause> cause = {};  ///< of `failed`
   std::string document = {};        ///< JSON that the command printed, on one line; may be empty

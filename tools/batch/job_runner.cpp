@@ -19,7 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFailed = static_cast<int>(Exit::failed), kWrongUsage = static_cast<int>(Exit::usage);
+/// Why a command that threw has no answer.
+Cause cause_of(const std::exception& error) {
+  if (dynamic_cast<const map::OutputError*>(&error) != nullptr) return Cause::disk;
+  if (dynamic_cast<const map::InputError*>(&error) != nullptr) return Cause::input;
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ? Cause::memory : Cause::internal;
+}
 
 // A JSON document without the blanks between its parts, so on one line; all else stays as it is
 // written, numbers too.
@@ -91,18 +96,16 @@ JobResult run_command(const Job& job, const std::string& hash, const fs::path& f
   ArgumentSet set;
   std::unique_ptr<Command> command;
   if (const std::string fault = parse_options(job, outputs, command, set); !fault.empty()) {
-    return failure(hash, Cause::line, kWrongUsage, fault);
+    return failure(hash, Cause::line, static_cast<int>(Exit::usage), fault);
   }
   if (!outputs.empty()) make_folder(folder_of_files(hash, folder));
   remove_old(outputs);
   std::ostringstream out, err;
   const Exit exit =
       command->run({out, err}, {.quiet = true, .threads = 1, .is_alone = false, .inputs = inputs});
-  if (exit != Exit::ok && out.view().empty()) {
-    return failure(hash, Cause::input, static_cast<int>(exit), err.str());
-  }
   if (!nlohmann::json::accept(out.view())) {
-    return failure(hash, Cause::internal, static_cast<int>(exit), "what it printed is no JSON");
+    return failure(hash, Cause::internal, static_cast<int>(Exit::internal),
+                   "what it printed is no JSON");
   }
   JobResult result{.hash = hash,
                    .status = exit == Exit::ok ? JobStatus::done : JobStatus::no,
@@ -119,14 +122,9 @@ JobResult run_guarded(const Job& job, const std::string& hash, const fs::path& f
                       const std::shared_ptr<const Inputs>& inputs) {
   try {
     return run_command(job, hash, folder, inputs);
-  } catch (const map::OutputError& error) {
-    return failure(hash, Cause::disk, kFailed, error.what());
-  } catch (const map::InputError& error) {
-    return failure(hash, Cause::input, kFailed, error.what());
-  } catch (const std::bad_alloc&) {
-    return failure(hash, Cause::memory, kFailed, "out of memory");
   } catch (const std::exception& error) {
-    return failure(hash, Cause::internal, kFailed, std::string("internal error: ") + error.what());
+    const Failure failed = failure_of(error);
+    return failure(hash, cause_of(error), static_cast<int>(failed.exit), failed.text);
   }
 }
 

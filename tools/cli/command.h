@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -12,9 +13,18 @@ namespace roadbed::tools::inline cli {
 /// Exit status of the program.
 enum class Exit {
   ok = 0,
-  failed = 1,  ///< the answer is bad: unusable input, no route, conflict, …
-  usage = 2,   ///< the command line is wrong
+  no = 1,        ///< the answer is no: conflict, no route, goal not reached, …; outputs are kept
+  usage = 2,     ///< the command line is wrong
+  unusable = 3,  ///< an input is unusable or missing, or an output cannot be written; none is left
+  internal = 4,  ///< the program's own fault, or it ran out of memory; no output is left
 };
+
+/// What an exception that ended a command comes to: its exit status, and a line for the user.
+struct Failure {
+  Exit exit;
+  std::string text;
+};
+Failure failure_of(const std::exception& error);
 
 /// Options that every command has.
 struct CommonOptions {

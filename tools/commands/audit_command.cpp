@@ -78,7 +78,7 @@ class AuditCommand : public Command {
     inputs_ = common.inputs;
     if (!check_.empty()) {
       const bool holds = check_certificate_file(check_, demands(), json_, *inputs_, streams.out);
-      return holds ? Exit::ok : Exit::failed;
+      return holds ? Exit::ok : Exit::no;
     }
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
       if (!output.empty()) map::check_writable(output, force_);
@@ -266,7 +266,7 @@ class AuditCommand : public Command {
     } else {
       streams.out << audits_table(audits);
     }
-    return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::failed;
+    return std::ranges::all_of(audits, &AuditedDrive::is_clear) ? Exit::ok : Exit::no;
   }
 
   // Of what the vehicle could not drive; audited all the same.
@@ -294,7 +294,7 @@ class AuditCommand : public Command {
     } else {
       streams.out << audit_text(audited.audit.report);
     }
-    return audited.is_clear() ? Exit::ok : Exit::failed;
+    return audited.is_clear() ? Exit::ok : Exit::no;
   }
 
   static nlohmann::ordered_json with_removal(nlohmann::ordered_json json, const Scene& scene) {

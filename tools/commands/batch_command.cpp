@@ -147,7 +147,7 @@ class BatchCommand : public Command {
     run.run();
     if (!run.is_complete()) {
       say_why(streams.err, run, store);
-      return Exit::failed;
+      return Exit::unusable;
     }
     const BatchSummary summary = write_results(store, run.order(), folder_);
     mark.remove();
@@ -156,7 +156,7 @@ class BatchCommand : public Command {
                    : fmt::format("{} were there already", with_commas(run.were_there())));
     if (!common.quiet) note_where(streams.err, summary);
     const bool is_all_done = summary.count(JobStatus::done) == summary.count();
-    return is_all_done ? Exit::ok : Exit::failed;
+    return is_all_done ? Exit::ok : Exit::no;
   }
 
   static void say_why(std::ostream& err, const BatchRun& run, const ResultStore& store) {

@@ -127,7 +127,7 @@ class LocateCommand : public Command {
       for (const Json& answer : answers) print_places(streams.out, answer);
     }
     if (!all_found) fmt::print(streams.err, "roadbed: a point has no lane within 50 km\n");
-    return all_found ? Exit::ok : Exit::failed;
+    return all_found ? Exit::ok : Exit::no;
   }
 
  private:

@@ -70,7 +70,7 @@ class MapDiffCommand : public Command {
       for (const auto& change : changes) print_differences(streams.out, change);
       fmt::print(streams.out, "{} change{}\n", changes.size(), changes.size() == 1 ? "" : "s");
     }
-    return changes.empty() ? Exit::ok : Exit::failed;
+    return changes.empty() ? Exit::ok : Exit::no;
   }
 
  private:

@@ -92,7 +92,7 @@ class PlanCommand : public Command {
       show(streams.out, replayed);
       is_found = replayed.explained.plan.chosen.has_value();
     });
-    return is_found ? Exit::ok : Exit::failed;
+    return is_found ? Exit::ok : Exit::no;
   }
 
  private:
@@ -118,7 +118,7 @@ class PlanCommand : public Command {
       print_plan(streams.out, cycle, explain_);
       if (explain_) print_circles(streams.out, scenario.vehicle, circles_);
     }
-    return plan.chosen ? Exit::ok : Exit::failed;
+    return plan.chosen ? Exit::ok : Exit::no;
   }
 
   void show(std::ostream& out, const ReplayedCycle& replayed) const {

@@ -81,7 +81,7 @@ class ReachCommand : public Command {
     const std::string fault = router.unfit(from.on_lane, "start");
     if (!fault.empty()) {
       fmt::print(streams.err, "roadbed: nothing can be reached: {}\n", fault);
-      return Exit::failed;
+      return Exit::no;
     }
     const auto reached = planning::isochrone(router, from.for_route(), limit.value);
     const char* unit = limit.measure == planning::RouteCost::time ? "s" : "m";

@@ -102,7 +102,7 @@ class ReferenceCommand : public Command {
         planning::Router(road_map, asked.options).find(asked.places());
     if (!answer.route) {
       fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
-      return Exit::failed;
+      return Exit::no;
     }
     planning::ReferenceLineOptions options = options_;
     options.corner_vehicle = way_points_.vehicle();

@@ -125,7 +125,7 @@ class RouteCommand : public Command {
                  answer.found + answer.none + answer.faults.size(), answer.found, answer.none,
                  answer.faults.size());
     }
-    return answer.faults.empty() && answer.none == 0 ? Exit::ok : Exit::failed;
+    return answer.faults.empty() && answer.none == 0 ? Exit::ok : Exit::no;
   }
 
   void print(const Streams& streams, const map::RoadMap& road_map,
@@ -176,7 +176,7 @@ class RouteCommand : public Command {
       fmt::print(streams.out, "{}\n", text_of(json, 2));
     }
     fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
-    return Exit::failed;
+    return Exit::no;
   }
 
   std::filesystem::path map_file_, output_, batch_;

@@ -208,7 +208,7 @@ class SimulateCommand : public Command {
     if (!common.quiet) {
       fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
     }
-    return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::failed;
+    return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::no;
   }
 
   void print_one(std::ostream& out, const DrivenScenario& driven) const {
@@ -237,7 +237,7 @@ class SimulateCommand : public Command {
     if (!timings_file_.empty()) map::write_output(timings_file_, folder_timings_csv(rows));
     json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);
     const bool all_good = std::ranges::all_of(rows, &ScenarioRow::is_good);
-    return all_good ? Exit::ok : Exit::failed;
+    return all_good ? Exit::ok : Exit::no;
   }
 
   static std::string folder_timings_csv(const std::vector<ScenarioRow>& rows) {

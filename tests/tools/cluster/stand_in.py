@@ -45,7 +45,7 @@ def answer(line: str, output: Path) -> dict[str, object]:
             while True:
                 held += b"\1" * 10_000_000
         except MemoryError:
-            status, exit_, reason, cause = "failed", 1, "out of memory", "memory"
+            status, exit_, reason, cause = "failed", 4, "out of memory", "memory"
     elif do == "kill-worker":
         os.kill(os.getppid(), signal.SIGKILL)
         signal.pause()
@@ -55,7 +55,7 @@ def answer(line: str, output: Path) -> dict[str, object]:
         sys.stderr.write("words\n" * 100_000)
     missing = [path for path in job.get("inputs", []) if not Path(path).is_file()]
     if missing:
-        status, exit_, reason, cause = "failed", 1, f"{missing[0]}: no such file", "input"
+        status, exit_, reason, cause = "failed", 3, f"{missing[0]}: no such file", "input"
     elif do == "write":
         name = f"files/{hash_[:2]}/{hash_}.bin"
         try:
@@ -65,7 +65,7 @@ def answer(line: str, output: Path) -> dict[str, object]:
             files = [name]
         except OSError as error:
             path.unlink(missing_ok=True)
-            status, exit_, reason, cause = "failed", 1, f"{name}: {error.strerror}", "disk"
+            status, exit_, reason, cause = "failed", 3, f"{name}: {error.strerror}", "disk"
     return {
         "hash": hash_,
         "job": job["job"],
@@ -135,7 +135,7 @@ def main() -> int:
     for number, line in enumerate(lines, 1):
         if not line.startswith("{"):
             print(f"{arguments[0]}:{number}: not a job", file=sys.stderr)
-            return 1
+            return 3
     done = journal(output)
     if "--list-missing" in arguments:
         seen = {hash_ for hash_, line in done.items() if stands(line)}
@@ -151,12 +151,16 @@ def main() -> int:
         run_missing(lines, done, output)
     elif any(hash_of(line) not in done for line in lines):
         print("jobs have no result", file=sys.stderr)
-        return 1
+        return 3
     results = [
         json.dumps({"line": number, **json.loads(done[hash_of(line)])})
         for number, line in enumerate(lines, 1)
     ]
-    (output / "results.jsonl").write_text("".join(f"{r}\n" for r in results), encoding="utf-8")
+    try:
+        (output / "results.jsonl").write_text("".join(f"{r}\n" for r in results), encoding="utf-8")
+    except OSError as error:
+        print(error, file=sys.stderr)
+        return 3
     (output / "unfinished").unlink(missing_ok=True)
     return 0
 

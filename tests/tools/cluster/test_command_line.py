@@ -53,25 +53,25 @@ def test_certificates_that_are_none_are_told_with_status_2(tmp_path: Path) -> No
         assert not (tmp_path / "out").exists()
 
 
-def test_unusable_jobs_are_told_with_status_1_and_leave_nothing(tmp_path: Path) -> None:
+def test_unusable_jobs_are_told_with_status_3_and_leave_nothing(tmp_path: Path) -> None:
     gone = run(tmp_path / "jobs.jsonl", "-o", tmp_path / "out")
     assert (gone.returncode, gone.stderr) == (
-        1,
+        3,
         f"roadbed-cluster: {tmp_path}/jobs.jsonl: no such file\n",
     )
     folder = run(tmp_path, "-o", tmp_path / "out")
     assert (folder.returncode, folder.stderr) == (
-        1,
+        3,
         f"roadbed-cluster: {tmp_path}: is a folder; `roadbed jobs` writes a file of jobs\n",
     )
     jobs = write_jobs(tmp_path / "jobs.jsonl", ["no job"])
     file = run(jobs, "-o", jobs)
     assert (file.returncode, file.stderr) == (
-        1,
+        3,
         f"roadbed-cluster: {jobs}: is no folder; name one for the results\n",
     )
     bad = run(jobs, "-o", tmp_path / "out")
-    assert (bad.returncode, bad.stderr) == (1, f"{jobs}:1: not a job\n")
+    assert (bad.returncode, bad.stderr) == (3, f"{jobs}:1: not a job\n")
     assert not (tmp_path / "out").exists()
 
 
@@ -96,5 +96,5 @@ def test_a_merge_that_fails_writes_no_tables(tmp_path: Path) -> None:
     (tmp_path / "out" / "unfinished").touch()
     (tmp_path / "out" / "results.jsonl").unlink()
     (tmp_path / "out" / "results.jsonl").mkdir()  # cannot be written
-    assert run(jobs, "-o", tmp_path / "out").returncode == 1
+    assert run(jobs, "-o", tmp_path / "out").returncode == 3
     assert list((tmp_path / "out" / "tables").iterdir()) == []

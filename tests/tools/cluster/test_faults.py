@@ -79,7 +79,7 @@ def go_through(tmp_path: Path, dask: DaskProcesses, jobs: int, kills: int, step:
     first.wait_for(step)
     dask.scheduler.kill()
     status, said = first.end()
-    assert status == 1
+    assert status == 3
     assert said.startswith("roadbed-cluster: the scheduler is gone after ")
     assert len(said.splitlines()) == 1
     assert first.done() < jobs
@@ -206,7 +206,7 @@ def test_a_full_disk_under_the_journal_stops_with_a_line_and_resumes(tmp_path: P
     jobs = write_jobs(tmp_path / "jobs.jsonl", (job(seed) for seed in range(150)))
     limited = start(jobs, "-o", tmp_path / "out", "--workers", 1, program=with_small_files)
     _, said = limited.communicate(timeout=120)
-    assert limited.returncode == 1
+    assert limited.returncode == 3
     assert said == (
         f"roadbed-cluster: {tmp_path}/out/journal/cluster.jsonl: File too large; "
         "make room and run the same command again\n"
@@ -248,7 +248,7 @@ def test_two_runs_into_one_folder_do_not_mix(tmp_path: Path) -> None:
     first = Run(jobs, tmp_path / "out", "--workers", 1)
     first.wait_for(1)
     second = run(jobs, "-o", tmp_path / "out", "--workers", 1)
-    assert second.returncode == 1
+    assert second.returncode == 3
     assert "another run is at work in it" in second.stderr
     assert first.end() == (0, "")
     assert same_as_sequential(jobs, tmp_path / "out")
@@ -267,11 +267,11 @@ def test_a_run_waits_for_its_first_worker(tmp_path: Path, dask: DaskProcesses) -
 def test_no_worker_and_no_scheduler_are_one_line_each(tmp_path: Path, dask: DaskProcesses) -> None:
     jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
     idle = run(jobs, "-o", tmp_path / "out", "--scheduler", dask.address, "--wait", 1)
-    assert idle.returncode == 1
+    assert idle.returncode == 3
     assert idle.stderr.startswith("roadbed-cluster: no worker at the scheduler for 1 s")
     dask.scheduler.kill()
     dask.scheduler.wait()
     gone = run(jobs, "-o", tmp_path / "out", "--scheduler", dask.address)
-    assert gone.returncode == 1
+    assert gone.returncode == 3
     assert gone.stderr.startswith(f"roadbed-cluster: {dask.address}: no scheduler answers")
     assert len(gone.stderr.splitlines()) == 1

@@ -185,7 +185,7 @@ def test_a_scheduler_with_another_key_gets_no_client(tmp_path: Path, shared: Pat
     finally:
         scheduler.kill()
         scheduler.wait()
-    assert ended.returncode == 1
+    assert ended.returncode == 3
     assert "no scheduler answers" in ended.stderr
 
 

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import sys
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,9 @@ from roadbed_cluster.cluster_options import ClusterOptions
 from roadbed_cluster.errors import RunStopped, UnusableResults, UsageError
 from roadbed_cluster.run import RunOptions, run
 from roadbed_cluster.visible import visible
+
+# 0 is yes and 1 no, as `roadbed batch` says.
+_WRONG_USAGE, _UNUSABLE, _OWN_FAULT = 2, 3, 4
 
 _RUN_EXAMPLE = """\
 example:
@@ -30,7 +34,7 @@ example:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return 0 done, 1 the answer is bad or the run stopped, 2 wrong usage."""
+    """Run the command; return an exit status of `roadbed`: 3 too where the run stopped."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         if given[:1] == ["tables"]:
@@ -39,13 +43,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BatchFailed as failed:
         return failed.status
     except (RunStopped, UnusableResults) as stopped:
-        return _say(str(stopped), 1)
+        return _say(str(stopped), _UNUSABLE)
     except UsageError as error:
-        return _say(str(error), 2)
+        return _say(str(error), _WRONG_USAGE)
     except BrokenPipeError:
-        return 1
+        return _UNUSABLE
     except KeyboardInterrupt:
-        return _say("interrupted; what is finished is kept, the same command goes on", 1)
+        return _say("interrupted; what is finished is kept, the same command goes on", _UNUSABLE)
+    except Exception:
+        traceback.print_exc()
+        return _OWN_FAULT
 
 
 def _run(options: argparse.Namespace) -> int:

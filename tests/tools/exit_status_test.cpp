@@ -1,0 +1,170 @@
+// 0 yes, 1 no, 2 wrong usage, 3 unusable input or output, 4 the program's own fault: of every command.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_commands.h"
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string line_of(const Words& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+/// A command's words and what follows them.
+Words with(Words command, const Words& more) {
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+class ExitStatus : public testing::Test {
+ protected:
+  void SetUp() override {
+    // A post in the way of a drive along x.
+    std::string post;
+    for (int i = 0; i < 20; ++i) post += "10.05 0.05 " + std::to_string(0.1 * i) + "\n";
+    post_ = folder_.write("post.xyz", post);
+    drive_ = folder_.write("drive.csv", "t_s,x_m,y_m,heading_rad\n0,0,0,0\n10,20,0,0\n");
+    a_ = folder_.write("a.json", R"({"driven_m": 1})");
+    b_ = folder_.write("b.json", R"({"driven_m": 2})");
+    jobs_ = folder_.write("jobs.jsonl", R"({"job":"validate","inputs":[")" + town_ +
+                                            R"("],"options":{"max-slope":0,"fail-on":"info"}})"
+                                            "\n");
+  }
+
+  std::string fresh(const std::string& suffix) {
+    return folder_ / ("out" + std::to_string(++count_) + suffix);
+  }
+
+  /// What follows each command whose input is not there, or whose output is in the way where it has
+  /// no input; `control design` has neither.
+  std::map<std::string, Words> unusable() {
+    const std::string none = folder_ / "none";
+    const Words places{"--from", "lane:1/3/1@6", "--to", "lane:7/0/1@35"};
+    return {
+        {"import", {none, "-o", fresh(".rbm")}},
+        {"info", {none}},
+        {"validate", {none}},
+        {"export", {none, "-o", fresh(".svg")}},
+        {"map diff", {none, none}},
+        {"locate", {none, "--at", "0,0"}},
+        {"route", with({none}, places)},
+        {"reach", {none, "--from", "lane:1/3/1@6", "--within", "5s"}},
+        {"reference", with(with({none}, places), {"-o", fresh(".csv")})},
+        {"plan", {none, "-o", fresh("")}},
+        {"simulate", {none, "-o", fresh("")}},
+        {"occupancy build", {none, "-o", fresh(".bt")}},
+        {"occupancy info", {none}},
+        {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},
+        {"figures", {"-o", folder_.path()}},
+        {"report compare", {none, none}},
+        {"batch", {none, "-o", fresh("")}},
+        {"jobs import", {none, "-o", fresh(".jsonl")}},
+        {"jobs validate", {none, "-o", fresh(".jsonl")}},
+        {"jobs route", with({none, "-o", fresh(".jsonl")}, places)},
+        {"jobs simulate", {none, "-o", fresh(".jsonl")}},
+        {"jobs audit",
+         {"--occupancy", none, "--trajectory", none + "/*", "-o", fresh(".jsonl")}},
+    };
+  }
+
+  TemporaryFolder folder_;
+  const std::string town_ = data_folder() / "town.xodr";
+  std::string post_, drive_, a_, b_, jobs_;
+  int count_ = 0;
+};
+
+TEST_F(ExitStatus, IsTwoWhereTheCommandLineIsWrongOfEveryCommand) {
+  for (const Words& command : commands_that_run()) {
+    const ProgramRun run = run_roadbed(with(command, {"--no-such-option"}));
+    EXPECT_EQ(run.status, 2) << line_of(command) << ": " << run.err;
+    EXPECT_EQ(run.out, "") << line_of(command);
+  }
+  EXPECT_EQ(run_roadbed({}).status, 2);
+  EXPECT_EQ(run_roadbed({"no-such-command"}).status, 2);
+  EXPECT_EQ(run_roadbed({"map"}).status, 2);
+  EXPECT_EQ(run_roadbed({"info", town_, "--threads", "0"}).status, 2);
+}
+
+TEST_F(ExitStatus, IsThreeWhereAnInputIsMissingOfEveryCommandAndNothingIsLeft) {
+  std::map<std::string, Words> left = unusable();
+  const std::vector<std::string> before = files_below(folder_.path());
+  for (const Words& command : commands_that_run()) {
+    const std::string name = line_of(command);
+    if (name == "control design") continue;
+    ASSERT_TRUE(left.contains(name)) << name;
+    const ProgramRun run = run_roadbed(with(command, left.at(name)));
+    EXPECT_EQ(run.status, 3) << name << ": " << run.err;
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << name << ": " << run.err;
+    EXPECT_TRUE(run.err.starts_with("roadbed: ")) << name << ": " << run.err;
+    EXPECT_EQ(run.out, "") << name;
+    left.erase(name);
+  }
+  EXPECT_TRUE(left.empty()) << left.begin()->first;
+  EXPECT_EQ(files_below(folder_.path()), before);
+}
+
+TEST_F(ExitStatus, IsOneWhereTheAnswerIsNo) {
+  const Words closed{"--from", "lane:1/3/1@6", "--to", "lane:7/0/1@35", "--avoid", "road:7"};
+  const std::string octree = fresh(".bt");
+  ASSERT_EQ(run_roadbed({"occupancy", "build", post_, "-o", octree}).status, 0);
+  const std::vector<Words> commands{
+      {"validate", town_, "--max-slope", "0", "--fail-on", "info"},
+      {"map", "diff", town_, data_folder() / "ramp.xodr"},
+      {"locate", town_, "--at", "1e6,1e6"},
+      with({"route", town_}, closed),
+      with({"reference", town_, "-o", fresh(".csv")}, closed),
+      {"reach", town_, "--from", "lane:1/3/1@6", "--within", "5s", "--avoid", "road:1"},
+      {"audit", "--occupancy", octree, "--trajectory", drive_, "--unknown", "free"},
+      {"report", "compare", a_, b_, "--max", "driven_m=1"},
+      {"batch", jobs_, "-o", fresh("")},
+  };
+  for (const Words& words : commands) {
+    const ProgramRun run = run_roadbed(words);
+    EXPECT_EQ(run.status, 1) << line_of(words) << ": " << run.err;
+    EXPECT_NE(run.out + run.err, "") << line_of(words);
+  }
+}
+
+TEST_F(ExitStatus, IsThreeWhereAnOutputIsInTheWayAndItStaysAsItIs) {
+  const std::string file = folder_.write("there.svg", "kept");
+  for (const Words& words : std::vector<Words>{
+           {"export", town_, "-o", file},
+           {"route", town_, "--from", "lane:1/3/1@6", "--to", "lane:7/0/1@35", "-o", file},
+           {"validate", town_, "--svg", file}}) {
+    EXPECT_EQ(run_roadbed(words).status, 3) << line_of(words);
+    EXPECT_EQ(bytes_of(file), "kept");
+  }
+}
+
+TEST_F(ExitStatus, IsFourWhereMemoryIsShort) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer reserves more memory than a limit could leave.";
+#endif
+  const std::string big = folder_.write("big.xodr", "<OpenDRIVE>"), out = fresh(".rbm");
+  std::filesystem::resize_file(big, std::uintmax_t{4} << 30);  // takes no place on the disk
+  const std::string err = folder_ / "err";
+  const int ended = std::system(("ulimit -v 1000000; exec " + program_file().string() + " import " +
+                                 big + " -o " + out + " 2> " + err)
+                                    .c_str());
+  EXPECT_EQ(WEXITSTATUS(ended), 4);
+  EXPECT_EQ(bytes_of(err), "roadbed: out of memory\n");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace roadbed::tests

@@ -1,0 +1,22 @@
+#include "roadbed/tools/cli/command.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "roadbed/map/files/input_error.h"
+
+namespace roadbed::tools::inline cli {
+
+Failure failure_of(const std::exception& error) {
+  if (dynamic_cast<const map::InputError*>(&error) != nullptr) {
+    return {Exit::unusable, error.what()};
+  }
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    return {Exit::internal, "out of memory"};
+  }
+  return {Exit::internal,
+          fmt::format("internal error: {}; please report it with the command line", error.what())};
+}
+
+}  // namespace roadbed::tools::cli
