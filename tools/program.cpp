@@ -17,6 +17,7 @@
 #include "roadbed/tools/cli/standard_error.h"
 #include "roadbed/tools/cli/standard_output.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/help_command.h"
 
 namespace roadbed::tools {
 namespace {
@@ -33,6 +34,8 @@ constexpr Entry kCommands[] = {
     {"info", make_info_command},
     {"validate", make_validate_command},
     {"export", make_export_command},
+    {"convert", make_convert_command},
+    {"diff", make_diff_command},
     {"map", make_map_command},
     {"locate", make_locate_command},
     {"route", make_route_command},
@@ -62,7 +65,7 @@ std::span<const Entry> entries_for(int argc, char** argv) {
 }
 
 struct Registered {
-  CLI::App* app;
+  Arguments arguments;
   std::unique_ptr<Command> command;
 };
 
@@ -82,26 +85,27 @@ int run_command_line(int argc, char** argv) {
   app.formatter(make_help_formatter());
   app.set_version_flag("--version",
                        name_and_version() + " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
-  app.require_subcommand(1);
   app.fallthrough();
 
   CommonOptions common;
-  app.add_flag("--quiet", common.quiet, "No progress and no notes; errors are still printed");
-  app.add_option("--threads", common.threads, "Threads to use; the output is the same for any")
-      ->check([](const std::string& text) {
+  Arguments program(app);
+  program.flag("-q,--quiet", common.quiet, "No progress and no notes; errors are still printed");
+  program.add("--threads", common.threads, "Threads to use; the output is the same for any")
+      .checked([](const std::string& text) {
         int threads = 0;
         const bool is_count = CLI::detail::lexical_cast(text, threads) && threads > 0;
         return is_count ? std::string() : text + " is no whole number greater than 0";
       })
-      ->capture_default_str();
+      .with_default();
 
   std::vector<Registered> commands;
-  for (const Entry& entry : entries_for(argc, argv)) {
-    CLI::App* sub = app.add_subcommand(entry.name);
-    commands.push_back({sub, entry.make()});
-    Arguments arguments(*sub);
-    commands.back().command->declare(arguments);
-  }
+  const auto declare = [&](const char* name, std::unique_ptr<Command> command) {
+    commands.push_back({program.part(name), std::move(command)});
+    commands.back().command->declare(commands.back().arguments);
+  };
+  const std::span<const Entry> entries = entries_for(argc, argv);
+  for (const Entry& entry : entries) declare(entry.name, entry.make());
+  if (entries.size() > 1) declare("help", make_help_command(program));
 
   try {
     app.parse(argc, argv);
@@ -110,7 +114,7 @@ int run_command_line(int argc, char** argv) {
     return status == 0 ? 0 : static_cast<int>(Exit::usage);
   }
   for (const Registered& registered : commands) {
-    if (registered.app->parsed()) {
+    if (registered.arguments.given()) {
       return static_cast<int>(run_guarded(*registered.command, common));
     }
   }

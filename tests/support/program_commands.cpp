@@ -41,7 +41,8 @@ std::vector<std::vector<std::string>> all_commands() {
 
 std::vector<std::vector<std::string>> commands_that_run() {
   std::vector<std::vector<std::string>> commands = all_commands();
-  std::erase_if(commands, [](const auto& words) { return !commands_in(help_lines(words)).empty(); });
+  std::erase_if(commands,
+                [](const auto& words) { return !commands_in(help_lines(words)).empty(); });
   return commands;
 }
 

@@ -43,7 +43,7 @@ TEST(ExportCommand, WritesTheSamePictureFromTheCompiledMap) {
 TEST(ExportCommand, ReplacesAFileOnlyWithForce) {
   const TemporaryFolder folder;
   const std::string file = folder.write("a.csv", "mine");
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", file}).status, 1);
+  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", file}).status, 3);
   EXPECT_EQ(bytes_of(file), "mine");
   EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", file, "--force"}).status, 0);
   EXPECT_EQ(bytes_of(file), bytes_of(golden("two_roads.csv")));
@@ -54,10 +54,10 @@ TEST(ExportCommand, LeavesNothingBehindWhenItCannotDoIt) {
   const std::string bad = folder.write("bad.xodr", "<OpenDRIVE>");
   const ProgramRun suffix =
       run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.txt"});
-  EXPECT_EQ(suffix.status, 1);
+  EXPECT_EQ(suffix.status, 3);
   EXPECT_NE(suffix.err.find(".geojson, .gpkg, .fgb, .svg, .csv"), std::string::npos) << suffix.err;
-  EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 1);
-  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 1);
+  EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 3);
+  EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 3);
   EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"bad.xodr"});
 }
 
@@ -95,7 +95,7 @@ TEST(ExportCommand, RefusesAnAnchorWhereTheSystemIsKnown) {
   const ProgramRun run =
       run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--crs",
                    "EPSG:32632", "--anchor", "48.0,9.0"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("is known"), std::string::npos) << run.err;
   EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.geojson", "--anchor",
                          "148.0,9.0"})
@@ -108,8 +108,56 @@ TEST(ExportCommand, RefusesMoreLayersThanTheFormatHolds) {
   const TemporaryFolder folder;
   const ProgramRun run = run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.fgb",
                                       "--layer", "lanes", "--layer", "roads"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("at most 1"), std::string::npos) << run.err;
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(ConvertCommand, WritesWhatImportAndExportWriteForEveryFormat) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  for (const char* ending : {".rbm", ".geojson", ".gpkg", ".fgb", ".svg", ".csv", ".osm", ".xml"}) {
+    SCOPED_TRACE(ending);
+    const std::string one = folder / (std::string("one") + ending);
+    const std::string two = folder / (std::string("two") + ending);
+    const char* command = std::string(ending) == ".rbm" ? "import" : "export";
+    ASSERT_EQ(run_roadbed({command, town, "-o", one}).status, 0);
+    const ProgramRun run = run_roadbed({"convert", town, two});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(bytes_of(one) == bytes_of(two));
+    ASSERT_EQ(run_roadbed({"convert", town, "-o", two}).status, 3) << "it is there";
+    ASSERT_EQ(run_roadbed({"convert", town, "-f", "-o", two}).status, 0);
+  }
+  EXPECT_EQ(run_roadbed({"convert", folder / "one.rbm", folder / "back.osm"}).status, 0);
+  EXPECT_TRUE(bytes_of(folder / "back.osm") == bytes_of(folder / "one.osm"));
+}
+
+TEST(ConvertCommand, TakesTheOptionsOfExport) {
+  const TemporaryFolder folder;
+  const std::string map = golden("two_roads.xodr");
+  const std::vector<std::string> options{"--crs", "unknown", "--anchor", "48.0,9.0"};
+  for (const char* command : {"export", "convert"}) {
+    std::vector<std::string> words{command, map, "-o", folder / (command + std::string(".osm"))};
+    words.insert(words.end(), options.begin(), options.end());
+    ASSERT_EQ(run_roadbed(words).status, 0);
+  }
+  EXPECT_EQ(bytes_of(folder / "export.osm"), bytes_of(folder / "convert.osm"));
+
+  const std::string compiled = folder / "a.rbm";
+  ASSERT_EQ(run_roadbed({"convert", map, compiled, "--crs", "EPSG:32632"}).status, 0);
+  EXPECT_NE(run_roadbed({"info", compiled}).out.find("EPSG:32632"), std::string::npos);
+}
+
+TEST(ConvertCommand, NeedsOneOutputAndOptionsThatItsFormatHas) {
+  const TemporaryFolder folder;
+  const std::string map = golden("two_roads.xodr"), a = folder / "a.rbm", b = folder / "b.rbm";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {map}, {map, a, "-o", b}, {map, a, "--layer", "lanes"}, {map, a, "--anchor", "48,9"}}) {
+    std::vector<std::string> line{"convert"};
+    line.insert(line.end(), words.begin(), words.end());
+    EXPECT_EQ(run_roadbed(line).status, 2);
+  }
+  EXPECT_EQ(run_roadbed({"convert", map, folder / "a.txt"}).status, 3);
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 

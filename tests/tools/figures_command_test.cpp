@@ -80,7 +80,7 @@ TEST_F(FiguresCommand, WritesAPictureAndATableOfEach) {
   std::ranges::sort(names);
   EXPECT_EQ(files_below(*folder_ / "figures"), names);
   const ProgramRun again = run_roadbed({"figures", "-o", (*folder_ / "figures").string()});
-  EXPECT_EQ(again.status, 1) << "an existing folder is not replaced";
+  EXPECT_EQ(again.status, 3) << "an existing folder is not replaced";
 }
 
 TEST_F(FiguresCommand, CornerHasThePapersControlPoints) {

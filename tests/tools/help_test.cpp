@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadbed/tests/support/program_commands.h"
+#include "roadbed/tests/support/program_run.h"
 
 namespace roadbed::tests {
 namespace {
@@ -48,6 +49,33 @@ TEST(Help, SaysLimitsDefaultsAndWhatExcludesInWords) {
   EXPECT_TRUE(has("Side of a cell [m] (0.001 to 1000; default 0.1)"));
   EXPECT_TRUE(has("(not with --poses)"));
   EXPECT_TRUE(has("-o,--output PATH"));
+}
+
+TEST(Help, IsTheSameOfACommandAndOfHelp) {
+  EXPECT_EQ(run_roadbed({"help"}).out, run_roadbed({"--help"}).out);
+  for (std::vector<std::string> command : all_commands()) {
+    std::vector<std::string> words = command;
+    words.emplace_back("--help");
+    command.insert(command.begin(), "help");
+    EXPECT_EQ(run_roadbed(command).out, run_roadbed(words).out) << command.back();
+  }
+  const ProgramRun none = run_roadbed({"help", "occupancy", "bild"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.err,
+            "roadbed: roadbed occupancy has no command bild; see: roadbed occupancy --help\n");
+}
+
+TEST(Help, NamesTheShortFormOfEveryOptionThatHasOne) {
+  for (const auto& command : all_commands()) {
+    for (const std::string& line : help_lines(command)) {
+      for (const char* name : {"--quiet", "--force", "--json", "--output"}) {
+        const bool begins = line.starts_with(std::string("  ") + name + " ");
+        EXPECT_FALSE(begins) << command.front() << ": " << line;
+      }
+    }
+  }
+  const ProgramRun run = run_roadbed({"control", "design", "-q", "-j"});
+  EXPECT_EQ(run.out, run_roadbed({"control", "design", "--quiet", "--json"}).out);
 }
 
 }  // namespace

@@ -55,13 +55,13 @@ TEST(InfoCommand, VerifiesACompiledMapAndRefusesADamagedOne) {
   std::string bytes = bytes_of(compiled);
   bytes.back() = static_cast<char>(~bytes.back());
   const ProgramRun damaged = run_roadbed({"info", folder.write("damaged.rbm", bytes), "--verify"});
-  EXPECT_EQ(damaged.status, 1);
+  EXPECT_EQ(damaged.status, 3);
   EXPECT_NE(damaged.err.find("checksum"), std::string::npos) << damaged.err;
 }
 
 TEST(InfoCommand, SaysWhichMapIsMissing) {
   const ProgramRun run = run_roadbed({"info", "no_such.xodr"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.out, "");
   EXPECT_NE(run.err.find("no_such.xodr"), std::string::npos);
 }

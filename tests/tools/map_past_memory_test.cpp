@@ -77,7 +77,7 @@ TEST_F(MapPastMemory, IsHurtOnlyByDamageThatADriveMeets) {
       ++untouched;
       continue;
     }
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_EQ(run.out, "");
     EXPECT_NE(run.err.find("damaged.rbm: chunk " + std::to_string(chunk) + ":"), std::string::npos)
         << run.err;

@@ -122,11 +122,11 @@ TEST_F(OccupancyCommands, CheckRefusesWhatIsNoCertificate) {
   Json document{{"format", "roadbed audit certificate 9"}};
   const ProgramRun nine =
       run_roadbed({"audit", "--check", folder_.write("nine.json", document.dump())});
-  EXPECT_EQ(nine.status, 1);
+  EXPECT_EQ(nine.status, 3);
   EXPECT_THAT(nine.err, HasSubstr("nine.json:/format: is \"roadbed audit certificate 9\""));
   const ProgramRun cut =
       run_roadbed({"audit", "--check", folder_.write("cut.json", "{\"format\":")});
-  EXPECT_EQ(cut.status, 1);
+  EXPECT_EQ(cut.status, 3);
   EXPECT_THAT(cut.err, HasSubstr("cut.json:byte"));
   EXPECT_EQ(nine.out + cut.out, "");
 }
@@ -139,7 +139,7 @@ TEST_F(OccupancyCommands, AuditDrawsAPictureAndKeepsAnOldOne) {
   EXPECT_THAT(svg, HasSubstr("class=\"conflict\""));
   EXPECT_THAT(svg, HasSubstr("class=\"witness\""));
   const ProgramRun again = audit(straight_csv(2, 10, 0), options);
-  EXPECT_EQ(again.status, 1);
+  EXPECT_EQ(again.status, 3);
   EXPECT_THAT(again.err, HasSubstr("--force"));
   EXPECT_EQ(bytes_of(picture), svg);
 }
@@ -163,7 +163,7 @@ TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   const std::string out = folder_ / "out.bt";
   const auto expect_refused = [&](const std::vector<std::string>& arguments, const char* reason) {
     const ProgramRun run = run_roadbed(arguments);
-    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_EQ(run.status, 3) << run.err;
     EXPECT_THAT(run.err, HasSubstr(reason));
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
@@ -235,7 +235,7 @@ TEST(OccupancyBuild, SaysInEveryPlaceThatHitsWereTakenAway) {
   EXPECT_EQ(Json::parse(info.out).at("seen_through").at("clouds"), 2);
   const ProgramRun refused = run_roadbed(
       {"occupancy", "build", octree, "-o", folder / "no.bt", "--remove-seen-through", "2"});
-  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.err, HasSubstr("give the clouds"));
   build.emplace_back("--no-sticky");
   EXPECT_EQ(run_roadbed(build).status, 2);
@@ -262,7 +262,7 @@ TEST(OccupancyBuild, CarvesFromTheSensorOfEachPointUnlessToldOtherwise) {
   const std::string out = folder / "out.bt";
   const ProgramRun filtered =
       run_roadbed({"occupancy", "build", cloud, "-o", out, "--voxel", "0.2"});
-  EXPECT_EQ(filtered.status, 1);
+  EXPECT_EQ(filtered.status, 3);
   EXPECT_THAT(filtered.err, HasSubstr("position for each point"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }

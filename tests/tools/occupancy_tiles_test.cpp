@@ -73,7 +73,7 @@ TEST_F(OccupancyTiles, ACertificateAboutThemHoldsUntilATileChanges) {
                     "# Octomap OcTree binary file\n");
   }
   const ProgramRun changed = run_roadbed({"audit", "--check", proof});
-  EXPECT_EQ(changed.status, 1);
+  EXPECT_EQ(changed.status, 3);
   EXPECT_THAT(changed.err, HasSubstr("as the index says"));
 }
 
@@ -96,14 +96,14 @@ TEST_F(OccupancyTiles, NothingIsWrittenWhereACloudIsUnusable) {
   const std::string bad = folder_.write("bad.pcd", "VERSION 0.7\nFIELDS x y z\n");
   const ProgramRun run =
       run_roadbed({"occupancy", "build", good, bad, "-o", tiles_, "--tiles", "20"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_THAT(run.err, HasSubstr("bad.pcd"));
   EXPECT_FALSE(std::filesystem::exists(tiles_));
   const std::string shots =
       folder_.write("shots.csv", "x,y,z,vp_x,vp_y,vp_z\n1,2,3,0,0,0\n4,2,3,1,0,0\n");
   const ProgramRun log_odds =
       run_roadbed({"occupancy", "build", shots, "-o", tiles_, "--tiles", "20", "--no-sticky"});
-  EXPECT_EQ(log_odds.status, 1);
+  EXPECT_EQ(log_odds.status, 3);
   EXPECT_THAT(log_odds.err, HasSubstr("--no-sticky"));
   EXPECT_FALSE(std::filesystem::exists(tiles_));
 }
@@ -112,7 +112,7 @@ TEST_F(OccupancyTiles, AreReplacedOnlyWithForce) {
   build();
   std::vector<std::string> again = build_of_scans(tiles_);
   again.insert(again.end(), {"--tiles", "20"});
-  EXPECT_EQ(run_roadbed(again).status, 1);
+  EXPECT_EQ(run_roadbed(again).status, 3);
   again.emplace_back("--force");
   EXPECT_EQ(run_roadbed(again).status, 0);
 }
@@ -138,7 +138,7 @@ TEST_F(OccupancyTiles, OfAnIndexWithOlderHashesAreRefusedAndToBeBuiltAgain) {
   std::ofstream(tiles_ + "/index.json") << index;
   const ProgramRun run =
       run_roadbed({"audit", "--occupancy", tiles_, "--trajectory", drive(), "--json"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.out, "");
   EXPECT_THAT(run.err, HasSubstr("index.json: format: \"roadbed occupancy tiles 1\", needs roadbed "
                                  "occupancy tiles 2; build the tiles again"));

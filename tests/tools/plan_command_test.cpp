@@ -76,7 +76,7 @@ TEST(PlanCommand, RefusesAnUnknownWeightAndWritesNothing) {
   const std::string weights = folder.write("w.json", R"({"weights": {"ofset": 1}})");
   const ProgramRun run = run_roadbed(
       {"plan", scene("parked_car.json"), "-o", (folder / "plan").string(), "--options", weights});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("w.json:/weights/ofset"), std::string::npos) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(files_below(folder.path()), (std::vector<std::string>{"w.json"}));

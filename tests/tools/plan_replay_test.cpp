@@ -166,7 +166,7 @@ TEST_F(PlanReplay, RefusesFilesThatHaveChangedByTheirNames) {
   ASSERT_EQ(replay(at("3")).status, 0);
   folder_.write("scene.json", text + " ");
   ProgramRun run = replay(at("3"));
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_THAT(run.err, HasSubstr("drive/../scene.json: has changed since the drive"));
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 1);
   folder_.write("scene.json", text);
@@ -192,7 +192,7 @@ TEST_F(PlanReplay, RefusesADriveWhoseRowsOrCyclesAreNotThoseThatComeAgain) {
   };
   for (const char* name : {"trajectory.csv", "cycles.jsonl"}) {
     const ProgramRun run = with_other(name, 12, "3");
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr(std::string("drive/") + name +
                                    ":12: differs from the same drive, driven again"));
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1);
@@ -209,7 +209,7 @@ TEST_F(PlanReplay, RefusesRowsAfterTheEndOfTheDrive) {
   const std::string more = "90" + rows.substr(rows.find(',', last));
   folder_.write("drive/trajectory.csv", rows + more + "91" + more.substr(2));
   const ProgramRun run = replay(at("80"));
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_THAT(run.err, HasSubstr("drive/trajectory.csv:"));
   EXPECT_THAT(run.err, HasSubstr(": differs from the same drive"));
 }
@@ -218,7 +218,7 @@ TEST_F(PlanReplay, RefusesWhatIsNoTimeOfADrive) {
   simulate(own("parked_car.json"));
   const auto refused = [&](const std::string& scene, const char* message) {
     const ProgramRun run = replay(scene);
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr(message));
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     EXPECT_FALSE(fs::exists(folder_ / "plan"));

@@ -96,11 +96,11 @@ TEST(ReferenceWayPoints, RefusesBadPointsAndContradictoryOptions) {
     return run_roadbed(arguments);
   };
   const ProgramRun one = run_with("x,y\n1,2\n1,2\n", {});
-  EXPECT_EQ(one.status, 1);
+  EXPECT_EQ(one.status, 3);
   EXPECT_THAT(one.err, HasSubstr("p.csv"));
   EXPECT_THAT(one.err, HasSubstr("two distinct"));
   const ProgramRun nan = run_with("x,y\n1,2\nnan,3\n", {});
-  EXPECT_EQ(nan.status, 1);
+  EXPECT_EQ(nan.status, 3);
   EXPECT_THAT(nan.err, HasSubstr("p.csv:3"));
   EXPECT_EQ(run_with(circle(), {"--ends", "periodic"}).status, 2);
   EXPECT_EQ(run_with(circle(), {"--interpolate", "--ends", "clamped"}).status, 2);

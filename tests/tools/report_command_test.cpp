@@ -57,12 +57,12 @@ TEST_F(ReportCommand, RefusesWhatItCannotCompare) {
   EXPECT_EQ(compare({"--max", "jerk"}).status, 2);
   EXPECT_EQ(compare({"--max", "jerk=much"}).status, 2);
   const ProgramRun unknown = compare({"--max", "jerk=3"});
-  EXPECT_EQ(unknown.status, 1);
+  EXPECT_EQ(unknown.status, 3);
   EXPECT_EQ(unknown.out, "");
   EXPECT_THAT(unknown.err, HasSubstr("no metric of the name jerk"));
   const std::string empty = folder_.write("empty.json", "{}");
   EXPECT_THAT(run_roadbed({"report", "compare", empty, b_}).err, HasSubstr("no metric"));
-  EXPECT_EQ(run_roadbed({"report", "compare", "missing", b_}).status, 1);
+  EXPECT_EQ(run_roadbed({"report", "compare", "missing", b_}).status, 3);
   EXPECT_EQ(run_roadbed({"report"}).status, 2);
 }
 

@@ -78,7 +78,7 @@ TEST(RouteCommand, GoesRoundAClosedLaneOrSaysWhyItCannot) {
   const ProgramRun start = route_with("road:1");
   EXPECT_EQ(start.status, 1);
   EXPECT_THAT(start.err, HasSubstr("start is on lane 1/0/-1, which is closed"));
-  EXPECT_EQ(route_with("road:none").status, 1);
+  EXPECT_EQ(route_with("road:none").status, 3);
   EXPECT_EQ(route_with("polygon:1,2,3").status, 2);
   EXPECT_EQ(route_with("everything").status, 2);
 }
@@ -157,8 +157,8 @@ TEST(RouteCommand, AnswersGoodRowsOfABatchAndNamesTheBadOnes) {
   const ProgramRun two = run_roadbed({"route", kTown, "--batch", pairs, "--threads", "2"});
   EXPECT_EQ(two.out, run.out);
   const std::string bad = folder.write("bad.csv", "a,b\n1,2\n");
-  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", bad}).status, 1);
-  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", folder / "none.csv"}).status, 1);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", bad}).status, 3);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--batch", folder / "none.csv"}).status, 3);
   EXPECT_EQ(run_roadbed({"route", kTown, "--batch", pairs, "--from", kFrom}).status, 2);
   EXPECT_EQ(run_roadbed({"route", kTown, "--matrix"}).status, 2);
 }
@@ -218,7 +218,7 @@ TEST(RouteCommands, RefuseAnOutputWhoseSuffixNamesNoFormat) {
   for (const auto& run :
        {run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "-o", file}),
         run_roadbed({"reach", kTown, "--from", kFrom, "--within", "9s", "-o", file})}) {
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr("the suffix \".pdf\" names no format"));
     EXPECT_THAT(run.out, IsEmpty());
     EXPECT_FALSE(std::filesystem::exists(file));
@@ -256,13 +256,13 @@ TEST(RouteCommand, WritesTheWayAsGeoJson) {
 
 TEST(RouteCommand, RefusesPlacesThatAreNotOnTheMap) {
   const ProgramRun off = run_roadbed({"route", kTown, "--from", "-1000,50", "--to", kTo});
-  EXPECT_EQ(off.status, 1);
+  EXPECT_EQ(off.status, 3);
   EXPECT_THAT(off.err, HasSubstr("nearest drivable lane is"));
   EXPECT_THAT(off.err, HasSubstr(" m away"));
-  EXPECT_EQ(run_roadbed({"route", kTown, "--from", "lane:99/0/1", "--to", kTo}).status, 1);
+  EXPECT_EQ(run_roadbed({"route", kTown, "--from", "lane:99/0/1", "--to", kTo}).status, 3);
   EXPECT_EQ(
       run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", "lane:99/0/1"}).status,
-      1);
+      3);
   EXPECT_EQ(run_roadbed({"route", kTown, "--from", "1,2,90", "--to", kTo}).status, 2);
   EXPECT_EQ(run_roadbed({"route", kTown, "--from", kFrom}).status, 2);
 }
@@ -290,7 +290,7 @@ TEST(ReferenceCommand, RowsAreOneStepApartAndDescribeOneCurve) {
   }
   const ProgramRun again =
       run_roadbed({"reference", kTown, "--from", kFrom, "--to", kTo, "-o", file});
-  EXPECT_EQ(again.status, 1) << "an existing file is not replaced";
+  EXPECT_EQ(again.status, 3) << "an existing file is not replaced";
 }
 
 TEST(ReferenceCommand, WithoutARouteWritesNothing) {
@@ -326,7 +326,7 @@ TEST(LocateCommand, ReadsPointsFromACsvFile) {
   EXPECT_EQ(points[1]["x_m"], 260.0);
   const std::string bad = folder.write("bad.csv", "x_m,y_m\n1,nan\n");
   const ProgramRun refused = run_roadbed({"locate", kTown, "--points", bad});
-  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.err, HasSubstr("bad.csv:2"));
   EXPECT_EQ(run_roadbed({"locate", kTown}).status, 2);
   EXPECT_EQ(run_roadbed({"locate", kTown, "--at", "1,x"}).status, 2);

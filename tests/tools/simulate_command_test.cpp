@@ -71,7 +71,7 @@ TEST_F(SimulateCommand, OutputsAreOnlyReplacedWithForce) {
   simulate(scenario, "a");
   const std::string before = bytes_of(out("a") / "metrics.json");
   scenario["seed"] = 2;
-  EXPECT_EQ(simulate(scenario, "a").status, 1);
+  EXPECT_EQ(simulate(scenario, "a").status, 3);
   EXPECT_EQ(bytes_of(out("a") / "metrics.json"), before);
   simulate(scenario, "a", true);
   EXPECT_NE(bytes_of(out("a") / "metrics.json"), before);
@@ -82,7 +82,7 @@ TEST_F(SimulateCommand, UnusableInputLeavesNothingBehind) {
     json scenario = short_drive();
     scenario[json::json_pointer(pointer)] = value;
     const ProgramRun run = simulate(scenario, "a");
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr(message));
     EXPECT_EQ(run.out, "");
     EXPECT_FALSE(std::filesystem::exists(out("a"))) << message;
@@ -118,7 +118,7 @@ TEST_F(SimulateCommand, FolderDrivesEveryScenarioAndABadOneIsARow) {
   }
   scenarios.write("good.xml", "<commonRoad/>");
   const ProgramRun same = run_roadbed({"simulate", scenarios.path().string(), "-o", out("same")});
-  EXPECT_EQ(same.status, 1);
+  EXPECT_EQ(same.status, 3);
   EXPECT_THAT(same.err, HasSubstr("two scenarios of the name good"));
   EXPECT_FALSE(std::filesystem::exists(out("same")));
 }
@@ -206,19 +206,19 @@ TEST_F(SimulateCommand, RefusesChangesThatCannotBeMade) {
     EXPECT_FALSE(std::filesystem::exists(out("a"))) << value;
     return run.err;
   };
-  EXPECT_THAT(refused("--seed", "7", 1), HasSubstr("leave --seed out, or give --noise"));
+  EXPECT_THAT(refused("--seed", "7", 3), HasSubstr("leave --seed out, or give --noise"));
   for (const char* text : {"1.5", "-1", "many", "9007199254740993"}) {
     EXPECT_THAT(refused("--seed", text, 2), HasSubstr("is no whole number")) << text;
   }
   const std::string truck = folder_.write("truck.json", R"({"length_mm": 8000})");
-  EXPECT_THAT(refused("--vehicle", truck, 1), HasSubstr("truck.json:/length_mm"));
+  EXPECT_THAT(refused("--vehicle", truck, 3), HasSubstr("truck.json:/length_mm"));
   const std::string mirrors =
       folder_.write("mirrors.json", R"({"mirrors": {"beyond_m": 0.2, "rear_m": 1.7, "front_m": 1.9,
                                       "from_height_m": 0.9, "to_height_m": 1.2}})");
-  EXPECT_THAT(refused("--vehicle", mirrors, 1), HasSubstr("which only audits look at"));
-  EXPECT_THAT(refused("--vehicle", (folder_ / "none.json").string(), 1), HasSubstr("no such file"));
+  EXPECT_THAT(refused("--vehicle", mirrors, 3), HasSubstr("which only audits look at"));
+  EXPECT_THAT(refused("--vehicle", (folder_ / "none.json").string(), 3), HasSubstr("no such file"));
   const std::string noise = folder_.write("noise.json", R"({"position_m": -1})");
-  EXPECT_THAT(refused("--noise", noise, 1), HasSubstr("noise.json:/position_m"));
+  EXPECT_THAT(refused("--noise", noise, 3), HasSubstr("noise.json:/position_m"));
 }
 
 TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
@@ -227,7 +227,7 @@ TEST_F(SimulateCommand, ControlDesignPrintsOneJsonDocument) {
   const json design = json::parse(run.out);
   EXPECT_NEAR(design["K"][0].get<double>(), 0.9114729761, 1e-9);
   EXPECT_LT(design["riccati_residual"].get<double>(), 1e-12);
-  EXPECT_EQ(run_roadbed({"control", "design", "--input-weight", "-1"}).status, 1);
+  EXPECT_EQ(run_roadbed({"control", "design", "--input-weight", "-1"}).status, 2);
   EXPECT_EQ(run_roadbed({"control"}).status, 2);
 }
 

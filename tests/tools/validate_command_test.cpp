@@ -44,7 +44,7 @@ TEST(ValidateCommand, RefusesSeveritiesItDoesNotKnow) {
 
 TEST(ValidateCommand, SaysWhichMapIsMissing) {
   const ProgramRun run = run_roadbed({"validate", "no_such.xodr", "--json"});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.out, "");
   EXPECT_NE(run.err.find("no_such.xodr"), std::string::npos);
 }
@@ -62,7 +62,7 @@ TEST(ValidateCommand, RefusesWhatIsNoMapAtAll) {
                                     {"zeros.rbm", std::string(4096, '\0')}}) {
     SCOPED_TRACE(name);
     const ProgramRun run = run_roadbed({"validate", folder.write(name, bytes), "--json"});
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_EQ(run.out, "");
     EXPECT_NE(run.err.find(name), std::string::npos);
   }
@@ -150,7 +150,7 @@ TEST(ValidateCommand, DrawsFindingsAndWritesThemAsALayer) {
 TEST(ValidateCommand, KeepsOutputsThatExist) {
   const TemporaryFolder folder;
   const std::string file = folder.write("f.sarif", "mine");
-  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--sarif", file}).status, 1);
+  EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--sarif", file}).status, 3);
   EXPECT_EQ(bytes_of(file), "mine");
   EXPECT_EQ(run_roadbed({"validate", golden("gap.xodr"), "--sarif", file, "--force"}).status, 0);
   EXPECT_NE(bytes_of(file), "mine");

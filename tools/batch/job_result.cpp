@@ -99,8 +99,8 @@ std::string line_of(const Job& job, const JobResult& result) {
 }
 
 std::string line_of_bad_line(std::string_view text, const std::string& reason) {
-  return line(failure(hash_of_bad_line(text), Cause::line, static_cast<int>(Exit::usage), reason), nullptr,
-              R"(,"inputs":[],"options":{},"outputs":[])");
+  return line(failure(hash_of_bad_line(text), Cause::line, static_cast<int>(Exit::usage), reason),
+              nullptr, R"(,"inputs":[],"options":{},"outputs":[])");
 }
 
 JobResult failure(std::string hash, Cause cause, std::optional<int> exit, std::string reason) {

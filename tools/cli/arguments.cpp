@@ -66,6 +66,7 @@ Argument& Argument::separated_by(char sign) {
 }
 
 Argument& Argument::one_of(const std::vector<std::string>& accepted) {
+  info_->choices = accepted;
   option_->check(CLI::IsMember(accepted));
   return *this;
 }
@@ -94,11 +95,40 @@ Argument& Argument::writes(const std::string& suffix) {
   return *this;
 }
 
+Argument& Argument::ending(std::string_view endings) {
+  info_->endings = endings;
+  return *this;
+}
+
+Arguments::Arguments(CLI::App& app)
+    : app_(&app),
+      declared_(std::make_shared<std::deque<ArgumentInfo>>()),
+      parts_(std::make_shared<std::vector<Arguments>>()),
+      group_(std::make_shared<std::string>("Options")),
+      no_means_(std::make_shared<std::string>()),
+      examples_(std::make_shared<std::string>()) {}
+
 void Arguments::description(const std::string& text) { app_->description(text); }
 
 std::string Arguments::heading(const std::string& text) { return std::exchange(*group_, text); }
 
-void Arguments::example(const std::string& lines) { app_->footer("Example:\n" + lines); }
+void Arguments::example(const std::string& lines) {
+  *examples_ = lines;
+  write_footer();
+}
+
+void Arguments::says_no_if(const std::string& text) {
+  *no_means_ = text;
+  write_footer();
+}
+
+void Arguments::write_footer() {
+  const std::string status =
+      no_means_->empty()
+          ? ""
+          : fmt::format("Exit status 1 if {}; for others: roadbed help\n\n", *no_means_);
+  app_->footer(status + "Example:\n" + *examples_);
+}
 
 Argument Arguments::add(const std::string& names, std::string& value, const std::string& help) {
   return note(*app_->add_option(names, value, help), ArgumentInfo::Kind::value);
@@ -147,7 +177,7 @@ Argument Arguments::flag(const std::string& names, bool& value, const std::strin
 
 Arguments Arguments::part(const std::string& name) {
   app_->require_subcommand(1);
-  return Arguments(*app_->add_subcommand(name));
+  return parts_->emplace_back(*app_->add_subcommand(name));
 }
 
 bool Arguments::given() const { return app_->parsed(); }
@@ -157,6 +187,10 @@ void Arguments::require(std::function<std::string()> fault) {
     const std::string missing = fault();
     if (!missing.empty()) throw CLI::ValidationError(missing);
   });
+}
+
+std::string Arguments::help(const std::string& line) const {
+  return app_->get_formatter()->make_help(app_, line, CLI::AppFormatMode::Normal);
 }
 
 Argument Arguments::note(CLI::Option& option, ArgumentInfo::Kind kind) {
@@ -178,7 +212,9 @@ Argument Arguments::choose(const std::string& names, const std::vector<std::stri
       names, take_word, fmt::format("{} ({}; default {})", help, fmt::join(words, ", "), standing));
   option->check(CLI::IsMember(words, CLI::ignore_case));
   option->option_text("WORD");
-  return note(*option, ArgumentInfo::Kind::value);
+  const Argument argument = note(*option, ArgumentInfo::Kind::value);
+  declared_->back().choices = words;
+  return argument;
 }
 
 ArgumentSet::ArgumentSet() : app_(std::make_unique<CLI::App>()), arguments_(*app_) {}

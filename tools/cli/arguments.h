@@ -31,10 +31,18 @@ struct ArgumentInfo {
   std::string name;  ///< the long name of an option, without dashes; of a positional its own
   Kind kind = Kind::value;
   bool is_positional = false, is_required = false;
-  Use use = Use::none;      ///< of a path; declared by `reads` and `writes`
-  FilesNamed named = {};    ///< of an input
-  std::string suffix = {};  ///< of an output: see Argument::writes
+  Use use = Use::none;                    ///< of a path; declared by `reads` and `writes`
+  FilesNamed named = {};                  ///< of an input
+  std::string suffix = {};                ///< of an output: see Argument::writes
+  std::vector<std::string> choices = {};  ///< the only words that it takes; empty: any
+  std::string_view endings = {};          ///< of a path: see Argument::ending
 };
+
+/// What files of a kind end in, for Argument::ending.
+inline constexpr std::string_view kMapEndings = ".xodr .osm .xml .geojson .rbm",
+                                  kScenarioEndings = ".json .xml",
+                                  kCloudEndings = ".pcd .ply .las .xyz .bt .ot",
+                                  kOctreeEndings = ".bt .ot";
 
 /// One option or positional argument of a command; its functions narrow what is accepted.
 class Argument {
@@ -65,6 +73,9 @@ class Argument {
   /// @param suffix  what a name ends in that is chosen for the user: ".json", or "/" for a folder;
   ///                empty: what is written differs from run to run, and is not chosen for him.
   Argument& writes(const std::string& suffix);
+  /// What the names of files that it takes mostly end in, blanks between, for shells to offer;
+  /// lives as long as the program.
+  Argument& ending(std::string_view endings);
 
  private:
   CLI::Option* option_;
@@ -77,16 +88,15 @@ class Argument {
 /// live until then.
 class Arguments {
  public:
-  explicit Arguments(CLI::App& app)
-      : app_(&app),
-        declared_(std::make_shared<std::deque<ArgumentInfo>>()),
-        group_(std::make_shared<std::string>("Options")) {}
+  explicit Arguments(CLI::App& app);
 
   void description(const std::string& text);
   /// Under which the help lists what is declared from now on. Returns the one before.
   std::string heading(const std::string& text);
   /// Command lines that a reader of the help can copy.
   void example(const std::string& lines);
+  /// When the exit status is 1: "there is no route"; empty where the command never says no.
+  void says_no_if(const std::string& text);
 
   Argument add(const std::string& names, std::string& value, const std::string& help);
   Argument add(const std::string& names, std::filesystem::path& value, const std::string& help);
@@ -117,6 +127,7 @@ class Arguments {
 
   /// A part of the command, as `design` of `control design`; just one must be given.
   Arguments part(const std::string& name);
+  const std::vector<Arguments>& parts() const { return *parts_; }
   /// Whether the command line names this command or part.
   bool given() const;
 
@@ -126,15 +137,25 @@ class Arguments {
   /// All that was declared, in that order, without those of parts.
   const std::deque<ArgumentInfo>& declared() const { return *declared_; }
 
+  /// What `--help` says; `line` is the command's, from the program's name on.
+  std::string help(const std::string& line) const;
+
+  const CLI::App& app() const { return *app_; }
+  const std::string& no_means() const { return *no_means_; }
+  const std::string& examples() const { return *examples_; }
+
  private:
   Argument note(CLI::Option& option, ArgumentInfo::Kind kind);
   Argument choose(const std::string& names, const std::vector<std::string>& words,
                   const std::string& standing, std::function<void(std::size_t)> take,
                   const std::string& help);
 
+  void write_footer();
+
   CLI::App* app_;
   std::shared_ptr<std::deque<ArgumentInfo>> declared_;  // elements stay where they are
-  std::shared_ptr<std::string> group_;
+  std::shared_ptr<std::vector<Arguments>> parts_;
+  std::shared_ptr<std::string> group_, no_means_, examples_;
 };
 
 /// Arguments whose words come from elsewhere than the program's command line.

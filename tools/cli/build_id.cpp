@@ -53,6 +53,8 @@ int read_id(dl_phdr_info* object, std::size_t, void* found) {
 
 std::string version() { return ROADBED_VERSION; }
 
+std::string release_date() { return ROADBED_RELEASED; }
+
 std::string name_and_version() { return "roadbed " + version(); }
 
 std::string build_id() {

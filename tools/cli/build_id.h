@@ -7,6 +7,9 @@ namespace roadbed::tools::inline cli {
 /// Of the project, as "0.1.0".
 std::string version();
 
+/// When this version was released, as "2026-11-25".
+std::string release_date();
+
 /// "roadbed 0.1.0".
 std::string name_and_version();
 

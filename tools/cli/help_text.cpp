@@ -75,15 +75,6 @@ std::pair<std::string, std::string> type_and_check(const CLI::Option& option) {
   return {name.substr(0, colon), name.substr(colon + 1)};
 }
 
-std::string value_word(const CLI::Option& option) {
-  if (!option.get_option_text().empty()) return ' ' + option.get_option_text();
-  if (option.get_type_size() == 0) return "";
-  const std::string word = ' ' + type_word(type_and_check(option).first);
-  if (option.get_expected_max() == CLI::detail::expected_max_vector_size) return word + " ...";
-  if (option.get_expected_min() > 1) return fmt::format("{} x {}", word, option.get_expected());
-  return word;
-}
-
 /// What narrows an option's use: "0.1 to 1000; default 30; not with --poses".
 std::string narrowing(const CLI::Option& option) {
   std::vector<std::string> notes;
@@ -108,13 +99,20 @@ class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
-    const std::string help = Formatter::make_help(app, std::move(name), mode);
+    const std::string help = make_description(app) + make_usage(app, std::move(name)) +
+                             make_positionals(app) + make_groups(app, mode) + common_options(app) +
+                             make_subcommands(app, mode) + '\n' + make_footer(app);
     return CLI::detail::find_and_replace(help, "\n\n\n", "\n\n");
   }
 
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    return fmt::format("Usage: {} {}\n", name, usage_of(*app));
+  }
+
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
-    return line(make_option_name(option, is_positional) + value_word(*option),
-                option->get_description() + narrowing(*option));
+    const std::string value = value_word(*option);
+    return line(make_option_name(option, is_positional) + (value.empty() ? "" : ' ' + value),
+                explanation(*option));
   }
 
   std::string make_subcommand(const CLI::App* command) const override {
@@ -125,9 +123,59 @@ class HelpFormatter : public CLI::Formatter {
     const std::string description = app->get_description();
     return description.empty() ? "" : wrapped(description, 0, 0) + '\n';
   }
+
+ private:
+  // Those of the program, which may stand behind a command's words too.
+  std::string common_options(const CLI::App* app) const {
+    if (app->get_parent() == nullptr) return "";
+    const CLI::App* program = app;
+    while (program->get_parent() != nullptr) program = program->get_parent();
+    const auto is_common = [&](const CLI::Option* option) {
+      return option != program->get_help_ptr() && option->get_single_name() != "version";
+    };
+    return make_group("Options of every command", false, program->get_options(is_common));
+  }
 };
 
+// "IN", "[MAP]", "CLOUDS...", "-o PATH"
+std::string usage_word(const CLI::Option& option) {
+  if (option.nonpositional()) {
+    const std::string name = option.get_snames().empty() ? "--" + option.get_lnames().front()
+                                                         : "-" + option.get_snames().front();
+    return name + ' ' + value_word(option);
+  }
+  const char* more =
+      option.get_expected_max() == CLI::detail::expected_max_vector_size ? "..." : "";
+  return fmt::format(fmt::runtime(option.get_required() ? "{}{}" : "[{}{}]"), option.get_name(true),
+                     more);
+}
+
 }  // namespace
+
+std::string value_word(const CLI::Option& option) {
+  if (!option.get_option_text().empty()) return option.get_option_text();
+  if (option.get_type_size() == 0) return "";
+  const std::string word = type_word(type_and_check(option).first);
+  if (option.get_expected_max() == CLI::detail::expected_max_vector_size) return word + " ...";
+  if (option.get_expected_min() > 1) return fmt::format("{} x {}", word, option.get_expected());
+  return word;
+}
+
+std::string explanation(const CLI::Option& option) {
+  return option.get_description() + narrowing(option);
+}
+
+std::string usage_of(const CLI::App& command) {
+  std::string usage = "[OPTIONS]";
+  for (const bool is_positional : {true, false}) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->get_positional() != is_positional) continue;
+      if (is_positional || option->get_required()) usage += ' ' + usage_word(*option);
+    }
+  }
+  if (!command.get_subcommands({}).empty()) usage += " SUBCOMMAND";
+  return usage;
+}
 
 std::shared_ptr<CLI::FormatterBase> make_help_formatter() {
   return std::make_shared<HelpFormatter>();

@@ -49,23 +49,28 @@ class AuditCommand : public Command {
         .add("--occupancy", occupancy_,
              "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
              "that it meets")
-        .reads();
+        .reads()
+        .ending(kOctreeEndings);
     const std::vector<Argument> not_with_check = subjects_.declare(arguments);
     arguments.heading("Question");
     arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
-        .reads();
+        .reads()
+        .ending(".json");
     arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
-        .reads();
+        .reads()
+        .ending(kMapEndings);
     arguments
         .add("--obstacles", obstacles_,
              "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
              "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
              "centre; an id of one row stands for ever, one of several is there from its "
              "first to its last), in the drive's time and coordinates")
-        .reads(files_named_by_scenario);
+        .reads(files_named_by_scenario)
+        .ending(".json .xml .csv");
     declare_question(arguments);
     declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
+    arguments.says_no_if("a drive is not clear, or the certificate does not hold");
     arguments.example(
         "  roadbed audit --occupancy street.bt --trajectory drive/trajectory.csv "
         "--certificate proof.json\n"
@@ -165,7 +170,7 @@ class AuditCommand : public Command {
 
   void declare_outputs(Arguments& arguments, const std::vector<Argument>& not_with_check) {
     arguments.heading("Outputs");
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     const Argument svg =
         arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")
             .writes(".svg");
@@ -198,11 +203,12 @@ class AuditCommand : public Command {
                  "Verify a certificate by brute force instead, from the files that it names. The "
                  "question's options, --occupancy and --trajectory say what it has to be about; "
                  "files may have moved, if they are the same")
-            .reads(files_named_by_certificate);
+            .reads(files_named_by_certificate)
+            .ending(".json");
     for (const Argument& other : {svg, page, certificate, junit, geojson, saved})
       check.excludes(other);
     for (const Argument& other : not_with_check) check.excludes(other);
-    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.flag("-f,--force", force_, "Replace outputs that exist");
   }
 
   std::string missing() const {

@@ -44,7 +44,9 @@ class BatchCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Run many jobs, one a line of JSON, and keep what became of each");
-    arguments.add("JOBS", jobs_file_, "File of jobs (.jsonl), as roadbed jobs writes them").reads();
+    arguments.add("JOBS", jobs_file_, "File of jobs (.jsonl), as roadbed jobs writes them")
+        .reads()
+        .ending(".jsonl");
     arguments
         .add("-o,--output", folder_,
              "Folder for results.jsonl, summary.json, index.html and the files of jobs; run again, "
@@ -72,11 +74,12 @@ class BatchCommand : public Command {
                    "Run no job: write what the results of all come to, as others have run them");
     arguments.flag("--list-missing", lists_,
                    "Print hash and line of each job that has no result yet, and run none");
-    arguments.flag("--json", json_, "Print summary.json");
+    arguments.flag("-j,--json", json_, "Print summary.json");
     arguments.flag("--serve", serves_,
                    "Take job lines from standard input instead, one after the other, and print the "
                    "line of each result at once");
     arguments.require([this] { return fault(); });
+    arguments.says_no_if("a job says no, or has failed");
     arguments.example(
         "  roadbed batch jobs.jsonl -o results --threads 2\n"
         "  roadbed batch jobs.jsonl -o results --isolate --time-limit 60 --job-memory 2GB");

@@ -12,6 +12,8 @@ std::unique_ptr<Command> make_import_command();
 std::unique_ptr<Command> make_info_command();
 std::unique_ptr<Command> make_validate_command();
 std::unique_ptr<Command> make_export_command();
+std::unique_ptr<Command> make_convert_command();
+std::unique_ptr<Command> make_diff_command();
 std::unique_ptr<Command> make_map_command();
 std::unique_ptr<Command> make_locate_command();
 std::unique_ptr<Command> make_route_command();

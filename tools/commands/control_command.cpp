@@ -97,17 +97,22 @@ class ControlCommand : public Command {
     arguments.description("The controllers' designs");
     Arguments design = arguments.part("design");
     design.description("Gains and poles of the cruise control");
-    design.add("--headway", options_.headway_s, "Time gap to the lead [s]").with_default();
-    design.add("--lag", options_.actuator_lag_s, "Time constant of the actuator [s]")
-        .with_default();
-    design.add("--gain", options_.actuator_gain, "Gain of the actuator").with_default();
-    design.add("--step", options_.step_s, "Sampling time [s]").with_default();
+    const auto positive = [&](const char* name, double& value, const char* help) {
+      design.add(name, value, help).positive().with_default();
+    };
+    positive("--headway", options_.headway_s, "Time gap to the lead [s]");
+    positive("--lag", options_.actuator_lag_s, "Time constant of the actuator [s]");
+    positive("--gain", options_.actuator_gain, "Gain of the actuator");
+    positive("--step", options_.step_s, "Sampling time [s]");
     design.add("--weights", weights_, "Weights of distance error, relative speed and acceleration")
         .values(3)
+        .not_negative()
         .with_default();
-    design.add("--input-weight", options_.input_weight, "Weight of the command").with_default();
-    design.add("--delay", delay_steps_, "Sampling times by which a command is late").with_default();
-    design.flag("--json", json_, "Print one JSON document");
+    positive("--input-weight", options_.input_weight, "Weight of the command");
+    design.add("--delay", delay_steps_, "Sampling times by which a command is late")
+        .within(0, 50)
+        .with_default();
+    design.flag("-j,--json", json_, "Print one JSON document");
     design.example("  roadbed control design --weights 1 2 0.5 --input-weight 5");
     arguments.example("  roadbed control design --json");
   }
@@ -128,12 +133,6 @@ class ControlCommand : public Command {
 
  private:
   control::CruiseDesign design_or_refuse() {
-    if (delay_steps_ < 0 || delay_steps_ > 50) {
-      throw map::InputError({.file = "control design",
-                             .found = fmt::format("a delay of {} sampling times", delay_steps_),
-                             .needed = "0 to 50",
-                             .remedy = "change --delay"});
-    }
     options_.state_weights = {weights_[0], weights_[1], weights_[2]};
     try {
       return control::design_cruise(options_);

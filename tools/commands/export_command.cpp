@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,14 @@ std::string suffixes_with_meaning() {
   return list;
 }
 
+std::string written_endings() {
+  std::string list;
+  for (const map::Format& format : map::formats()) {
+    if (format.write != nullptr) list += (list.empty() ? "" : " ") + std::string(format.suffix);
+  }
+  return list;
+}
+
 [[noreturn]] void refuse(const std::string& file, const std::string& found,
                          const std::string& needed, const std::string& remedy) {
   throw map::InputError({.file = file, .found = found, .needed = needed, .remedy = remedy});
@@ -42,8 +52,17 @@ class ExportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format, told by the output's suffix");
-    arguments.add("MAP", input_, "Any readable map").required();
+    arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
     arguments.add("-o,--output", output_, suffixes_with_meaning()).required();
+    declare_options(arguments);
+    arguments.require([this] { return anchor_fault(); });
+    arguments.example(
+        "  roadbed export town.xodr -o town.svg\n"
+        "  roadbed export town.xodr -o town.gpkg\n"
+        "  roadbed export town.xodr -o town.geojson --layer lanes --anchor 48.78,9.18");
+  }
+
+  void declare_options(Arguments& arguments) {
     const std::vector<std::string> names = map::layer_names();
     arguments.add("--layer", layers_, "Only these layers; .fgb holds one, lanes if none is named")
         .one_of(names);
@@ -55,12 +74,7 @@ class ExportCommand : public Command {
     arguments.add("--crs", crs_,
                   "Coordinate system of the map, in place of what it says itself: EPSG:25832, a "
                   "PROJ string, or \"unknown\"");
-    arguments.flag("--force", force_, "Replace the output if it exists");
-    arguments.require([this] { return anchor_fault(); });
-    arguments.example(
-        "  roadbed export town.xodr -o town.svg\n"
-        "  roadbed export town.xodr -o town.gpkg\n"
-        "  roadbed export town.xodr -o town.geojson --layer lanes --anchor 48.78,9.18");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -80,13 +94,14 @@ class ExportCommand : public Command {
     return Exit::ok;
   }
 
- private:
+ protected:
   std::string anchor_fault() const {
     if (anchor_deg_.empty()) return {};
     if (std::abs(anchor_deg_[0]) <= 90.0 && std::abs(anchor_deg_[1]) <= 180.0) return {};
     return "--anchor: latitude is within ±90, longitude within ±180";
   }
 
+ private:
   std::string system_of(const map::RoadMap& road_map) const {
     const std::string own = crs_.empty() ? road_map.crs() : crs_ == "unknown" ? "" : crs_;
     if (anchor_deg_.empty()) return own;
@@ -100,6 +115,7 @@ class ExportCommand : public Command {
     return anchor_deg_.empty() && crs_ != "unknown" && !(crs_.empty() && road_map.crs().empty());
   }
 
+ protected:
   std::filesystem::path input_, output_;
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
@@ -107,7 +123,59 @@ class ExportCommand : public Command {
   bool force_ = false;
 };
 
+/// What `export` does, and for a compiled map what `import` does.
+class ConvertCommand : public ExportCommand {
+ public:
+  void declare(Arguments& arguments) override {
+    arguments.description("Write a map in another format: import and export in one");
+    arguments.add("A", input_, "Any readable map").required().ending(kMapEndings);
+    const Argument b = arguments.add("B", positional_output_, "The output, in place of -o");
+    arguments
+        .add("-o,--output", output_, ".rbm: compiled map; or as of export: " + written_endings())
+        .excludes(b);
+    declare_options(arguments);
+    arguments.require([this] { return fault(); });
+    arguments.example(
+        "  roadbed convert town.xodr town.osm --anchor 48.78,9.18\n"
+        "  roadbed convert town.osm -o town.rbm");
+  }
+
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    return is_compiled() ? import(streams, common) : ExportCommand::run(streams, common);
+  }
+
+ private:
+  bool is_compiled() const { return output_.extension() == ".rbm"; }
+
+  std::string fault() {
+    if (output_.empty()) output_ = positional_output_;
+    if (output_.empty()) return "B or -o is required: the output";
+    if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
+      return "--layer and --anchor are for outputs other than .rbm";
+    }
+    return anchor_fault();
+  }
+
+  Exit import(const Streams& streams, const CommonOptions& common) const {
+    std::vector<std::string> words{"--output=" + output_.string()};
+    if (!crs_.empty()) words.push_back("--crs=" + crs_);
+    if (force_) words.emplace_back("--force");
+    words.insert(words.end(), {"--", input_.string()});
+    const std::unique_ptr<Command> command = make_import_command();
+    ArgumentSet set;
+    command->declare(set.arguments());
+    if (const std::string wrong = set.parse(words); !wrong.empty()) {
+      throw std::logic_error("convert: import does not take its words: " + wrong);
+    }
+    return command->run(streams, common);
+  }
+
+  std::filesystem::path positional_output_;
+};
+
 }  // namespace
+
+std::unique_ptr<Command> make_convert_command() { return std::make_unique<ConvertCommand>(); }
 
 std::unique_ptr<Command> make_export_command() { return std::make_unique<ExportCommand>(); }
 

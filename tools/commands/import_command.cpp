@@ -55,7 +55,7 @@ void keep_heap_in_huge_pages(const std::filesystem::path& input) {
 map::RoadMap with_crs(map::RoadMap road_map, const std::string& crs) {
   if (crs.empty()) return road_map;
   map::RoadMapParts parts = road_map.parts();
-  parts.crs = crs;
+  parts.crs = crs == "unknown" ? "" : crs;
   return map::RoadMap(std::move(parts));
 }
 
@@ -66,18 +66,19 @@ class ImportCommand : public Command {
     arguments
         .add("IN", input_, "Map file: OpenDRIVE, Lanelet2, CommonRoad, GeoJSON, or a compiled one")
         .required()
-        .reads();
+        .reads()
+        .ending(kMapEndings);
     arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required().writes(".rbm");
     arguments.add("--crs", crs_,
-                  "CRS of the map's coordinates (PROJ string or EPSG:CODE), where "
-                  "the file gives none or a wrong one; nothing is reprojected");
+                  "CRS of the map's coordinates (PROJ string, EPSG:CODE, or \"unknown\"), "
+                  "where the file gives none or a wrong one; nothing is reprojected");
     arguments
         .add("--max-error", max_error_m_,
              "Largest distance between a sampled border and the true curve [m]")
         .within(1e-6, 1.0)
         .with_default();
-    arguments.flag("--json", json_, "Print what was imported as one JSON document");
-    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.flag("-j,--json", json_, "Print what was imported as one JSON document");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.example("  roadbed import town.xodr -o town.rbm");
   }
 

@@ -217,9 +217,9 @@ class InfoCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Say what a map holds: counts, lengths, areas, bounds, connectivity");
-    arguments.add("MAP", input_, "Any readable map").required();
+    arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
     arguments.flag("--verify", verify_, "Check every byte and record of a compiled map");
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.example("  roadbed info town.xodr --json");
   }
 

@@ -125,10 +125,12 @@ class KindOptions {
     part_.add("--outputs", outputs_, "Outputs of each job that the batch is to keep: a,b")
         .separated_by(',');
     if (kind.name == "route") {
-      part_.add("--pairs", pairs_, "CSV with the columns from and to: a job for each row").reads();
+      part_.add("--pairs", pairs_, "CSV with the columns from and to: a job for each row")
+          .reads()
+          .ending(".csv");
     }
     part_.add("-o,--output", file_, "File of jobs to write (.jsonl)").required().writes(".jsonl");
-    part_.flag("--force", force_, "Replace the file if it exists");
+    part_.flag("-f,--force", force_, "Replace the file if it exists");
     part_.example(fmt::format("  roadbed jobs {} {}", kind.name, example_of(kind.name)));
   }
 

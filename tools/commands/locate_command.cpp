@@ -93,19 +93,20 @@ class LocateCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Find the lanes nearest to points");
-    arguments.add("MAP", map_file_, "Any readable map").required();
+    arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
     const Argument at = arguments.add("--at", at_, "Point X,Y in the map's coordinates [m]")
                             .checked([](const std::string& text) {
                               return parse_point(text) ? std::string() : "is not X,Y: two numbers";
                             });
     Argument points = arguments.add("--points", points_file_, "CSV file with columns x_m,y_m");
-    points.excludes(at);
+    points.ending(".csv").excludes(at);
     arguments.add("--count", count_, "Most lanes to name per point").positive().with_default();
     arguments.flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.require([this] {
       return at_.empty() && points_file_.empty() ? std::string("--at or --points") : std::string();
     });
+    arguments.says_no_if("a point has no lane within 50 km");
     arguments.example("  roadbed locate town.xodr --at 20,-1.8");
   }
 

@@ -44,18 +44,23 @@ void print_differences(std::ostream& out, const map::MapChange& change) {
   fmt::print(out, "\n");
 }
 
-class MapDiffCommand : public Command {
+/// `map diff` and `diff`.
+class DiffCommand : public Command {
  public:
+  /// @param words  what it is called.
+  explicit DiffCommand(std::string words) : words_(std::move(words)) {}
+
   void declare(Arguments& arguments) override {
     arguments.description("Say what changed between two versions of a map");
-    arguments.add("A", before_, "The older map: any readable one").required();
-    arguments.add("B", after_, "The newer map").required();
+    arguments.add("A", before_, "The older map: any readable one").required().ending(kMapEndings);
+    arguments.add("B", after_, "The newer map").required().ending(kMapEndings);
     arguments
         .add("--tolerance", options_.tolerance_m, "Lines that moved less are taken as unmoved [m]")
         .not_negative()
         .with_default();
-    arguments.flag("--json", json_, "Print one JSON document");
-    arguments.example("  roadbed map diff old.xodr new.xodr --tolerance 0.01");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
+    arguments.says_no_if("the maps differ");
+    arguments.example("  roadbed " + words_ + " old.xodr new.xodr --tolerance 0.01");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
@@ -74,6 +79,7 @@ class MapDiffCommand : public Command {
   }
 
  private:
+  std::string words_;
   std::filesystem::path before_, after_;
   map::MapDiffOptions options_;
   bool json_ = false;
@@ -93,11 +99,13 @@ class MapCommand : public Command {
   }
 
  private:
-  MapDiffCommand diff_;
+  DiffCommand diff_{"map diff"};
   std::optional<Arguments> diff_arguments_;
 };
 
 }  // namespace
+
+std::unique_ptr<Command> make_diff_command() { return std::make_unique<DiffCommand>("diff"); }
 
 std::unique_ptr<Command> make_map_command() { return std::make_unique<MapCommand>(); }
 

@@ -32,7 +32,8 @@ class OccupancyBuildCommand : public Command {
         .add("CLOUD", clouds_,
              "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
              "(.bt .ot) to convert")
-        .required();
+        .required()
+        .ending(kCloudEndings);
     arguments
         .add("-o,--output", output_,
              "OctoMap file to write (.bt, or .ot with log-odds), or a folder (.tiles)")
@@ -102,7 +103,7 @@ class OccupancyBuildCommand : public Command {
       if ((output_.extension() == ".tiles") == tiles_m_.has_value()) return {};
       return tiles_m_ ? "an output .tiles, for --tiles" : "--tiles, for an output .tiles";
     });
-    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.example(
         "  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt\n"
         "  roadbed occupancy build scans/*.pcd --poses poses.txt -o street.bt\n"

@@ -152,8 +152,9 @@ class OccupancyInfoCommand : public Command {
     arguments
         .add("F", input_,
              "Octree (.bt .ot), folder of tiles, or point cloud (.pcd .ply .las .xyz .csv)")
-        .required();
-    arguments.flag("--json", json_, "Print one JSON document");
+        .required()
+        .ending(kCloudEndings);
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.example("  roadbed occupancy info street.bt --json");
   }
 

@@ -72,14 +72,15 @@ class PlanCommand : public Command {
             .with_default();
     arguments.flag("--explain", explain_,
                    "Each term's share of the cost, for the chosen candidate and the runner-up");
-    arguments.flag("--json", json_, "One JSON document on stdout");
-    arguments.flag("--force", force_, "Replace files in the folder");
+    arguments.flag("-j,--json", json_, "One JSON document on stdout");
+    arguments.flag("-f,--force", force_, "Replace files in the folder");
     arguments.require([this, options, circles] {
       const bool has_changes = options.given() || circles.given();
       return has_changes && names_drive_time(scene_)
                  ? "--options and --circles do not go with DIR@T, which is done again as it was"
                  : "";
     });
+    arguments.says_no_if("every candidate was rejected");
     arguments.example(
         "  roadbed plan data/scenarios/parked_car.json -o /tmp/plan --explain\n"
         "  roadbed plan drive@4.2 -o /tmp/plan");

@@ -52,7 +52,7 @@ class ReachCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Find what can be reached within a time or a distance");
-    arguments.add("MAP", map_file_, "Any readable map").required();
+    arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
     arguments.add("--from", from_, std::string("Start: ") + kPlaceSyntax)
         .required()
         .checked(place_syntax_fault);
@@ -62,10 +62,11 @@ class ReachCommand : public Command {
           return limit_of(text) ? "" : "is not a number up to 100000 with s or m behind it";
         });
     rules_.declare(arguments, false);
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.add("-o,--output", output_,
                   "Write too: .geojson the area, .csv a row per lane, .svg a picture");
-    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    arguments.says_no_if("nothing can be reached");
     arguments.example("  roadbed reach town.xodr --from lane:1/0/-1@10 --within 60s -o reach.svg");
   }
 

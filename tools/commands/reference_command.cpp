@@ -49,7 +49,7 @@ class ReferenceCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Draw the smooth line to drive along a route, or through way-points");
-    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints");
+    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints").ending(kMapEndings);
     question_.declare(arguments, true);
     way_points_.declare(arguments);
     arguments.add("-o,--output", output_, "CSV file to write").required();
@@ -61,8 +61,9 @@ class ReferenceCommand : public Command {
              "Largest distance of the line from the centreline or way-points [m]")
         .within(0.01, 2.0)
         .with_default();
-    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.require([this] { return fault(); });
+    arguments.says_no_if("there is no route");
     arguments.example(
         "  roadbed reference town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55 -o line.csv\n"
         "  roadbed reference --waypoints points.csv --interpolate --ends periodic -o ring.csv");

@@ -100,7 +100,8 @@ class ReportCommand : public Command {
         .checked([](const std::string& text) {
           return bound_of(text) ? std::string() : "needs METRIC=VALUE, got " + text;
         });
-    compare.flag("--json", json_, "Print one JSON document");
+    compare.flag("-j,--json", json_, "Print one JSON document");
+    compare.says_no_if("a metric of B is above its bound");
     compare.example("  roadbed report compare before after --max largest_cross_track_m=0.2");
     arguments.example("  roadbed report compare before after");
   }

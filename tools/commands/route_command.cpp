@@ -37,7 +37,7 @@ class RouteCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Find the cheapest route over lanes, or say why there is none");
-    arguments.add("MAP", map_file_, "Any readable map").required().reads();
+    arguments.add("MAP", map_file_, "Any readable map").required().reads().ending(kMapEndings);
     question_.declare(arguments, true);
     arguments
         .add("--alternatives", alternatives_,
@@ -48,16 +48,18 @@ class RouteCommand : public Command {
         .add("--batch", batch_,
              "Pairs instead of --from and --to: CSV with the columns from and to, places in "
              "quotes; one row of answers each")
-        .reads();
+        .reads()
+        .ending(".csv");
     arguments.flag("--matrix", matrix_, "With --batch: from every from to every to");
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments
         .add("-o,--output", output_,
              "Write too: .geojson with the corridor, .csv a row per leg, .svg a picture; with "
              "--batch the rows, as .csv")
         .writes(".geojson");
-    arguments.flag("--force", force_, "Replace the output if it exists");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.require([this] { return missing(); });
+    arguments.says_no_if("there is no route, with --batch for one of the pairs");
     arguments.example(
         "  roadbed route town.xodr --from lane:1/0/-1@10 --to lane:7/0/1@55\n"
         "  roadbed route town.xodr --from 270,203 --to lane:7/0/1@55 --avoid road:4 -o way.svg\n"

@@ -136,7 +136,8 @@ class SimulateCommand : public Command {
         .add("SCENARIO", scenario_file_,
              "Scenario file (.json, or CommonRoad .xml), or a folder of them")
         .required()
-        .reads(files_named_by_scenario);
+        .reads(files_named_by_scenario)
+        .ending(kScenarioEndings);
     arguments
         .add(
             "-o,--output", folder_,
@@ -148,13 +149,14 @@ class SimulateCommand : public Command {
     arguments
         .add("--timings", timings_file_, "File for the wall clock of each planning cycle (.csv)")
         .writes("");
-    arguments.flag("--json", json_, "Print the metrics as one JSON document");
+    arguments.flag("-j,--json", json_, "Print the metrics as one JSON document");
     arguments.flag("--candidates", choice_.keeps_candidates,
                    "Keep what became of each candidate, for the report; takes longer");
     arguments.flag("--predict", choice_.predicts,
                    "Foresee others from what could be seen of them, not by their true future");
     declare_changes(arguments);
-    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.flag("-f,--force", force_, "Replace outputs that exist");
+    arguments.says_no_if("a drive does not reach its goal");
     arguments.example(
         "  roadbed simulate data/drive.json -o drive\n"
         "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
@@ -173,12 +175,14 @@ class SimulateCommand : public Command {
         .add("--vehicle", choice_.vehicle_file,
              "Vehicle (.json) in place of the scenario's; of CommonRoad files there is no "
              "solution.xml then, as that names vehicle 2")
-        .reads();
+        .reads()
+        .ending(".json");
     arguments
         .add("--noise", choice_.noise_file,
              "Noise of what is measured (.json, the keys of a scenario's noise), in place of the "
              "scenario's")
-        .reads();
+        .reads()
+        .ending(".json");
     arguments.flag("--drop-ego-recording", choice_.changes.drops_ego_recording,
                    "Leave out the ego's own recording, an obstacle of its extent where it starts "
                    "(CommonRoad files)");
@@ -186,7 +190,8 @@ class SimulateCommand : public Command {
         .add("--options", choice_.planner_file,
              "How to drive (.json): a style (gentle, normal, sporty), limits, and weights of the "
              "cost, in place of the scenario's")
-        .reads();
+        .reads()
+        .ending(".json");
     arguments
         .add("--seed", seed_,
              "Seed of the noise in place of the scenario's: the same drive for the same seed; "

@@ -24,10 +24,10 @@ class ValidateCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Report what makes a map unfit for planning");
-    arguments.add("MAP", input_, "Any readable map").reads();
+    arguments.add("MAP", input_, "Any readable map").reads().ending(kMapEndings);
     arguments.flag("--rules", list_rules_,
                    "List all rules with their meaning, and do nothing else");
-    arguments.flag("--json", json_, "Print one JSON document");
+    arguments.flag("-j,--json", json_, "Print one JSON document");
     declare_outputs(arguments);
     arguments.add("--fail-on", fail_on_, "Least severity that makes the exit status 1")
         .one_of({"error", "warning", "info"})
@@ -36,6 +36,7 @@ class ValidateCommand : public Command {
     arguments.require([this] {
       return input_.empty() && !list_rules_ ? std::string("MAP is required") : std::string();
     });
+    arguments.says_no_if("a finding is as severe as --fail-on says");
     arguments.example(
         "  roadbed validate town.xodr --fail-on warning\n"
         "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force");
@@ -65,7 +66,7 @@ class ValidateCommand : public Command {
     arguments.add("--geojson", geojson_, "Write the findings as a layer of points")
         .writes(".geojson");
     arguments.add("--svg", svg_, "Draw the map with its findings").writes(".svg");
-    arguments.flag("--force", force_, "Replace outputs that exist");
+    arguments.flag("-f,--force", force_, "Replace outputs that exist");
   }
 
   void declare_limits(Arguments& arguments) {

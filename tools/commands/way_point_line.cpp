@@ -57,8 +57,8 @@ WayPointLine::Line WayPointLine::smooth_line(const planning::ReferenceLine& line
 }
 
 void WayPointLine::declare(Arguments& arguments) {
-  arguments.add("--waypoints", file_,
-                "CSV file with columns x_m and y_m, instead of MAP and route");
+  arguments.add("--waypoints", file_, "CSV file with columns x_m and y_m, instead of MAP and route")
+      .ending(".csv");
   arguments.flag("--interpolate", interpolate_,
                  "Through the way-points: a cubic spline, not smoothed");
   arguments.choice(
@@ -67,11 +67,12 @@ void WayPointLine::declare(Arguments& arguments) {
       "Ends of the spline: no curvature, the given headings, or closed");
   arguments.add("--headings", headings_deg_, "Headings of clamped ends, FIRST,LAST [deg]")
       .separated_by(',');
-  arguments.add(
-      "--vehicle", vehicle_file_,
-      "JSON file; bends that it cannot steer are drawn wider, and what it cannot drive is "
-      "noted; corners of way-points are rounded for it at the speed limit, inside the "
-      "half width");
+  arguments
+      .add("--vehicle", vehicle_file_,
+           "JSON file; bends that it cannot steer are drawn wider, and what it cannot drive is "
+           "noted; corners of way-points are rounded for it at the speed limit, inside the "
+           "half width")
+      .ending(".json");
   arguments.add("--half-width", half_width_m_, "Room to each side of a line of way-points [m]")
       .within(0.1, 100.0)
       .with_default();

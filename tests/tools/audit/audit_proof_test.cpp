@@ -167,7 +167,7 @@ TEST_F(AuditCommand, SeesEveryOccupancyOfAnObstacleAllThroughItsTime) {
             "conflict");
   const ProgramRun unsaid = audit({"--trajectory", folder_ / "drives/near.csv", "--obstacles",
                                    file("<phantomObstacle id=\"9\"/>")});
-  EXPECT_EQ(unsaid.status, 1);
+  EXPECT_EQ(unsaid.status, 3);
   EXPECT_THAT(unsaid.err, HasSubstr("obstacle 9: nothing says where it is"));
 }
 

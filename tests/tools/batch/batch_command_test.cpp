@@ -225,7 +225,7 @@ TEST(BatchCommand, RefusesWrongUsage) {
       {"batch", jobs, "-o", out, "--merge", "--isolate"},
   };
   for (const auto& words : wrong) EXPECT_EQ(run_roadbed(words).status, 2) << words.back();
-  EXPECT_EQ(run_roadbed({"batch", (folder / "none").string(), "-o", out}).status, 1);
+  EXPECT_EQ(run_roadbed({"batch", (folder / "none").string(), "-o", out}).status, 3);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
@@ -281,7 +281,7 @@ TEST(BatchCommand, MergesNothingWhereAResultIsMissing) {
   batch(inputs.write("first.jsonl", audit_jobs(inputs, 1)), folder.path());
   std::filesystem::remove(folder / "results.jsonl");
   const ProgramRun merge = batch(jobs, folder.path(), {"--merge"});
-  EXPECT_EQ(merge.status, 1);
+  EXPECT_EQ(merge.status, 3);
   EXPECT_THAT(merge.err, HasSubstr("2 jobs have no result; run without --merge"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results.jsonl"));
 }
@@ -326,7 +326,7 @@ TEST(BatchCommand, RefusesJobsThatComeThroughAPipe) {
   const std::string pipe = (folder / "pipe").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const ProgramRun run = batch(pipe, folder / "out");
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_THAT(run.err, HasSubstr("is no regular file"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }

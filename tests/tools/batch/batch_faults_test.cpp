@@ -51,7 +51,7 @@ TEST(BatchFaults, StopsWhenItIsToldToAndCanGoOn) {
   }
   running.send(SIGSTOP);  // so that it is not done before it is told to
   running.send(SIGTERM);
-  EXPECT_EQ(running.end(SIGCONT), 1);
+  EXPECT_EQ(running.end(SIGCONT), 3);
   EXPECT_THAT(bytes_of(err), HasSubstr("run again to go on"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results.jsonl"));
   batch(jobs, folder.path());
@@ -67,7 +67,7 @@ TEST(BatchFaults, KeepsTwoRunsOutOfOneFolder) {
   }
   running.send(SIGSTOP);
   const ProgramRun second = batch(jobs, folder.path());
-  EXPECT_EQ(second.status, 1);
+  EXPECT_EQ(second.status, 3);
   EXPECT_THAT(second.err, HasSubstr("another run is at work in it"));
 }
 
@@ -145,7 +145,7 @@ TEST(BatchFaults, StopsWhereTheJournalFindsNoRoomAndCanGoOn) {
   {
     const FileSizeLimit limit(300);
     const ProgramRun run = batch(jobs, folder.path());
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr("000001.jsonl"));
     EXPECT_THAT(run.err, HasSubstr("run again"));
   }

@@ -94,11 +94,11 @@ TEST(JobsCommand, RefusesAPatternThatMatchesNothingAndAnUnknownOutput) {
   const TemporaryFolder folder;
   const std::string out = (folder / "jobs.jsonl").string();
   const ProgramRun none = run_roadbed({"jobs", "import", (folder / "*.xodr").string(), "-o", out});
-  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.status, 3);
   EXPECT_THAT(none.err, HasSubstr("matches no file"));
   const ProgramRun unknown =
       run_roadbed({"jobs", "validate", folder.write("a.xodr", ""), "--outputs", "pdf", "-o", out});
-  EXPECT_EQ(unknown.status, 1);
+  EXPECT_EQ(unknown.status, 3);
   EXPECT_FALSE(std::filesystem::exists(out));
   EXPECT_EQ(run_roadbed({"jobs", "import", "--spped", "1", "-o", out}).status, 2);
 }
@@ -111,7 +111,7 @@ TEST(JobsCommand, RefusesWhatTheCommandItselfWouldNotTake) {
     words.insert(words.begin(), "jobs");
     words.insert(words.end(), {"-o", out});
     const ProgramRun run = run_roadbed(words);
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_FALSE(std::filesystem::exists(out));
     return run.err;
   };
@@ -127,7 +127,7 @@ TEST(JobsCommand, RefusesMoreJobsThanAFileShouldHold) {
   for (const char* range : {"1..100000", "1..900000000000"}) {
     const ProgramRun run = run_roadbed({"jobs", "audit", "--occupancy", folder.write("a.bt", ""),
                                         "--inflate", range, "--clearance", "1..100000", "-o", out});
-    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.status, 3);
     EXPECT_THAT(run.err, HasSubstr("write several files of jobs"));
   }
   EXPECT_FALSE(std::filesystem::exists(out));
@@ -141,7 +141,7 @@ TEST(JobsCommand, RefusesANameThatJsonCannotHold) {
                                                    "e.xodr",
                                                    ""),
                                       "-o", out});
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 3);
   EXPECT_THAT(run.err, HasSubstr("no UTF-8"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
