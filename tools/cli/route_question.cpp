@@ -33,15 +33,6 @@ std::optional<geometry::Ring> ring_of(std::string_view text) {
   return ring;
 }
 
-std::string avoid_fault(const std::string& text) {
-  if (text.starts_with(kLane)) return place_syntax_fault(text);
-  if (text.starts_with(kRoad)) return text.size() == kRoad.size() ? "the road's id is missing" : "";
-  if (!text.starts_with(kPolygon)) return "is not lane:NAME, road:ID or polygon:X,Y,X,Y,X,Y";
-  return ring_of(std::string_view(text).substr(kPolygon.size()))
-             ? ""
-             : "the polygon is not three or more points X,Y,X,Y,X,Y";
-}
-
 std::vector<map::LaneId> lanes_of_road(const map::RoadMap& road_map, const std::string& text) {
   const std::string id = text.substr(kRoad.size());
   for (const map::Road& road : road_map.roads()) {
@@ -52,6 +43,17 @@ std::vector<map::LaneId> lanes_of_road(const map::RoadMap& road_map, const std::
                          .remedy = "see the roads with: roadbed locate MAP --at X,Y"});
 }
 
+}  // namespace
+
+std::string avoid_fault(const std::string& text) {
+  if (text.starts_with(kLane)) return place_syntax_fault(text);
+  if (text.starts_with(kRoad)) return text.size() == kRoad.size() ? "the road's id is missing" : "";
+  if (!text.starts_with(kPolygon)) return "is not lane:NAME, road:ID or polygon:X,Y,X,Y,X,Y";
+  return ring_of(std::string_view(text).substr(kPolygon.size()))
+             ? ""
+             : "the polygon is not three or more points X,Y,X,Y,X,Y";
+}
+
 std::vector<map::LaneId> closed_by(const map::RoadMap& road_map, const std::string& text) {
   if (text.starts_with(kRoad)) return lanes_of_road(road_map, text);
   if (text.starts_with(kLane)) return {find_place(road_map, text).on_lane.lane};
@@ -59,8 +61,6 @@ std::vector<map::LaneId> closed_by(const map::RoadMap& road_map, const std::stri
   for (Eigen::Vector2d& point : region) point = road_map.to_map(point);
   return planning::lanes_touching(road_map, region);
 }
-
-}  // namespace
 
 std::vector<Argument> RouteRules::declare_speeds(Arguments& arguments) {
   const Argument participant = arguments.choice("--participant", participant_,

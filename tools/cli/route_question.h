@@ -10,6 +10,14 @@
 
 namespace roadbed::tools::inline cli {
 
+/// What is wrong with the writing of what is closed: lane:NAME, road:ID or polygon:X,Y,X,Y,X,Y;
+/// empty if nothing is. Needs no map.
+std::string avoid_fault(const std::string& text);
+
+/// The lanes that are closed by a text without a fault.
+/// @throws InputError for a lane or road that is not on the map.
+std::vector<map::LaneId> closed_by(const map::RoadMap& road_map, const std::string& text);
+
 /// The options that say how a route is judged: `--cost --avoid --participant` and prices.
 class RouteRules {
  public:

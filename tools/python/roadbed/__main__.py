@@ -1,0 +1,5 @@
+"""`python -m roadbed` runs the program."""
+
+from roadbed._program import main
+
+main()
