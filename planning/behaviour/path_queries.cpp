@@ -14,6 +14,7 @@ using Question = LateralReplanner::Question;
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
 constexpr double kMerging_m = 0.8;         // beside the line
+constexpr double kSetsOff_mps = 1.0, kShortEnds_m = 7.0;
 constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
 
 constexpr std::array<Offsets, 6> kBeside{
@@ -115,6 +116,11 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     queries.push_back(pass);
   }
   queries.push_back(keep);
+  // From close behind who stands no longer path leads round.
+  if (question.speed.speed_mps < kSetsOff_mps) {
+    keep.question.ends = {.least_m = kShortEnds_m, .most_m = 2.0 * kShortEnds_m};
+    queries.push_back(keep);
+  }
   return queries;
 }
 

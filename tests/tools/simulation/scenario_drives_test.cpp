@@ -312,6 +312,16 @@ TEST(ScenarioDrives, LaneChangeOfTheRouteIsMade) {
 }
 
 // As in the paper's Fig. 8, but with its own speed control.
+/// Begun slowly, the lane change ends behind the car, which parks there: 6 m are left to it.
+TEST(ScenarioDrives, FromCloseBehindAParkedCarTheVehicleSetsOffRoundIt) {
+  Scenario scenario = scenario_of("lane_change");
+  scenario.start_speed_mps = 6.0;
+  const Driven d = driven(scenario);
+  expect_arrives(d, 0.29);
+  EXPECT_NE(d.first(planning::Behaviour::follow, "car behind"), nullptr);
+  EXPECT_LT(d.drive.verdict.at_s, 35.0);
+}
+
 TEST(ScenarioDrives, SlowerCarIsPassedInTheFreeLaneWithoutBraking) {
   const Driven d = driven("pass_car");
   expect_arrives(d, 1.5);
