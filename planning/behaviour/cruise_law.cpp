@@ -74,6 +74,8 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (halt && halt->is_hard) brake_for(*halt, q, command);
   if (q.passing.overtaking.overtaken) overtake(q, command);
   explain_passing(q, command);
+  passes_within_lane_ =
+      q.maneuver == Maneuver::pass_within_lane && command.behaviour == Behaviour::pass;
   return command;
 }
 
@@ -223,6 +225,13 @@ void CruiseLaw::explain_passing(const Question& q, PlannerCommand& command) cons
   if (q.maneuver == Maneuver::pass_within_lane && command.behaviour == Behaviour::pass) {
     command.reason =
         fmt::format("passes {} within the lane", task_.obstacles[*q.passing.within_lane.passed].id);
+  }
+  // Begun once, it goes on while the body at the end of the path still comes near.
+  if (q.maneuver == Maneuver::pass_within_lane && command.behaviour == Behaviour::follow &&
+      passes_within_lane_ && command.lead &&
+      command.lead->id == task_.obstacles[*q.passing.within_lane.passed].id) {
+    command.behaviour = Behaviour::pass;
+    command.reason = fmt::format("passes {} within the lane; {}", command.lead->id, command.reason);
   }
   std::string why_not = lane.reason.empty() ? overtaking.reason : lane.reason;
   if (why_not.empty()) why_not = q.passing.within_lane.reason;

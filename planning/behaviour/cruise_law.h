@@ -77,7 +77,8 @@ class CruiseLaw {
   const DrivingTask& task_;
   DecisionOptions decision_options_;
   RightOfWay right_of_way_;
-  bool follows_ = false;  ///< in the last cycle
+  bool follows_ = false;             ///< in the last cycle
+  bool passes_within_lane_ = false;  ///< as the last cycle said
   struct {
     double t_s = 0.0;
     std::optional<Lead> lead;

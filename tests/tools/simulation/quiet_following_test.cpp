@@ -164,5 +164,20 @@ TEST(QuietFollowing, TownDriveIsQuietBehindTheSlowerCar) {
   }
 }
 
+/// Past a cyclist whom the end of the path comes near now and then.
+TEST(QuietFollowing, TownDriveKeepsToABehaviourOnceItIsBegun) {
+  Scenario scenario = read_scenario(tests::data_folder() / "drive.json");
+  scenario.duration_s = 18.0;
+  World world = make_world(scenario);
+  const Drive drive = tools::drive(scenario, world);
+  std::size_t begun = 0;
+  for (std::size_t i = 1; i < drive.cycles.size(); ++i) {
+    if (drive.cycles[i].behaviour == drive.cycles[i - 1].behaviour) continue;
+    EXPECT_GE(i - begun, 10U) << "until " << drive.cycles[i].t_s << " s";
+    begun = i;
+  }
+  EXPECT_GT(begun, 0U);
+}
+
 }  // namespace
 }  // namespace roadbed::tools
