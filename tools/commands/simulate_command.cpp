@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/in_threads.h"
+#include "roadbed/tools/cli/line_process.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
@@ -154,17 +156,30 @@ class SimulateCommand : public Command {
                    "Keep what became of each candidate, for the report; takes longer");
     arguments.flag("--predict", choice_.predicts,
                    "Foresee others from what could be seen of them, not by their true future");
+    arguments.add(
+        "--planner", choice_.planner_command,
+        "Command of a planner that drives in place of roadbed's: for each cycle it reads a "
+        "line of JSON and writes one, see tools/simulation/README.md");
+    arguments
+        .add("--planner-timeout", choice_.planner_limit_s,
+             "Time that one of its answers may take [s]")
+        .within(0.01, 3600.0)
+        .with_default();
     declare_changes(arguments);
     arguments.flag("-f,--force", force_, "Replace outputs that exist");
     arguments.says_no_if("a drive does not reach its goal");
     arguments.example(
         "  roadbed simulate data/drive.json -o drive\n"
-        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
+        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7\n"
+        "  roadbed simulate data/scenarios/parked_car.json --planner 'python3 planner.py' -o "
+        "drive");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!timings_file_.empty()) map::check_writable(timings_file_, force_);
     read_changes();
+    std::optional<NoPipeSignal> no_signal;  // of a planner that ends
+    if (!choice_.planner_command.empty()) no_signal.emplace();
     return fs::is_directory(scenario_file_) ? run_folder(streams, common)
                                             : run_one(streams, common);
   }

@@ -124,7 +124,7 @@ void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {
   const Worst heading = largest(
       drive, [](const Row&, const DriveSample& s) { return std::abs(s.heading_error_rad); });
   const auto blind = std::ranges::count_if(
-      drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen.has_value(); });
+      drive.cycles, [](const DriveCycle& cycle) { return !cycle.has_plan(); });
   checks.push_back(noted("largest cross-track error", cross_track.value, "m", cross_track.at_s));
   checks.push_back(noted("largest heading error", heading.value, "rad", heading.at_s));
   checks.push_back(noted("cruise control saturated", 100.0 * drive.saturated_ratio, "%", {}));

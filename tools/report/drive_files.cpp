@@ -40,6 +40,7 @@ DriveRecord record_of(const Scenario& scenario, const DriveChoice& choice) {
           .sources = sources_of(scenario, choice),
           .predicts = choice.predicts,
           .drops_ego_recording = choice.changes.drops_ego_recording,
+          .is_outside = choice.outside_planner || !choice.planner_command.empty(),
           .seed = choice.changes.seed};
 }
 
@@ -59,6 +60,12 @@ std::optional<planning::AuditReport> audit_of(const Scenario& scenario, const Wo
       .report;
 }
 
+std::string quoted(const std::string& text) {
+  std::string words = "'";
+  for (const char letter : text) words += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return words + "'";
+}
+
 // As one would type it beside the inputs.
 std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   std::string command = "roadbed simulate " + scenario.file.filename().string();
@@ -72,18 +79,28 @@ std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   if (!choice.planner_file.empty()) {
     command += " --options " + choice.planner_file.filename().string();
   }
+  if (!choice.planner_command.empty()) {
+    command += fmt::format(" --planner {}", quoted(choice.planner_command));
+  }
   if (choice.changes.seed) command += fmt::format(" --seed {}", *choice.changes.seed);
   return command + " -o DIR";
+}
+
+OutsidePlanner planner_of(const DriveChoice& choice) {
+  if (choice.planner_command.empty()) return choice.outside_planner;
+  return planner_process(choice.planner_command, choice.planner_limit_s);
 }
 
 DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& choice) {
   const auto& [scenario, world, problem] = ready;
   DrivenScenario result;
   result.record = record_of(scenario, choice);
-  const Drive driven =
+  result.drive =
       drive(scenario, world,
             {.planner = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
-             .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); }});
+             .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); },
+             .outside_planner = planner_of(choice)});
+  const Drive& driven = result.drive;
   result.name = scenario.name;
   result.verdict = driven.verdict;
   result.audit = audit_of(scenario, world, driven);

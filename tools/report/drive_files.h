@@ -24,6 +24,7 @@ struct DrivenScenario {
   std::vector<std::pair<std::string, std::string>> files;  ///< name and bytes, for one folder
   DriveRecord record;                                      ///< for the same
   std::vector<double> cycle_ms;                            ///< wall clock of each planning cycle
+  Drive drive;  ///< but for what the last cycle was decided on, which sees the world
 };
 
 /// How a scenario is driven.
@@ -32,6 +33,9 @@ struct DriveChoice {
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
   ScenarioChanges changes = {};   ///< of what the file says
   std::filesystem::path vehicle_file = {}, noise_file = {}, planner_file = {};  ///< their sources
+  OutsidePlanner outside_planner = {};  ///< that drives in place of roadbed's
+  std::string planner_command = {};     ///< of the process that does, one for each drive
+  double planner_limit_s = 60.0;        ///< that an answer of it may take
 
   /// Reads these files into the changes.
   /// @throws InputError if one is unusable.

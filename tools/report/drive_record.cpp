@@ -91,6 +91,7 @@ std::string write_drive_record(const DriveRecord& record, const fs::path& folder
                {"files", files},
                {"predict", record.predicts},
                {"drop_ego_recording", record.drops_ego_recording}};
+  if (record.is_outside) json["outside_planner"] = true;
   if (record.seed) json["seed"] = *record.seed;
   return map::json_text(json, 2) + "\n";
 }
@@ -99,12 +100,13 @@ DriveRecord parse_drive_record(std::string_view bytes, const fs::path& file) {
   const nlohmann::json document = parse_json_strictly(bytes, file.string());
   const JsonNode root(document, file.string());
   check_format(root.at("roadbed_drive"));
-  root.require_object(
-      {"roadbed_drive", "program", "files", "predict", "drop_ego_recording", "seed"});
+  root.require_object({"roadbed_drive", "program", "files", "predict", "drop_ego_recording",
+                       "outside_planner", "seed"});
   DriveRecord record{.program = root.at("program").one_line(),
                      .sources = {},
                      .predicts = root.at("predict").boolean(),
                      .drops_ego_recording = root.at("drop_ego_recording").boolean(),
+                     .is_outside = root.find("outside_planner").has_value(),
                      .seed = {}};
   if (const auto seed = root.find("seed")) record.seed = seed_in(*seed);
   for (const JsonNode& node : root.at("files").elements()) {

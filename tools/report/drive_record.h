@@ -24,6 +24,7 @@ struct DriveRecord {
   std::string program;               ///< name and version of what drove it
   std::vector<DriveSource> sources;  ///< the scenario first
   bool predicts = false, drops_ego_recording = false;
+  bool is_outside = false;  ///< driven by a planner of the user's, which nobody can ask again
   std::optional<std::uint64_t> seed = {};  ///< in place of the scenario's
 
   /// The file of a role that no two have; empty if none has it.

@@ -96,6 +96,12 @@ DriveTime parse_drive_time(const std::string& text) {
 void replay_cycle(const DriveTime& time, const Inputs& inputs,
                   const std::function<void(const ReplayedCycle&)>& use) {
   const DriveRecord record = read_drive_record(time.folder);
+  if (record.is_outside) {
+    throw map::InputError({.file = time.folder.string(),
+                           .found = "was driven by another planner, given by --planner",
+                           .needed = "a drive by roadbed's own",
+                           .remedy = "look at cycles.jsonl and the report"});
+  }
   const std::size_t last = cycle_at(time, read_trajectory_csv(time.folder / "trajectory.csv"));
   check_sources(record);
   const DriveChoice choice = choice_of(record);

@@ -202,6 +202,7 @@ Json coded_start(const planning::LateralState& start) {
 
 // "ends 0.4 m to the left after 22.0 m".
 std::string note_of(const DriveCycle& cycle) {
+  if (cycle.is_outside) return "planned by another planner";
   if (!cycle.chosen) return cycle.plan_reason.empty() ? "none feasible" : cycle.plan_reason;
   const double end_d_m = cycle.chosen->end_d_m;
   const char* side = end_d_m > 0.0 ? "to the left" : "to the right";

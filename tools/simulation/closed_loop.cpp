@@ -18,6 +18,7 @@
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/sensors.h"
+#include "roadbed/tools/simulation/trajectory_follower.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {
@@ -172,6 +173,7 @@ class ClosedLoop {
   const planning::LateralReplanner& replanner() const { return planner_.replanner(); }
 
   void plan_and_decide() {
+    if (options_.outside_planner) return ask_outside();
     const auto begin = std::chrono::steady_clock::now();
     const planning::VehicleState measured = sensors_.measure(truth_);
     const bool has_new_route = command_.detour.has_value();
@@ -185,6 +187,55 @@ class ClosedLoop {
     front_s_m_ = replanner().s_m();
     saturated_ += command_.saturated ? 1 : 0;
     log_cycle(has_new_route);
+  }
+
+  /// Before the first trajectory it brakes where it stands.
+  void ask_outside() {
+    const auto begin = std::chrono::steady_clock::now();
+    const planning::VehicleState measured = sensors_.measure(truth_);
+    OutsidePlan plan = options_.outside_planner(observe(scenario_, world_, t_s(), measured));
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    if (options_.on_cycle) options_.on_cycle(took.count());
+    const bool is_new = !plan.trajectory.empty();
+    if (is_new) {
+      follower_.emplace(in_map(plan.trajectory), scenario_.vehicle);
+    } else if (!follower_) {
+      const geometry::Pose2& pose = measured.map_from_vehicle;
+      const geometry::TrajectoryPoint here{t_s(), pose.x_m, pose.y_m, pose.heading_rad};
+      follower_.emplace(geometry::Trajectory({here}), scenario_.vehicle);
+    }
+    command_ = {};
+    command_.acceleration_mps2 =
+        follower_->acceleration_mps2(t_s(), measured.map_from_vehicle, measured.speed_mps);
+    command_.set_speed_mps = follower_->trajectory().at(t_s()).speed_mps;
+    command_.reason = plan.reason.empty() ? "another planner drives" : std::move(plan.reason);
+    log_outside(is_new);
+  }
+
+  geometry::Trajectory in_map(const geometry::Trajectory& in_source) const {
+    std::vector<geometry::TrajectoryPoint> points = in_source.points();
+    for (geometry::TrajectoryPoint& point : points) {
+      const Eigen::Vector2d place = world_.road_map.to_map({point.x_m, point.y_m});
+      point.x_m = place.x();
+      point.y_m = place.y();
+    }
+    return geometry::Trajectory(std::move(points));
+  }
+
+  void log_outside(bool is_new) {
+    DriveCycle cycle{.t_s = t_s(),
+                     .behaviour = command_.behaviour,
+                     .reason = command_.reason,
+                     .is_outside = is_new,
+                     .plan_reason = is_new ? "" : "the planner gave no trajectory"};
+    if (is_new) {
+      for (const geometry::TrajectoryPoint& point : follower_->trajectory().points()) {
+        cycle.path.push_back(world_.road_map.to_source({point.x_m, point.y_m}));
+      }
+    }
+    const DriveCycle* last = drive_.cycles.empty() ? nullptr : &drive_.cycles.back();
+    for (DriveEvent& event : events_of(cycle, last)) drive_.events.push_back(std::move(event));
+    drive_.cycles.push_back(std::move(cycle));
   }
 
   /// The vehicle goes on from where it stands; stations of the samples do, too.
@@ -225,6 +276,7 @@ class ClosedLoop {
   }
 
   control::TrackingError tracking_error_of(const geometry::Pose2& pose) {
+    if (follower_) return follower_->error_of(pose);
     const double wheelbase_m = scenario_.vehicle.wheelbase_m;
     const Eigen::Vector2d front = pose * Eigen::Vector2d(wheelbase_m, 0.0);
     front_s_m_ = replanner().path().nearest_front_s_m(front, wheelbase_m, front_s_m_);
@@ -243,6 +295,10 @@ class ClosedLoop {
     const planning::VehicleState measured = sensors_.measure(truth_);
     const control::TrackingError error = tracking_error_of(measured.map_from_vehicle);
     const double speed_mps = measured.speed_mps;
+    if (follower_) {
+      command_.acceleration_mps2 =
+          follower_->acceleration_mps2(t_s(), measured.map_from_vehicle, speed_mps);
+    }
     const double most = most_steering_rad(speed_mps, kMostLateral_mps2, scenario_.vehicle);
     const double wanted =
         std::clamp(control::stanley_steering_rad(error, speed_mps, scenario_.vehicle), -most, most);
@@ -376,6 +432,7 @@ class ClosedLoop {
   GroundTruthMonitor observer_;
 
   std::optional<PedalModel> foot_;
+  std::optional<TrajectoryFollower> follower_;  ///< of what another planner wants
   int steps_ = 0;
   double s_m_ = 0.0;        ///< station on the world's line, when last looked
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path

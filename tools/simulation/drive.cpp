@@ -43,7 +43,7 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
   if (cycle.from_measurement) {
     log(EventLevel::warning, "planned from the measured state: tracking was too far off");
   }
-  if (!cycle.chosen && (!last || last->chosen)) {
+  if (!cycle.has_plan() && (!last || last->has_plan())) {
     log(EventLevel::warning, "nothing is feasible: " + cycle.plan_reason);
   }
   if (cycle.chosen && cycle.beyond_the_edge_m > 0.0 &&

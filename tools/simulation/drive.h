@@ -14,6 +14,7 @@
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/lateral/candidate_grid.h"
 #include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/tools/simulation/outside_planner.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 
@@ -30,14 +31,17 @@ struct DriveCycle {
   bool is_news = false;           ///< the reason is worth an event
   bool from_measurement = false;  ///< replanned from the measured state: tracking was too far off
   std::optional<planning::Candidate> chosen =
-      {};                             ///< none: nothing feasible, the last path is kept
-  planning::LateralState start = {};  ///< of the candidates
+      {};                   ///< none: nothing feasible, the last path is kept
+  bool is_outside = false;  ///< the path is that of a planner of the user's, without candidates
+  planning::LateralState start = {};                 ///< of the candidates
   std::optional<planning::CandidateGrid> grid = {};  ///< if candidates are kept
   std::string plan_reason = {};                      ///< why nothing was feasible
   double beyond_the_edge_m = 0.0;  ///< that the body may stick out of the corridor, if it has to
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<planning::DriveLead> lead = {};
   std::vector<planning::HypothesisOutcome> hypotheses = {};
+
+  bool has_plan() const { return chosen.has_value() || is_outside; }
 };
 
 /// What is known at each row of the trajectory.
@@ -109,6 +113,7 @@ struct LoopOptions {
   /// The drive is left, without a verdict, when this cycle is planned; what it was decided on is
   /// kept. Until then all is as it would be without.
   std::optional<std::size_t> last_cycle = {};
+  OutsidePlanner outside_planner = {};  ///< if any, it plans in place of roadbed's
 };
 
 /// Drives a scenario: plans every 0.1 s, controls every 0.01 s, until the goal is reached, an

@@ -132,7 +132,7 @@ ordered_json cycles(const Drive& drive) {
   }
   return {{"cycles", drive.cycles.size()},
           {"cycles_without_candidate",
-           count(drive.cycles, [](const DriveCycle& cycle) { return !cycle.chosen; })},
+           count(drive.cycles, [](const DriveCycle& cycle) { return !cycle.has_plan(); })},
           {"cycles_from_measurement",
            count(drive.cycles, [](const DriveCycle& cycle) { return cycle.from_measurement; })},
           {"saturated_share", drive.saturated_ratio},
