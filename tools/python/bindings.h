@@ -104,6 +104,9 @@ void bind_motion(nb::module_& module);
 void bind_obstacles(nb::module_& module);
 void bind_occupancy(nb::module_& module);
 void bind_audits(nb::module_& module);
+void bind_controllers(nb::module_& module);
+void bind_drives(nb::module_& module);
+void bind_plans(nb::module_& module);
 void bind_reference_lines(nb::module_& module);
 void bind_routes(nb::module_& module);
 

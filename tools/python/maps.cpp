@@ -359,8 +359,7 @@ void bind_map_queries(nb::class_<Map>& bound) {
             return owned(std::move(found));
           },
           nb::arg("x_min"), nb::arg("y_min"), nb::arg("x_max"), nb::arg("y_max"), nb::kw_only(),
-          nb::arg("drivable") = false,
-          "Indices of the lanes that have a point in common with a box [m].")
+          nb::arg("drivable") = false, "Indices of the lanes that overlap a box [m].")
       .def(
           "edge_distance",
           [](const Map& map, nb::handle points) {

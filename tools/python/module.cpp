@@ -16,4 +16,7 @@ NB_MODULE(_roadbed, module) {
   python::bind_obstacles(module);
   python::bind_occupancy(module);
   python::bind_audits(module);
+  python::bind_plans(module);
+  python::bind_controllers(module);
+  python::bind_drives(module);
 }

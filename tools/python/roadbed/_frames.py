@@ -29,4 +29,6 @@ def geodataframe(road_map: Map, layer: str) -> Any:
     import shapely
 
     columns, shapes = road_map._layer(layer)
-    return geopandas.GeoDataFrame(columns, geometry=shapely.from_wkb(shapes), crs=road_map.crs or None)
+    return geopandas.GeoDataFrame(
+        columns, geometry=shapely.from_wkb(shapes), crs=road_map.crs or None
+    )
