@@ -170,13 +170,12 @@ class SimulateCommand : public Command {
     arguments.says_no_if("a drive does not reach its goal");
     arguments.example(
         "  roadbed simulate data/drive.json -o drive\n"
-        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7\n"
-        "  roadbed simulate data/scenarios/parked_car.json --planner 'python3 planner.py' -o "
-        "drive");
+        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!timings_file_.empty()) map::check_writable(timings_file_, force_);
+    if (!choice_.planner_command.empty() && !common.is_alone) refuse_planner();
     read_changes();
     std::optional<NoPipeSignal> no_signal;  // of a planner that ends
     if (!choice_.planner_command.empty()) no_signal.emplace();
@@ -185,6 +184,14 @@ class SimulateCommand : public Command {
   }
 
  private:
+  /// Files of jobs may be a stranger's; nothing in them is run.
+  [[noreturn]] void refuse_planner() const {
+    throw map::InputError({.file = "planner",
+                           .found = "is a command",
+                           .needed = "roadbed's own planner in a job",
+                           .remedy = "run `roadbed simulate --planner` by itself"});
+  }
+
   void declare_changes(Arguments& arguments) {
     arguments
         .add("--vehicle", choice_.vehicle_file,
