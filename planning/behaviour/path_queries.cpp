@@ -51,6 +51,22 @@ bool somebody_moves_near(const Question& question) {
   });
 }
 
+/// Whether somebody drives in the same direction in the next lane of that side, beside or near.
+bool somebody_drives_beside(const Question& question, double side) {
+  constexpr double kFarBehind_m = 30.0, kNotFarAhead_m = 15.0, kLeastAside_m = 1.5,
+                   kMostAside_m = 6.0;
+  constexpr double kDrives_mps = 0.5, kSameWay = 0.7;
+  const geometry::Pose2& here = question.measured.map_from_vehicle;
+  return std::ranges::any_of(question.obstacles, [&](const Obstacle& obstacle) {
+    if (!obstacle.is_there(question.t_s)) return false;
+    const geometry::TrajectoryPoint at = obstacle.motion.at(question.t_s);
+    const Eigen::Vector2d there = here.inverse() * at.pose().position();
+    return at.speed_mps > kDrives_mps && std::cos(at.heading_rad - here.heading_rad) > kSameWay &&
+           there.x() > -kFarBehind_m && there.x() < kNotFarAhead_m &&
+           side * there.y() > kLeastAside_m && side * there.y() < kMostAside_m;
+  });
+}
+
 void keep_within(const std::optional<double>& offset_m, double side, Offsets& offsets) {
   if (!offset_m) return;
   if (side > 0.0) {
@@ -108,6 +124,12 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
   if (passing.merging.is_near() && somebody_moves_near(question)) {
     keep_within(kMerging_m, 1.0, keep.offsets);
     keep_within(kMerging_m, -1.0, keep.offsets);
+  }
+  // Nor is the marking crossed to the side of who drives there, but as far as it has been.
+  const double beside_m = on.replanner.expected_path().lateral_at(on.replanner.s_m()).d_m;
+  for (const double side : {1.0, -1.0}) {
+    if (!somebody_drives_beside(question, side)) continue;
+    keep_within(std::max(kMerging_m, side * beside_m), side, keep.offsets);
   }
   if (passing.within_lane.passed) {
     PathQuery pass = keep;

@@ -1,10 +1,12 @@
 // The scenarios of data/scenarios, each for one thing that traffic asks for.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/real_data.h"
@@ -320,6 +322,36 @@ TEST(ScenarioDrives, FromCloseBehindAParkedCarTheVehicleSetsOffRoundIt) {
   expect_arrives(d, 0.29);
   EXPECT_NE(d.first(planning::Behaviour::follow, "car behind"), nullptr);
   EXPECT_LT(d.drive.verdict.at_s, 35.0);
+}
+
+/// Two lanes that stop and go, each in its own time: who drives in the next one is not cut in on,
+/// nor touched from the side on a path that has been begun.
+TEST(ScenarioDrives, InAJamTheVehicleKeepsToItsLaneBesideWhoDrivesInTheNext) {
+  const std::vector<TimedSpeed> own{{0.0, 5.8},  {3.0, 3.0},  {17.0, 3.0}, {19.5, 0.0}, {29.0, 0.0},
+                                    {34.5, 3.0}, {37.5, 0.0}, {41.0, 0.0}, {47.0, 5.0}};
+  const std::vector<TimedSpeed> next{{0.0, 3.0},  {3.0, 3.0},  {8.0, 0.0},
+                                     {12.5, 0.0}, {15.0, 3.0}, {18.0, 3.0},
+                                     {24.0, 0.0}, {32.5, 0.0}, {35.0, 5.0}};
+  Scenario scenario = scenario_of("lane_change");
+  scenario.start_speed_mps = 3.0;
+  scenario.duration_s = 50.0;
+  scenario.goal = {.text = "lane:31/0/-1@97", .pointer = "/goal"};
+  scenario.obstacles.clear();
+  const auto add = [&](const std::string& name, const std::string& place,
+                       const std::vector<TimedSpeed>& speeds) {
+    scenario.obstacles.push_back(
+        {.id = name, .motion = TrafficObstacle{{.text = place, .pointer = "/test"}, {}, speeds}});
+  };
+  for (const int at_m : {18, 27, 38}) {
+    add(fmt::format("own {}", at_m), fmt::format("lane:31/0/-1@{}", at_m), own);
+  }
+  for (const int at_m : {11, 24, 35}) {
+    add(fmt::format("next {}", at_m), fmt::format("lane:31/0/-2@{}", at_m), next);
+  }
+  const Driven d = driven(scenario);
+  EXPECT_NE(d.drive.verdict.outcome, Outcome::collision) << d.drive.verdict.text;
+  EXPECT_GE(d.clearance_m(), 1.0);
+  EXPECT_EQ(d.first(planning::Behaviour::emergency), nullptr);
 }
 
 TEST(ScenarioDrives, SlowerCarIsPassedInTheFreeLaneWithoutBraking) {
