@@ -165,7 +165,7 @@ const Format& format_to_write(const std::filesystem::path& file) {
   throw InputError({.file = file.string(),
                     .found = fmt::format("the suffix \"{}\" names no format", suffix),
                     .needed = known,
-                    .remedy = "rename the output"});
+                    .remedy = suffix == ".rbm" ? "see: roadbed import" : "rename the output"});
 }
 
 }  // namespace roadbed::map

@@ -16,6 +16,7 @@
 #include "roadbed/tools/cli/help_text.h"
 #include "roadbed/tools/cli/standard_error.h"
 #include "roadbed/tools/cli/standard_output.h"
+#include "roadbed/tools/cli/usage_error.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/help_command.h"
 
@@ -86,6 +87,7 @@ int run_command_line(int argc, char** argv) {
   app.set_version_flag("--version",
                        name_and_version() + " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
   app.fallthrough();
+  app.failure_message(usage_message);
 
   CommonOptions common;
   Arguments program(app);

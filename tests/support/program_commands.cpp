@@ -29,7 +29,8 @@ std::vector<std::string> commands_in(const std::vector<std::string>& help) {
 }
 
 std::vector<std::vector<std::string>> all_commands() {
-  std::vector<std::vector<std::string>> commands;
+  static std::vector<std::vector<std::string>> commands;  // the program does not change meanwhile
+  if (!commands.empty()) return commands;
   for (const std::string& name : commands_in(help_lines({}))) {
     commands.push_back({name});
     for (const std::string& part : commands_in(help_lines({name}))) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,27 @@ TEST_F(ExitStatus, IsTwoWhereTheCommandLineIsWrongOfEveryCommand) {
   EXPECT_EQ(run_roadbed({"info", town_, "--threads", "0"}).status, 2);
 }
 
+TEST_F(ExitStatus, OfAWrongCommandLineComesWithOneLineThatNamesWhatWasMeant) {
+  const auto said = [](const Words& words) { return run_roadbed(words).err; };
+  EXPECT_EQ(said({"rout"}),
+            "roadbed: there is no command rout; did you mean route? see: roadbed --help\n");
+  EXPECT_EQ(said({"occupancy", "bild", "a.pcd"}),
+            "roadbed occupancy: there is no command bild; did you mean build? see: roadbed "
+            "occupancy --help\n");
+  EXPECT_EQ(said({"occupancy"}),
+            "roadbed occupancy: a command is required: build, info; see: roadbed occupancy "
+            "--help\n");
+  EXPECT_EQ(said({"route", town_, "--frm", "0,0"}),
+            "roadbed route: there is no option --frm; did you mean --from? see: roadbed route "
+            "--help\n");
+  EXPECT_EQ(said({"info", town_, "more"}),
+            "roadbed info: \"more\" is one argument too many; see: roadbed info --help\n");
+  EXPECT_EQ(said({"info"}), "roadbed info: MAP is required; see: roadbed info --help\n");
+  EXPECT_EQ(said({"control", "design", "--delay", "99"}),
+            "roadbed control design: --delay: 99 is not a number from 0 to 50; see: roadbed "
+            "control design --help\n");
+}
+
 TEST_F(ExitStatus, IsThreeWhereAnInputIsMissingOfEveryCommandAndNothingIsLeft) {
   std::map<std::string, Words> left = unusable();
   const std::vector<std::string> before = files_below(folder_.path());
@@ -151,6 +173,46 @@ TEST_F(ExitStatus, IsThreeWhereAnOutputIsInTheWayAndItStaysAsItIs) {
            {"validate", town_, "--svg", file}}) {
     EXPECT_EQ(run_roadbed(words).status, 3) << line_of(words);
     EXPECT_EQ(bytes_of(file), "kept");
+  }
+}
+
+TEST_F(ExitStatus, QuietSilencesNotesAndNoErrorOfEveryCommand) {
+  std::map<std::string, Words> wrong = unusable();
+  for (auto& [name, words] : wrong) {
+    Words line;
+    std::istringstream parts(name);
+    for (std::string part; parts >> part;) line.push_back(part);
+    const ProgramRun loud = run_roadbed(with(line, words));
+    const ProgramRun quiet = run_roadbed(with(with(line, words), {"-q"}));
+    EXPECT_EQ(quiet.err, loud.err) << name;
+    EXPECT_EQ(quiet.status, loud.status) << name;
+  }
+  const std::string octree = fresh(".bt"), scenario = data_folder() / "scenarios/parked_car.json";
+  const std::string drive = fresh("");
+  const Words places{"--from", "lane:1/3/1@6", "--to", "lane:7/0/1@35"};
+  for (const Words& words : std::vector<Words>{
+           {"import", town_, "-o", fresh(".rbm")},
+           {"info", town_},
+           {"validate", town_},
+           {"export", town_, "-o", fresh(".osm")},
+           {"convert", town_, fresh(".svg")},
+           {"diff", town_, town_},
+           {"locate", town_, "--at", "150,198"},
+           with({"route", town_}, places),
+           {"reach", town_, "--from", "lane:1/3/1@6", "--within", "5s"},
+           with({"reference", town_, "-o", fresh(".csv")}, places),
+           {"plan", scenario, "-o", fresh("")},
+           {"control", "design"},
+           {"simulate", scenario, "-o", drive},
+           {"occupancy", "build", post_, "-o", octree},
+           {"occupancy", "info", octree},
+           {"audit", "--occupancy", octree, "--trajectory", drive_, "--unknown", "free"},
+           {"report", "compare", a_, b_},
+           {"batch", jobs_, "-o", fresh("")},
+           {"jobs", "validate", town_, "-o", fresh(".jsonl")}}) {
+    const ProgramRun run = run_roadbed(with(words, {"--quiet"}));
+    EXPECT_LE(run.status, 1) << line_of(words) << ": " << run.err;
+    EXPECT_EQ(run.err, "") << line_of(words);
   }
 }
 

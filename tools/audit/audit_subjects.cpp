@@ -92,11 +92,11 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
 std::string AuditSubjects::fault(bool has_map) const {
   const bool has_file = !trajectory_.empty(), has_lane = !lane_.empty();
   if (has_file + has_lane + question_.has_any_place() != 1) {
-    return "just one of --trajectory, --lane, and --from with --to";
+    return "needs just one of --trajectory, --lane, and --from with --to";
   }
   if (has_file) return {};
-  if (!has_lane && !question_.has_places()) return "--from and --to";
-  return has_map ? "" : "--map";
+  if (!has_lane && !question_.has_places()) return "--from and --to are required";
+  return has_map ? "" : "--map is required";
 }
 
 std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map) const {

@@ -17,11 +17,13 @@ std::string refuse_nan(const std::string& text) {
   return is_nan ? "is not a number" : "";
 }
 
-// CLI11's own check names the greatest number that there is.
-std::string refuse_not_positive(const std::string& text) {
-  double number = 0.0;
-  const bool is_positive = CLI::detail::lexical_cast(text, number) && number > 0.0;
-  return is_positive ? "" : text + " is not greater than 0";
+// CLI11's own checks name limits with six digits, and the greatest number that there is.
+template <typename Fits>
+auto refuse_unless(Fits fits, const std::string& rule) {
+  return [fits, rule](const std::string& text) {
+    double number = 0.0;
+    return CLI::detail::lexical_cast(text, number) && fits(number) ? "" : text + " is not " + rule;
+  };
 }
 
 }  // namespace
@@ -39,19 +41,23 @@ Argument& Argument::with_default() {
 
 Argument& Argument::within(double least, double most) {
   option_->check(refuse_nan);  // which is neither below a range nor above it
-  option_->check(CLI::Range(least, most));
+  option_->check(refuse_unless([=](double number) { return number >= least && number <= most; },
+                               fmt::format("a number from {:g} to {:g}", least, most)),
+                 fmt::format(" in [{:g} - {:g}]", least, most));
   return *this;
 }
 
 Argument& Argument::positive() {
   option_->check(refuse_nan);
-  option_->check(refuse_not_positive, "POSITIVE");
+  option_->check(refuse_unless([](double number) { return number > 0.0; }, "greater than 0"),
+                 "POSITIVE");
   return *this;
 }
 
 Argument& Argument::not_negative() {
   option_->check(refuse_nan);
-  option_->check(CLI::NonNegativeNumber);
+  option_->check(refuse_unless([](double number) { return number >= 0.0; }, "0 or more"),
+                 "NONNEGATIVE");
   return *this;
 }
 

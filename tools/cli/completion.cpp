@@ -216,8 +216,7 @@ std::string fish_value(const PageOption& option) {
   if (!option.choices.empty()) return "-x -a " + fish_quoted(joined(option.choices));
   if (!option.is_path) return "-x";
   if (option.endings.empty()) return "-r -F";
-  return "-x -k -a " +
-         fish_quoted("(__fish_complete_suffix " + joined(endings_of(option.endings)) + ")");
+  return "-x -k -a " + fish_quoted("(__roadbed_files " + joined(endings_of(option.endings)) + ")");
 }
 
 std::string fish_line(const PageOption& option, const std::string& condition) {
@@ -265,6 +264,15 @@ function __roadbed_at
     end
   end
   test "$found" = "$argv"
+end
+
+# Folders and files that go on as the word does, with one of these endings.
+function __roadbed_files
+  set -l files (complete -C "__fish_command_without_completions "(commandline -ct))
+  for ending in $argv
+    string match -- "*$ending" $files
+  end
+  string match -- '*/' $files
 end
 
 )";

@@ -60,11 +60,12 @@ class AuditCommand : public Command {
         .reads()
         .ending(kMapEndings);
     arguments
-        .add("--obstacles", obstacles_,
-             "What moves beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
-             "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
-             "centre; an id of one row stands for ever, one of several is there from its "
-             "first to its last), in the drive's time and coordinates")
+        .add(
+            "--obstacles", obstacles_,
+            "Dynamic obstacles beside the occupancy: a scenario (.json, CommonRoad .xml), or boxes "
+            "over time (.csv: t_s,id,x_m,y_m,heading_rad,length_m,width_m, poses of the "
+            "centre; an id of one row stands for ever, one of several is there from its "
+            "first to its last), in the drive's time and coordinates")
         .reads(files_named_by_scenario)
         .ending(".json .xml .csv");
     declare_question(arguments);
@@ -123,7 +124,8 @@ class AuditCommand : public Command {
         {{"free", UnknownPolicy::free},
          {"occupied", UnknownPolicy::occupied},
          {"report", UnknownPolicy::report}},
-        "What space counts as that was not measured: free, occupied, or report: no obstacle, but a "
+        "How unknown space counts, which was not measured: free, occupied, or report: no obstacle, "
+        "but a "
         "drive over it is not clear. Where nothing was measured within 10 m of the body at its "
         "heights, a drive is not clear either way");
     least_measured_argument_ = arguments
@@ -213,14 +215,14 @@ class AuditCommand : public Command {
 
   std::string missing() const {
     if (!check_.empty()) return {};
-    if (ground_ == "map" && map_.empty()) return "--map, for --ground map";
-    if (occupancy_.empty()) return "--occupancy";
+    if (ground_ == "map" && map_.empty()) return "--ground map needs --map";
+    if (occupancy_.empty()) return "--occupancy is required";
     if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
     if (!subjects_.is_swept()) {
-      return saved_drive_.empty() ? "" : "--lane, or --from and --to, for --save-drive";
+      return saved_drive_.empty() ? "" : "--save-drive needs --lane, or --from and --to";
     }
     const bool proves_nothing = !certificate_.empty() && saved_drive_.empty();
-    return proves_nothing ? "--save-drive, as a certificate is about a file" : "";
+    return proves_nothing ? "--certificate needs --save-drive here, as it is about a file" : "";
   }
 
   AuditQuestion asked(const Vehicle& vehicle) const {

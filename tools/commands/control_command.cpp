@@ -94,7 +94,7 @@ void print_design(std::ostream& out, const control::CruiseDesign& design,
 class ControlCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("The controllers' designs");
+    arguments.description("Design the controllers");
     Arguments design = arguments.part("design");
     design.description("Gains and poles of the cruise control");
     const auto positive = [&](const char* name, double& value, const char* help) {

@@ -59,7 +59,7 @@ class ExportCommand : public Command {
     arguments.example(
         "  roadbed export town.xodr -o town.svg\n"
         "  roadbed export town.xodr -o town.gpkg\n"
-        "  roadbed export town.xodr -o town.geojson --layer lanes --anchor 48.78,9.18");
+        "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 
   void declare_options(Arguments& arguments) {
@@ -136,7 +136,7 @@ class ConvertCommand : public ExportCommand {
     declare_options(arguments);
     arguments.require([this] { return fault(); });
     arguments.example(
-        "  roadbed convert town.xodr town.osm --anchor 48.78,9.18\n"
+        "  roadbed convert town.xodr town.osm\n"
         "  roadbed convert town.osm -o town.rbm");
   }
 

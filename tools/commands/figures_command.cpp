@@ -27,7 +27,7 @@ class FiguresCommand : public Command {
     arguments.description("Compute the paper's figures 2 to 10 and 12 to 14, each as SVG and CSV");
     arguments.add("-o,--output", folder_, "Folder for the figures").required();
     arguments.flag("-f,--force", force_, "Replace files in the folder");
-    arguments.example("  roadbed figures -o /tmp/figures");
+    arguments.example("  roadbed figures -o figures");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {

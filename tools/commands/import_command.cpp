@@ -83,6 +83,7 @@ class ImportCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
+    refuse_other_formats();
     map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
     const map::RoadMap road_map =
@@ -97,6 +98,18 @@ class ImportCommand : public Command {
   }
 
  private:
+  // Nobody wants a compiled map under the name of another format.
+  void refuse_other_formats() const {
+    const std::string suffix = output_.extension().string();
+    for (const map::Format& format : map::formats()) {
+      if (format.write == nullptr || format.suffix != suffix) continue;
+      throw map::OutputError({.file = output_.string(),
+                              .found = "a compiled map is not " + std::string(format.name),
+                              .needed = ".rbm",
+                              .remedy = "rename the output, or see: roadbed convert"});
+    }
+  }
+
   static std::ptrdiff_t faults_of(const map::RoadMap& road_map) {
     return std::ranges::count_if(road_map.import_diagnostics(), &map::ImportDiagnostic::is_fault);
   }

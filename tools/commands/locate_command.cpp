@@ -104,7 +104,8 @@ class LocateCommand : public Command {
     arguments.flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.require([this] {
-      return at_.empty() && points_file_.empty() ? std::string("--at or --points") : std::string();
+      return at_.empty() && points_file_.empty() ? std::string("--at or --points is required")
+                                                 : std::string();
     });
     arguments.says_no_if("a point has no lane within 50 km");
     arguments.example("  roadbed locate town.xodr --at 20,-1.8");

@@ -41,7 +41,7 @@ class OccupancyBuildCommand : public Command {
         .checked([](const std::string& text) {
           const std::string suffix = std::filesystem::path(text).extension().string();
           const bool is_known = suffix == ".bt" || suffix == ".ot" || suffix == ".tiles";
-          return is_known ? "" : "ends neither in .bt nor in .ot";
+          return is_known ? "" : "ends in none of .bt, .ot and .tiles";
         });
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
@@ -65,12 +65,12 @@ class OccupancyBuildCommand : public Command {
         .positive();
     arguments
         .add("--remove-seen-through", remove_seen_through_,
-             "Remove dynamic objects: a cell with points counts as free if at least so "
-             "many clouds, and more clouds than have a point in it, have a ray across it "
-             "and no point in it. No matter in which order, so that what was there only "
-             "at first or last goes as well. Thin things, edges, and surfaces that rays "
-             "graze go too, the sooner the fewer clouds are asked for: audits over such a "
-             "file say so")
+             "Remove dynamic objects by ray tracing: a cell with points counts as free if at "
+             "least this many clouds, and more clouds than have a point in it, have a ray across "
+             "it and no point in it. The order of the clouds does not matter, so that what was "
+             "there only at first or last goes as well. Thin objects, edges, and surfaces that "
+             "rays graze go too, the sooner the smaller the number: audits over such a file "
+             "say so")
         .within(1, 255)
         .excludes(
             arguments.flag("--no-sticky", no_sticky_,
@@ -101,12 +101,13 @@ class OccupancyBuildCommand : public Command {
         .within(1.0, 1e5);
     arguments.require([this]() -> std::string {
       if ((output_.extension() == ".tiles") == tiles_m_.has_value()) return {};
-      return tiles_m_ ? "an output .tiles, for --tiles" : "--tiles, for an output .tiles";
+      return tiles_m_ ? "--tiles needs an output that ends in .tiles"
+                      : "an output .tiles needs --tiles";
     });
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.example(
         "  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt\n"
-        "  roadbed occupancy build scans/*.pcd --poses poses.txt -o street.bt\n"
+        "  roadbed occupancy build scans/*.pcd --poses poses.txt -o mapped.bt\n"
         "  roadbed occupancy build scans/*.pcd --tiles 100 -o city.tiles");
   }
 

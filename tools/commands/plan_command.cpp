@@ -50,7 +50,8 @@ void print_circles(std::ostream& out, const geometry::VehicleShape& vehicle, int
 class PlanCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("One planning cycle: every candidate, its cost, and why it was rejected");
+    arguments.description(
+        "Run one planning cycle: every candidate, its cost, and why it was rejected");
     arguments
         .add(
             "SCENE", scene_,
@@ -82,8 +83,8 @@ class PlanCommand : public Command {
     });
     arguments.says_no_if("every candidate was rejected");
     arguments.example(
-        "  roadbed plan data/scenarios/parked_car.json -o /tmp/plan --explain\n"
-        "  roadbed plan drive@4.2 -o /tmp/plan");
+        "  roadbed plan data/scenarios/parked_car.json -o plan --explain\n"
+        "  roadbed plan drive@4.2 -o cycle");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -51,12 +51,13 @@ std::string reached_csv(const map::RoadMap& road_map,
 class ReachCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Find what can be reached within a time or a distance");
+    arguments.description(
+        "Find the lanes that can be reached within a time or a distance (isochrone)");
     arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
     arguments.add("--from", from_, std::string("Start: ") + kPlaceSyntax)
         .required()
         .checked(place_syntax_fault);
-    arguments.add("--within", within_, "How far: 60s or 500m, up to 100000")
+    arguments.add("--within", within_, "Time or distance budget: 60s or 500m, up to 100000")
         .required()
         .checked([](const std::string& text) {
           return limit_of(text) ? "" : "is not a number up to 100000 with s or m behind it";

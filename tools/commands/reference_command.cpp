@@ -76,10 +76,10 @@ class ReferenceCommand : public Command {
 
  private:
   std::string fault() const {
-    if (way_points_.asked() == !map_file_.empty()) return "just one of MAP and --waypoints";
-    if (!way_points_.asked() && !question_.has_places()) return "--from and --to";
+    if (way_points_.asked() == !map_file_.empty()) return "needs either MAP or --waypoints";
+    if (!way_points_.asked() && !question_.has_places()) return "--from and --to are required";
     if (way_points_.asked() && question_.has_any_place())
-      return "MAP, not --waypoints, for a route";
+      return "--from, --via and --to need MAP, not --waypoints";
     return way_points_.fault();
   }
 

@@ -87,7 +87,7 @@ ordered_json json_of(const std::optional<double>& value) {
 class ReportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("What drives left behind");
+    arguments.description("Compare the metrics of drives");
     Arguments compare = arguments.part("compare");
     compare.description("Set the metrics of two drives side by side");
     compare.add("A", a_, "Folder of a drive, or its metrics.json").required();

@@ -41,7 +41,8 @@ class RouteCommand : public Command {
     question_.declare(arguments, true);
     arguments
         .add("--alternatives", alternatives_,
-             "Up to so many routes; each shares at most 70 % of its length with any before and "
+             "Find up to this many routes; each shares at most 70 % of its length with any before "
+             "and "
              "costs at most 1.5 times the first")
         .within(1, 20);
     arguments

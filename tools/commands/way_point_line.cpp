@@ -83,11 +83,12 @@ void WayPointLine::declare(Arguments& arguments) {
 
 std::string WayPointLine::fault() const {
   const bool is_clamped = ends_ == Ends::clamped;
-  if (!asked() && (interpolate_ || ends_ != Ends::natural)) return "--waypoints, for --interpolate";
-  if (!vehicle_file_.empty() && interpolate_) return "no --interpolate, for --vehicle";
-  if (ends_ != Ends::natural && !interpolate_) return "--interpolate, for --ends";
-  if (is_clamped != !headings_deg_.empty()) return "both or none of --ends clamped and --headings";
-  if (is_clamped && headings_deg_.size() != 2) return "--headings with two numbers, FIRST,LAST";
+  if (!asked() && (interpolate_ || ends_ != Ends::natural))
+    return "--interpolate and --ends need --waypoints";
+  if (!vehicle_file_.empty() && interpolate_) return "--vehicle does not go with --interpolate";
+  if (ends_ != Ends::natural && !interpolate_) return "--ends needs --interpolate";
+  if (is_clamped != !headings_deg_.empty()) return "--ends clamped and --headings go together";
+  if (is_clamped && headings_deg_.size() != 2) return "--headings needs two numbers, FIRST,LAST";
   return {};
 }
 
