@@ -153,8 +153,7 @@ const Format* format_of(const RoadMap& road_map) {
       [&](const Format& format) { return road_map.format().starts_with(format.name); });
 }
 
-const Format& format_to_write(const std::filesystem::path& file) {
-  const std::string suffix = file.extension().string();
+const Format& format_to_write(const std::filesystem::path& file, const std::string& suffix) {
   const Format* format =
       find_format([&](const Format& one) { return one.write != nullptr && one.suffix == suffix; });
   if (format != nullptr) return *format;

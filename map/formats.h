@@ -58,8 +58,11 @@ const Format* format_of(const std::filesystem::path& file);
 /// The format that a map was read from, null of one that was made otherwise.
 const Format* format_of(const RoadMap& road_map);
 
-/// The format that a file's suffix names.
+/// The format that a file's suffix names, or this one in its place.
 /// @throws InputError if it names none that is written.
-const Format& format_to_write(const std::filesystem::path& file);
+const Format& format_to_write(const std::filesystem::path& file, const std::string& suffix);
+inline const Format& format_to_write(const std::filesystem::path& file) {
+  return format_to_write(file, file.extension().string());
+}
 
 }  // namespace roadbed::map

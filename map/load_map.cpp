@@ -46,8 +46,8 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
 }
 
 RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) {
-  if (is_compiled_map(read_file_start(file, 16))) return open_compiled_map(file);
-  return parse_map(read_file(file), file.string(), options);
+  if (is_compiled_map(stored_start(file, 16))) return open_compiled_map(file);
+  return parse_map(read_file(file), input_name(file), options);
 }
 
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,

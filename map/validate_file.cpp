@@ -88,7 +88,7 @@ Validation validate_bytes(std::string bytes, const std::string& name,
 
 Validation validate_file(const std::filesystem::path& file,
                          const validation::ValidateOptions& options) {
-  return validate_bytes(read_file(file), file.string(), options);
+  return validate_bytes(read_file(file), input_name(file), options);
 }
 
 }  // namespace roadbed::map

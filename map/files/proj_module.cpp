@@ -51,22 +51,45 @@ Object horizontal(const Context& context, const char* crs) {
   return Object(proj_crs_demote_to_2D(context.get(), nullptr, object.get()));
 }
 
+/// From a system to longitude and latitude.
+struct Path {
+  Context context = quiet_context();  // of the object below, so made before it
+  Object forward;
+};
+
+Path path_from(const char* crs) {
+  Path path;
+  PJ_CONTEXT* const context = path.context.get();
+  const Object from = horizontal(path.context, crs);
+  if (!from) return path;
+  const Object to(proj_create(context, "OGC:CRS84"));
+  const Object found(
+      proj_create_crs_to_crs_from_pj(context, from.get(), to.get(), nullptr, nullptr));
+  if (found) path.forward.reset(proj_normalize_for_visualization(context, found.get()));
+  return path;
+}
+
+/// To find a path takes milliseconds, to go along it nanoseconds.
+const Path& kept_path_from(const char* crs) {
+  thread_local std::string kept_crs;
+  thread_local Path kept;
+  if (!kept.forward || kept_crs != crs) {
+    kept.forward.reset();  // before its context goes
+    kept = path_from(crs);
+    kept_crs = crs;
+  }
+  return kept;
+}
+
 }  // namespace
 
-int roadbed_proj_to_lon_lat(const char* crs, double* xy, std::size_t count, char* message,
-                            std::size_t message_size) {
-  const Context context = quiet_context();
-  const Object from = horizontal(context, crs);
-  if (!from) return say_fault(context, message, message_size);
-  const Object to(proj_create(context.get(), "OGC:CRS84"));
-  const Object path(
-      proj_create_crs_to_crs_from_pj(context.get(), from.get(), to.get(), nullptr, nullptr));
-  if (!path) return say_fault(context, message, message_size);
-  const Object forward(proj_normalize_for_visualization(context.get(), path.get()));
-  if (!forward) return say_fault(context, message, message_size);
+int roadbed_proj_lon_lat(const char* crs, int to_lon_lat, double* xy, std::size_t count,
+                         char* message, std::size_t message_size) {
+  const Path& path = kept_path_from(crs);
+  if (!path.forward) return say_fault(path.context, message, message_size);
   constexpr std::size_t stride = 2 * sizeof(double);
-  proj_trans_generic(forward.get(), PJ_FWD, xy, stride, count, xy + 1, stride, count, nullptr, 0, 0,
-                     nullptr, 0, 0);
+  proj_trans_generic(path.forward.get(), to_lon_lat != 0 ? PJ_FWD : PJ_INV, xy, stride, count,
+                     xy + 1, stride, count, nullptr, 0, 0, nullptr, 0, 0);
   for (std::size_t i = 0; i < 2 * count; ++i) {
     if (!std::isfinite(xy[i])) return say("a point is outside its domain", message, message_size);
   }

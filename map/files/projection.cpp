@@ -38,16 +38,24 @@ Function& proj_function(const char* name, const std::string& crs) {
          "correct it in the map, or name it with import --crs");
 }
 
-}  // namespace
-
-void to_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points) {
-  static auto& transform = proj_function<RoadbedProjToLonLat>("roadbed_proj_to_lon_lat", crs);
+void transform(const std::string& crs, bool to_lon_lat, std::span<Eigen::Vector2d> points) {
+  static auto& function = proj_function<RoadbedProjLonLat>("roadbed_proj_lon_lat", crs);
   if (points.empty()) return;
   static_assert(sizeof(Eigen::Vector2d) == 2 * sizeof(double));
   Message message{};
-  const int fault =
-      transform(crs.c_str(), points.front().data(), points.size(), message.data(), message.size());
+  const int fault = function(crs.c_str(), to_lon_lat ? 1 : 0, points.front().data(), points.size(),
+                             message.data(), message.size());
   if (fault != 0) refuse_unknown(crs, message);
+}
+
+}  // namespace
+
+void to_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points) {
+  transform(crs, true, points);
+}
+
+void from_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points) {
+  transform(crs, false, points);
 }
 
 std::string well_known_text(const std::string& crs) {

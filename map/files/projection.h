@@ -15,6 +15,9 @@ namespace roadbed::map::inline files {
 ///         is where the projection has no answer.
 void to_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points);
 
+/// Its inverse, in place. Throws as above.
+void from_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points);
+
 /// The horizontal part of a system as well-known text (WKT 1). Throws as above.
 std::string well_known_text(const std::string& crs);
 

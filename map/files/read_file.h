@@ -6,12 +6,46 @@
 
 namespace roadbed::map::inline files {
 
-/// The bytes of a regular file.
-/// @throws InputError if it is missing, not a regular file, unreadable or empty.
+/// The bytes of an input: a regular file, a pipe, or standard input, which is named `-`. Of what
+/// is packed by gzip or Zstandard, told by content, what it holds (map/files/unpack.h).
+///
+/// A stream, which can be read once only, is kept as long as the process runs, so that an input
+/// may be looked at before it is read, and read again. Safe to call from several threads.
+/// @throws InputError if it is missing, a folder or a device, unreadable or empty; if it is packed
+///         and damaged; if a stream, or what is packed, is larger than kMostUnpackedBytes.
 std::string read_file(const std::filesystem::path& file);
 
-/// Its first bytes, at most `size`.
+/// Its first bytes, at most `size`; fewer of what is packed, where it cannot be told.
 /// @throws InputError as read_file does.
 std::string read_file_start(const std::filesystem::path& file, std::size_t size);
+
+/// The first bytes of a regular file as they are stored, packed or not; none of a stream.
+/// @throws InputError as read_file does.
+std::string stored_start(const std::filesystem::path& file, std::size_t size);
+
+/// SHA-256 of the bytes of a regular file as they are stored, read piece by piece.
+/// @throws InputError as read_file does, and for a stream, which nobody could hash again.
+std::string sha256_of_file(const std::filesystem::path& file);
+
+/// SHA-256 of the bytes that a stream gave, packed as they were, in hexadecimal digits.
+/// @throws InputError as read_file does.
+std::string stream_sha256(const std::filesystem::path& file);
+
+/// Whether it can be read once only: standard input as `-`, a pipe or a socket.
+bool is_stream(const std::filesystem::path& file);
+
+/// Whether it is standard input or output: `-`.
+bool is_standard_stream(const std::filesystem::path& file);
+
+/// How an input is called in messages: as the user named it, `standard input` for `-`.
+std::string input_name(const std::filesystem::path& file);
+
+/// What its name ends in: ".xyz" for scan.xyz and, without how it is packed, scan.xyz.gz.
+std::string suffix_of_input(const std::filesystem::path& file);
+
+/// From now on streams are no inputs, but for those that have been read: who runs many jobs, each
+/// known by the bytes that it reads, takes none that cannot be read again, and may have another use
+/// for standard input.
+void refuse_streams();
 
 }  // namespace roadbed::map::files

@@ -5,10 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <fstream>
-
-#include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/read_file.h"
 
 namespace roadbed::map::inline files {
 
@@ -34,24 +30,6 @@ std::string Sha256::take_hex() {
 std::string sha256_of_bytes(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);
-  return hash.take_hex();
-}
-
-// A map may be larger than memory.
-std::string sha256_of_file(const std::filesystem::path& file) {
-  constexpr std::size_t kPiece = std::size_t{1} << 18;
-  std::string piece = read_file_start(file, kPiece);  // refuses what is no file of bytes
-  std::ifstream stream(file, std::ios::binary);
-  Sha256 hash;
-  while (stream) {
-    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
-  }
-  if (!stream.eof()) {
-    throw InputError({.file = file.string(),
-                      .found = "cannot be read to its end",
-                      .remedy = "check the disk, or copy the file to another one"});
-  }
   return hash.take_hex();
 }
 

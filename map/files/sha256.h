@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -28,9 +27,5 @@ class Sha256 {
 };
 
 std::string sha256_of_bytes(std::string_view bytes);
-
-/// Of a regular file, read piece by piece.
-/// @throws InputError as `read_file` does.
-std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace roadbed::map::files

@@ -10,6 +10,8 @@
 #include <string>
 #include <system_error>
 
+#include "roadbed/map/files/read_file.h"
+
 namespace roadbed::map::inline storage {
 namespace {
 
@@ -56,6 +58,7 @@ void sync_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 void check_writable(const std::filesystem::path& file, bool force) {
+  if (is_standard_stream(file)) return;
   const auto folder = folder_of(behind_links(file));
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) {
@@ -131,7 +134,17 @@ void OutputFile::commit() {
   sync_folder(folder_of(file_));
 }
 
+void write_to_standard_output(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) refuse_write("standard output");
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
 void write_output(const std::filesystem::path& file, std::string_view bytes) {
+  if (is_standard_stream(file)) return write_to_standard_output(bytes);
   OutputFile output(file);
   output.write(0, bytes);
   output.commit();

@@ -16,7 +16,7 @@ class OutputError : public InputError {
   using InputError::InputError;
 };
 
-/// Checks before the work begins that `file` can be written later.
+/// Checks before the work begins that `file` can be written later; `-`, standard output, always.
 /// @throws OutputError if its folder is missing or not writable, the file is a device or a pipe, or
 ///         it exists and `force` is not set.
 void check_writable(const std::filesystem::path& file, bool force);
@@ -47,7 +47,11 @@ class OutputFile : public ByteSink {
   int descriptor_ = -1;
 };
 
-/// Writes a whole file in that way.
+/// Writes bytes of a file to standard output, past what makes text visible there.
+/// @throws OutputError if they cannot be written.
+void write_to_standard_output(std::string_view bytes);
+
+/// Writes a whole file in that way; to standard output where it is `-`.
 /// @throws OutputError if it cannot be written; nothing is left behind then.
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 

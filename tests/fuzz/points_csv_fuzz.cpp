@@ -7,7 +7,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    roadbed::tools::parse_points_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    roadbed::tools::parse_point_table({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
   } catch (const roadbed::map::InputError&) {
     return 0;  // refused, as it should be
   }

@@ -13,12 +13,12 @@
 namespace roadbed::tests {
 namespace {
 
-// Standard error of a child goes to a file; standard input is empty.
+// Standard error of a child goes to a file; standard input is empty, or comes from one.
 class Redirections {
  public:
-  explicit Redirections(const std::string& err) {
+  explicit Redirections(const std::string& err, const std::string& in = "/dev/null") {
     posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, in.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, err.c_str(), kWrite, 0600);
   }
   ~Redirections() { posix_spawn_file_actions_destroy(&actions_); }
@@ -88,9 +88,14 @@ std::string TemporaryFolder::write(std::string_view name, std::string_view bytes
 std::filesystem::path program_file() { return ROADBED_PROGRAM; }
 
 ProgramRun run_roadbed(const std::vector<std::string>& arguments) {
+  return run_roadbed_reading("/dev/null", arguments);
+}
+
+ProgramRun run_roadbed_reading(const std::string& input,
+                               const std::vector<std::string>& arguments) {
   const TemporaryFolder streams;
   const std::string out = streams / "out", err = streams / "err";
-  Redirections redirections(err);
+  Redirections redirections(err, input);
   redirections.print_to(out);
   const int status = status_of_roadbed(arguments, redirections);
   return {.status = status, .out = bytes_of(out), .err = bytes_of(err)};

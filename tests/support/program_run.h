@@ -38,6 +38,9 @@ std::filesystem::path program_file();
 /// Runs it.
 ProgramRun run_roadbed(const std::vector<std::string>& arguments);
 
+/// The same with a file, or a pipe that somebody writes to, as standard input.
+ProgramRun run_roadbed_reading(const std::string& input, const std::vector<std::string>& arguments);
+
 /// The same with this as standard output, which is closed if negative.
 ProgramRun run_roadbed_into(int descriptor, const std::vector<std::string>& arguments);
 

@@ -175,6 +175,7 @@ TEST(RouteCommand, ABatchAsJsonExplainsRowsWithoutARouteAsSingleQuestionsDo) {
   json expected = json::parse(
       run_roadbed({"route", kTown, "--from", kFrom, "--to", kTo, "--avoid", "road:20", "--json"})
           .out);
+  expected.erase("roadbed_route");  // the document of the batch says its own version
   expected.erase("from");
   expected.erase("to");
   expected["row"] = 2;

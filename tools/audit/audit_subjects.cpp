@@ -167,12 +167,14 @@ AuditSubject AuditSubjects::lane(const map::RoadMap& road_map) const {
 std::vector<ObstacleInSource> read_moving_obstacles(const std::filesystem::path& file,
                                                     const Inputs& inputs) {
   if (is_common_road(file)) {
-    const std::string name = file.string();
+    const std::string name = map::input_name(file);
     return planning::recorded_boxes(map::commonroad::parse_scenario(map::read_file(file), name),
                                     name);
   }
-  if (file.extension() == ".json") return of_scenario(file, inputs);
-  return parse_obstacles_csv(map::read_file(file), file.string());
+  const std::string start = map::read_file_start(file, 4096);
+  const std::size_t sign = start.find_first_not_of(" \t\r\n");
+  if (sign != std::string::npos && start[sign] == '{') return of_scenario(file, inputs);
+  return parse_obstacles_csv(map::read_file(file), map::input_name(file));
 }
 
 }  // namespace roadbed::tools::audit

@@ -22,6 +22,7 @@
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
@@ -156,7 +157,7 @@ class CertificateCheck {
       road_map = inputs_.road_map(path_of(*file_.roads, demands_.map));
     }
     const Vehicle vehicle =
-        file_.vehicle ? read_vehicle_json(path_of(*file_.vehicle, demands_.vehicle)) : Vehicle{};
+        file_.vehicle ? read_vehicle(path_of(*file_.vehicle, demands_.vehicle)) : Vehicle{};
     faults_ = part_faults(file_, vehicle);
     if (!faults_.empty()) return;
     try {
@@ -256,7 +257,8 @@ Json CertificateCheck::json() const {
     files.push_back(
         {{"role", checked.role}, {"file", checked.file.name}, {"sha256", checked.file.sha256}});
   }
-  return {{"holds", faults_.empty()},
+  return {{"roadbed_certificate_check", 1},
+          {"holds", faults_.empty()},
           {"question", question()},
           {"verdict", to_string(file_.verdict())},
           {"certified_clearance_m", file_.certified_clearance_m()},

@@ -18,7 +18,7 @@
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/obstacles_csv.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline audit {
@@ -319,9 +319,17 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
 }  // namespace
 
 CertifiedFile certified_file(const std::filesystem::path& file) {
+  if (const auto vehicle = named_vehicle(file.string())) {
+    return {.name = file.string(), .sha256 = map::sha256_of_bytes(measures_text(vehicle->shape))};
+  }
   const bool is_tiled = map::is_tiled_occupancy(file);
   return {.name = file.string(),
           .sha256 = map::sha256_of_file(is_tiled ? map::tiles_index_file(file) : file)};
+}
+
+CertifiedFile hashed_input(const std::filesystem::path& file) {
+  if (!map::is_stream(file)) return certified_file(file);
+  return {.name = map::input_name(file), .sha256 = map::stream_sha256(file)};
 }
 
 CertifiedFile certified_obstacles(const std::filesystem::path& file,
@@ -449,7 +457,7 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
 }
 
 CertificateFile read_certificate_json(const std::filesystem::path& file) {
-  return parse_certificate_json(map::read_file(file), file.string());
+  return parse_certificate_json(map::read_file(file), map::input_name(file));
 }
 
 std::vector<std::filesystem::path> files_named_by_certificate(const std::filesystem::path& file) {

@@ -19,8 +19,13 @@ struct CertifiedFile {
   std::string sha256;  ///< of its bytes, hexadecimal
 };
 
-/// Of a folder of tiles the hash is that of its index, which holds those of the tiles.
+/// Of a folder of tiles the hash is that of its index, which holds those of the tiles; of a vehicle
+/// that is named (vehicle_file.h) that of its measures.
+/// @throws InputError for a stream, which nobody can hash again, and as map::read_file does.
 CertifiedFile certified_file(const std::filesystem::path& file);
+
+/// The same for what is only shown: of a stream, too, the hash of what it gave.
+CertifiedFile hashed_input(const std::filesystem::path& file);
 
 /// What the heights of a vehicle were above, and where that was taken from.
 struct CertifiedGround {

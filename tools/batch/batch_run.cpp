@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/unpack.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/cli/in_threads.h"
@@ -28,16 +32,20 @@ namespace fs = std::filesystem;
                          .remedy = remedy});
 }
 
-std::ifstream open_jobs(const fs::path& file) {
+/// Of a plain file line by line; a stream, or what is packed, is held whole.
+std::unique_ptr<std::istream> open_jobs(const fs::path& file) {
   const std::string remedy = "check the path; roadbed jobs writes such files";
   std::error_code error;
-  if (!fs::exists(file, error)) refuse_jobs_file(file, "no such file", remedy);
-  if (!fs::is_regular_file(file, error)) {
-    refuse_jobs_file(file, "is no regular file",
-                     "write the jobs to a file first: it is read more than once");
+  if (!map::is_stream(file)) {
+    if (!fs::exists(file, error)) refuse_jobs_file(file, "no such file", remedy);
+    if (!fs::is_regular_file(file, error)) refuse_jobs_file(file, "is no file or pipe", remedy);
   }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open()) refuse_jobs_file(file, "cannot be read", remedy);
+  const bool is_empty = fs::is_regular_file(file, error) && fs::file_size(file, error) == 0;
+  if (!is_empty && (map::is_stream(file) || map::is_packed(map::stored_start(file, 4)))) {
+    return std::make_unique<std::istringstream>(map::read_file(file));
+  }
+  auto stream = std::make_unique<std::ifstream>(file, std::ios::binary);
+  if (!stream->is_open()) refuse_jobs_file(file, "cannot be read", remedy);
   return stream;
 }
 
@@ -71,8 +79,8 @@ void ask(int) {
 }  // namespace
 
 std::size_t count_jobs(const fs::path& jobs_file) {
-  std::ifstream stream = open_jobs(jobs_file);
-  JobLines lines(stream);
+  const auto stream = open_jobs(jobs_file);
+  JobLines lines(*stream);
   std::size_t count = 0;
   while (lines.next()) ++count;
   return count;
@@ -80,8 +88,8 @@ std::size_t count_jobs(const fs::path& jobs_file) {
 
 void list_missing(const BatchOptions& options, const JobKinds& kinds, const ResultStore& store,
                   std::ostream& out) {
-  std::ifstream stream = open_jobs(options.jobs_file);
-  JobLines lines(stream);
+  const auto stream = open_jobs(options.jobs_file);
+  JobLines lines(*stream);
   FileHashes files;
   std::set<JobHash> listed;
   while (const auto line = lines.next()) {
@@ -107,7 +115,7 @@ BatchRun::BatchRun(const BatchOptions& options, const JobKinds& kinds, ResultSto
                                                  [this] { return resident(); })),
       timings_(options.folder / "timings.jsonl"),
       stream_(open_jobs(options.jobs_file)),
-      lines_(stream_),
+      lines_(*stream_),
       gate_(options.memory_bytes, [this] { return least_resident(); }) {
   for (int i = 0; i < options.threads; ++i) runners_.push_back(make_runner(options, inputs_));
 }

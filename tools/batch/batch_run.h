@@ -93,7 +93,7 @@ class BatchRun {
   FileHashes files_;
   std::shared_ptr<const InputCache> inputs_;
   AppendedFile timings_;
-  std::ifstream stream_;
+  std::unique_ptr<std::istream> stream_;
   JobLines lines_;
   MemoryGate gate_;
   std::vector<std::unique_ptr<JobRunner>> runners_;

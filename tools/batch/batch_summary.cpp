@@ -123,7 +123,7 @@ std::size_t BatchSummary::count() const {
 }
 
 std::string BatchSummary::document(std::size_t most_worst) const {
-  ordered_json whole = {{"version", version()}};
+  ordered_json whole = {{"roadbed_batch", 1}, {"version", version()}};
   whole.update(
       counts_json(count(), count(JobStatus::done), count(JobStatus::no), count(JobStatus::failed)));
   whole["kinds"] = ordered_json::object();

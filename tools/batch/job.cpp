@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/sha256.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/json.h"
@@ -27,6 +28,16 @@ std::vector<std::string> texts(const JsonNode& list) {
   std::vector<std::string> result;
   for (const JsonNode& element : list.elements()) result.push_back(element.text());
   return result;
+}
+
+// A job is known by what it reads, and the batch may be reading the stream itself.
+void refuse_standard_input(const Job& job, const JsonNode& node) {
+  for (const JobInput& input : inputs_of(job)) {
+    if (map::is_standard_stream(input.path)) {
+      node.refuse("reads standard input", "files, by whose bytes a job is known",
+                  "write the input to a file");
+    }
+  }
 }
 
 bool is_scalar(const json& value) { return value.is_string() || value.is_number(); }
@@ -131,7 +142,8 @@ void add_file(const std::filesystem::path& path, FileHashes& files, json& list) 
 Job parse_job(std::string_view line, const JobKinds& kinds) {
   const json document = parse_json_strictly(line, "job");
   const JsonNode node(document, "job");
-  node.require_object({"job", "inputs", "options", "outputs"});
+  node.check_version("job");
+  node.require_object({"roadbed_job", "job", "inputs", "options", "outputs"});
   const JsonNode name = node.at("job");
   Job job{.kind = kinds.find(name.text()), .options = json::object()};
   if (job.kind == nullptr) {
@@ -141,6 +153,7 @@ Job parse_job(std::string_view line, const JobKinds& kinds) {
   if (const auto inputs = node.find("inputs")) job.inputs = texts(*inputs);
   if (const auto options = node.find("options")) job.options = read_options(*job.kind, *options);
   if (const auto outputs = node.find("outputs")) job.outputs = read_outputs(*job.kind, *outputs);
+  refuse_standard_input(job, node);
   return job;
 }
 

@@ -5,15 +5,18 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/gis/lon_lat.h"
 #include "roadbed/planning/route/route_options.h"
 
 namespace roadbed::tools::inline cli {
 namespace {
 
-constexpr std::string_view kLanePrefix = "lane:";
+constexpr std::string_view kLanePrefix = "lane:", kLonLatPrefix = "lonlat:";
 
 std::optional<double> number(std::string_view text) {
   double value = 0.0;
@@ -101,11 +104,40 @@ Place at_lane(const map::RoadMap& road_map, const std::string& text) {
   refuse_place(text, found, "", remedy);
 }
 
+/// The words of a point, without what it begins with.
+std::vector<std::string_view> point_words(std::string_view text) {
+  if (text.starts_with(kLonLatPrefix)) text.remove_prefix(kLonLatPrefix.size());
+  return split(text);
+}
+
+/// What is wrong with the two numbers of a point.
+std::string coordinates_fault(const std::string& text) {
+  const auto words = point_words(text);
+  const auto first = number(words[0]), second = number(words[1]);
+  if (!text.starts_with(kLonLatPrefix)) return first && second ? "" : "X or Y is not a number";
+  if (!first || !second) return "LON or LAT is not a number";
+  const bool on_globe = std::abs(*first) <= 180.0 && std::abs(*second) <= 90.0;
+  return on_globe ? ""
+                  : "is not on the globe: the longitude, within ±180, comes first, then the "
+                    "latitude, within ±90";
+}
+
+Eigen::Vector2d in_source(const map::RoadMap& road_map, const std::string& text) {
+  const auto words = point_words(text);
+  Eigen::Vector2d point(number(words[0]).value(), number(words[1]).value());
+  if (!text.starts_with(kLonLatPrefix)) return point;
+  try {
+    map::lon_lat_to_source(road_map, std::span(&point, 1));
+  } catch (const map::InputError& error) {
+    refuse_place(text, error.what(), "", "");
+  }
+  return point;
+}
+
 Place at_point(const map::RoadMap& road_map, const std::string& text,
                map::Participant participant) {
-  const auto parts = split(text);
-  const Eigen::Vector2d in_map =
-      road_map.to_map({number(parts[0]).value(), number(parts[1]).value()});
+  const auto parts = point_words(text);
+  const Eigen::Vector2d in_map = road_map.to_map(in_source(road_map, text));
   const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
   auto candidates =
       planning::match_place(road_map, in_map, heading_rad, {.participant = participant});
@@ -132,20 +164,24 @@ std::string place_syntax_fault(const std::string& text) {
     if (has_station && !number(parts.station)) return "the station behind @ is not a number";
     return "";
   }
-  const auto parts = split(text);
+  const auto parts = point_words(text);
   if (parts.size() < 2 || parts.size() > 3) return std::string("is not ") + kPlaceSyntax;
-  if (!number(parts[0]) || !number(parts[1])) return "X or Y is not a number";
+  if (const std::string fault = coordinates_fault(text); !fault.empty()) return fault;
   if (parts.size() == 3 && !heading(parts[2])) {
     return "the heading is not a number of radians up to 2π; write degrees as 90deg";
   }
   return "";
 }
 
-std::optional<Eigen::Vector2d> parse_point(std::string_view text) {
-  const auto parts = split(text);
-  if (parts.size() != 2) return {};
-  const auto x = number(parts[0]), y = number(parts[1]);
-  return x && y ? std::optional(Eigen::Vector2d(*x, *y)) : std::nullopt;
+std::string point_syntax_fault(const std::string& text) {
+  if (point_words(text).size() != 2) return "is not X,Y or lonlat:LON,LAT: two numbers";
+  return coordinates_fault(text);
+}
+
+Eigen::Vector2d find_point(const map::RoadMap& road_map, const std::string& text) {
+  const std::string fault = point_syntax_fault(text);
+  if (!fault.empty()) refuse_place(text, fault, "", "");
+  return in_source(road_map, text);
 }
 
 Place find_place(const map::RoadMap& road_map, const std::string& text,

@@ -14,7 +14,8 @@ namespace roadbed::tools::inline cli {
 
 /// How places are written, for help texts.
 inline constexpr const char* kPlaceSyntax =
-    "X,Y[,HEADING] in the map's coordinates, heading in radians or as 90deg; or lane:NAME[@S]";
+    "X,Y[,HEADING] in the map's coordinates, heading from their x axis in radians or as 90deg; "
+    "lonlat:LON,LAT[,HEADING] in degrees (WGS 84), the same heading; or lane:NAME[@S]";
 
 /// A place on a drivable lane.
 struct Place {
@@ -30,8 +31,13 @@ struct Place {
 /// What is wrong with the writing of a place, empty if nothing is. Needs no map.
 std::string place_syntax_fault(const std::string& text);
 
-/// Two numbers "X,Y", in source coordinates.
-std::optional<Eigen::Vector2d> parse_point(std::string_view text);
+/// The same of a point, "X,Y" or "lonlat:LON,LAT".
+std::string point_syntax_fault(const std::string& text);
+
+/// Where a point is, in source coordinates; it need not be on the road.
+/// @throws InputError, whose element is the text, if it is no point, or longitude and latitude mean
+///         nothing on this map.
+Eigen::Vector2d find_point(const map::RoadMap& road_map, const std::string& text);
 
 /// Finds a place on the map. Which lane a point belongs to says planning::match_place().
 /// @throws InputError, whose element is the text, if it is no place, its lane is not there or not

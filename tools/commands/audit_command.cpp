@@ -12,6 +12,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
@@ -26,8 +27,9 @@
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_output.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/report/audit_pages.h"
 #include "roadbed/tools/report/audit_pictures.h"
 #include "roadbed/tools/report/report.h"
@@ -53,9 +55,11 @@ class AuditCommand : public Command {
         .ending(kOctreeEndings);
     const std::vector<Argument> not_with_check = subjects_.declare(arguments);
     arguments.heading("Question");
-    arguments.add("--vehicle", vehicle_, "Vehicle (.json); default: CommonRoad's vehicle 2")
+    arguments
+        .add("--vehicle", vehicle_,
+             std::string("Vehicle: ") + kVehicleSyntax + "; default: commonroad:2")
         .reads()
-        .ending(".json");
+        .ending(".json .yaml");
     arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
         .reads()
         .ending(kMapEndings);
@@ -89,7 +93,8 @@ class AuditCommand : public Command {
     for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
       if (!output.empty()) map::check_writable(output, force_);
     }
-    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle_json(vehicle_);
+    if (!certificate_.empty()) refuse_certificate_of_streams();
+    const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle(vehicle_);
     AuditQuestion question = asked(vehicle);
     std::shared_ptr<const map::RoadMap> road_map;
     if (!map_.empty()) road_map = inputs_->road_map(map_);
@@ -270,7 +275,7 @@ class AuditCommand : public Command {
     write_index(audits, question, scene);
     write_files(audits, question, scene);
     if (json_) {
-      streams.out << text_of_json(with_removal(audits_json(audits), scene));
+      streams.out << text_of_json(versioned("audits", with_removal(audits_json(audits), scene)));
     } else {
       streams.out << audits_table(audits);
     }
@@ -298,7 +303,7 @@ class AuditCommand : public Command {
     write_certificate(audited.audit, question);
     write_files({audited}, question, scene);
     if (json_) {
-      streams.out << text_of_json(with_removal(audit_json(audited), scene));
+      streams.out << text_of_json(versioned("audit", with_removal(audit_json(audited), scene)));
     } else {
       streams.out << audit_text(audited.audit.report);
     }
@@ -373,10 +378,10 @@ class AuditCommand : public Command {
                            .command = "roadbed audit --occupancy " + occupancy_.string(),
                            .version = name_and_version(),
                            .crs = scene.occupancy->crs(),
-                           .sources = {source("occupancy", certified_once(occupancy_))}};
+                           .sources = {source("occupancy", hashed_once(occupancy_))}};
     if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
     if (!subjects_.is_swept()) {
-      page.sources.push_back(source("trajectory", certified_file(subjects_.file())));
+      page.sources.push_back(source("trajectory", hashed_input(subjects_.file())));
     }
     map::write_output(
         report_, drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)));
@@ -404,17 +409,24 @@ class AuditCommand : public Command {
   }
 
   // Of what many audits share.
-  CertifiedFile certified_once(const std::filesystem::path& file) const {
-    return *inputs_->of<CertifiedFile>("certified file", {file}, [&] {
-      return std::make_shared<const CertifiedFile>(certified_file(file));
+  CertifiedFile hashed_once(const std::filesystem::path& file) const {
+    return *inputs_->of<CertifiedFile>("hashed input", {file}, [&] {
+      return std::make_shared<const CertifiedFile>(hashed_input(file));
     });
+  }
+
+  // Who checks a certificate hashes its files again.
+  void refuse_certificate_of_streams() const {
+    for (const auto& file : {occupancy_, subjects_.file(), vehicle_, map_, obstacles_}) {
+      if (map::is_stream(file)) certified_file(file);  // says why not
+    }
   }
 
   void write_certificate(const planning::DriveAudit& audit, const AuditQuestion& question) const {
     if (certificate_.empty()) return;
     const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
     CertificateFile file{.program = name_and_version(),
-                         .occupancy = certified_once(occupancy_),
+                         .occupancy = hashed_once(occupancy_),
                          .trajectory = certified_file(drive),
                          .underside_m = from_height_m_,
                          .ground = {question.ground.kind, audit.ground},
@@ -424,7 +436,7 @@ class AuditCommand : public Command {
       file.obstacles = certified_obstacles(obstacles_, question.moving_in_source);
     }
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
-    if (!map_.empty()) file.roads = certified_once(map_);
+    if (!map_.empty()) file.roads = hashed_once(map_);
     map::write_output(certificate_, write_certificate_json(file));
   }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/batch_summary.h"
@@ -88,8 +89,12 @@ class BatchCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     // Some outputs name others: how the folder is called on the command line is not to matter.
     folder_ = std::filesystem::absolute(folder_).lexically_normal();
-    if (serves_) return run_server(streams);
+    if (serves_) {
+      map::refuse_streams();
+      return run_server(streams);
+    }
     count_jobs(jobs_file_);  // nothing is made where there are none to read
+    map::refuse_streams();   // of jobs; that of JOBS is kept
     if (lists_) {
       list_missing(options(common), job_kinds(), ResultStore(folder_), streams.out);
       return Exit::ok;

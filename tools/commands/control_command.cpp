@@ -10,6 +10,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -124,7 +125,8 @@ class ControlCommand : public Command {
         .whole = control::loop_string_gain(design, options_.step_s, delay_steps_),
         .delay_s = options_.step_s * delay_steps_};
     if (json_) {
-      streams.out << map::json_text(design_json(design, string), 2) << '\n';
+      streams.out << map::json_text(versioned("control_design", design_json(design, string)), 2)
+                  << '\n';
     } else {
       print_design(streams.out, design, string);
     }

@@ -14,6 +14,7 @@
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools::inline commands {
@@ -28,12 +29,12 @@ std::string suffixes_with_meaning() {
   return list;
 }
 
-std::string written_endings() {
-  std::string list;
+std::vector<std::string> written_suffixes() {
+  std::vector<std::string> suffixes;
   for (const map::Format& format : map::formats()) {
-    if (format.write != nullptr) list += (list.empty() ? "" : " ") + std::string(format.suffix);
+    if (format.write != nullptr) suffixes.emplace_back(format.suffix);
   }
-  return list;
+  return suffixes;
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& found,
@@ -53,12 +54,15 @@ class ExportCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format, told by the output's suffix");
     arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
-    arguments.add("-o,--output", output_, suffixes_with_meaning()).required();
+    arguments.add("-o,--output", output_, suffixes_with_meaning() + "; - for standard output")
+        .required();
+    declare_format(arguments, format_, written_suffixes());
     declare_options(arguments);
-    arguments.require([this] { return anchor_fault(); });
+    arguments.require([this] { return stream_or_anchor_fault(); });
     arguments.example(
         "  roadbed export town.xodr -o town.svg\n"
         "  roadbed export town.xodr -o town.gpkg\n"
+        "  roadbed export town.xodr -o - --format csv > lines.csv\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 
@@ -78,7 +82,7 @@ class ExportCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    const map::Format& format = map::format_to_write(output_);
+    const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
@@ -87,15 +91,19 @@ class ExportCommand : public Command {
         format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
     map::write_output(output_, bytes);
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_.string(), road_map.lanes().size(),
-                 bytes.size());
+      fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
+                 road_map.lanes().size(), bytes.size());
       for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
     }
     return Exit::ok;
   }
 
  protected:
-  std::string anchor_fault() const {
+  std::string suffix() const { return suffix_of_output(output_, format_); }
+
+  std::string stream_or_anchor_fault() const {
+    const std::string fault = standard_output_fault(output_, true, format_, "");
+    if (!fault.empty()) return fault;
     if (anchor_deg_.empty()) return {};
     if (std::abs(anchor_deg_[0]) <= 90.0 && std::abs(anchor_deg_[1]) <= 180.0) return {};
     return "--anchor: latitude is within ±90, longitude within ±180";
@@ -119,7 +127,7 @@ class ExportCommand : public Command {
   std::filesystem::path input_, output_;
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
-  std::string crs_;
+  std::string crs_, format_;
   bool force_ = false;
 };
 
@@ -130,9 +138,14 @@ class ConvertCommand : public ExportCommand {
     arguments.description("Write a map in another format: import and export in one");
     arguments.add("A", input_, "Any readable map").required().ending(kMapEndings);
     const Argument b = arguments.add("B", positional_output_, "The output, in place of -o");
+    std::vector<std::string> suffixes = written_suffixes();
     arguments
-        .add("-o,--output", output_, ".rbm: compiled map; or as of export: " + written_endings())
+        .add("-o,--output", output_,
+             fmt::format(".rbm: compiled map; or as of export: {}; - for standard output",
+                         fmt::join(suffixes, " ")))
         .excludes(b);
+    suffixes.insert(suffixes.begin(), ".rbm");
+    declare_format(arguments, format_, suffixes);
     declare_options(arguments);
     arguments.require([this] { return fault(); });
     arguments.example(
@@ -145,7 +158,7 @@ class ConvertCommand : public ExportCommand {
   }
 
  private:
-  bool is_compiled() const { return output_.extension() == ".rbm"; }
+  bool is_compiled() const { return suffix() == ".rbm"; }
 
   std::string fault() {
     if (output_.empty()) output_ = positional_output_;
@@ -153,7 +166,7 @@ class ConvertCommand : public ExportCommand {
     if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
       return "--layer and --anchor are for outputs other than .rbm";
     }
-    return anchor_fault();
+    return stream_or_anchor_fault();
   }
 
   Exit import(const Streams& streams, const CommonOptions& common) const {

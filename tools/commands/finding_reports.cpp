@@ -172,7 +172,7 @@ std::string findings_json(const Validation& validation) {
   for (const Finding& finding : validation.findings) {
     list.push_back(finding_json(validation, finding));
   }
-  return document_text(Json{{"findings", std::move(list)}});
+  return document_text(versioned("findings", {{"findings", std::move(list)}}));
 }
 
 std::string findings_junit(const Validation& validation, const std::string& file) {

@@ -12,9 +12,11 @@
 
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_network.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
@@ -68,7 +70,9 @@ class ImportCommand : public Command {
         .required()
         .reads()
         .ending(kMapEndings);
-    arguments.add("-o,--output", output_, "Compiled map to write (.rbm)").required().writes(".rbm");
+    arguments.add("-o,--output", output_, "Compiled map to write (.rbm); - for standard output")
+        .required()
+        .writes(".rbm");
     arguments.add("--crs", crs_,
                   "CRS of the map's coordinates (PROJ string, EPSG:CODE, or \"unknown\"), "
                   "where the file gives none or a wrong one; nothing is reprojected");
@@ -79,6 +83,8 @@ class ImportCommand : public Command {
         .with_default();
     arguments.flag("-j,--json", json_, "Print what was imported as one JSON document");
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    arguments.require(
+        [this] { return standard_output_fault(output_, false, "", json_ ? "--json" : ""); });
     arguments.example("  roadbed import town.xodr -o town.rbm");
   }
 
@@ -89,9 +95,7 @@ class ImportCommand : public Command {
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
-    map::OutputFile output(output_);
-    map::write_compiled_map(road_map, network, output);
-    output.commit();
+    write(road_map, network);
     if (json_) print_json(streams.out, road_map);
     if (!common.quiet) report(streams.err, road_map);
     return Exit::ok;
@@ -110,6 +114,15 @@ class ImportCommand : public Command {
     }
   }
 
+  void write(const map::RoadMap& road_map, const std::string& network) const {
+    if (map::is_standard_stream(output_)) {
+      return map::write_to_standard_output(map::write_compiled_map(road_map, network));
+    }
+    map::OutputFile output(output_);
+    map::write_compiled_map(road_map, network, output);
+    output.commit();
+  }
+
   static std::ptrdiff_t faults_of(const map::RoadMap& road_map) {
     return std::ranges::count_if(road_map.import_diagnostics(), &map::ImportDiagnostic::is_fault);
   }
@@ -122,12 +135,12 @@ class ImportCommand : public Command {
                     {"junctions", road_map.junctions().size()},
                     {"signals", road_map.signals().size()},
                     {"faults", faults_of(road_map)}};
-    out << map::json_text(json, 2) << '\n';
+    out << map::json_text(versioned("import", json), 2) << '\n';
   }
 
   void report(std::ostream& err, const map::RoadMap& road_map) const {
     const std::ptrdiff_t faults = faults_of(road_map);
-    fmt::print(err, "{}: {}, {} roads, {} lanes, {} junctions, {} signals\n", output_.string(),
+    fmt::print(err, "{}: {}, {} roads, {} lanes, {} junctions, {} signals\n", output_name(output_),
                road_map.format(), road_map.roads().size(), road_map.lanes().size(),
                road_map.junctions().size(), road_map.signals().size());
     if (road_map.crs().empty()) {

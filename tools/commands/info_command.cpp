@@ -228,11 +228,11 @@ class InfoCommand : public Command {
     Json info = info_json(road_map);
     const map::Format* format = map::format_of(road_map);
     if (format != nullptr && format->name == "CommonRoad") {
-      info["scenario"] = scenario_counts(map::read_file(input_), input_.string());
+      info["scenario"] = scenario_counts(map::read_file(input_), map::input_name(input_));
     }
-    if (verify_) info["verified"] = verified_json(map::verify_compiled_map(input_));
+    if (verify_) info["verified"] = verified_json(verified());
     if (json_) {
-      streams.out << map::json_text(info, 2) << '\n';
+      streams.out << map::json_text(versioned("info", info), 2) << '\n';
     } else {
       print_info(streams.out, info);
     }
@@ -240,6 +240,12 @@ class InfoCommand : public Command {
   }
 
  private:
+  map::VerifiedMap verified() const {
+    const bool is_plain = map::is_compiled_map(map::stored_start(input_, 16));
+    return is_plain ? map::verify_compiled_map(input_)
+                    : map::verify_compiled_map(map::read_file(input_), map::input_name(input_));
+  }
+
   std::filesystem::path input_;
   bool verify_ = false, json_ = false;
 };

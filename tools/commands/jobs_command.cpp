@@ -21,10 +21,12 @@
 #include "roadbed/tools/batch/file_patterns.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_runner.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/points_csv.h"
 #include "roadbed/tools/files/streamed_output.h"
+#include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -89,7 +91,7 @@ void add_range(const std::pair<long, long>& range, std::vector<Json>& values) {
 std::vector<Json> values_of(const ArgumentInfo& option, const std::vector<std::string>& texts) {
   std::vector<Json> values;
   for (const std::string& text : texts) {
-    if (option.use == ArgumentInfo::Use::input) {
+    if (option.use == ArgumentInfo::Use::input && !is_vehicle_name(text)) {
       std::ranges::move(matching(text), std::back_inserter(values));
     } else if (const auto range = parse_range(text)) {
       add_range(*range, values);
@@ -129,7 +131,9 @@ class KindOptions {
           .reads()
           .ending(".csv");
     }
-    part_.add("-o,--output", file_, "File of jobs to write (.jsonl)").required().writes(".jsonl");
+    part_.add("-o,--output", file_, "File of jobs to write (.jsonl); - for standard output")
+        .required()
+        .writes(".jsonl");
     part_.flag("-f,--force", force_, "Replace the file if it exists");
     part_.example(fmt::format("  roadbed jobs {} {}", kind.name, example_of(kind.name)));
   }
@@ -211,7 +215,7 @@ class KindOptions {
 
   std::vector<Json> pairs() const {
     std::vector<Json> pairs;
-    for (const OdRow& row : parse_od_csv(map::read_file(pairs_), pairs_.string())) {
+    for (const OdRow& row : parse_od_csv(map::read_file(pairs_), map::input_name(pairs_))) {
       if (!row.fault.empty()) {
         refuse_jobs(fmt::format("{}:{}", pairs_.string(), row.line), row.fault, "mend the row");
       }
@@ -259,7 +263,7 @@ class JobsCommand : public Command {
     });
     lines.commit();
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} {}\n", options.file().string(), with_commas(count),
+      fmt::print(streams.err, "{}: {} {}\n", output_name(options.file()), with_commas(count),
                  count == 1 ? "job" : "jobs");
     }
     return Exit::ok;

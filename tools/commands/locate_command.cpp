@@ -10,6 +10,7 @@
 
 #include "roadbed/map/derived/lane_frame.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/gis/lon_lat.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/commands.h"
@@ -63,17 +64,29 @@ Json match_json(const map::RoadMap& road_map, const map::LaneMatch& match,
   return json;
 }
 
+/// @param lon_lat  of the point, null where it is not to be said.
 Json located(const map::RoadMap& road_map, const Eigen::Vector2d& in_source,
-             const std::vector<map::LaneMatch>& nearest) {
+             const Eigen::Vector2d* lon_lat, const std::vector<map::LaneMatch>& nearest) {
   Json lanes = Json::array();
   for (const auto& match : nearest) {
     lanes.push_back(match_json(road_map, match, road_map.to_map(in_source)));
   }
-  return {{"x_m", in_source.x()}, {"y_m", in_source.y()}, {"lanes", std::move(lanes)}};
+  Json point = {{"x_m", in_source.x()}, {"y_m", in_source.y()}};
+  if (lon_lat != nullptr) {
+    point["lon_deg"] = lon_lat->x();
+    point["lat_deg"] = lon_lat->y();
+  }
+  point["lanes"] = std::move(lanes);
+  return point;
 }
 
 void print_places(std::ostream& out, const Json& point) {
-  fmt::print(out, "{:.3f},{:.3f}\n", point["x_m"].get<double>(), point["y_m"].get<double>());
+  fmt::print(out, "{:.3f},{:.3f}", point["x_m"].get<double>(), point["y_m"].get<double>());
+  if (point.contains("lon_deg")) {
+    fmt::print(out, "  lonlat:{:.9f},{:.9f}", point["lon_deg"].get<double>(),
+               point["lat_deg"].get<double>());
+  }
+  fmt::print(out, "\n");
   const auto shown = [](const Json& value) {
     return value.is_null() ? std::string("-") : fmt::format("{:.3f}", value.get<double>());
   };
@@ -94,14 +107,18 @@ class LocateCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Find the lanes nearest to points");
     arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
-    const Argument at = arguments.add("--at", at_, "Point X,Y in the map's coordinates [m]")
-                            .checked([](const std::string& text) {
-                              return parse_point(text) ? std::string() : "is not X,Y: two numbers";
-                            });
-    Argument points = arguments.add("--points", points_file_, "CSV file with columns x_m,y_m");
+    const Argument at =
+        arguments
+            .add("--at", at_, "Point X,Y in the map's coordinates [m], or lonlat:LON,LAT [deg]")
+            .checked(point_syntax_fault);
+    Argument points = arguments.add("--points", points_file_,
+                                    "CSV file with columns x_m,y_m, or lon_deg,lat_deg");
     points.ending(".csv").excludes(at);
     arguments.add("--count", count_, "Most lanes to name per point").positive().with_default();
     arguments.flag("--drivable", only_drivable_, "Only lanes that a car may drive on");
+    arguments.flag("--lonlat", wants_lon_lat_,
+                   "Say the points' longitude and latitude (WGS 84) as well; the map has to name "
+                   "its coordinate system");
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.require([this] {
       return at_.empty() && points_file_.empty() ? std::string("--at or --points is required")
@@ -115,16 +132,22 @@ class LocateCommand : public Command {
     const map::RoadMap road_map = map::load_map(map_file_);
     Json answers = Json::array();
     bool all_found = true;
-    const std::vector<Eigen::Vector2d> in_source = points();
-    std::vector<Eigen::Vector2d> in_map;
+    const std::vector<Eigen::Vector2d> in_source = points(road_map);
+    std::vector<Eigen::Vector2d> in_map, lon_lat;
+    if (wants_lon_lat_) {
+      lon_lat = in_source;
+      map::source_to_lon_lat(road_map, lon_lat);
+    }
     for (const Eigen::Vector2d& point : in_source) in_map.push_back(road_map.to_map(point));
     const auto nearest = nearest_lanes(road_map, in_map, count_, only_drivable_);
     for (std::size_t i = 0; i < in_source.size(); ++i) {
-      answers.push_back(located(road_map, in_source[i], nearest[i]));
+      answers.push_back(
+          located(road_map, in_source[i], wants_lon_lat_ ? &lon_lat[i] : nullptr, nearest[i]));
       all_found = all_found && !answers.back()["lanes"].empty();
     }
     if (json_) {
-      fmt::print(streams.out, "{}\n", map::json_text(Json{{"points", answers}}, 2));
+      fmt::print(streams.out, "{}\n",
+                 map::json_text(versioned("locate", {{"points", answers}}), 2));
     } else {
       for (const Json& answer : answers) print_places(streams.out, answer);
     }
@@ -133,15 +156,17 @@ class LocateCommand : public Command {
   }
 
  private:
-  std::vector<Eigen::Vector2d> points() const {
-    if (!points_file_.empty()) return read_points_csv(points_file_);
-    return {parse_point(at_).value()};
+  std::vector<Eigen::Vector2d> points(const map::RoadMap& road_map) const {
+    if (points_file_.empty()) return {find_point(road_map, at_)};
+    PointTable table = read_point_table(points_file_);
+    if (table.is_lon_lat) map::lon_lat_to_source(road_map, table.points);
+    return std::move(table.points);
   }
 
   std::filesystem::path map_file_, points_file_;
   std::string at_;
   std::size_t count_ = 5;
-  bool only_drivable_ = false, json_ = false;
+  bool only_drivable_ = false, json_ = false, wants_lon_lat_ = false;
 };
 
 }  // namespace

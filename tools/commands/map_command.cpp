@@ -69,7 +69,8 @@ class DiffCommand : public Command {
     if (json_) {
       Json list = Json::array();
       for (const auto& change : changes) list.push_back(change_json(change));
-      const Json document = {{"equal", changes.empty()}, {"changes", std::move(list)}};
+      const Json document = {
+          {"roadbed_map_diff", 1}, {"equal", changes.empty()}, {"changes", std::move(list)}};
       fmt::print(streams.out, "{}\n", map::json_text(document, 2));
     } else {
       for (const auto& change : changes) print_differences(streams.out, change);

@@ -17,6 +17,7 @@
 #include "roadbed/map/occupancy/octree/tile_builder.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools::inline commands {
@@ -36,13 +37,10 @@ class OccupancyBuildCommand : public Command {
         .ending(kCloudEndings);
     arguments
         .add("-o,--output", output_,
-             "OctoMap file to write (.bt, or .ot with log-odds), or a folder (.tiles)")
-        .required()
-        .checked([](const std::string& text) {
-          const std::string suffix = std::filesystem::path(text).extension().string();
-          const bool is_known = suffix == ".bt" || suffix == ".ot" || suffix == ".tiles";
-          return is_known ? "" : "ends in none of .bt, .ot and .tiles";
-        });
+             "OctoMap file to write (.bt, or .ot with log-odds), or a folder (.tiles); - for "
+             "standard output")
+        .required();
+    declare_format(arguments, format_, {".bt", ".ot"});
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
         .with_default();
@@ -100,6 +98,11 @@ class OccupancyBuildCommand : public Command {
              "more than memory holds. Clouds are read one after the other, twice")
         .within(1.0, 1e5);
     arguments.require([this]() -> std::string {
+      const std::string fault = standard_output_fault(output_, true, format_, "");
+      if (!fault.empty()) return fault;
+      if (suffix() != ".bt" && suffix() != ".ot" && suffix() != ".tiles") {
+        return "--output: " + output_.string() + " ends in none of .bt, .ot and .tiles";
+      }
       if ((output_.extension() == ".tiles") == tiles_m_.has_value()) return {};
       return tiles_m_ ? "--tiles needs an output that ends in .tiles"
                       : "an output .tiles needs --tiles";
@@ -117,8 +120,8 @@ class OccupancyBuildCommand : public Command {
     const Made made = make(streams.err, common.quiet);
     map::write_output(output_, made.file.bytes);
     if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_.string(), made.file.nodes,
-                 made.resolution_m, made.file.bytes.size());
+      fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_name(output_),
+                 made.file.nodes, made.resolution_m, made.file.bytes.size());
       print_removed(streams.err, made.file.seen_through);
     }
     return Exit::ok;
@@ -137,7 +140,8 @@ class OccupancyBuildCommand : public Command {
                removed->cells, removed->clouds);
   }
 
-  bool wants_log_odds() const { return output_.extension() == ".ot"; }
+  std::string suffix() const { return suffix_of_output(output_, format_); }
+  bool wants_log_odds() const { return suffix() == ".ot"; }
 
   Made written(const map::OccupancyMap& occupancy) const {
     return {{wants_log_odds() ? occupancy.to_ot() : occupancy.to_bt(), occupancy.node_count(),
@@ -165,7 +169,7 @@ class OccupancyBuildCommand : public Command {
   // The cloud of a file, ready to be measured.
   map::PointCloud cloud_of(std::size_t i, std::string_view bytes,
                            const std::vector<Eigen::Isometry3d>& poses) const {
-    map::PointCloud cloud = map::parse_point_cloud(bytes, clouds_[i].string());
+    map::PointCloud cloud = map::parse_point_cloud(bytes, map::input_name(clouds_[i]));
     if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
     if (!poses.empty()) cloud = map::placed(cloud, poses[i]);
     return prepared(std::move(cloud));
@@ -178,7 +182,7 @@ class OccupancyBuildCommand : public Command {
       if (no_sticky_ && !cloud.scans.empty()) refuse_log_odds(cloud);
       return cloud;
     }
-    throw map::InputError({.file = clouds_[i].string(),
+    throw map::InputError({.file = map::input_name(clouds_[i]),
                            .element = "--tiles",
                            .found = "is an octree",
                            .needed = "point clouds",
@@ -272,19 +276,19 @@ class OccupancyBuildCommand : public Command {
 
   map::OccupancyMap convert(const std::string& bytes, const std::filesystem::path& file) const {
     if (clouds_.size() > 1) {
-      throw map::InputError({.file = file.string(),
+      throw map::InputError({.file = map::input_name(file),
                              .found = "is an octree beside other files",
                              .needed = "one octree alone, or point clouds",
                              .remedy = "give the clouds that the octree was built from"});
     }
     if (remove_seen_through_ > 0) {
-      throw map::InputError({.file = file.string(),
+      throw map::InputError({.file = map::input_name(file),
                              .element = "--remove-seen-through",
                              .found = "is an octree, which does not say how often a cell was hit",
                              .needed = "point clouds",
                              .remedy = "give the clouds that the octree was built from"});
     }
-    return map::OccupancyMap::parse(bytes, file.string());
+    return map::OccupancyMap::parse(bytes, map::input_name(file));
   }
 
   map::PointCloud prepared(map::PointCloud cloud) const {
@@ -330,7 +334,7 @@ class OccupancyBuildCommand : public Command {
   std::vector<double> sensor_;
   std::optional<double> carve_range_m_, scale_, tiles_m_;
   map::CloudFilter filter_;
-  std::string crs_;
+  std::string crs_, format_;
   int remove_seen_through_ = 0;
   bool no_carving_ = false, no_sticky_ = false, force_ = false;
 };

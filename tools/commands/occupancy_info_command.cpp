@@ -161,7 +161,7 @@ class OccupancyInfoCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions&) override {
     const Json info = info_of_input();
     if (json_) {
-      streams.out << map::json_text(info, 2) << '\n';
+      streams.out << map::json_text(versioned("occupancy_info", info), 2) << '\n';
     } else {
       for (const auto& [key, value] : info.items()) {
         fmt::print(streams.out, "{:<14}{}\n", key, report_text(key, value));
@@ -175,8 +175,8 @@ class OccupancyInfoCommand : public Command {
     if (map::is_tiled_occupancy(input_)) return tiles_info(map::TiledOccupancy(input_));
     const std::string bytes = map::read_file(input_);
     return map::is_occupancy_file(bytes)
-               ? octree_info(map::OccupancyMap::parse(bytes, input_.string()))
-               : cloud_info(map::parse_point_cloud(bytes, input_.string()));
+               ? octree_info(map::OccupancyMap::parse(bytes, map::input_name(input_)))
+               : cloud_info(map::parse_point_cloud(bytes, map::input_name(input_)));
   }
 
   std::filesystem::path input_;

@@ -9,6 +9,7 @@
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/plan_output.h"
+#include "roadbed/tools/files/json.h"
 #include "roadbed/tools/report/drive_replay.h"
 #include "roadbed/tools/simulation/cycle_log.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -115,7 +116,7 @@ class PlanCommand : public Command {
                              .title = scenario.name};
     write_plan(cycle, folder_);
     if (json_) {
-      fmt::print(streams.out, "{}\n", map::json_text(plan_json(plan), 2));
+      fmt::print(streams.out, "{}\n", map::json_text(versioned("plan", plan_json(plan)), 2));
     } else {
       print_plan(streams.out, cycle, explain_);
       if (explain_) print_circles(streams.out, scenario.vehicle, circles_);
@@ -136,7 +137,7 @@ class PlanCommand : public Command {
     if (json_) {
       Json document = {{"cycle", cycle_json(decided, row)}};
       document.update(plan_json(cycle.plan));
-      out << map::json_text(document, 2) << '\n';
+      out << map::json_text(versioned("plan", document), 2) << '\n';
     } else {
       print_decision(out, replayed);
       print_plan(out, cycle, explain_);

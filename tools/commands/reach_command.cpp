@@ -9,10 +9,12 @@
 #include <string>
 
 #include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/router.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/route_output.h"
@@ -38,12 +40,16 @@ std::optional<Limit> limit_of(const std::string& text) {
 }
 
 std::string reached_csv(const map::RoadMap& road_map,
-                        const std::vector<planning::ReachedLane>& reached, const char* unit) {
-  std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed\n", unit);
+                        const std::vector<planning::ReachedLane>& reached, const char* unit,
+                        bool has_lon_lat) {
+  std::string text = fmt::format("lane,from_s_m,to_s_m,cost_{},reversed{}\n", unit,
+                                 has_lon_lat ? kLonLatColumns : "");
   for (const planning::ReachedLane& lane : reached) {
-    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}\n",
-                        map::csv_field(road_map.lane(lane.part.lane).name), lane.part.from_s_m,
-                        lane.part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
+    const planning::LanePart& part = lane.part;
+    text += fmt::format("{},{:.3f},{:.3f},{:.4f},{}", map::csv_field(road_map.lane(part.lane).name),
+                        part.from_s_m, part.to_s_m, lane.cost, lane.reversed ? 1 : 0);
+    if (has_lon_lat) text += lon_lat_fields(road_map, part.lane, part.from_s_m, part.to_s_m);
+    text += '\n';
   }
   return text;
 }
@@ -63,9 +69,15 @@ class ReachCommand : public Command {
           return limit_of(text) ? "" : "is not a number up to 100000 with s or m behind it";
         });
     rules_.declare(arguments, false);
+    declare_lon_lat(arguments, wants_lon_lat_);
     arguments.flag("-j,--json", json_, "Print one JSON document");
-    arguments.add("-o,--output", output_,
-                  "Write too: .geojson the area, .csv a row per lane, .svg a picture");
+    arguments.add(
+        "-o,--output", output_,
+        "Write too: .geojson the area, .csv a row per lane, .svg a picture; - for standard "
+        "output, in place of what is printed");
+    declare_format(arguments, format_, kAreaSuffixes);
+    arguments.require(
+        [this] { return standard_output_fault(output_, true, format_, json_ ? "--json" : ""); });
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.says_no_if("nothing can be reached");
     arguments.example("  roadbed reach town.xodr --from lane:1/0/-1@10 --within 60s -o reach.svg");
@@ -73,7 +85,7 @@ class ReachCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions&) override {
     if (!output_.empty()) {
-      check_suffix(output_, kAreaSuffixes);
+      check_suffix(output_, suffix(), kAreaSuffixes);
       map::check_writable(output_, force_);
     }
     const Limit limit = limit_of(within_).value();
@@ -88,21 +100,25 @@ class ReachCommand : public Command {
     const auto reached = planning::isochrone(router, from.for_route(), limit.value);
     const char* unit = limit.measure == planning::RouteCost::time ? "s" : "m";
     if (!output_.empty()) write(road_map, reached, unit);
-    print(streams, road_map, reached, unit);
+    if (!map::is_standard_stream(output_)) print(streams, road_map, reached, unit);
     return Exit::ok;
   }
 
  private:
+  std::string suffix() const { return suffix_of_output(output_, format_); }
+
   void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
              const char* unit) const {
-    if (output_.extension() == ".csv")
-      return map::write_output(output_, reached_csv(road_map, reached, unit));
+    if (suffix() == ".csv")
+      return map::write_output(output_, reached_csv(road_map, reached, unit, wants_lon_lat_));
     std::vector<planning::LanePart> parts;
     for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
     const auto area = planning::area_of(road_map, parts);
-    map::write_output(output_, output_.extension() == ".svg"
-                                   ? area_svg(road_map, area, {})
-                                   : area_geojson(road_map, area, {{"within", within_}}));
+    map::write_output(
+        output_, suffix() == ".svg"
+                     ? area_svg(road_map, area, {})
+                     : area_geojson(road_map, area, {{"within", within_}},
+                                    wants_lon_lat_ ? Coordinates::lon_lat : Coordinates::source));
   }
 
   void print(const Streams& streams, const map::RoadMap& road_map,
@@ -116,10 +132,14 @@ class ReachCommand : public Command {
                        {"to_s_m", lane.part.to_s_m},
                        {"reversed", lane.reversed},
                        {std::string("cost_") + unit, lane.cost}});
+      if (!wants_lon_lat_) continue;
+      add_lon_lat(road_map, lane.part.lane, lane.part.from_s_m, lane.part.to_s_m, lanes.back());
     }
     if (json_) {
       fmt::print(streams.out, "{}\n",
-                 text_of({{"within", within_}, {"length_m", length_m}, {"lanes", lanes}}, 2));
+                 text_of(versioned("reach",
+                                   {{"within", within_}, {"length_m", length_m}, {"lanes", lanes}}),
+                         2));
       return;
     }
     fmt::print(streams.out, "{} lanes, {:.1f} m, within {}\n", reached.size(), length_m, within_);
@@ -131,9 +151,9 @@ class ReachCommand : public Command {
   }
 
   std::filesystem::path map_file_, output_;
-  std::string from_, within_;
+  std::string from_, within_, format_;
   RouteRules rules_;
-  bool json_ = false, force_ = false;
+  bool json_ = false, force_ = false, wants_lon_lat_ = false;
 };
 
 }  // namespace

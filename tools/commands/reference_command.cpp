@@ -7,12 +7,15 @@
 #include <iostream>
 #include <iterator>
 #include <string>
+#include <vector>
 
+#include "roadbed/map/gis/lon_lat.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/reference/line_driving.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/router.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/way_point_line.h"
@@ -22,26 +25,39 @@ namespace {
 
 constexpr double kOffRoad_m = 0.05;  // of the body; less still is on the road
 
-void append_row(fmt::memory_buffer& text, const map::RoadMap& road_map,
-                const planning::ReferenceLine& line, double s_m) {
-  const planning::ReferencePoint point = line.at(s_m);
-  const planning::Corridor room = line.corridor_at(s_m);
-  const Eigen::Vector2d in_source = road_map.to_source(point.in_map);
-  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", s_m, in_source.x(),
-                 in_source.y(), point.heading_rad, point.curvature_per_m, point.curvature_d1_per_m2,
-                 room.left_m, room.right_m, room.speed_limit_mps);
+/// From the start to the goal, the last step shortened.
+std::vector<double> stations(double end_m, double step_m) {
+  std::vector<double> stations_m;
+  for (int i = 0; i * step_m < end_m - 1e-6; ++i) stations_m.push_back(i * step_m);
+  stations_m.push_back(end_m);
+  return stations_m;
 }
 
-/// Rows from the start to the goal, the last step shortened.
+/// A row for each station.
 std::string line_csv(const map::RoadMap& road_map, const planning::ReferenceLine& line,
-                     double step_m) {
+                     const std::vector<double>& stations_m, bool has_lon_lat) {
+  std::vector<Eigen::Vector2d> lon_lat;
+  if (has_lon_lat) {
+    for (const double s_m : stations_m) {
+      lon_lat.push_back(road_map.to_source(line.at(s_m).in_map));
+    }
+    map::source_to_lon_lat(road_map, lon_lat);
+  }
   fmt::memory_buffer text;
-  fmt::format_to(std::back_inserter(text),
-                 "s_m,x_m,y_m,heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
-                 "speed_limit_mps\n");
-  const double end_m = line.goal_s_m();
-  for (int i = 0; i * step_m < end_m - 1e-6; ++i) append_row(text, road_map, line, i * step_m);
-  append_row(text, road_map, line, end_m);
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out,
+                 "s_m,x_m,y_m,{}heading_rad,curvature_per_m,curvature_rate_per_m2,left_m,right_m,"
+                 "speed_limit_mps\n",
+                 has_lon_lat ? "lon_deg,lat_deg," : "");
+  for (std::size_t i = 0; i < stations_m.size(); ++i) {
+    const planning::ReferencePoint point = line.at(stations_m[i]);
+    const planning::Corridor room = line.corridor_at(stations_m[i]);
+    const Eigen::Vector2d in_source = road_map.to_source(point.in_map);
+    fmt::format_to(out, "{},{},{},", stations_m[i], in_source.x(), in_source.y());
+    if (has_lon_lat) fmt::format_to(out, "{},{},", lon_lat[i].x(), lon_lat[i].y());
+    fmt::format_to(out, "{},{},{},{},{},{}\n", point.heading_rad, point.curvature_per_m,
+                   point.curvature_d1_per_m2, room.left_m, room.right_m, room.speed_limit_mps);
+  }
   return fmt::to_string(text);
 }
 
@@ -52,7 +68,7 @@ class ReferenceCommand : public Command {
     arguments.add("MAP", map_file_, "Any readable map; none with --waypoints").ending(kMapEndings);
     question_.declare(arguments, true);
     way_points_.declare(arguments);
-    arguments.add("-o,--output", output_, "CSV file to write").required();
+    arguments.add("-o,--output", output_, "CSV file to write; - for standard output").required();
     arguments.add("--step", step_m_, "Distance between rows [m]")
         .within(1e-3, 100.0)
         .with_default();
@@ -61,6 +77,9 @@ class ReferenceCommand : public Command {
              "Largest distance of the line from the centreline or way-points [m]")
         .within(0.01, 2.0)
         .with_default();
+    arguments.flag("--lonlat", wants_lon_lat_,
+                   "Columns lon_deg and lat_deg (WGS 84) behind y_m; the map has to name its "
+                   "coordinate system");
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.require([this] { return fault(); });
     arguments.says_no_if("there is no route");
@@ -78,6 +97,7 @@ class ReferenceCommand : public Command {
   std::string fault() const {
     if (way_points_.asked() == !map_file_.empty()) return "needs either MAP or --waypoints";
     if (!way_points_.asked() && !question_.has_places()) return "--from and --to are required";
+    if (way_points_.asked() && wants_lon_lat_) return "--lonlat needs MAP";
     if (way_points_.asked() && question_.has_any_place())
       return "--from, --via and --to need MAP, not --waypoints";
     return way_points_.fault();
@@ -90,7 +110,7 @@ class ReferenceCommand : public Command {
       for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
       fmt::print(streams.err,
                  "{}: {:.1f} m, peak curvature {:.3f} 1/m, at most {:.2f} m off the way-points\n",
-                 output_.string(), table.length_m, table.peak_curvature_per_m,
+                 output_name(output_), table.length_m, table.peak_curvature_per_m,
                  table.largest_move_m);
     }
     return Exit::ok;
@@ -108,7 +128,8 @@ class ReferenceCommand : public Command {
     planning::ReferenceLineOptions options = options_;
     options.corner_vehicle = way_points_.vehicle();
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
-    map::write_output(output_, line_csv(road_map, line, step_m_));
+    map::write_output(output_,
+                      line_csv(road_map, line, stations(line.goal_s_m(), step_m_), wants_lon_lat_));
     if (!common.quiet) {
       const planning::LineDriving driving = planning::driving_along(
           line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}),
@@ -121,7 +142,7 @@ class ReferenceCommand : public Command {
       fmt::print(streams.err,
                  "{}: {:.1f} m, peak curvature {:.3f} 1/m at {:.0f} m, of its rate {:.3f} 1/m² at "
                  "{:.0f} m, at most {:.2f} m off the centreline\n",
-                 output_.string(), line.goal_s_m(), driving.peak_curvature_per_m.value,
+                 output_name(output_), line.goal_s_m(), driving.peak_curvature_per_m.value,
                  driving.peak_curvature_per_m.s_m, driving.peak_curvature_rate_per_m2.value,
                  driving.peak_curvature_rate_per_m2.s_m, line.largest_move_m());
     }
@@ -133,7 +154,7 @@ class ReferenceCommand : public Command {
   WayPointLine way_points_;
   planning::ReferenceLineOptions options_;
   double step_m_ = 0.5;
-  bool force_ = false;
+  bool force_ = false, wants_lon_lat_ = false;
 };
 
 }  // namespace

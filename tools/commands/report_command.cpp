@@ -53,9 +53,13 @@ void collect(const nlohmann::json& value, const std::string& name, Metrics& metr
 
 Metrics read_metrics(const fs::path& run) {
   const fs::path file = fs::is_directory(run) ? run / "metrics.json" : run;
-  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
+  const nlohmann::json document = parse_json_strictly(map::read_file(file), map::input_name(file));
   Metrics metrics;
-  if (document.is_object()) collect(document, "", metrics);
+  if (document.is_object()) {
+    JsonNode(document, map::input_name(file)).check_version("metrics");
+    collect(document, "", metrics);
+    metrics.erase("roadbed_metrics");
+  }
   if (metrics.empty()) refuse_run(file, "no metric");
   return metrics;
 }
@@ -158,7 +162,9 @@ class ReportCommand : public Command {
     for (const Bound& bound : exceeded) {
       over.push_back({{"metric", bound.metric}, {"max", bound.most}});
     }
-    out << map::json_text(ordered_json{{"metrics", metrics}, {"exceeded", over}}, 2) << '\n';
+    out << map::json_text(
+               ordered_json{{"roadbed_comparison", 1}, {"metrics", metrics}, {"exceeded", over}}, 2)
+        << '\n';
   }
 
   fs::path a_, b_;

@@ -44,7 +44,7 @@ void place_row(const map::RoadMap& road_map, const planning::Router& router,
 
 std::vector<PairRow> read_rows(const std::filesystem::path& file) {
   std::vector<PairRow> rows;
-  for (OdRow& row : parse_od_csv(map::read_file(file), file.string())) {
+  for (OdRow& row : parse_od_csv(map::read_file(file), map::input_name(file))) {
     rows.push_back({std::move(row), {}, {}});
   }
   return rows;
@@ -219,11 +219,12 @@ BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::pat
   }
   for (const PairRow& row : rows) {
     if (row.fault.empty()) continue;
-    answer.faults.push_back(fmt::format("{}:{}: {}", file.string(), row.line, row.fault));
+    answer.faults.push_back(fmt::format("{}:{}: {}", map::input_name(file), row.line, row.fault));
   }
   if (!options.matrix) answer.none -= answer.faults.size();
   if (!documents.empty()) documents += "\n ";
-  if (options.json) answer.json = "{\n \"answers\": [" + documents + "]\n}\n";
+  if (options.json)
+    answer.json = "{\n \"roadbed_routes\": 1,\n \"answers\": [" + documents + "]\n}\n";
   return answer;
 }
 

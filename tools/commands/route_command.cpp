@@ -5,11 +5,13 @@
 #include <iostream>
 #include <string>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/alternatives.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/router.h"
+#include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/cli/route_question.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/route_batch.h"
@@ -21,10 +23,10 @@ namespace {
 
 using Routes = std::vector<planning::Route>;
 
-std::string file_text(const std::filesystem::path& file, const map::RoadMap& road_map,
-                      const Routes& routes) {
-  if (file.extension() == ".csv") return route_csv(road_map, routes);
-  if (file.extension() != ".svg") return route_geojson(road_map, routes);
+std::string file_text(const std::string& suffix, const map::RoadMap& road_map, const Routes& routes,
+                      Coordinates coordinates) {
+  if (suffix == ".csv") return route_csv(road_map, routes, coordinates);
+  if (suffix != ".svg") return route_geojson(road_map, routes, coordinates);
   std::vector<planning::LanePart> parts;
   for (const planning::Route& route : routes) {
     const auto corridor = planning::corridor_of(road_map, route);
@@ -51,6 +53,7 @@ class RouteCommand : public Command {
              "quotes; one row of answers each")
         .reads()
         .ending(".csv");
+    declare_lon_lat(arguments, wants_lon_lat_);
     arguments.flag("--matrix", matrix_, "With --batch: from every from to every to");
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments
@@ -58,6 +61,7 @@ class RouteCommand : public Command {
              "Write too: .geojson with the corridor, .csv a row per leg, .svg a picture; with "
              "--batch the rows, as .csv")
         .writes(".geojson");
+    declare_format(arguments, format_, kAreaSuffixes);
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.require([this] { return missing(); });
     arguments.says_no_if("there is no route, with --batch for one of the pairs");
@@ -69,7 +73,8 @@ class RouteCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     if (!output_.empty()) {
-      check_suffix(output_, batch_.empty() ? kAreaSuffixes : std::vector<std::string>{".csv"});
+      check_suffix(output_, suffix(),
+                   batch_.empty() ? kAreaSuffixes : std::vector<std::string>{".csv"});
       map::check_writable(output_, force_);
     }
     if (!batch_.empty()) return run_batch(streams, common);
@@ -89,15 +94,26 @@ class RouteCommand : public Command {
         routes.push_back(std::move(others[i].route));
       }
     }
-    if (!output_.empty()) map::write_output(output_, file_text(output_, road_map, routes));
-    print(streams, road_map, asked, routes, shared);
+    if (!output_.empty()) {
+      map::write_output(output_, file_text(suffix(), road_map, routes, coordinates()));
+    }
+    if (!map::is_standard_stream(output_)) print(streams, road_map, asked, routes, shared);
     if (!common.quiet) note_defaults(streams, routes.front());
     return Exit::ok;
   }
 
  private:
+  Coordinates coordinates() const {
+    return wants_lon_lat_ ? Coordinates::lon_lat : Coordinates::source;
+  }
+
+  std::string suffix() const { return suffix_of_output(output_, format_); }
+
   std::string missing() const {
+    const std::string fault = standard_output_fault(output_, true, format_, json_ ? "--json" : "");
+    if (!fault.empty()) return fault;
     if (!batch_.empty()) {
+      if (wants_lon_lat_) return "--batch excludes --lonlat: its rows name no coordinates";
       if (question_.has_any_place()) return "--batch excludes --from, --via and --to";
       if (alternatives_ > 1) return "--batch excludes --alternatives";
       return "";
@@ -135,15 +151,15 @@ class RouteCommand : public Command {
              const RouteQuestion::Asked& asked, const Routes& routes,
              const std::vector<double>& shared) const {
     if (json_) {
-      Json json = route_json(road_map, routes.front());
+      Json json = route_json(road_map, routes.front(), coordinates());
       json["from"] = place_json(road_map, asked.from);
       json["to"] = place_json(road_map, asked.to);
       for (std::size_t i = 1; i < routes.size(); ++i) {
-        Json other = route_json(road_map, routes[i]);
+        Json other = route_json(road_map, routes[i], coordinates());
         other["shared_length_fraction"] = shared[i];
         json["alternatives"].push_back(std::move(other));
       }
-      fmt::print(streams.out, "{}\n", text_of(json, 2));
+      fmt::print(streams.out, "{}\n", text_of(versioned("route", json), 2));
       return;
     }
     print_choice(streams, road_map, "start", asked.from);
@@ -176,16 +192,17 @@ class RouteCommand : public Command {
       Json json = no_route_json(road_map, answer);
       json["from"] = place_json(road_map, asked.from);
       json["to"] = place_json(road_map, asked.to);
-      fmt::print(streams.out, "{}\n", text_of(json, 2));
+      fmt::print(streams.out, "{}\n", text_of(versioned("route", json), 2));
     }
     fmt::print(streams.err, "roadbed: no route: {}\n", answer.reason);
     return Exit::no;
   }
 
   std::filesystem::path map_file_, output_, batch_;
+  std::string format_;
   RouteQuestion question_;
   int alternatives_ = 1;
-  bool json_ = false, force_ = false, matrix_ = false;
+  bool json_ = false, force_ = false, matrix_ = false, wants_lon_lat_ = false;
 };
 
 }  // namespace

@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "roadbed/map/drawing/svg.h"
 #include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/gis/lon_lat.h"
 #include "roadbed/map/index/road_map_index.h"
 #include "roadbed/planning/route/guidance.h"
 #include "roadbed/planning/route/route_area.h"
@@ -60,7 +63,8 @@ const char* word(planning::Sense sense) {
   return "";
 }
 
-Json leg_json(const map::RoadMap& road_map, const planning::RouteLeg& leg) {
+Json leg_json(const map::RoadMap& road_map, const planning::RouteLeg& leg,
+              Coordinates coordinates) {
   Json json = {{"lane", road_map.lane(leg.lane).name},
                {"from_s_m", leg.from_s_m},
                {"to_s_m", leg.to_s_m},
@@ -74,6 +78,9 @@ Json leg_json(const map::RoadMap& road_map, const planning::RouteLeg& leg) {
   if (leg.change_window) {
     json["change_from_s_m"] = leg.change_window->from_s_m;
     json["change_to_s_m"] = leg.change_window->to_s_m;
+  }
+  if (coordinates == Coordinates::lon_lat) {
+    add_lon_lat(road_map, leg.lane, leg.from_s_m, leg.to_s_m, json);
   }
   return json;
 }
@@ -90,24 +97,28 @@ std::vector<Eigen::Vector2d> way_of(const map::RoadMap& road_map, const planning
   return way;
 }
 
-Json coordinates(const map::RoadMap& road_map, const Eigen::Vector2d& in_map) {
-  const Eigen::Vector2d in_source = road_map.to_source(in_map);
-  return Json::array({in_source.x(), in_source.y()});
-}
-
-Json ring_json(const map::RoadMap& road_map, const geometry::Ring& ring) {
+Json points_json(const map::RoadMap& road_map, std::vector<Eigen::Vector2d> points,
+                 Coordinates coordinates) {
+  for (Eigen::Vector2d& point : points) point = road_map.to_source(point);
+  if (coordinates == Coordinates::lon_lat) map::source_to_lon_lat(road_map, points);
   Json json = Json::array();
-  for (const Eigen::Vector2d& point : ring) json.push_back(coordinates(road_map, point));
-  if (!ring.empty()) json.push_back(coordinates(road_map, ring.front()));
+  for (const Eigen::Vector2d& point : points) json.push_back({point.x(), point.y()});
   return json;
 }
 
+Json ring_json(const map::RoadMap& road_map, geometry::Ring ring, Coordinates coordinates) {
+  if (!ring.empty()) ring.push_back(ring.front());
+  return points_json(road_map, std::move(ring), coordinates);
+}
+
 Json area_feature(const map::RoadMap& road_map, const std::vector<geometry::Polygon>& area,
-                  const Json& properties) {
+                  const Json& properties, Coordinates coordinates) {
   Json polygons = Json::array();
   for (const geometry::Polygon& polygon : area) {
-    Json rings = Json::array({ring_json(road_map, polygon.outer)});
-    for (const geometry::Ring& hole : polygon.holes) rings.push_back(ring_json(road_map, hole));
+    Json rings = Json::array({ring_json(road_map, polygon.outer, coordinates)});
+    for (const geometry::Ring& hole : polygon.holes) {
+      rings.push_back(ring_json(road_map, hole, coordinates));
+    }
     polygons.push_back(std::move(rings));
   }
   return {{"type", "Feature"},
@@ -115,12 +126,12 @@ Json area_feature(const map::RoadMap& road_map, const std::vector<geometry::Poly
           {"properties", properties}};
 }
 
-std::string collection(const map::RoadMap& road_map, Json features) {
-  return text_of({{"type", "FeatureCollection"},
-                  {"crs", crs_json(road_map)},
-                  {"features", std::move(features)}},
-                 -1) +
-         "\n";
+/// GeoJSON without `crs` is in longitude and latitude.
+std::string collection(const map::RoadMap& road_map, Json features, Coordinates coordinates) {
+  Json json = {{"type", "FeatureCollection"}};
+  if (coordinates == Coordinates::source) json["crs"] = crs_json(road_map);
+  json["features"] = std::move(features);
+  return text_of(json, -1) + "\n";
 }
 
 struct Bounds {
@@ -151,9 +162,41 @@ std::string lanes_around(const map::RoadMap& road_map, const map::SvgCanvas& can
 
 std::string text_of(const Json& json, int indent) { return map::json_text(json, indent); }
 
-Json route_json(const map::RoadMap& road_map, const planning::Route& route) {
+void declare_lon_lat(Arguments& arguments, bool& wants_lon_lat) {
+  arguments.flag("--lonlat", wants_lon_lat,
+                 "Say longitude and latitude (WGS 84, degrees) as well: keys and columns lon_deg, "
+                 "lat_deg; GeoJSON in these alone. The map has to name its coordinate system");
+}
+
+Eigen::Vector2d lon_lat_of(const map::RoadMap& road_map, map::LaneId lane, double s_m) {
+  Eigen::Vector2d point = road_map.to_source(road_map.lane(lane).pose_at(s_m).position());
+  map::source_to_lon_lat(road_map, std::span(&point, 1));
+  return point;
+}
+
+void add_lon_lat(const map::RoadMap& road_map, map::LaneId lane, double from_s_m, double to_s_m,
+                 Json& json) {
+  const Eigen::Vector2d from = lon_lat_of(road_map, lane, from_s_m);
+  const Eigen::Vector2d to = lon_lat_of(road_map, lane, to_s_m);
+  json["from_lon_deg"] = from.x();
+  json["from_lat_deg"] = from.y();
+  json["to_lon_deg"] = to.x();
+  json["to_lat_deg"] = to.y();
+}
+
+std::string lon_lat_fields(const map::RoadMap& road_map, map::LaneId lane, double from_s_m,
+                           double to_s_m) {
+  const Eigen::Vector2d from = lon_lat_of(road_map, lane, from_s_m);
+  const Eigen::Vector2d to = lon_lat_of(road_map, lane, to_s_m);
+  return fmt::format(",{},{},{},{}", from.x(), from.y(), to.x(), to.y());
+}
+
+Json route_json(const map::RoadMap& road_map, const planning::Route& route,
+                Coordinates coordinates) {
   Json lanes = Json::array(), told = Json::array(), stops = Json::array();
-  for (const planning::RouteLeg& leg : route.legs) lanes.push_back(leg_json(road_map, leg));
+  for (const planning::RouteLeg& leg : route.legs) {
+    lanes.push_back(leg_json(road_map, leg, coordinates));
+  }
   for (const planning::Instruction& step : planning::instructions_for(road_map, route)) {
     told.push_back({{"at_m", step.at_m},
                     {"lane", road_map.lane(route.legs[step.leg].lane).name},
@@ -210,15 +253,12 @@ Json place_json(const map::RoadMap& road_map, const Place& place) {
           {"candidates", std::move(candidates)}};
 }
 
-std::string route_geojson(const map::RoadMap& road_map,
-                          const std::vector<planning::Route>& routes) {
+std::string route_geojson(const map::RoadMap& road_map, const std::vector<planning::Route>& routes,
+                          Coordinates coordinates) {
   Json features = Json::array();
   for (const planning::Route& route : routes) {
-    Json line = Json::array();
-    for (const Eigen::Vector2d& point : way_of(road_map, route)) {
-      line.push_back(coordinates(road_map, point));
-    }
-    Json properties = route_json(road_map, route);
+    Json line = points_json(road_map, way_of(road_map, route), coordinates);
+    Json properties = route_json(road_map, route, coordinates);
     properties["kind"] = "way";
     features.push_back({{"type", "Feature"},
                         {"geometry", {{"type", "LineString"}, {"coordinates", std::move(line)}}},
@@ -226,20 +266,24 @@ std::string route_geojson(const map::RoadMap& road_map,
   }
   for (const planning::Route& route : routes) {
     const auto area = planning::area_of(road_map, planning::corridor_of(road_map, route));
-    features.push_back(area_feature(road_map, area, {{"kind", "corridor"}}));
+    features.push_back(area_feature(road_map, area, {{"kind", "corridor"}}, coordinates));
   }
-  return collection(road_map, std::move(features));
+  return collection(road_map, std::move(features), coordinates);
 }
 
 std::string area_geojson(const map::RoadMap& road_map, const std::vector<geometry::Polygon>& area,
-                         const Json& properties) {
-  return collection(road_map, Json::array({area_feature(road_map, area, properties)}));
+                         const Json& properties, Coordinates coordinates) {
+  return collection(road_map, Json::array({area_feature(road_map, area, properties, coordinates)}),
+                    coordinates);
 }
 
-std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::Route>& routes) {
-  std::string text =
+std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::Route>& routes,
+                      Coordinates coordinates) {
+  const bool has_lon_lat = coordinates == Coordinates::lon_lat;
+  std::string text = fmt::format(
       "route,leg,lane,from_s_m,to_s_m,exit,turn,change_from_s_m,change_to_s_m,length_m,cost_s,"
-      "cost_m,speed_limit_known,reversed\n";
+      "cost_m,speed_limit_known,reversed{}\n",
+      has_lon_lat ? kLonLatColumns : "");
   for (std::size_t i = 0; i < routes.size(); ++i) {
     for (std::size_t j = 0; j < routes[i].legs.size(); ++j) {
       const planning::RouteLeg& leg = routes[i].legs[j];
@@ -247,10 +291,12 @@ std::string route_csv(const map::RoadMap& road_map, const std::vector<planning::
           leg.change_window
               ? fmt::format("{:.3f},{:.3f}", leg.change_window->from_s_m, leg.change_window->to_s_m)
               : ",";
-      text += fmt::format("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{:.4f},{:.4f},{},{}\n", i, j,
+      text += fmt::format("{},{},{},{:.3f},{:.3f},{},{},{},{:.3f},{:.4f},{:.4f},{},{}", i, j,
                           map::csv_field(road_map.lane(leg.lane).name), leg.from_s_m, leg.to_s_m,
                           word(leg.exit), word(leg.turn), window, leg.length_m, leg.cost_s,
                           leg.cost_m, leg.limit_known ? 1 : 0, leg.reversed ? 1 : 0);
+      if (has_lon_lat) text += lon_lat_fields(road_map, leg.lane, leg.from_s_m, leg.to_s_m);
+      text += '\n';
     }
   }
   return text;
@@ -305,8 +351,8 @@ std::string route_text(const map::RoadMap& road_map, const planning::Route& rout
   return text;
 }
 
-void check_suffix(const std::filesystem::path& output, const std::vector<std::string>& suffixes) {
-  const std::string suffix = output.extension().string();
+void check_suffix(const std::filesystem::path& output, const std::string& suffix,
+                  const std::vector<std::string>& suffixes) {
   if (std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end()) return;
   throw map::InputError({.file = output.string(),
                          .found = fmt::format("the suffix \"{}\" names no format", suffix),

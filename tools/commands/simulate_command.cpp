@@ -12,6 +12,7 @@
 #include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/audit/clearance_audit.h"
@@ -20,6 +21,7 @@
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/report/drive_files.h"
 #include "roadbed/tools/simulation/scenario.h"
 
@@ -29,11 +31,20 @@ namespace {
 namespace fs = std::filesystem;
 using DrivenFile = decltype(DrivenScenario::files)::value_type;
 
-/// Of what an earlier drive left, the solution goes, too, where this drive has none: nobody could
-/// tell that it is not this drive's.
+/// The inputs of a drive cannot be read again where one was a stream.
+bool can_replay(const DrivenScenario& driven) {
+  return std::ranges::none_of(driven.record.sources, map::is_stream, &DriveSource::file);
+}
+
+/// Of what an earlier drive left, the solution and the record go, too, where this drive has none:
+/// nobody could tell that they are not this drive's.
 void write_files(const DrivenScenario& driven, const fs::path& folder) {
   for (const auto& [name, bytes] : driven.files) map::write_output(folder / name, bytes);
-  map::write_output(folder / kDriveRecordName, write_drive_record(driven.record, folder));
+  if (can_replay(driven)) {
+    map::write_output(folder / kDriveRecordName, write_drive_record(driven.record, folder));
+  } else {
+    fs::remove(folder / kDriveRecordName);
+  }
   if (std::ranges::find(driven.files, "solution.xml", &DrivenFile::first) == driven.files.end()) {
     fs::remove(folder / "solution.xml");
   }
@@ -195,10 +206,10 @@ class SimulateCommand : public Command {
   void declare_changes(Arguments& arguments) {
     arguments
         .add("--vehicle", choice_.vehicle_file,
-             "Vehicle (.json) in place of the scenario's; of CommonRoad files there is no "
-             "solution.xml then, as that names vehicle 2")
+             std::string("Vehicle in place of the scenario's: ") + kVehicleSyntax +
+                 "; of CommonRoad files there is no solution.xml then, as that names vehicle 2")
         .reads()
-        .ending(".json");
+        .ending(".json .yaml");
     arguments
         .add("--noise", choice_.noise_file,
              "Noise of what is measured (.json, the keys of a scenario's noise), in place of the "
@@ -233,6 +244,10 @@ class SimulateCommand : public Command {
     if (!timings_file_.empty()) map::write_output(timings_file_, timings_csv(driven.cycle_ms));
     print_one(streams.out, driven);
     if (!common.quiet) {
+      if (!can_replay(driven)) {
+        fmt::print(streams.err, "note: no {}, as an input was a stream, gone once it is read\n",
+                   kDriveRecordName);
+      }
       fmt::print(streams.err, "wrote {}\n", (folder_ / "report.html").string());
     }
     return driven.verdict.outcome == Outcome::goal_reached ? Exit::ok : Exit::no;
@@ -284,7 +299,7 @@ class SimulateCommand : public Command {
                         {"at_s", row.at_s},
                         {"text", row.text}});
     }
-    out << map::json_text(Json{{"drives", drives}}, 2) << '\n';
+    out << map::json_text(versioned("drives", {{"drives", drives}}), 2) << '\n';
   }
 
   static void print_table(std::ostream& out, const std::vector<ScenarioRow>& rows) {

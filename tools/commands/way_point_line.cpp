@@ -7,11 +7,13 @@
 #include <iterator>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/points_csv.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -69,10 +71,10 @@ void WayPointLine::declare(Arguments& arguments) {
       .separated_by(',');
   arguments
       .add("--vehicle", vehicle_file_,
-           "JSON file; bends that it cannot steer are drawn wider, and what it cannot drive is "
-           "noted; corners of way-points are rounded for it at the speed limit, inside the "
-           "half width")
-      .ending(".json");
+           std::string("Vehicle: ") + kVehicleSyntax +
+               "; bends that it cannot steer are drawn wider, and what it cannot drive is noted; "
+               "corners of way-points are rounded for it at the speed limit, inside the half width")
+      .ending(".json .yaml");
   arguments.add("--half-width", half_width_m_, "Room to each side of a line of way-points [m]")
       .within(0.1, 100.0)
       .with_default();
@@ -94,7 +96,7 @@ std::string WayPointLine::fault() const {
 
 std::optional<geometry::VehicleShape> WayPointLine::vehicle() const {
   if (vehicle_file_.empty()) return std::nullopt;
-  return read_vehicle_json(vehicle_file_).shape;
+  return read_vehicle(vehicle_file_).shape;
 }
 
 planning::ReferenceLine WayPointLine::smoothed(const std::vector<Eigen::Vector2d>& points,
@@ -112,14 +114,23 @@ geometry::SplineCurve WayPointLine::interpolated(const std::vector<Eigen::Vector
                                         unit_vector(headings_deg_[1]));
 }
 
+std::vector<Eigen::Vector2d> WayPointLine::way_points() const {
+  PointTable table = read_point_table(file_);
+  if (!table.is_lon_lat) return std::move(table.points);
+  throw map::InputError({.file = map::input_name(file_),
+                         .found = "holds longitudes and latitudes, and no map gives them metres",
+                         .needed = "columns x_m,y_m",
+                         .remedy = "project the points first"});
+}
+
 WayPointLine::Table WayPointLine::table(double step_m, double max_move_m) const {
-  const std::vector<Eigen::Vector2d> points = read_points_csv(file_);
+  const std::vector<Eigen::Vector2d> points = way_points();
   try {
     return rows_of(interpolate_ ? spline_line(interpolated(points))
                                 : smooth_line(smoothed(points, max_move_m)),
                    step_m);
   } catch (const std::invalid_argument& unusable) {
-    throw map::InputError({.file = file_.string(),
+    throw map::InputError({.file = map::input_name(file_),
                            .element = "way-points",
                            .found = fmt::format("make no line: {}", unusable.what()),
                            .needed =

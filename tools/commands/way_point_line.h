@@ -52,6 +52,7 @@ class WayPointLine {
   static Line spline_line(const geometry::SplineCurve& curve);
   static Line smooth_line(const planning::ReferenceLine& line);
 
+  std::vector<Eigen::Vector2d> way_points() const;
   planning::ReferenceLine smoothed(const std::vector<Eigen::Vector2d>& points,
                                    double max_move_m) const;
   geometry::SplineCurve interpolated(const std::vector<Eigen::Vector2d>& points) const;

@@ -59,6 +59,12 @@ class DuplicateKeys {
 
 }  // namespace
 
+Json versioned(std::string_view kind, const Json& document, int version) {
+  Json whole = {{fmt::format("roadbed_{}", kind), version}};
+  whole.update(document);
+  return whole;
+}
+
 JsonNode::JsonNode(const nlohmann::json& value, std::string file, std::string pointer)
     : value_(&value), file_(std::move(file)), pointer_(std::move(pointer)) {}
 
@@ -68,6 +74,18 @@ void JsonNode::require_object(std::initializer_list<std::string_view> known_keys
     member.refuse("is not a known key", fmt::format("one of {}", fmt::join(known_keys, ", ")),
                   "mend its name or remove it");
   }
+}
+
+void JsonNode::check_version(std::string_view kind, int newest) const {
+  const auto version = find(fmt::format("roadbed_{}", kind));
+  if (!version) return;
+  const nlohmann::json& number = version->value();
+  for (int known = 1; known <= newest; ++known) {
+    if (number == known) return;
+  }
+  version->refuse(fmt::format("is {}, a version that this program does not know", number.dump()),
+                  newest == 1 ? std::string("1") : fmt::format("1 to {}", newest),
+                  "use the roadbed that wrote it, or a newer one");
 }
 
 JsonNode JsonNode::at(std::string_view key) const {

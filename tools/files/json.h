@@ -12,6 +12,10 @@ namespace roadbed::tools::inline files {
 /// JSON as it is written: keys in the order in which they were given.
 using Json = nlohmann::ordered_json;
 
+/// What a document of this kind says first, before its own members: `{"roadbed_route": 1, …}`. The
+/// rule about versions is in tools/README.md.
+Json versioned(std::string_view kind, const Json& document, int version = 1);
+
 /// Bounds of a number, both allowed.
 struct Range {
   double least, most;
@@ -30,6 +34,10 @@ class JsonNode {
 
   /// Refuses a value that is no object, or has a key that is not one of these.
   void require_object(std::initializer_list<std::string_view> known_keys) const;
+
+  /// Refuses a document that says, by its member `roadbed_KIND`, that it is of another version than
+  /// this program knows; one that says nothing is of the first.
+  void check_version(std::string_view kind, int newest = 1) const;
 
   /// Member that must be there.
   JsonNode at(std::string_view key) const;

@@ -15,22 +15,28 @@ std::size_t column_of_axis(const CsvReader& table, std::string_view name) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> parse_points_csv(std::string_view bytes, const std::string& name) {
-  constexpr double farthest_m = 1e9;
+PointTable parse_point_table(std::string_view bytes, const std::string& name) {
+  constexpr double farthest_m = 1e9, most_lon_deg = 180.0, most_lat_deg = 90.0;
   CsvReader table(bytes, name);
-  const std::size_t x = column_of_axis(table, "x_m"), y = column_of_axis(table, "y_m");
-  std::vector<Eigen::Vector2d> points;
+  PointTable read;
+  read.is_lon_lat = !table.find_column("x_m") && !table.find_column("x") &&
+                    table.find_column("lon_deg").has_value();
+  const std::size_t x =
+      read.is_lon_lat ? table.column("lon_deg", "lon_deg,lat_deg") : column_of_axis(table, "x_m");
+  const std::size_t y =
+      read.is_lon_lat ? table.column("lat_deg", "lon_deg,lat_deg") : column_of_axis(table, "y_m");
+  const double most_x = read.is_lon_lat ? most_lon_deg : farthest_m;
+  const double most_y = read.is_lon_lat ? most_lat_deg : farthest_m;
   while (table.next_row()) {
     table.check_width();
-    points.emplace_back(table.number(x, -farthest_m, farthest_m),
-                        table.number(y, -farthest_m, farthest_m));
+    read.points.emplace_back(table.number(x, -most_x, most_x), table.number(y, -most_y, most_y));
   }
-  if (points.empty()) table.refuse("rows", "there is none", "at least one below the header");
-  return points;
+  if (read.points.empty()) table.refuse("rows", "there is none", "at least one below the header");
+  return read;
 }
 
-std::vector<Eigen::Vector2d> read_points_csv(const std::filesystem::path& file) {
-  return parse_points_csv(map::read_file(file), file.string());
+PointTable read_point_table(const std::filesystem::path& file) {
+  return parse_point_table(map::read_file(file), map::input_name(file));
 }
 
 std::vector<OdRow> parse_od_csv(std::string_view bytes, const std::string& name) {

@@ -9,13 +9,20 @@
 
 namespace roadbed::tools::inline files {
 
-/// Reads points: a header line that names the columns `x_m` and `y_m` (or `x` and `y`), then a row
-/// per point. Order is free; other columns are ignored.
+/// Points of a table.
+struct PointTable {
+  std::vector<Eigen::Vector2d> points;
+  bool is_lon_lat = false;  ///< longitude (x) and latitude (y) in degrees, else in source
+};
+
+/// Reads points: a header line that names the columns `x_m` and `y_m` (or `x` and `y`), or, where
+/// these are missing, `lon_deg` and `lat_deg`, then a row per point. Order is free; other columns
+/// are ignored.
 /// @throws InputError naming line and column; a file without a row is refused too.
-std::vector<Eigen::Vector2d> read_points_csv(const std::filesystem::path& file);
+PointTable read_point_table(const std::filesystem::path& file);
 
 /// The same from bytes; `name` stands for the file in messages.
-std::vector<Eigen::Vector2d> parse_points_csv(std::string_view bytes, const std::string& name);
+PointTable parse_point_table(std::string_view bytes, const std::string& name);
 
 /// A pair of places to find a route between, as text: origin and destination.
 struct OdRow {

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "roadbed/map/files/read_file.h"
+
 namespace roadbed::tools::inline files {
 namespace {
 
@@ -32,19 +34,24 @@ std::size_t write_all(int descriptor, std::string_view bytes) {
 
 }  // namespace
 
+BufferedOutput::BufferedOutput(const std::filesystem::path& file) {
+  if (!map::is_standard_stream(file)) file_.emplace(file);
+}
+
 void BufferedOutput::add(std::string_view bytes) {
   constexpr std::size_t piece = std::size_t{1} << 20;
   buffer_ += bytes;
-  if (buffer_.size() >= piece) flush();
+  if (file_ && buffer_.size() >= piece) flush();
 }
 
 void BufferedOutput::commit() {
+  if (!file_) return map::write_to_standard_output(buffer_);
   flush();
-  file_.commit();
+  file_->commit();
 }
 
 void BufferedOutput::flush() {
-  file_.write(written_, buffer_);
+  file_->write(written_, buffer_);
   written_ += buffer_.size();
   buffer_.clear();
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,11 +10,12 @@
 
 namespace roadbed::tools::inline files {
 
-/// An output of many small pieces, one after the other, collected into few writes.
+/// An output of many small pieces, one after the other, collected into few writes. Of `-`, standard
+/// output, all is written at once in the end.
 class BufferedOutput {
  public:
   /// @throws OutputError if it cannot be written, as do the others.
-  explicit BufferedOutput(const std::filesystem::path& file) : file_(file) {}
+  explicit BufferedOutput(const std::filesystem::path& file);
 
   void add(std::string_view bytes);
 
@@ -23,7 +25,7 @@ class BufferedOutput {
  private:
   void flush();
 
-  map::OutputFile file_;
+  std::optional<map::OutputFile> file_;  // none: standard output
   std::string buffer_;
   std::uint64_t written_ = 0;
 };

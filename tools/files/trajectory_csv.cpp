@@ -196,7 +196,7 @@ geometry::Trajectory parse_trajectory_csv(std::string_view bytes, const std::str
 }
 
 geometry::Trajectory read_trajectory_csv(const std::filesystem::path& file) {
-  return parse_trajectory_csv(map::read_file(file), file.string());
+  return parse_trajectory_csv(map::read_file(file), map::input_name(file));
 }
 
 std::string write_trajectory_csv(const geometry::Trajectory& drive) {

@@ -10,7 +10,6 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline files {
@@ -208,9 +207,10 @@ Vehicle parse_vehicle_json(std::string_view bytes, const std::string& name) {
 }
 
 Vehicle vehicle_in(const JsonNode& node) {
-  node.require_object({"length_m", "width_m", "rear_overhang_m", "wheelbase_m", "height_m",
-                       "max_steering_rad", "max_steering_rate_radps", "mirrors", "circles",
-                       "parts"});
+  node.check_version("vehicle");
+  node.require_object({"roadbed_vehicle", "length_m", "width_m", "rear_overhang_m", "wheelbase_m",
+                       "height_m", "max_steering_rad", "max_steering_rate_radps", "mirrors",
+                       "circles", "parts"});
   Vehicle vehicle{.shape = shape_of(node), .circles = {}, .more = {}};
   if (const auto circles = node.find("circles")) {
     for (const JsonNode& one : circles->elements()) {
@@ -225,20 +225,11 @@ Vehicle vehicle_in(const JsonNode& node) {
   return vehicle;
 }
 
-Vehicle read_vehicle_json(const std::filesystem::path& file) {
-  return parse_vehicle_json(map::read_file(file), file.string());
-}
-
 VehicleShape vehicle_shape_in(const JsonNode& node) {
   const Vehicle vehicle = vehicle_in(node);
   if (vehicle.circles.empty() && vehicle.more.empty()) return vehicle.shape;
   node.refuse("has mirrors, circles or parts, which only audits look at",
               "a rectangle that holds them", "leave them out, and widen width_m and length_m");
-}
-
-VehicleShape read_vehicle_shape_json(const std::filesystem::path& file) {
-  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
-  return vehicle_shape_in(JsonNode(document, file.string()));
 }
 
 }  // namespace roadbed::tools::files

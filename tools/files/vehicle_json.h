@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,10 +47,8 @@ std::string read_part_name(const JsonNode& node);
 ///
 /// in the vehicle's frame and above the ground: two boxes that stick out beyond the body's sides,
 /// circles that cover the body in place of its rectangle (heights optional), and any other parts.
+/// @param name  stands for the file in messages.
 /// @throws InputError naming the key, or the byte where the text is not JSON.
-Vehicle read_vehicle_json(const std::filesystem::path& file);
-
-/// The same from bytes; `name` stands for the file in messages.
 Vehicle parse_vehicle_json(std::string_view bytes, const std::string& name);
 
 /// The same from a member of another document.
@@ -60,8 +57,5 @@ Vehicle vehicle_in(const JsonNode& node);
 /// The rectangle alone, for what plans and drives.
 /// @throws InputError as well if the vehicle is more than that.
 geometry::VehicleShape vehicle_shape_in(const JsonNode& node);
-
-/// The same from a vehicle's file.
-geometry::VehicleShape read_vehicle_shape_json(const std::filesystem::path& file);
 
 }  // namespace roadbed::tools::files

@@ -143,7 +143,7 @@ VehicleOfFile vehicle_of(nb::handle given) {
   if (given.is_none()) return {};
   if (nb::isinstance<VehicleOfFile>(given)) return nb::cast<const VehicleOfFile&>(given);
   const std::filesystem::path file = path_of(given);
-  return {read_vehicle_json(file), file};
+  return {read_vehicle(file), file};
 }
 
 geometry::VehicleShape shape_of(nb::handle given) {
@@ -178,7 +178,7 @@ void bind_motion(nb::module_& module) {
           "open",
           [](nb::handle path) {
             const std::filesystem::path file = path_of(path);
-            return VehicleOfFile{read_vehicle_json(file), file};
+            return VehicleOfFile{read_vehicle(file), file};
           },
           nb::arg("path"), nb::sig("def open(path: str | os.PathLike[str]) -> Vehicle"),
           "Reads a vehicle's file.")

@@ -7,7 +7,7 @@
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/planning/obstacles/obstacle.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/python/bindings.h"
 
 namespace roadbed::tools::inline python {

@@ -8,7 +8,7 @@
 #include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/trajectory_csv.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/cycle_log.h"
@@ -24,12 +24,12 @@ namespace fs = std::filesystem;
 std::vector<DriveSource> sources_of(const Scenario& scenario, const DriveChoice& choice) {
   std::vector<DriveSource> sources;
   const auto add = [&](const std::string& role, const fs::path& file) {
-    if (!file.empty()) sources.push_back({role, file, certified_file(file).sha256});
+    if (!file.empty()) sources.push_back({role, file, hashed_input(file).sha256});
   };
   add("scenario", scenario.file);
   if (scenario.map_file != scenario.file) add("map", scenario.map_file);
   for (const fs::path& file : scenario.occupancy_files) add("cloud", file);
-  add("vehicle", choice.vehicle_file);
+  add("vehicle", choice.vehicle_file.empty() ? scenario.vehicle_file : choice.vehicle_file);
   add("noise", choice.noise_file);
   add("planner options", choice.planner_file);
   return sources;
@@ -133,7 +133,7 @@ void refuse_other_xml(const fs::path& file) {
 }  // namespace
 
 void DriveChoice::read_files() {
-  if (!vehicle_file.empty()) changes.vehicle = read_vehicle_shape_json(vehicle_file);
+  if (!vehicle_file.empty()) changes.vehicle = read_vehicle_shape(vehicle_file);
   if (!noise_file.empty()) changes.noise = read_noise_json(noise_file);
   if (!planner_file.empty()) changes.planner = read_planner_options(planner_file);
 }

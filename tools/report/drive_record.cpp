@@ -9,6 +9,7 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline report {
@@ -22,6 +23,7 @@ constexpr std::string_view kScenarioRole = "scenario", kCloudRole = "cloud";
 /// The folder is looked up as it is, the name in it may be a link: what a scenario names in turn is
 /// relative to where the link is.
 std::string relative_name(const fs::path& file, const fs::path& folder) {
+  if (is_vehicle_name(file.native())) return file.string();
   const fs::path parent = fs::weakly_canonical(fs::absolute(file).parent_path());
   const fs::path from = fs::weakly_canonical(fs::absolute(folder));
   return (parent / file.filename()).lexically_relative(from).generic_string();
@@ -47,8 +49,9 @@ std::string sha256_in(const JsonNode& node) {
 
 DriveSource source_in(const JsonNode& node, const fs::path& folder) {
   node.require_object({"role", "file", "sha256"});
+  const std::string name = node.at("file").one_line();
   return {.role = role_of(node.at("role")),
-          .file = folder / node.at("file").one_line(),
+          .file = is_vehicle_name(name) ? fs::path(name) : folder / name,
           .sha256 = sha256_in(node.at("sha256"))};
 }
 

@@ -157,9 +157,10 @@ bool is_common_road(const std::filesystem::path& file) {
 CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                                        const ScenarioChanges& changes, const Inputs& inputs) {
   const std::string bytes = map::read_file(file);
-  const map::commonroad::Scenario from = map::commonroad::parse_scenario(bytes, file.string());
+  const map::commonroad::Scenario from =
+      map::commonroad::parse_scenario(bytes, map::input_name(file));
   if (from.planning_problems.empty()) {
-    throw map::InputError({.file = file.string(),
+    throw map::InputError({.file = map::input_name(file),
                            .element = "commonRoad",
                            .found = "no planning problem",
                            .needed = "one to solve",
@@ -168,7 +169,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
   auto kept_map = inputs.road_map(file);
   const map::RoadMap& road_map = *kept_map;
   const PlanningProblem& problem = from.planning_problems.front();
-  const ProblemSource source{file.string(), road_map, problem, from.time_step_s};
+  const ProblemSource source{map::input_name(file), road_map, problem, from.time_step_s};
   if (!(from.time_step_s >= kLeastStep_s && from.time_step_s <= kMostStep_s)) {
     source.refuse(fmt::format("time steps of {} s", from.time_step_s),
                   fmt::format("{} to {} s", kLeastStep_s, kMostStep_s), "correct timeStepSize");
@@ -205,7 +206,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
                .stop_points = std::move(places),
                .other_lines = std::move(other_lines),
                .other_stop_points = std::move(other_places)}};
-  const ProblemSource placed{file.string(), world.road_map, problem, from.time_step_s};
+  const ProblemSource placed{map::input_name(file), world.road_map, problem, from.time_step_s};
   world.obstacles =
       obstacles_of(from, placed, world.start, scenario.vehicle, changes.drops_ego_recording);
   return {.scenario = std::move(scenario),

@@ -226,6 +226,7 @@ std::optional<double> time_to_touch(const Rectangle& a, const Eigen::Vector2d& v
 ordered_json metrics_of(const Scenario& scenario, const World& world, const Drive& drive,
                         const std::optional<planning::AuditReport>& audit) {
   ordered_json metrics = {
+      {"roadbed_metrics", 1},
       {"scenario", scenario.name},
       {"seed", scenario.seed},
       {"outcome", std::string(to_string(drive.verdict.outcome))},

@@ -79,7 +79,8 @@ PlannerChanges limits_in(const JsonNode& node, std::initializer_list<std::string
 PlannerChanges parse_planner_options(std::string_view bytes, const std::string& name) {
   const nlohmann::json document = parse_json_strictly(bytes, name);
   const JsonNode root(document, name);
-  root.require_object({"style", "limits", "weights"});
+  root.check_version("options");
+  root.require_object({"roadbed_options", "style", "limits", "weights"});
   PlannerChanges changes;
   if (const auto node = root.find("style")) changes = style(*node);
   if (const auto node = root.find("limits")) {
@@ -94,7 +95,7 @@ PlannerChanges parse_planner_options(std::string_view bytes, const std::string& 
 }
 
 PlannerChanges read_planner_options(const std::filesystem::path& file) {
-  return parse_planner_options(map::read_file(file), file.string());
+  return parse_planner_options(map::read_file(file), map::input_name(file));
 }
 
 }  // namespace roadbed::tools::simulation

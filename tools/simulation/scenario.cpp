@@ -12,7 +12,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {
@@ -194,8 +194,9 @@ bool has_pedals(const JsonNode& options, bool otherwise) {
 }
 
 ScenarioNoise noise_in(const JsonNode& node) {
-  node.require_object({"gap_m", "relative_speed_mps", "acceleration_mps2", "position_m",
-                       "heading_rad", "speed_mps", "dropouts", "dropout_share"});
+  node.check_version("noise");
+  node.require_object({"roadbed_noise", "gap_m", "relative_speed_mps", "acceleration_mps2",
+                       "position_m", "heading_rad", "speed_mps", "dropouts", "dropout_share"});
   const auto dropouts = node.find("dropouts");
   return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
           .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
@@ -241,12 +242,23 @@ void read_ego(const JsonNode& node, Scenario& scenario) {
   scenario.start_speed_mps = node.number_or("speed_mps", 0.0, kSpeed);
 }
 
+/// Its measures, a vehicle of CommonRoad's, or a file, which is read later.
+void read_vehicle_of(const JsonNode& node, Scenario& scenario) {
+  if (!node.value().is_string()) {
+    scenario.vehicle = vehicle_shape_in(node);
+  } else if (const auto named = named_vehicle(node.one_line())) {
+    scenario.vehicle = named->shape;
+  } else {
+    scenario.vehicle_file = beside(node, scenario.file.parent_path());
+  }
+}
+
 void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   if (const auto node = root.find("name")) scenario.name = node->name();
   if (const auto node = root.find("occupancy")) {
     scenario.occupancy_files = occupancy_files(*node, scenario.file.parent_path());
   }
-  if (const auto node = root.find("vehicle")) scenario.vehicle = vehicle_shape_in(*node);
+  if (const auto node = root.find("vehicle")) read_vehicle_of(*node, scenario);
   if (const auto node = root.find("seed")) scenario.seed = seed_in(*node);
   if (const auto node = root.find("noise")) scenario.noise = noise_in(*node);
   if (const auto node = root.find("options")) {
@@ -267,15 +279,16 @@ bool is_random(const ScenarioNoise& noise) {
 }  // namespace
 
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
-  const nlohmann::json document = parse_json_strictly(bytes, file.string());
-  const JsonNode root(document, file.string());
+  const nlohmann::json document = parse_json_strictly(bytes, map::input_name(file));
+  const JsonNode root(document, map::input_name(file));
+  root.check_version("scenario");
   root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "way_points",
                        "half_width_m", "speed_limit_mps", "vehicle", "duration_s", "seed", "noise",
                        "options", "lights", "obstacles"});
-  root.at("roadbed_scenario").number({1.0, 1.0});
+  root.at("roadbed_scenario");
   Scenario scenario;
   scenario.file = file;
-  scenario.name = file.stem().string();
+  scenario.name = map::input_name(file.stem());
   scenario.map_file = beside(root.at("map"), file.parent_path());
   read_ego(root.at("ego"), scenario);
   read_way(root, scenario);
@@ -285,7 +298,11 @@ Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& fil
 }
 
 Scenario read_scenario(const std::filesystem::path& file) {
-  return parse_scenario(map::read_file(file), file);
+  Scenario scenario = parse_scenario(map::read_file(file), file);
+  if (!scenario.vehicle_file.empty()) {
+    scenario.vehicle = read_vehicle_shape(scenario.vehicle_file);
+  }
+  return scenario;
 }
 
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file) {
@@ -307,6 +324,7 @@ std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem
     const Scenario scenario = read_scenario(file);
     files = scenario.occupancy_files;
     files.push_back(scenario.map_file);
+    if (!scenario.vehicle_file.empty()) files.push_back(scenario.vehicle_file);
   } catch (const map::InputError&) {
     return {};
   }
@@ -319,7 +337,7 @@ void ScenarioChanges::apply_to(Scenario& scenario) const {
   planner.apply_to(scenario.options);
   if (!seed) return;
   if (!is_random(scenario.noise)) {
-    throw map::InputError({.file = scenario.file.string(),
+    throw map::InputError({.file = map::input_name(scenario.file),
                            .found = "nothing is left to chance, and a seed is given",
                            .needed = "noise, as all seeds give the same drive without it",
                            .remedy = "leave --seed out, or give --noise"});
@@ -344,8 +362,8 @@ std::optional<std::uint64_t> parse_seed(std::string_view text) {
 }
 
 ScenarioNoise read_noise_json(const std::filesystem::path& file) {
-  const nlohmann::json document = parse_json_strictly(map::read_file(file), file.string());
-  return noise_in(JsonNode(document, file.string()));
+  const nlohmann::json document = parse_json_strictly(map::read_file(file), map::input_name(file));
+  return noise_in(JsonNode(document, map::input_name(file)));
 }
 
 }  // namespace roadbed::tools::simulation

@@ -20,7 +20,7 @@ namespace roadbed::tools::inline simulation {
 
 /// A place given on the map, and how it was called in the file, for messages.
 struct ScenarioPlace {
-  std::string text;     ///< "X,Y[,HEADING]" or "lane:NAME[@S]"
+  std::string text;     ///< as tools/cli/place.h tells
   std::string pointer;  ///< JSON pointer of the text
 };
 
@@ -93,6 +93,7 @@ struct Scenario {
   std::optional<ScenarioWayPoints> way_points;  ///< in place of the goal
   double start_speed_mps = 0.0;
   geometry::VehicleShape vehicle;
+  std::filesystem::path vehicle_file;  ///< that it is read from, resolved; empty: it names measures
   double duration_s = 60.0;
   std::uint64_t seed = 1;
   ScenarioNoise noise;
@@ -102,15 +103,17 @@ struct Scenario {
   std::vector<ScenarioObstacle> obstacles;
 };
 
-/// Reads and checks a scenario; files that it names are not opened.
+/// Reads and checks a scenario; of the files that it names only a vehicle's is opened.
 /// @throws InputError naming the file and the JSON pointer of the first fault.
 Scenario read_scenario(const std::filesystem::path& file);
 
-/// The same from bytes; `file` stands for the scenario in messages and gives the folder.
+/// The same from bytes; `file` stands for the scenario in messages and gives the folder. No file is
+/// opened: a vehicle's is left to the caller.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
 
-/// The map and the clouds that a scenario names, or those of all scenarios (.json) right in a
-/// folder. A file that is no such scenario names none, as a CommonRoad one, which holds its map.
+/// The map, the clouds and the vehicle's file that a scenario names, or those of all scenarios
+/// (.json) right in a folder. A file that is no such scenario names none, as a CommonRoad one,
+/// which holds its map.
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file);
 
 /// What a scenario is driven with otherwise than its file says.

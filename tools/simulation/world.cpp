@@ -70,7 +70,13 @@ Course along_route(const Scenario& scenario, const map::RoadMap& road_map, const
 /// A point need not be on the road.
 Eigen::Vector2d way_point(const Scenario& scenario, const map::RoadMap& road_map,
                           const ScenarioPlace& place) {
-  if (const auto in_source = parse_point(place.text)) return road_map.to_map(*in_source);
+  if (point_syntax_fault(place.text).empty()) {
+    try {
+      return road_map.to_map(find_point(road_map, place.text));
+    } catch (const map::InputError& error) {
+      refuse(scenario, place.pointer, error.what(), "");
+    }
+  }
   const Place found = find(scenario, road_map, place);
   if (found.has_heading) {
     refuse(scenario, place.pointer, "has a heading", "leave it out: a way-point has none");

@@ -79,6 +79,9 @@ RawCloud parse_ply(std::string_view bytes, const std::string& name);
 RawCloud parse_las(std::string_view bytes, const std::string& name);
 RawCloud parse_xyz(std::string_view bytes, const std::string& name);
 
+/// Whether the first line that is no comment begins with three numbers, or names x, y and z.
+bool begins_as_xyz(std::string_view bytes);
+
 /// A scalar of a binary record.
 enum class ScalarType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 std::size_t size_of(ScalarType type);

@@ -25,7 +25,7 @@ bool begins_as_pcd(std::string_view bytes) {
 }
 
 Parser parser_by_suffix(const std::string& name) {
-  const std::string suffix = lower(std::filesystem::path(name).extension().string());
+  const std::string suffix = lower(suffix_of_input(name));
   if (suffix == ".pcd") return parse_pcd;
   if (suffix == ".ply") return parse_ply;
   if (suffix == ".las" || suffix == ".laz") return parse_las;
@@ -40,6 +40,7 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply;
   if (begins_as_pcd(bytes)) return parse_pcd;
   if (const Parser parser = parser_by_suffix(name)) return parser;
+  if (begins_as_xyz(bytes)) return parse_xyz;
   refuse_cloud(name, "", "", "is of no known point cloud format", ".pcd, .ply, .las, .xyz or .csv",
                "convert it, or rename it to what it is");
 }
@@ -61,7 +62,7 @@ PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
 }
 
 PointCloud read_point_cloud(const std::filesystem::path& file) {
-  return parse_point_cloud(read_file(file), file.string());
+  return parse_point_cloud(read_file(file), input_name(file));
 }
 
 }  // namespace roadbed::map::occupancy::clouds

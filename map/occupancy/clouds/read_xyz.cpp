@@ -109,6 +109,19 @@ class XyzParser {
 
 }  // namespace
 
+bool begins_as_xyz(std::string_view bytes) {
+  TextScanner lines(bytes.substr(0, 4096));
+  while (!lines.done()) {
+    const std::string_view line = lines.next_line();
+    const auto words = split(line);
+    if (words.empty()) continue;
+    if (columns_named(field_names(words), {"x", "y", "z"})) return true;
+    if (is_comment(line) || (words.size() == 1 && parse_count(words[0]))) continue;
+    return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, parse_number);
+  }
+  return false;
+}
+
 RawCloud parse_xyz(std::string_view bytes, const std::string& name) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());

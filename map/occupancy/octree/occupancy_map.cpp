@@ -99,7 +99,7 @@ OccupancyMap::File OccupancyMap::build_bt(std::span<const PointCloud> clouds,
 }
 
 OccupancyMap OccupancyMap::load(const std::filesystem::path& file) {
-  return parse(read_file(file), file.string());
+  return parse(read_file(file), input_name(file));
 }
 
 OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name) {
@@ -194,12 +194,12 @@ OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
   for (const std::filesystem::path& file : files) {
     const std::string bytes = read_file(file);
     if (!is_occupancy_file(bytes)) {
-      clouds.push_back(parse_point_cloud(bytes, file.string()));
+      clouds.push_back(parse_point_cloud(bytes, input_name(file)));
       check_is_in_metres(clouds.back());
     } else if (files.size() == 1) {
-      return OccupancyMap::parse(bytes, file.string());
+      return OccupancyMap::parse(bytes, input_name(file));
     } else {
-      throw InputError({.file = file.string(),
+      throw InputError({.file = input_name(file),
                         .found = "is an octree beside other files",
                         .needed = "one octree alone, or point clouds",
                         .remedy = "give the clouds that the octree was built from"});

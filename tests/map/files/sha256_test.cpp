@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 
 namespace roadbed::map {
 namespace {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/sha256.h"
 #include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/tests/support/part_distance.h"
@@ -31,7 +32,7 @@
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/files/trajectory_csv.h"
-#include "roadbed/tools/files/vehicle_json.h"
+#include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools {
 namespace {
@@ -180,7 +181,7 @@ bool is_weaker_or_same(Verdict claimed, Verdict found) {
 
 planning::AuditQuestion question_of(const CertificateFile& file, const map::RoadMap* road_map,
                                     const Inputs& inputs) {
-  const Vehicle vehicle = file.vehicle ? read_vehicle_json(file.vehicle->name) : Vehicle{};
+  const Vehicle vehicle = file.vehicle ? read_vehicle(file.vehicle->name) : Vehicle{};
   const planning::AuditCertificate& first = file.parts.front();
   planning::AuditQuestion question{.parts = vehicle.parts(file.underside_m),
                                    .ground = {.kind = file.ground.kind,

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <filesystem>
 #include <map>
@@ -321,13 +320,11 @@ TEST(BatchCommand, LinksFilesThatOthersHaveNamedAsTheyLike) {
               HasSubstr("<a href=\"50%25%20%231%3F.txt\">50% #1?.txt</a>"));
 }
 
-TEST(BatchCommand, RefusesJobsThatComeThroughAPipe) {
+TEST(BatchCommand, RefusesJobsOfADevice) {
   const TemporaryFolder folder;
-  const std::string pipe = (folder / "pipe").string();
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const ProgramRun run = batch(pipe, folder / "out");
+  const ProgramRun run = batch("/dev/zero", folder / "out");
   EXPECT_EQ(run.status, 3);
-  EXPECT_THAT(run.err, HasSubstr("is no regular file"));
+  EXPECT_THAT(run.err, HasSubstr("is no file or pipe"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 

@@ -81,16 +81,39 @@ TEST(FindPlace, RefusesUnknownLanesAndStationsBeyondThem) {
 }
 
 TEST(FindPlace, TellsBadWritingWithoutAMap) {
-  for (const char* good :
-       {"1,2", "-1.5e3,2", "1,2,3.1", "1,2,90deg", "lane:1/0/-1", "lane:7@2.5"}) {
+  for (const char* good : {"1,2", "-1.5e3,2", "1,2,3.1", "1,2,90deg", "lonlat:8.43,49.01",
+                           "lonlat:-180,-90,90deg", "lane:1/0/-1", "lane:7@2.5"}) {
     EXPECT_EQ(place_syntax_fault(good), "") << good;
   }
-  for (const char* bad : {"", "1", "1,", "a,b", "1,2,90", "1,2,x", "1,2,3,4", "nan,1", "1,inf",
-                          "lane:", "lane:@3", "lane:1/0/1@", "lane:1/0/1@x", "1, 2"}) {
+  for (const char* bad : {"",
+                          "1",
+                          "1,",
+                          "a,b",
+                          "1,2,90",
+                          "1,2,x",
+                          "1,2,3,4",
+                          "nan,1",
+                          "1,inf",
+                          "lane:",
+                          "lane:@3",
+                          "lane:1/0/1@",
+                          "lane:1/0/1@x",
+                          "1, 2",
+                          "lonlat:",
+                          "lonlat:8",
+                          "lonlat:8,91",
+                          "lonlat:181,0",
+                          "lonlat:8,nan",
+                          "lonlat:8,49,90",
+                          "lonlat:lane:1"}) {
     EXPECT_NE(place_syntax_fault(bad), "") << bad;
   }
-  EXPECT_FALSE(parse_point("1,2,3"));
-  EXPECT_EQ(parse_point("1,-2.5")->y(), -2.5);
+  for (const char* good : {"1,-2.5", "lonlat:8.43,49.01"}) {
+    EXPECT_EQ(point_syntax_fault(good), "") << good;
+  }
+  for (const char* bad : {"1,2,3", "lonlat:8,49,1", "lonlat:8", "lonlat:49,98", "lane:1", ""}) {
+    EXPECT_NE(point_syntax_fault(bad), "") << bad;
+  }
 }
 
 }  // namespace
