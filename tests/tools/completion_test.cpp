@@ -218,10 +218,17 @@ TEST_F(Share, LetsZshComplete) {
   EXPECT_THAT(shown[1], AllOf(HasSubstr("error"), HasSubstr("warning")));
   EXPECT_THAT(shown[2], HasSubstr("roadbed info town.xodr"));
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    for (const std::string& name : options_of(commands[i])) {
-      if (!name.starts_with("--")) continue;
-      EXPECT_THAT(shown[i + 3], HasSubstr(name)) << lines[i + 3];
+    Words names = options_of(commands[i]);
+    std::erase_if(names, [](const std::string& name) { return !name.starts_with("--"); });
+    const auto shows = [](const std::string& text) {
+      return [&text](const std::string& name) { return text.find(name) != std::string::npos; };
+    };
+    // Keys that reach a busy machine's zsh while it draws are lost: such a line is typed again.
+    std::string text = shown[i + 3];
+    for (int tries = 0; tries < 4 && !std::ranges::all_of(names, shows(text)); ++tries) {
+      text = shown_by_zsh({lines[i + 3]}).front();
     }
+    for (const std::string& name : names) EXPECT_THAT(text, HasSubstr(name)) << lines[i + 3];
   }
 }
 
