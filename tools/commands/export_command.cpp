@@ -52,8 +52,8 @@ class ExportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format, told by the output's suffix");
-    arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
-    arguments.add("-o,--output", output_, suffixes_with_meaning()).required();
+    arguments.add("MAP", input_, "Any readable map").required().reads().ending(kMapEndings);
+    arguments.add("-o,--output", output_, suffixes_with_meaning()).required().writes("");
     declare_options(arguments);
     arguments.require([this] { return anchor_fault(); });
     arguments.example(
@@ -85,7 +85,7 @@ class ExportCommand : public Command {
     std::vector<std::string> notes;
     const std::string bytes =
         format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
-    map::write_output(output_, bytes);
+    map::write_output(output_, bytes, force_);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_.string(), road_map.lanes().size(),
                  bytes.size());
@@ -128,10 +128,12 @@ class ConvertCommand : public ExportCommand {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format: import and export in one");
-    arguments.add("A", input_, "Any readable map").required().ending(kMapEndings);
-    const Argument b = arguments.add("B", positional_output_, "The output, in place of -o");
+    arguments.add("A", input_, "Any readable map").required().reads().ending(kMapEndings);
+    const Argument b =
+        arguments.add("B", positional_output_, "The output, in place of -o").writes("");
     arguments
         .add("-o,--output", output_, ".rbm: compiled map; or as of export: " + written_endings())
+        .writes("")
         .excludes(b);
     declare_options(arguments);
     arguments.require([this] { return fault(); });

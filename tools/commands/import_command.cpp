@@ -89,7 +89,7 @@ class ImportCommand : public Command {
     const map::RoadMap road_map =
         with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
-    map::OutputFile output(output_);
+    map::OutputFile output(output_, force_);
     map::write_compiled_map(road_map, network, output);
     output.commit();
     if (json_) print_json(streams.out, road_map);

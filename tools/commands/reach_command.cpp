@@ -53,7 +53,7 @@ class ReachCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Find the lanes that can be reached within a time or a distance (isochrone)");
-    arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
+    arguments.add("MAP", map_file_, "Any readable map").required().reads().ending(kMapEndings);
     arguments.add("--from", from_, std::string("Start: ") + kPlaceSyntax)
         .required()
         .checked(place_syntax_fault);
@@ -64,8 +64,10 @@ class ReachCommand : public Command {
         });
     rules_.declare(arguments, false);
     arguments.flag("-j,--json", json_, "Print one JSON document");
-    arguments.add("-o,--output", output_,
-                  "Write too: .geojson the area, .csv a row per lane, .svg a picture");
+    arguments
+        .add("-o,--output", output_,
+             "Write too: .geojson the area, .csv a row per lane, .svg a picture")
+        .writes(".geojson");
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.says_no_if("nothing can be reached");
     arguments.example("  roadbed reach town.xodr --from lane:1/0/-1@10 --within 60s -o reach.svg");
@@ -96,13 +98,15 @@ class ReachCommand : public Command {
   void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
              const char* unit) const {
     if (output_.extension() == ".csv")
-      return map::write_output(output_, reached_csv(road_map, reached, unit));
+      return map::write_output(output_, reached_csv(road_map, reached, unit), force_);
     std::vector<planning::LanePart> parts;
     for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
     const auto area = planning::area_of(road_map, parts);
-    map::write_output(output_, output_.extension() == ".svg"
-                                   ? area_svg(road_map, area, {})
-                                   : area_geojson(road_map, area, {{"within", within_}}));
+    map::write_output(output_,
+                      output_.extension() == ".svg"
+                          ? area_svg(road_map, area, {})
+                          : area_geojson(road_map, area, {{"within", within_}}),
+                      force_);
   }
 
   void print(const Streams& streams, const map::RoadMap& road_map,

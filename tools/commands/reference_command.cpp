@@ -49,10 +49,12 @@ class ReferenceCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Draw the smooth line to drive along a route, or through way-points");
-    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints").ending(kMapEndings);
+    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints")
+        .reads()
+        .ending(kMapEndings);
     question_.declare(arguments, true);
     way_points_.declare(arguments);
-    arguments.add("-o,--output", output_, "CSV file to write").required();
+    arguments.add("-o,--output", output_, "CSV file to write").required().writes(".csv");
     arguments.add("--step", step_m_, "Distance between rows [m]")
         .within(1e-3, 100.0)
         .with_default();
@@ -85,7 +87,7 @@ class ReferenceCommand : public Command {
 
   Exit through_way_points(const Streams& streams, const CommonOptions& common) const {
     const WayPointLine::Table table = way_points_.table(step_m_, options_.max_smoothing_m);
-    map::write_output(output_, table.csv);
+    map::write_output(output_, table.csv, force_);
     if (!common.quiet) {
       for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
       fmt::print(streams.err,
@@ -108,7 +110,7 @@ class ReferenceCommand : public Command {
     planning::ReferenceLineOptions options = options_;
     options.corner_vehicle = way_points_.vehicle();
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
-    map::write_output(output_, line_csv(road_map, line, step_m_));
+    map::write_output(output_, line_csv(road_map, line, step_m_), force_);
     if (!common.quiet) {
       const planning::LineDriving driving = planning::driving_along(
           line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}),

@@ -89,7 +89,7 @@ class RouteCommand : public Command {
         routes.push_back(std::move(others[i].route));
       }
     }
-    if (!output_.empty()) map::write_output(output_, file_text(output_, road_map, routes));
+    if (!output_.empty()) map::write_output(output_, file_text(output_, road_map, routes), force_);
     print(streams, road_map, asked, routes, shared);
     if (!common.quiet) note_defaults(streams, routes.front());
     return Exit::ok;
@@ -117,7 +117,7 @@ class RouteCommand : public Command {
     if (output_.empty()) {
       fmt::print(streams.out, "{}", json_ ? answer.json : answer.csv);
     } else {
-      map::write_output(output_, answer.csv);
+      map::write_output(output_, answer.csv, force_);
       if (json_) fmt::print(streams.out, "{}", answer.json);
     }
     for (const std::string& fault : answer.faults) {

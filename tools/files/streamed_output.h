@@ -13,7 +13,7 @@ namespace roadbed::tools::inline files {
 class BufferedOutput {
  public:
   /// @throws OutputError if it cannot be written, as do the others.
-  explicit BufferedOutput(const std::filesystem::path& file) : file_(file) {}
+  BufferedOutput(const std::filesystem::path& file, bool force) : file_(file, force) {}
 
   void add(std::string_view bytes);
 
