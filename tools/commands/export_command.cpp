@@ -15,6 +15,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/page_overlays.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -55,9 +56,10 @@ class ExportCommand : public Command {
     arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
     arguments.add("-o,--output", output_, suffixes_with_meaning()).required();
     declare_options(arguments);
-    arguments.require([this] { return anchor_fault(); });
+    arguments.require([this] { return anchor_fault() + overlay_fault(); });
     arguments.example(
         "  roadbed export town.xodr -o town.svg\n"
+        "  roadbed export town.xodr -o town.html --route route.json\n"
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
@@ -75,6 +77,7 @@ class ExportCommand : public Command {
                   "Coordinate system of the map, in place of what it says itself: EPSG:25832, a "
                   "PROJ string, or \"unknown\"");
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    overlays_.declare(arguments);
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -83,8 +86,13 @@ class ExportCommand : public Command {
     map::check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
     std::vector<std::string> notes;
-    const std::string bytes =
-        format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
+    map::SaveOptions options{layers_,
+                             system_of(road_map),
+                             is_own_system(road_map),
+                             &notes,
+                             {.title = input_.filename().string()}};
+    overlays_.add_to(options.page, road_map);
+    const std::string bytes = format.write(road_map, options);
     map::write_output(output_, bytes);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_.string(), road_map.lanes().size(),
@@ -99,6 +107,11 @@ class ExportCommand : public Command {
     if (anchor_deg_.empty()) return {};
     if (std::abs(anchor_deg_[0]) <= 90.0 && std::abs(anchor_deg_[1]) <= 180.0) return {};
     return "--anchor: latitude is within ±90, longitude within ±180";
+  }
+
+  std::string overlay_fault() const {
+    if (overlays_.empty() || output_.extension() == ".html") return {};
+    return "--route, --reach, --trajectory, --occupancy and --findings are for .html";
   }
 
  private:
@@ -120,6 +133,7 @@ class ExportCommand : public Command {
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
   std::string crs_;
+  PageOverlays overlays_;
   bool force_ = false;
 };
 
@@ -153,7 +167,7 @@ class ConvertCommand : public ExportCommand {
     if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
       return "--layer and --anchor are for outputs other than .rbm";
     }
-    return anchor_fault();
+    return anchor_fault() + overlay_fault();
   }
 
   Exit import(const Streams& streams, const CommonOptions& common) const {
