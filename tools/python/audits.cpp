@@ -11,6 +11,7 @@
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_output.h"
+#include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/python/occupancy.h"
 #include "roadbed/tools/report/audit_pictures.h"
@@ -148,7 +149,9 @@ Array2 profile_of(const Audit& audit) {
   return owned<double, 2>(std::move(values), {audit.audited.audit.report.profile.size(), 2});
 }
 
-nb::object audit_document(const Audit& audit) { return object_of(audit_json(audit.audited)); }
+nb::object audit_document(const Audit& audit) {
+  return object_of(versioned("audit", audit_json(audit.audited)));
+}
 
 /// Whether a certificate holds, with all that was looked at.
 struct CertificateCheck {

@@ -11,6 +11,7 @@
 #include "roadbed/planning/route/route_path.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/route_output.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline python {
 
@@ -156,10 +157,12 @@ std::vector<geometry::Polygon> corridor_area(const RouteOfMap& of) {
 }
 
 nb::object document_of(const RouteOfMap& of) {
-  if (!of.answer.route) return object_of(no_route_json(*of.road_map, of.answer));
+  if (!of.answer.route) {
+    return object_of(versioned("route", no_route_json(*of.road_map, of.answer)));
+  }
   nlohmann::ordered_json json = route_json(*of.road_map, *of.answer.route);
   if (of.shared_length_fraction > 0.0) json["shared_length_fraction"] = of.shared_length_fraction;
-  return object_of(json);
+  return object_of(versioned("route", json));
 }
 
 std::string route_repr(const RouteOfMap& of) {

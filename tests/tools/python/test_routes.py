@@ -24,6 +24,7 @@ def test_a_route_is_the_programs(town: roadbed.Map) -> None:
     route = town.route(START, GOAL)
     document = route.to_dict()
     assert route
+    assert document["roadbed_route"] == 1
     for key, value in document.items():
         assert value == told[key], key
     assert route.lanes == [leg["lane"] for leg in told["lanes"]]
