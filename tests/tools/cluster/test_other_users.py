@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from test_security import descendants
+from test_security import descendants, sockets_of
 
 from batches import command, environment, job, results, write_jobs
 from dask_processes import wait_until
@@ -125,13 +125,7 @@ def own_certificates(folder: Path) -> Path:
 
 def listening(pid: int) -> list[int]:
     """Return the ports at which a process and what it started listen."""
-    inodes = set()
-    for each in descendants(pid):
-        for file in Path(f"/proc/{each}/fd").iterdir():
-            target = str(file.readlink()) if file.is_symlink() else ""
-            inodes.add(target[8:-1] if target.startswith("socket:[") else "")
-    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    return [int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and row[9] in inodes]
+    return [port for _, port in sockets_of(descendants(pid))]
 
 
 SHAKE_HANDS = """

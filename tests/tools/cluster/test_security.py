@@ -1,7 +1,9 @@
 """Who can reach what a run starts."""
 
+import socket
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -10,24 +12,23 @@ from batches import command, environment, job, write_jobs
 from dask_processes import children_of, wait_until
 
 
-def sockets_of(pids: set[int]) -> list[str]:
-    """Return the local addresses at which processes listen, as in /proc/net/tcp*."""
+def sockets_of(pids: set[int]) -> list[tuple[str, int]]:
+    """Return the local addresses and ports at which processes listen, as in /proc/net/tcp*."""
     inodes = set()
     for pid in pids:
-        for file in Path(f"/proc/{pid}/fd").iterdir():
-            try:
-                target = str(file.readlink())
-            except OSError:
-                continue
-            if target.startswith("socket:["):
-                inodes.add(target[8:-1])
-    addresses = []
+        with suppress(FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
+            for file in Path(f"/proc/{pid}/fd").iterdir():
+                with suppress(FileNotFoundError):  # it has been closed meanwhile
+                    target = str(file.readlink())
+                    inodes.add(target[8:-1] if target.startswith("socket:[") else "")
+    found = []
     for table in ("tcp", "tcp6"):
         for row in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
             fields = row.split()
             if fields[3] == "0A" and fields[9] in inodes:
-                addresses.append(fields[1].split(":")[0])
-    return addresses
+                address, port = fields[1].split(":")
+                found.append((address, int(port, 16)))
+    return found
 
 
 def descendants(pid: int) -> set[int]:
@@ -45,10 +46,21 @@ def test_a_cluster_of_its_own_listens_on_127_0_0_1_only(tmp_path: Path) -> None:
     )
     wait_until((tmp_path / "out" / "journal" / "cluster.jsonl").exists, "a journal")
     wait_until(lambda: (tmp_path / "out/journal/cluster.jsonl").stat().st_size > 0, "a result")
-    addresses = sockets_of(descendants(process.pid))
+    sockets = sockets_of(descendants(process.pid))
     assert process.wait() == 0
-    assert len(addresses) >= 5  # a scheduler, two nannies, two workers
-    assert set(addresses) == {"0100007F"}
+    assert len(sockets) >= 5  # a scheduler, two nannies, two workers
+    assert {address for address, _ in sockets} == {"0100007F"}
+
+
+def test_a_cluster_of_its_own_does_not_ask_for_the_port_of_dasks_page(tmp_path: Path) -> None:
+    jobs = write_jobs(tmp_path / "jobs.jsonl", [job(1)])
+    with socket.socket() as other:
+        with suppress(OSError):  # it may be somebody else's already
+            other.bind(("127.0.0.1", 8787))
+            other.listen()
+        words = command(jobs, "-o", tmp_path / "out", "--workers", 1, "--quiet")
+        done = subprocess.run(words, env=environment(), capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.campaign
@@ -59,11 +71,7 @@ def test_a_cluster_of_its_own_takes_no_client_without_its_key(tmp_path: Path) ->
     )
     wait_until((tmp_path / "out" / "journal" / "cluster.jsonl").exists, "a journal")
     wait_until(lambda: (tmp_path / "out/journal/cluster.jsonl").stat().st_size > 0, "a result")
-    ports = [
-        int(row.split()[1].split(":")[1], 16)
-        for row in Path("/proc/net/tcp").read_text().splitlines()[1:]
-        if row.split()[3] == "0A" and row.split()[9] in inodes_of(process.pid)
-    ]
+    ports = [port for _, port in sockets_of({process.pid})]
     assert ports
     client = "import sys; from distributed import Client; Client(sys.argv[1], timeout=2)"
     for port in ports:
@@ -75,9 +83,3 @@ def test_a_cluster_of_its_own_takes_no_client_without_its_key(tmp_path: Path) ->
             )
             assert tried.returncode != 0
     assert process.wait() == 0
-
-
-def inodes_of(pid: int) -> set[str]:
-    """Return the inodes of a process's sockets."""
-    targets = (str(file.readlink()) for file in Path(f"/proc/{pid}/fd").iterdir())
-    return {target[8:-1] for target in targets if target.startswith("socket:[")}

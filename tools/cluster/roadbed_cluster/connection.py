@@ -81,6 +81,8 @@ def _own_cluster(options: ClusterOptions) -> LocalCluster:
             protocol="tls://",
             security=Security.temporary(),
             dashboard_address=None,
+            # Without a port Dask would take 8787, and warn where a second run has it.
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )
