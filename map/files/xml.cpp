@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml_characters.h"
 
@@ -28,7 +29,8 @@ void check_size(const std::string& bytes, const std::string& name) {
   constexpr std::size_t small = 8'000'000, longest = 0xffff'ffff;
   if (bytes.size() <= small) return;
   const bool too_long = bytes.size() > longest;
-  if (!too_long && tree_bytes(bytes) <= 128'000'000 + 5 * bytes.size()) return;
+  if (!too_long && tree_bytes(bytes) <= bytes.size() + geometry::most_bytes_read(bytes.size()))
+    return;
   throw InputError({.file = name,
                     .found = too_long ? "more than 4 GB" : "next to nothing but empty elements",
                     .needed = "a map with content of its size",

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/files/parse_json.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::geojson {
@@ -56,13 +57,9 @@ class Parser {
 
   Json parse_json(const std::string& bytes) {
     // What is nested deeper is no GeoJSON, and could not be written again without a deep stack.
-    constexpr int deepest = 32;
-    const auto check_depth = [&](int depth, Json::parse_event_t, const Json&) {
-      if (depth > deepest) refuse("lists nested too deeply", "at most 32 levels", "flatten them");
-      return true;
-    };
+    constexpr std::size_t deepest = 32;
     try {
-      return Json::parse(bytes, check_depth);
+      return files::parse_json(bytes, name_, {.keys_stand_once = false, .most_levels = deepest});
     } catch (const Json::parse_error& error) {
       place_ = fmt::format("byte {}", error.byte);
       refuse("not JSON", "a whole JSON document", "check whether the file was cut off");

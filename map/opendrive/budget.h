@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "roadbed/geometry/primitives/work_limit.h"
+
 namespace roadbed::map::opendrive {
 
 /// A road whose numbers cannot be those of a road.
@@ -16,14 +18,17 @@ class RoadFault : public std::runtime_error {
 };
 
 /// How many points a map may still be sampled into. A file can ask for endless points with a few
-/// bytes (a road of 1,000 km in millimetre curves); memory stays bounded by the file's size. A
-/// point costs about 160 bytes until it is in the map, so 128 MB and 4 times the file are spent.
+/// bytes (a road of 1,000 km in millimetre curves); memory stays bounded by the file's size: a
+/// point costs about 160 bytes until it is in the map.
 class PointBudget {
  public:
   /// What a lane or an object costs beside its points.
   static constexpr std::size_t kPerThing = 10;
 
-  explicit PointBudget(std::size_t file_bytes) : left_(800'000 + file_bytes / 40) {}
+  static constexpr std::size_t kBytesPerPoint = 160;
+
+  explicit PointBudget(std::size_t file_bytes)
+      : left_(geometry::most_bytes_read(file_bytes) / kBytesPerPoint) {}
 
   std::size_t left() const { return left_; }
 

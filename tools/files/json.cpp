@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/parse_json.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::tools::inline files {
@@ -33,29 +33,6 @@ std::string escaped(std::string_view key) {
                          .found = found,
                          .remedy = "mend the text"});
 }
-
-/// Remembers the keys of every open object.
-class DuplicateKeys {
- public:
-  explicit DuplicateKeys(const std::string& file) : file_(file) {}
-
-  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
-    if (event == nlohmann::json::parse_event_t::object_start) open_.emplace_back();
-    if (event == nlohmann::json::parse_event_t::object_end) open_.pop_back();
-    if (event == nlohmann::json::parse_event_t::key &&
-        !open_.back().insert(parsed.get_ref<const std::string&>()).second) {
-      throw map::InputError({.file = file_,
-                             .element = fmt::format("key \"{}\"", parsed.get<std::string>()),
-                             .found = "stands twice in one object",
-                             .remedy = "remove one of the two"});
-    }
-    return true;
-  }
-
- private:
-  std::string file_;
-  std::vector<std::set<std::string>> open_;
-};
 
 }  // namespace
 
@@ -179,7 +156,7 @@ void JsonNode::refuse(const std::string& found, const std::string& needed,
 
 nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& file) {
   try {
-    return nlohmann::json::parse(bytes, DuplicateKeys(file));
+    return map::parse_json(bytes, file);
   } catch (const nlohmann::json::parse_error& error) {
     refuse_text(file, error.byte, "is not JSON here");
   } catch (const nlohmann::json::out_of_range&) {

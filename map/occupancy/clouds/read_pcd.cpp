@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -346,6 +347,7 @@ class PcdParser {
              fmt::format("{} points of {} bytes", *header_.points, header_.point_size),
              "save the cloud again");
     }
+    check_unfolded(plain);
     const auto body = decompress_lzf(header_.body.substr(8, packed), plain);
     if (!body) {
       refuse("DATA", "cannot be uncompressed to the size that it names", "LZF",
@@ -353,6 +355,18 @@ class PcdParser {
     }
     read_columns(*body);
     note_trailing(header_.body.size() - 8 - packed);
+  }
+
+  // What unfolds to ninety times its size is no scan.
+  void check_unfolded(std::uint64_t plain) const {
+    constexpr std::uint64_t point_bytes = 3 * sizeof(double);
+    const std::uint64_t taken = plain + *header_.points * (sensor_ ? 2 : 1) * point_bytes;
+    const std::uint64_t most = geometry::most_bytes(bytes_.size()) - bytes_.size();
+    if (taken <= most) return;
+    refuse("DATA",
+           fmt::format("{} MB of points in {} MB", plain / 1'000'000, bytes_.size() / 1'000'000),
+           fmt::format("points that take at most {} MB of memory", most / 1'000'000),
+           "save the cloud in parts, or uncompressed");
   }
 
   void read_columns(const std::string& body) {
