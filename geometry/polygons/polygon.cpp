@@ -4,12 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/index/hilbert.h"
 #include "roadbed/geometry/polygons/exact.h"
 #include "roadbed/geometry/polygons/ring.h"
+#include "roadbed/geometry/polygons/ring_crossings.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 
 namespace roadbed::geometry::inline polygons {
 namespace {
@@ -193,6 +199,44 @@ void drop_thin(std::vector<Polygon>& polygons, double weld_m) {
   for (Polygon& polygon : polygons) std::erase_if(polygon.holes, is_thin);
 }
 
+United unite_at_once(std::span<const Polygon> polygons, double weld_m) {
+  const Welded welded = weld(oriented_rings(polygons), weld_m);
+  United united{simple_region(without_folds(welded.rings)), welded.moved_points,
+                welded.most_moved_m};
+  drop_thin(united.polygons, weld_m);
+  return united;
+}
+
+std::vector<Polygon> in_order_of_place(std::span<const Polygon> polygons) {
+  std::vector<Box> boxes;
+  Box all;
+  for (const Polygon& polygon : polygons) {
+    boxes.push_back(box_around(polygon.outer));
+    all.extend(boxes.back());
+  }
+  std::vector<std::uint32_t> keys;
+  for (const Box& box : boxes) keys.push_back(hilbert_key(all, box.center()));
+  std::vector<Polygon> ordered;
+  for (const std::uint32_t i : order_of_keys(keys)) ordered.push_back(polygons[i]);
+  return ordered;
+}
+
+United unite_by_halves(std::span<const Polygon> polygons, double weld_m) {
+  constexpr std::size_t kFew = 8;
+  if (polygons.size() <= kFew) return unite_at_once(polygons, weld_m);
+  const std::size_t middle = polygons.size() / 2;
+  United one = unite_by_halves(polygons.first(middle), weld_m);
+  United other = unite_by_halves(polygons.subspan(middle), weld_m);
+  std::ranges::move(other.polygons, std::back_inserter(one.polygons));
+  if (!have_few_crossings(rings_of(one.polygons))) {
+    throw TooMuchWork("so many areas cross each other that their outline has endless corners");
+  }
+  United united = unite_at_once(one.polygons, weld_m);
+  united.moved_points += one.moved_points + other.moved_points;
+  united.most_moved_m = std::max({united.most_moved_m, one.most_moved_m, other.most_moved_m});
+  return united;
+}
+
 bool is_on_edge(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
   const bool in_box = (point.array() >= a.cwiseMin(b).array()).all() &&
                       (point.array() <= a.cwiseMax(b).array()).all();
@@ -279,11 +323,8 @@ std::vector<Polygon> make_simple(const Ring& ring) {
 
 United unite_and_report(std::span<const Polygon> polygons, double weld_m) {
   for (const Ring& ring : rings_of(polygons)) check_finite(ring, "unite");
-  const Welded welded = weld(oriented_rings(polygons), weld_m);
-  United united{simple_region(without_folds(welded.rings)), welded.moved_points,
-                welded.most_moved_m};
-  drop_thin(united.polygons, weld_m);
-  return united;
+  if (have_few_crossings(rings_of(polygons))) return unite_at_once(polygons, weld_m);
+  return unite_by_halves(in_order_of_place(polygons), weld_m);
 }
 
 std::vector<Polygon> unite(std::span<const Polygon> polygons, double weld_m) {

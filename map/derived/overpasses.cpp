@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/derived/lane_piece.h"
 
 namespace roadbed::map::inline derived {
@@ -19,7 +20,8 @@ std::size_t group_of(const RoadMap& road_map, LaneId id) {
 
 using Stacked = std::set<std::pair<std::size_t, std::size_t>>;  ///< lower and upper group
 
-/// Pieces stand for their boxes here: it is enough for a picture, and bridges are long.
+/// Pieces stand for their boxes here: it is enough for a picture, and bridges are long. Where more
+/// than most_steps() of them meet, those that are met then are stacked no more.
 Stacked stacked_groups(const RoadMap& road_map, double headroom_m) {
   const std::vector<LanePiece> pieces = drivable_pieces(road_map);
   std::vector<geometry::Box> boxes;
@@ -27,10 +29,13 @@ Stacked stacked_groups(const RoadMap& road_map, double headroom_m) {
   for (const LanePiece& piece : pieces) boxes.push_back(piece.box());
   const geometry::BoxTree tree(boxes);
   Stacked stacked;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    tree.visit(boxes[i], [&](std::size_t below) {
-      if (pieces[i].z_m - pieces[below].z_m <= headroom_m) return;
-      stacked.emplace(group_of(road_map, pieces[below].lane), group_of(road_map, pieces[i].lane));
+  geometry::WorkBudget steps(geometry::most_steps(pieces.size()));
+  for (std::size_t i = 0; i < pieces.size() && !steps.is_spent(); ++i) {
+    tree.visit_while(boxes[i], [&](std::size_t below) {
+      if (pieces[i].z_m - pieces[below].z_m > headroom_m) {
+        stacked.emplace(group_of(road_map, pieces[below].lane), group_of(road_map, pieces[i].lane));
+      }
+      return steps.spend(1);
     });
   }
   return stacked;

@@ -5,6 +5,9 @@
 #include <iterator>
 #include <optional>
 
+#include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/files/input_error.h"
+
 namespace roadbed::map::inline derived {
 namespace {
 
@@ -114,6 +117,19 @@ std::vector<LaneId> lanes_where(const RoadMap& road_map, const Wants& wants) {
   return wanted;
 }
 
+/// The union, or an error where the map's areas cross each other without end.
+geometry::United united_of(const std::vector<Polygon>& polygons, const SurfaceOptions& options) {
+  try {
+    return geometry::unite_and_report(polygons, options.weld_m);
+  } catch (const geometry::TooMuchWork& error) {
+    throw InputError({.file = "map",
+                      .element = "surface",
+                      .found = error.what(),
+                      .needed = "roads that lie beside each other but for their junctions",
+                      .remedy = "cut the map with map clip, or remove what lies there twice"});
+  }
+}
+
 }  // namespace
 
 Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
@@ -128,7 +144,7 @@ Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
       if (road_map.lane(id).polygon.size() > 2) polygons.push_back({road_map.lane(id).polygon, {}});
     }
   }
-  geometry::United united = geometry::unite_and_report(polygons, options.weld_m);
+  geometry::United united = united_of(polygons, options);
   return {std::move(united.polygons), united.moved_points, united.most_moved_m};
 }
 
@@ -168,7 +184,7 @@ std::vector<geometry::Polygon> road_area_surface(const RoadMap& road_map,
   for (const Area& area : road_map.areas()) {
     if (area.is_road) polygons.insert(polygons.end(), area.in_map.begin(), area.in_map.end());
   }
-  return geometry::unite(polygons, options.weld_m);
+  return united_of(polygons, options).polygons;
 }
 
 std::vector<geometry::MedialBranch> road_centrelines(const RoadMap& road_map,

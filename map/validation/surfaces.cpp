@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
@@ -22,11 +23,15 @@ double elevation_m(const Lane& lane, double s_m) {
 }
 
 /// Lanes of other roads, outside junctions and at the same level, whose middle third the place is
-/// in.
-std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, double s_m) {
+/// in. Spends what more lanes are there than lie upon each other anywhere.
+std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, double s_m,
+                                geometry::WorkBudget& budget) {
   constexpr double kSameLevel = 2.0;  // [m]
+  constexpr std::size_t kStacked = 16;
   std::vector<LaneId> found;
-  for (const LaneMatch& match : road_map.locate(lane.centre.in_map.at(s_m), 0.0, true)) {
+  const auto matches = road_map.locate(lane.centre.in_map.at(s_m), 0.0, true);
+  budget.spend(matches.size() - std::min(matches.size(), kStacked));
+  for (const LaneMatch& match : matches) {
     const Lane& other = road_map.lane(match.place.lane);
     if (other.junction || !other.road || other.road == lane.road) continue;
     const bool deep = std::abs(match.place.d_m) < other.width_m(match.place.s_m) / 3.0;
@@ -38,12 +43,14 @@ std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, doubl
 
 /// How far a lane's centreline runs inside each other lane that it should not touch; a single
 /// place inside is a crossing.
-std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane) {
+std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane,
+                                    geometry::WorkBudget& budget) {
   const int steps = std::clamp(static_cast<int>(lane.length_m() / kStep), 1, kMostSteps);
   const double step_m = lane.length_m() / steps;
   std::map<LaneId, int> places;
   for (int i = 0; i < steps; ++i) {
-    for (const LaneId other : lanes_under(road_map, lane, (i + 0.5) * step_m)) ++places[other];
+    for (const LaneId other : lanes_under(road_map, lane, (i + 0.5) * step_m, budget))
+      ++places[other];
   }
   std::map<LaneId, double> overlap_m;
   for (const auto& [other, count] : places) {
@@ -53,9 +60,16 @@ std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane) {
 }
 
 void overlapping_lanes(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
+  geometry::WorkBudget budget(geometry::most_steps(road_map.lanes().size()));
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type) || lane.junction || !lane.road) continue;
-    for (const auto& [other, length_m] : overlaps_m(road_map, lane)) {
+    if (budget.is_spent()) {
+      report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
+                 "this lane and those behind it in the file were not compared: too many lie on "
+                 "each other; remove those that stand there twice, then validate again");
+      return;
+    }
+    for (const auto& [other, length_m] : overlaps_m(road_map, lane, budget)) {
       if (length_m < options.min_overlap_m) continue;
       report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
                  fmt::format("runs inside lane {} for {:.1f} m, outside of any junction; move one "

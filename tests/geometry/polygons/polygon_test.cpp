@@ -10,6 +10,7 @@
 
 #include "roadbed/geometry/polygons/ring.h"
 #include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 
 namespace roadbed::geometry {
 namespace {
@@ -394,6 +395,37 @@ TEST(Unite, GivesSimpleRingsWhereBordersNearlyCoincide) {
     expect_valid(united);
     EXPECT_NEAR(total_area_m2(united), 120.0, 0.01) << "weld " << weld_m << " m";
   }
+}
+
+TEST(Unite, OfTwoThousandCopiesIsOneOfThem) {
+  const std::vector<Polygon> copies(2000, Polygon{{{0, 0}, {30, 0}, {30, 4}, {0, 4}}, {}});
+  const auto united = unite(copies, 1e-3);
+  ASSERT_EQ(united.size(), 1u);
+  EXPECT_EQ(united[0].outer, copies[0].outer);
+}
+
+// Each reaches 0.01 m farther than the one before, and 0.001 m higher.
+TEST(Unite, OfTwoThousandShiftedCopiesCoversWhatTheyCover) {
+  std::vector<Polygon> copies;
+  for (int i = 0; i < 2000; ++i) {
+    copies.push_back({box_ring({0.01 * i, 0.001 * i}, {30 + 0.01 * i, 4 + 0.001 * i}), {}});
+  }
+  const auto united = unite(copies, 1e-4);
+  ASSERT_EQ(united.size(), 1u);
+  // The first one and, for each of the others, what it adds: a column and a row.
+  const double added_m2 = 0.01 * 4.0 + 0.001 * 30.0 - 0.01 * 0.001;
+  constexpr double welded_m2 = 1e-4 * 120.0;  // edges move by the weld distance, at most
+  EXPECT_NEAR(area_m2(united[0]), 120.0 + 1999 * added_m2, welded_m2);
+}
+
+TEST(Unite, RefusesAFabricOfRoads) {
+  std::vector<Polygon> roads;
+  for (int i = 0; i < 400; ++i) {
+    const double at = 2.0 * i;
+    roads.push_back({box_ring({0.0, at}, {800.0, at + 1.0}), {}});
+    roads.push_back({box_ring({at, 0.0}, {at + 1.0, 800.0}), {}});
+  }
+  EXPECT_THROW(unite(roads, 1e-3), TooMuchWork);
 }
 
 TEST(Unite, OfNothingIsNothing) { EXPECT_TRUE(unite({}, 1e-3).empty()); }
