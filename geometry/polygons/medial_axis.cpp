@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -46,7 +47,10 @@ struct Chain {
 class Pruner {
  public:
   explicit Pruner(const VoronoiGraph& graph)
-      : graph_(graph), edges_at_(graph.nodes.size()), kept_(graph.edges.size(), true) {
+      : graph_(graph),
+        edges_at_(graph.nodes.size()),
+        branches_at_(graph.nodes.size()),
+        kept_(graph.edges.size(), true) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       edges_at_[graph.edges[i].from].push_back(i);
       edges_at_[graph.edges[i].to].push_back(i);
@@ -54,19 +58,20 @@ class Pruner {
   }
 
   /// Takes out branches that are shorter than the area is wide at their fork, all at once, then
-  /// those that are left, until there are none. A fork with no other branches keeps its own.
+  /// those that are left, until there are none. A fork with no other branches keeps its own. O(N):
+  /// after the first round only forks that lost something are looked at.
   void prune() {
-    while (true) {
-      std::vector<std::size_t> doomed;
-      std::vector<std::size_t> lost(graph_.nodes.size(), 0);  // branches per fork
-      std::vector<Chain> branches = short_branches();
-      for (const Chain& branch : branches) ++lost[branch.last];
-      for (const Chain& branch : branches) {
-        if (lost[branch.last] == degree(branch.last)) continue;
-        doomed.insert(doomed.end(), branch.edges.begin(), branch.edges.end());
+    std::vector<std::size_t> forks;
+    for (std::size_t node = 0; node < graph_.nodes.size(); ++node) {
+      if (degree(node) == 1) add_branch(branch_from(node), forks);
+    }
+    while (!forks.empty()) {
+      std::vector<std::size_t> losers;
+      for (const std::size_t fork : forks) {
+        if (has_lost_short_branches(fork)) losers.push_back(fork);
       }
-      if (doomed.empty()) return;
-      for (const std::size_t edge : doomed) kept_[edge] = false;
+      forks.clear();
+      for (const std::size_t fork : losers) follow_on(fork, forks);
     }
   }
 
@@ -79,7 +84,7 @@ class Pruner {
         if (only_ends == (degree(node) == 2)) continue;
         for (const std::size_t edge : edges_at_[node]) {
           if (!kept_[edge] || taken[edge]) continue;
-          found.push_back(walk(node, edge));
+          found.push_back(walk({node, node, {}, 0.0}, edge));
           for (const std::size_t used : found.back().edges) taken[used] = true;
         }
       }
@@ -88,17 +93,48 @@ class Pruner {
   }
 
  private:
-  std::vector<Chain> short_branches() const {
-    std::vector<Chain> found;
-    for (std::size_t node = 0; node < graph_.nodes.size(); ++node) {
-      if (degree(node) != 1) continue;
-      Chain branch = branch_from(node);
-      const bool at_fork = degree(branch.last) > 2;
-      if (at_fork && branch.length_m < 2.0 * graph_.nodes[branch.last].clearance_m) {
-        found.push_back(std::move(branch));
-      }
+  /// Notes a branch at the fork where it ends, and the fork as one to look at.
+  void add_branch(Chain branch, std::vector<std::size_t>& forks) {
+    if (degree(branch.last) < 3) return;
+    forks.push_back(branch.last);
+    branches_at_[branch.last].push_back(std::move(branch));
+  }
+
+  bool has_lost_short_branches(std::size_t fork) {
+    std::vector<Chain>& branches = branches_at_[fork];
+    const auto is_long = [&](const Chain& branch) {
+      return !(branch.length_m < 2.0 * graph_.nodes[fork].clearance_m);
+    };
+    const auto first_short = std::stable_partition(branches.begin(), branches.end(), is_long);
+    const auto count = static_cast<std::size_t>(branches.end() - first_short);
+    if (count == 0 || count == degree(fork)) return false;
+    for (auto branch = first_short; branch != branches.end(); ++branch) {
+      for (const std::size_t edge : branch->edges) kept_[edge] = false;
     }
-    return found;
+    branches.erase(first_short, branches.end());
+    return true;
+  }
+
+  /// What has lost branches may be no fork any more: then its other branches lead on, or one
+  /// begins.
+  void follow_on(std::size_t fork, std::vector<std::size_t>& forks) {
+    const std::size_t left = degree(fork);
+    if (left > 2) return;
+    std::vector<Chain> branches = std::move(branches_at_[fork]);
+    branches_at_[fork].clear();
+    if (left == 1 && branches.empty()) branches.push_back({fork, fork, {}, 0.0});
+    for (Chain& branch : branches) {
+      if (const auto onward = other_edge(fork, branch))
+        add_branch(walk(std::move(branch), *onward), forks);
+    }
+  }
+
+  /// The edge by which a chain's end is left.
+  std::optional<std::size_t> other_edge(std::size_t node, const Chain& chain) const {
+    for (const std::size_t edge : edges_at_[node]) {
+      if (kept_[edge] && (chain.edges.empty() || edge != chain.edges.back())) return edge;
+    }
+    return {};
   }
 
   std::size_t degree(std::size_t node) const {
@@ -111,32 +147,26 @@ class Pruner {
   }
 
   Chain branch_from(std::size_t end) const {
-    for (const std::size_t edge : edges_at_[end]) {
-      if (kept_[edge]) return walk(end, edge);
-    }
-    return {end, end, {}, 0.0};
+    const Chain none{end, end, {}, 0.0};
+    const auto edge = other_edge(end, none);
+    return edge ? walk(none, *edge) : none;
   }
 
-  /// From a node along an edge to the next fork or end, or round to where it began.
-  Chain walk(std::size_t node, std::size_t edge) const {
-    Chain chain{node, node, {}, 0.0};
+  /// Goes on along an edge to the next fork or end, or round to where it began.
+  Chain walk(Chain chain, std::size_t edge) const {
     while (true) {
       const std::size_t next = other_end(edge, chain.last);
       chain.edges.push_back(edge);
       chain.length_m += (graph_.nodes[next].at - graph_.nodes[chain.last].at).norm();
       chain.last = next;
       if (next == chain.first || degree(next) != 2) return chain;
-      for (const std::size_t onward : edges_at_[next]) {
-        if (kept_[onward] && onward != chain.edges.back()) {
-          edge = onward;
-          break;
-        }
-      }
+      edge = other_edge(next, chain).value();
     }
   }
 
   const VoronoiGraph& graph_;
   std::vector<std::vector<std::size_t>> edges_at_;
+  std::vector<std::vector<Chain>> branches_at_;  // that end at a fork
   std::vector<bool> kept_;
 };
 
@@ -187,7 +217,8 @@ std::vector<MedialBranch> medial_axis(const Polygon& polygon, const MedialAxisOp
   std::vector<MedialBranch> branches;
   for (const Chain& chain : pruner.chains()) {
     MedialBranch branch = branch_of(graph, chain, options.max_error_m);
-    if (branch.line.points().empty()) continue;
+    constexpr double kOnePlace_m = 1e-6;  // where bisectors meet in one place but for rounding
+    if (branch.line.points().empty() || branch.line.length_m() < kOnePlace_m) continue;
     turn_to_smaller_end(branch);
     branches.push_back(std::move(branch));
   }

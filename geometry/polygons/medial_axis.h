@@ -28,8 +28,8 @@ struct MedialAxisOptions {
 
 /// The places inside a polygon that are equally far from two sides of it (Blum 1967), without the
 /// branches that only lead into a corner: those shorter than the area is wide where they begin.
-/// Where a road ends, the line ends about half its width before. Branches are in order of their
-/// first point, by x, then y. O(N log N).
+/// Where a road ends, the line ends about half its width before. A circle has none: its middle is a
+/// place. Branches are in order of their first point, by x, then y. O(N log N).
 /// @param polygon  valid: simple rings that do not cross, the outer one counter-clockwise, holes
 ///     clockwise.
 std::vector<MedialBranch> medial_axis(const Polygon& polygon,
@@ -55,9 +55,11 @@ struct VoronoiGraph {
   std::vector<Edge> edges;
 };
 
-/// Edges that end in a corner of the polygon are left out. Predicates are exact, places are those
-/// of doubles. O(N log N).
+/// Edges that end in a corner of the polygon are left out. Corners lie on a grid, 2⁻³⁰ of half the
+/// polygon's extent (1 µm for 2 km), or coarser where its edges would cross on it; on the grid all
+/// is exact (Boost.Polygon), then rounded to doubles. O(N log N).
 /// @param polygon  valid: simple rings that do not cross, the outer one counter-clockwise.
+/// @throws TooMuchWork  where its edges cross on every grid.
 VoronoiGraph interior_voronoi(const Polygon& polygon);
 
 }  // namespace roadbed::geometry::polygons

@@ -1,84 +1,155 @@
-#include "roadbed/geometry/polygons/medial_axis.h"
-
-#include <CGAL/Segment_Delaunay_graph_2.h>
-#include <CGAL/Segment_Delaunay_graph_filtered_traits_2.h>
-#include <CGAL/Simple_cartesian.h>
+#include <boost/polygon/voronoi.hpp>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numeric>
 #include <utility>
+
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/polygons/exact.h"
+#include "roadbed/geometry/polygons/medial_axis.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 
 namespace roadbed::geometry::inline polygons {
 namespace {
 
 using Eigen::Vector2d;
-using Kernel = CGAL::Simple_cartesian<double>;
-using VoronoiTraits = CGAL::Segment_Delaunay_graph_filtered_traits_2<Kernel>;
-using Graph = CGAL::Segment_Delaunay_graph_2<VoronoiTraits>;
-using Site = Graph::Site_2;
+using Diagram = boost::polygon::voronoi_diagram<double>;
+using Cell = Diagram::cell_type;
 
-Kernel::Point_2 to_cgal(const Vector2d& point) { return {point.x(), point.y()}; }
-Vector2d from_cgal(const Kernel::Point_2& point) { return {point.x(), point.y()}; }
+/// Where a polygon's points lie on the grid of whole numbers that Boost.Polygon works on: exactly,
+/// where CGAL's segment Delaunay graph takes 4 ms a point of a circle, whose bisectors all meet.
+class Grid {
+ public:
+  /// @param steps  from the middle of the box to its farthest side, at most 2³⁰.
+  Grid(const Box& box, double steps) : middle_(box.center()) {
+    const double half_m = 0.5 * box.sizes().maxCoeff();
+    cell_m_ = std::exp2(std::ceil(std::log2(half_m / steps)));
+  }
 
-double distance_m(const Site& site, const Vector2d& point) {
-  if (site.is_point()) return (point - from_cgal(site.point())).norm();
-  const Vector2d a = from_cgal(site.source()), b = from_cgal(site.target());
-  const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (point - a - fraction * (b - a)).norm();
+  double cell_m() const { return cell_m_; }
+  Vector2d on_grid(const Vector2d& point) const {
+    return ((point - middle_) / cell_m_).array().round();
+  }
+  Vector2d off_grid(const Vector2d& cells) const { return middle_ + cell_m_ * cells; }
+
+ private:
+  Vector2d middle_;
+  double cell_m_ = 1.0;
+};
+
+struct GridEdge {
+  Vector2d from, to;  ///< whole numbers
+};
+
+std::vector<GridEdge> grid_edges_of(const std::vector<Ring>& rings) {
+  std::vector<GridEdge> edges;
+  for (const Ring& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      edges.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    }
+  }
+  return edges;
 }
 
-bool ends_at(const Site& segment, const Site& point) {
-  return segment.source() == point.point() || segment.target() == point.point();
+/// Whether two edges share more than a common end.
+bool are_in_conflict(const GridEdge& a, const GridEdge& b) {
+  const int from = exact::turn(a.from, a.to, b.from), to = exact::turn(a.from, a.to, b.to);
+  const bool share_end = a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to;
+  if (share_end) return false;  // what lies on each other has been split, and is the same edge
+  return from * to <= 0 && exact::turn(b.from, b.to, a.from) * exact::turn(b.from, b.to, a.to) <= 0;
 }
 
-/// Whether two sites are an edge and its own end: what lies between them is no axis.
-bool touch(const Site& a, const Site& b) {
-  if (a.is_point() == b.is_point()) return false;
-  return a.is_point() ? ends_at(b, a) : ends_at(a, b);
+bool are_apart(const std::vector<GridEdge>& edges) {
+  std::vector<Box> boxes;
+  for (const GridEdge& edge : edges) boxes.push_back(Box(edge.from).extend(edge.to));
+  const BoxTree tree(boxes);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const bool is_apart = tree.visit_while(
+        boxes[i], [&](std::size_t k) { return k <= i || !are_in_conflict(edges[i], edges[k]); });
+    if (!is_apart) return false;
+  }
+  return true;
 }
 
-std::optional<VoronoiGraph::Edge::Parabola> parabola(const Site& a, const Site& b) {
-  if (a.is_point() == b.is_point()) return {};
-  const Site& corner = a.is_point() ? a : b;
-  const Site& edge = a.is_point() ? b : a;
-  return VoronoiGraph::Edge::Parabola{from_cgal(corner.point()), from_cgal(edge.source()),
-                                      from_cgal(edge.target())};
+/// The polygon's edges on a grid. Rounding can push a corner onto an edge beside it: such edges get
+/// the corner as a vertex (Hobby 1999, doi:10.1016/S0925-7721(99)00021-8).
+std::vector<GridEdge> edges_on_grid(const Polygon& polygon, const Grid& grid) {
+  std::vector<Ring> rings{polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  for (Ring& ring : rings) {
+    for (Vector2d& point : ring) point = grid.on_grid(point);
+  }
+  constexpr double kPassed = 0.71;  // [cells] less than from one to the next
+  return grid_edges_of(weld(std::move(rings), kPassed).rings);
+}
+
+/// Their grid, with it; coarser where they still cross on a finer one.
+std::pair<Grid, std::vector<GridEdge>> simple_edges(const Polygon& polygon) {
+  constexpr double kFinest = 1 << 30, kCoarsest = 1 << 16, kCoarser = 1 << 4;
+  for (double steps = kFinest; steps >= kCoarsest; steps /= kCoarser) {
+    const Grid grid(box_around(polygon.outer), steps);
+    std::vector<GridEdge> edges = edges_on_grid(polygon, grid);
+    if (are_apart(edges)) return {grid, std::move(edges)};
+  }
+  throw TooMuchWork("an area has so many edges next to each other that its middle is not told");
+}
+
+/// What a cell of the diagram lies around.
+class Sites {
+ public:
+  explicit Sites(const std::vector<GridEdge>& edges) : edges_(edges) {}
+
+  const GridEdge& edge(const Cell& cell) const { return edges_[cell.source_index()]; }
+
+  Vector2d corner(const Cell& cell) const {
+    const bool is_start =
+        cell.source_category() == boost::polygon::SOURCE_CATEGORY_SEGMENT_START_POINT;
+    return is_start ? edge(cell).from : edge(cell).to;
+  }
+
+  double distance(const Cell& cell, const Vector2d& point) const {
+    if (cell.contains_point()) return (point - corner(cell)).norm();
+    const Vector2d a = edge(cell).from, along = edge(cell).to - a;
+    const double fraction = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return (point - a - fraction * along).norm();
+  }
+
+ private:
+  const std::vector<GridEdge>& edges_;
+};
+
+/// Calls `see` for the cells around a vertex until it returns true; whether one did.
+template <typename See>
+bool any_cell_around(const Diagram::vertex_type& vertex, const See& see) {
+  const auto* first = vertex.incident_edge();
+  const auto* edge = first;
+  do {
+    if (see(*edge->cell())) return true;
+    edge = edge->rot_next();
+  } while (edge != first);
+  return false;
 }
 
 /// Whether a place is inside, seen from one of its nearest sites: rings keep the inside to their
 /// left, and what is nearest to an edge lies beside it.
-bool is_inside(Graph::Face_handle face, const Vector2d& at, const Polygon& polygon) {
-  for (int i = 0; i < 3; ++i) {
-    const Site site = face->vertex(i)->site();
-    if (site.is_point()) continue;
-    const Vector2d a = from_cgal(site.source()), along = from_cgal(site.target()) - a;
-    return along.x() * (at - a).y() - along.y() * (at - a).x() > 0.0;
-  }
-  return contains(polygon, at);  // between corners only: rare
+bool is_inside(const Diagram::vertex_type& vertex, const Sites& sites, const Vector2d& at,
+               const std::function<bool()>& is_contained) {
+  bool is_left = false;
+  const auto beside_edge = [&](const Cell& cell) {
+    if (!cell.contains_segment()) return false;
+    const Vector2d along = sites.edge(cell).to - sites.edge(cell).from;
+    const Vector2d to_place = at - sites.edge(cell).from;
+    is_left = along.x() * to_place.y() - along.y() * to_place.x() > 0.0;
+    return true;
+  };
+  if (any_cell_around(vertex, beside_edge)) return is_left;
+  return is_contained();  // between corners only: rare
 }
 
-void add_ring(const Ring& ring, std::vector<Kernel::Point_2>& points,
-              std::vector<std::pair<std::size_t, std::size_t>>& edges) {
-  const std::size_t first = points.size();
-  for (const Vector2d& point : ring) points.push_back(to_cgal(point));
-  for (std::size_t i = first; i < points.size(); ++i) {
-    edges.emplace_back(i, i + 1 < points.size() ? i + 1 : first);
-  }
-}
-
-Graph graph_of(const Polygon& polygon) {
-  std::vector<Kernel::Point_2> points;
-  std::vector<std::pair<std::size_t, std::size_t>> edges;
-  add_ring(polygon.outer, points, edges);
-  for (const Ring& hole : polygon.holes) add_ring(hole, points, edges);
-  Graph graph;
-  graph.insert_segments(points.begin(), points.end(), edges.begin(), edges.end());
-  return graph;
-}
-
-// CGAL tells faces and edges in an order that hangs on where they lie in memory, and a ring without
-// a fork begins at the first: nodes by place, edges by nodes.
+// A ring without a fork begins at the first node: nodes by place, edges by nodes.
 VoronoiGraph in_order(VoronoiGraph graph) {
   std::vector<std::size_t> by_place(graph.nodes.size()), rank(graph.nodes.size());
   std::iota(by_place.begin(), by_place.end(), std::size_t{0});
@@ -102,31 +173,52 @@ VoronoiGraph in_order(VoronoiGraph graph) {
   return ordered;
 }
 
+void construct(const std::vector<GridEdge>& edges, Diagram& diagram) {
+  using Whole = std::int32_t;
+  boost::polygon::default_voronoi_builder builder;
+  for (const GridEdge& edge : edges) {
+    builder.insert_segment(static_cast<Whole>(edge.from.x()), static_cast<Whole>(edge.from.y()),
+                           static_cast<Whole>(edge.to.x()), static_cast<Whole>(edge.to.y()));
+  }
+  builder.construct(&diagram);
+}
+
 }  // namespace
 
 VoronoiGraph interior_voronoi(const Polygon& polygon) {
-  const Graph graph = graph_of(polygon);
+  const auto [grid, edges] = simple_edges(polygon);
+  Diagram diagram;
+  construct(edges, diagram);
+  const Sites sites(edges);
+  constexpr std::size_t kOutside = ~std::size_t{0};
+  std::vector<std::size_t> node_of(diagram.vertices().size(), kOutside);
+  const auto index_of = [&](const Diagram::vertex_type* vertex) {
+    return vertex == nullptr
+               ? kOutside
+               : node_of[static_cast<std::size_t>(vertex - diagram.vertices().data())];
+  };
   VoronoiGraph found;
-  std::map<Graph::Face_handle, std::size_t> index;
-  for (auto face = graph.finite_faces_begin(); face != graph.finite_faces_end(); ++face) {
-    const Vector2d at = from_cgal(graph.primal(face));
-    double clearance_m = distance_m(face->vertex(0)->site(), at);
-    for (const int i : {1, 2}) {  // equal but for rounding
-      clearance_m = std::min(clearance_m, distance_m(face->vertex(i)->site(), at));
-    }
-    constexpr double corner_m = 1e-9;  // nearer to the boundary than that: a corner of it
-    if (clearance_m < corner_m || !is_inside(face, at, polygon)) continue;
-    index.emplace(face, found.nodes.size());
-    found.nodes.push_back({at, clearance_m});
+  for (std::size_t i = 0; i < diagram.vertices().size(); ++i) {
+    const Diagram::vertex_type& vertex = diagram.vertices()[i];
+    const Vector2d at(vertex.x(), vertex.y()), in_plane = grid.off_grid(at);
+    const double clearance = sites.distance(*vertex.incident_edge()->cell(), at);
+    constexpr double kCorner = 1e-3;  // [cells] nearer to the boundary than that: a corner of it
+    if (clearance < kCorner) continue;
+    if (!is_inside(vertex, sites, at, [&] { return contains(polygon, in_plane); })) continue;
+    node_of[i] = found.nodes.size();
+    found.nodes.push_back({in_plane, clearance * grid.cell_m()});
   }
-  for (auto edge = graph.finite_edges_begin(); edge != graph.finite_edges_end(); ++edge) {
-    const Graph::Face_handle face = edge->first;
-    const auto from = index.find(face), to = index.find(face->neighbor(edge->second));
-    if (from == index.end() || to == index.end()) continue;
-    const Site a = face->vertex(Graph::cw(edge->second))->site();
-    const Site b = face->vertex(Graph::ccw(edge->second))->site();
-    if (touch(a, b)) continue;
-    found.edges.push_back({from->second, to->second, parabola(a, b)});
+  for (const Diagram::edge_type& edge : diagram.edges()) {
+    if (&edge > edge.twin() || !edge.is_primary()) continue;
+    const std::size_t from = index_of(edge.vertex0()), to = index_of(edge.vertex1());
+    if (from == kOutside || to == kOutside) continue;
+    found.edges.push_back({from, to, {}});
+    if (!edge.is_curved()) continue;
+    const Cell *one = edge.cell(), *other = edge.twin()->cell();
+    if (one->contains_segment()) std::swap(one, other);
+    found.edges.back().parabola = {grid.off_grid(sites.corner(*one)),
+                                   grid.off_grid(sites.edge(*other).from),
+                                   grid.off_grid(sites.edge(*other).to)};
   }
   return in_order(std::move(found));
 }

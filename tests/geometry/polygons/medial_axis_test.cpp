@@ -152,6 +152,22 @@ TEST(MedialAxis, OfARingRoadBeginsAtTheSamePlaceWhereverItsRingsBegin) {
   }
 }
 
+// Its bisectors all meet in the middle, as near to each other as rounding lets them.
+TEST(MedialAxis, OfACircleOfTenThousandCornersIsAPlaceAndNoLine) {
+  for (const int corners : {100, 1000, 10'000}) {
+    EXPECT_THAT(medial_axis({circle({700, 50}, 100.0, corners), {}}), SizeIs(0));
+  }
+}
+
+TEST(MedialAxis, OfARoundaboutOfTenThousandCornersIsAClosedCircle) {
+  const auto branches =
+      medial_axis({circle({0, 0}, 20.0, 5000), {circle({0, 0}, 14.0, 5000, true)}});
+  ASSERT_THAT(branches, SizeIs(1));
+  EXPECT_TRUE(branches[0].closed);
+  EXPECT_NEAR(branches[0].line.length_m(), 2.0 * M_PI * 17.0, 1e-3);
+  for (const double width_m : branches[0].width_m) EXPECT_NEAR(width_m, 6.0, 1e-4);
+}
+
 TEST(MedialAxis, IsTheSameFromRunToRun) {
   const auto one = medial_axis(winding_road(100, 6)), two = medial_axis(winding_road(100, 6));
   ASSERT_EQ(one.size(), two.size());
