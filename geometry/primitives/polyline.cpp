@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/geometry/primitives/work_limit.h"
 
 namespace roadbed::geometry::inline primitives {
 namespace {
@@ -109,9 +110,15 @@ std::vector<Vector2d> simplify(std::span<const Vector2d> points, double toleranc
   std::vector<bool> keeps(points.size(), false);
   keeps.front() = keeps.back() = true;
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
+  WorkBudget steps(most_steps(points.size()));
   while (!open.empty()) {
     const auto [first, last] = open.back();
     open.pop_back();
+    if (!steps.spend(last - first)) {
+      std::fill(keeps.begin() + static_cast<std::ptrdiff_t>(first),
+                keeps.begin() + static_cast<std::ptrdiff_t>(last), true);
+      continue;
+    }
     const Farthest farthest = farthest_between(points, first, last);
     if (farthest.distance_m <= tolerance_m) continue;
     keeps[farthest.index] = true;

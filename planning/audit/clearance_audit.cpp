@@ -12,6 +12,7 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
                                 std::span<const geometry::BodyPart> parts,
                                 const AuditOptions& options) {
   constexpr double least_horizon_m = 50.0;
+  constexpr std::size_t most_cells = 40'000'000;  // however far apart the rows are
   double farthest_m = 0.0, radius_m = 0.0, circle_m = 0.0;
   for (const geometry::BodyPart& part : parts) {
     const geometry::BodyPart body = geometry::inflated(part, options.inflate_m);
@@ -32,7 +33,8 @@ map::FieldRegion audited_region(const geometry::Trajectory& drive_in_source,
   around.max_in_source += reach_m;
   return {.around = around,
           .horizon_m = std::max(least_horizon_m, 3.0 * options.clearance_m) + circle_m,
-          .body_radius_m = radius_m};
+          .body_radius_m = radius_m,
+          .most_cells = most_cells};
 }
 
 AuditReport audit_clearance(const map::ClearanceField& field,

@@ -13,7 +13,7 @@ constexpr int kBisections = 60;
 
 void extend(const RouteNetwork& network, std::vector<std::uint32_t> chain,
             std::uint32_t NetworkLane::*side, std::vector<std::vector<std::uint32_t>>& chains) {
-  for (;;) {
+  while (chain.size() <= kMostLaneChanges) {
     const std::uint32_t next = network.lanes[chain.back()].*side;
     if (next == kNoLane || std::find(chain.begin(), chain.end(), next) != chain.end()) return;
     chain.push_back(next);
@@ -260,7 +260,7 @@ std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint3
   if (from == to) return {from};
   for (const auto side : {&NetworkLane::left, &NetworkLane::right}) {
     std::vector<std::uint32_t> chain{from};
-    for (;;) {
+    while (chain.size() <= kMostLaneChanges) {
       const std::uint32_t next = network.lanes[chain.back()].*side;
       if (next == kNoLane || std::find(chain.begin(), chain.end(), next) != chain.end()) break;
       chain.push_back(next);

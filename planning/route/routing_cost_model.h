@@ -129,11 +129,17 @@ class RoutingCostModel {
 std::span<const map::StationRange> windows_to(const RouteNetwork& network, std::uint32_t lane,
                                               std::uint32_t beside);
 
-/// The chain of neighbours that leads from one lane of a lane group to another; empty if none does.
+/// Lanes of one lane group that a route changes over at most: more than any road has beside each
+/// other, so that lanes in a section do not cost by the square of their number.
+inline constexpr std::size_t kMostLaneChanges = 64;
+
+/// The chain of neighbours that leads from one lane of a lane group to another; empty if none does
+/// within kMostLaneChanges.
 std::vector<std::uint32_t> chain_between(const RouteNetwork& network, std::uint32_t from,
                                          std::uint32_t to);
 
-/// Lanes of the lane group that can be changed to from one: chains to each of them, itself first.
+/// Lanes of the lane group that can be changed to from one: chains to each of them, itself first,
+/// kMostLaneChanges to each side at most.
 std::vector<std::vector<std::uint32_t>> chains_from(const RouteNetwork& network,
                                                     std::uint32_t from);
 

@@ -48,6 +48,13 @@ TEST(Simplify, KeepsNoisyLinesWithinTheToleranceOfEveryPoint) {
   }
 }
 
+// Halving takes one end off at a time there: work by the square of their number, without a limit.
+TEST(Simplify, KeepsEveryPointOfALongZigzag) {
+  std::vector<Vector2d> zigzag;
+  for (int i = 0; i < 100'000; ++i) zigzag.emplace_back(1e-3 * i, 0.5 * (i % 2));
+  EXPECT_EQ(simplify(zigzag, 0.01), zigzag);
+}
+
 TEST(Simplify, LeavesTheEndsOfAStraightLine) {
   EXPECT_EQ(simplify(std::vector<Vector2d>{{0, 0}, {1, 1}, {2, 2}, {5, 5}}, 1e-9).size(), 2U);
 }
