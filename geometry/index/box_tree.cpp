@@ -57,14 +57,7 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(hilbert_order(boxes)) {
 }
 
 void BoxTree::visit(const Box& box, const std::function<void(std::size_t)>& found) const {
-  visit_while(box, [&](std::size_t index) {
-    found(index);
-    return true;
-  });
-}
-
-bool BoxTree::visit_while(const Box& box, const std::function<bool(std::size_t)>& found) const {
-  if (levels_.empty()) return true;
+  if (levels_.empty()) return;
   std::vector<std::pair<std::size_t, std::size_t>> open;  // level, index
   open.emplace_back(levels_.size() - 1, 0);
   while (!open.empty()) {
@@ -72,13 +65,12 @@ bool BoxTree::visit_while(const Box& box, const std::function<bool(std::size_t)>
     open.pop_back();
     if (!levels_[level][index].intersects(box)) continue;
     if (level == 0) {
-      if (!found(order_[index])) return false;
+      found(order_[index]);
       continue;
     }
     const std::size_t end = std::min(levels_[level - 1].size(), (index + 1) * kChildren);
     for (std::size_t i = end; i-- > index * kChildren;) open.emplace_back(level - 1, i);
   }
-  return true;
 }
 
 std::size_t BoxTree::nearest(const Eigen::Vector2d& point, double most_m,

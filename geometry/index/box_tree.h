@@ -30,9 +30,6 @@ class BoxTree {
   /// fixed but has no meaning. O(log N + found) on average.
   void visit(const Box& box, const std::function<void(std::size_t index)>& found) const;
 
-  /// The same, until one of the calls returns false; whether none did.
-  bool visit_while(const Box& box, const std::function<bool(std::size_t index)>& found) const;
-
   /// The least of `distance_m(index)` over all boxes, which must be at least the distance to the
   /// box; starts from `most_m`. Returns the index, or the number of boxes if none is nearer.
   /// Of equally near ones any. O(log N) on average.

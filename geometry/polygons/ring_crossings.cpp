@@ -49,13 +49,12 @@ bool meet_seldom(const std::vector<Ring>& rings) {
   }
   WorkBudget pairs(kSeldom + kSeldomEach * edges);
   const BoxTree tree(boxes);
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    const bool is_done = tree.visit_while(boxes[i], [&](std::size_t k) {
-      return k <= i || pairs.spend(rings[i].size() * rings[k].size());
+  for (std::size_t i = 0; i < rings.size() && !pairs.is_spent(); ++i) {
+    tree.visit(boxes[i], [&](std::size_t k) {
+      if (k > i) pairs.spend(rings[i].size() * rings[k].size());
     });
-    if (!is_done) return false;
   }
-  return true;
+  return !pairs.is_spent();
 }
 
 }  // namespace
@@ -68,14 +67,13 @@ bool have_few_crossings(const std::vector<Ring>& rings) {
   const BoxTree tree(boxes);
   constexpr std::size_t kFew = 50'000, kFewEach = 16;
   WorkBudget crossings(kFew + kFewEach * edges.size()), tests(most_steps(edges.size()));
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const bool is_done = tree.visit_while(boxes[i], [&](std::size_t k) {
-      if (k <= i || edges[k].ring == edges[i].ring) return true;
-      return tests.spend(1) && (!meet(edges[i], edges[k]) || crossings.spend(1));
+  for (std::size_t i = 0; i < edges.size() && !tests.is_spent() && !crossings.is_spent(); ++i) {
+    tree.visit(boxes[i], [&](std::size_t k) {
+      if (k <= i || edges[k].ring == edges[i].ring || !tests.spend(1)) return;
+      if (meet(edges[i], edges[k])) crossings.spend(1);
     });
-    if (!is_done) return false;
   }
-  return true;
+  return !tests.is_spent() && !crossings.is_spent();
 }
 
 }  // namespace roadbed::geometry::polygons

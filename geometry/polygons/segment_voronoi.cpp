@@ -66,12 +66,13 @@ bool are_apart(const std::vector<GridEdge>& edges) {
   std::vector<Box> boxes;
   for (const GridEdge& edge : edges) boxes.push_back(Box(edge.from).extend(edge.to));
   const BoxTree tree(boxes);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const bool is_apart = tree.visit_while(
-        boxes[i], [&](std::size_t k) { return k <= i || !are_in_conflict(edges[i], edges[k]); });
-    if (!is_apart) return false;
+  bool has_conflict = false;
+  for (std::size_t i = 0; i < edges.size() && !has_conflict; ++i) {
+    tree.visit(boxes[i], [&](std::size_t k) {
+      has_conflict = has_conflict || (k > i && are_in_conflict(edges[i], edges[k]));
+    });
   }
-  return true;
+  return !has_conflict;
 }
 
 /// The polygon's edges on a grid. Rounding can push a corner onto an edge beside it: such edges get

@@ -31,11 +31,9 @@ Stacked stacked_groups(const RoadMap& road_map, double headroom_m) {
   Stacked stacked;
   geometry::WorkBudget steps(geometry::most_steps(pieces.size()));
   for (std::size_t i = 0; i < pieces.size() && !steps.is_spent(); ++i) {
-    tree.visit_while(boxes[i], [&](std::size_t below) {
-      if (pieces[i].z_m - pieces[below].z_m > headroom_m) {
-        stacked.emplace(group_of(road_map, pieces[below].lane), group_of(road_map, pieces[i].lane));
-      }
-      return steps.spend(1);
+    tree.visit(boxes[i], [&](std::size_t below) {
+      if (!steps.spend(1) || pieces[i].z_m - pieces[below].z_m <= headroom_m) return;
+      stacked.emplace(group_of(road_map, pieces[below].lane), group_of(road_map, pieces[i].lane));
     });
   }
   return stacked;

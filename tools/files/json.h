@@ -76,7 +76,8 @@ class JsonNode {
   std::string file_, pointer_;
 };
 
-/// Parses a document by map::parse_json: a key that stands twice in one object is refused.
+/// Parses a document; a key that stands twice in one object is refused, as one of the two values
+/// would be lost.
 /// @throws InputError with the byte at which the text stops to be JSON.
 nlohmann::json parse_json_strictly(std::string_view bytes, const std::string& file);
 

@@ -1,0 +1,150 @@
+"""Which inputs are grown, and what gets them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import inputs
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+Commands = list[tuple[str, list[str]]]
+
+
+@dataclass
+class Case:
+    name: str
+    make: Callable[[Path, int], Path]
+    size: int  # the first of three
+    commands: Commands
+
+
+def map_commands(at: str = "50,-1.7", *more: str) -> Commands:
+    """On the file: import, validate; on what was imported: the others."""
+    def export(suffix: str):
+        return (f"export {suffix}", ["export", "in.rbm", "-o", "out" + suffix, "--force"])
+
+    commands: Commands = [
+        ("import", ["import", "IN", "-o", "in.rbm", "--force"]),
+        ("validate", ["validate", "IN"]),
+        ("info", ["info", "in.rbm"]),
+        ("locate", ["locate", "in.rbm", "--at", at]),
+        export(".csv"),
+        export(".svg"),
+        export(".gpkg"),
+        ("route", ["route", "in.rbm", "--from", at, "--to", at]),
+    ]
+    extra = {
+        "reach": ("reach", ["reach", "in.rbm", "--from", at, "--within", "60s"]),
+        "diff": ("map diff", ["map", "diff", "in.rbm", "in.rbm"]),
+        ".xodr": export(".xodr"),
+        ".osm": export(".osm"),
+        ".xml": export(".xml"),
+        ".geojson": export(".geojson"),
+        ".fgb": export(".fgb"),
+    }
+    return commands + [extra[name] for name in more]
+
+
+LANES_ROUTES: Commands = [
+    ("import", ["import", "IN", "-o", "in.rbm", "--force"]),
+    ("route", ["route", "in.rbm", "--from", "lane:1/0/-1@5", "--to", "lane:1/0/-3@95"]),
+    ("route same lane", ["route", "in.rbm", "--from", "lane:1/0/-1@5", "--to", "lane:1/0/-1@95"]),
+    ("reach", ["reach", "in.rbm", "--from", "lane:1/0/-1@5", "--within", "60s"]),
+    ("export .svg", ["export", "in.rbm", "-o", "out.svg", "--force"]),
+    ("info", ["info", "in.rbm"]),
+    ("validate", ["validate", "IN"]),
+]
+AREA: Commands = [
+    ("info", ["info", "IN"]),
+    ("import", ["import", "IN", "-o", "in.rbm", "--force"]),
+    ("validate", ["validate", "IN"]),
+    ("export .svg", ["export", "IN", "-o", "out.svg", "--force"]),
+    ("export .csv", ["export", "IN", "-o", "out.csv", "--force"]),
+]
+SCENARIO: Commands = [("simulate", ["simulate", "IN", "-o", "out", "--force"])]
+TOWN = ["--occupancy", str(DATA / "town.bt"), "--unknown", "free", "--certificate", "out.json"]
+AUDIT: Commands = [
+    ("audit", ["audit", *TOWN, "--trajectory", "IN", "--force"]),
+    ("audit --check", ["audit", "--check", "out.json"]),
+]
+MOVERS: Commands = [
+    (
+        "audit --obstacles",
+        ["audit", *TOWN, "--trajectory", "in.csv", "--obstacles", "IN", "--force"],
+    ),
+    ("audit --check", ["audit", "--check", "out.json"]),
+]
+CLOUD: Commands = [
+    ("occupancy info", ["occupancy", "info", "IN"]),
+    ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
+]
+OCTREE: Commands = CLOUD + [
+    (
+        "audit",
+        ["audit", "--occupancy", "IN", "--trajectory", "in.csv", "--unknown", "free"],
+    )
+]
+
+ALL = map_commands("50,-1.7", "reach", "diff", ".xodr", ".osm", ".xml", ".geojson", ".fgb")
+CHECK: Commands = [("audit --check", ["audit", "--check", "IN"])]
+BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
+
+CASES = [
+    Case("roads apart", inputs.roads_apart, 100, ALL),
+    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm")),
+    Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson")),
+    Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7")),
+    Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0")),
+    Case("woven roads", inputs.woven_roads, 10, map_commands("20,5")),
+    Case("connecting roads", inputs.connecting_roads, 10, map_commands("-50,-1.7")),
+    Case("lanes in a section", inputs.lanes_in_a_section, 10, LANES_ROUTES),
+    Case("narrow lanes", inputs.narrow_lanes, 100, map_commands("50,-0.005")),
+    Case("sections of a road", inputs.sections_of_a_road, 100, map_commands("50,-1.7", "reach")),
+    Case("pieces of a road", inputs.pieces_of_a_road, 1000, map_commands("50,-1.7")),
+    Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7")),
+    Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7")),
+    Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7")),
+    Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2]),
+    Case("unknown elements", inputs.unknown_elements, 3000, map_commands("50,-1.7")),
+    Case("attributes of a road", inputs.attributes_of_a_road, 1000, map_commands("50,-1.7")[:3]),
+    Case("nested elements", inputs.nested_elements, 1000, map_commands("50,-1.7")[:3]),
+    Case("long name", inputs.long_name, 10000, map_commands("50,-1.7")),
+    Case("lanelets", inputs.lanelets_in_a_row, 100, map_commands("50,1.5", "reach", ".osm")),
+    Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm")),
+    Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5")),
+    Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5")),
+    Case("tags of a way", inputs.tags_of_a_way, 1000, map_commands("50,1.5")[:3]),
+    Case("regulations", inputs.regulations, 100, map_commands("50,1.5")),
+    Case("CommonRoad lanelets", inputs.cr_lanelets_in_a_row, 100, map_commands("50,1.5", ".xml")),
+    Case("same CommonRoad lanelets", inputs.cr_same_lanelets, 10, map_commands("50,1.5")),
+    Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3]),
+    Case("circle", inputs.circle, 100, AREA),
+    Case("roundabout", inputs.roundabout, 100, AREA),
+    Case("random ring", inputs.random_ring, 30, AREA),
+    Case("comb", inputs.comb, 300, AREA),
+    Case("same squares", inputs.same_squares, 10, AREA),
+    Case("squares apart", inputs.squares_apart, 100, AREA),
+    Case("shifted squares", inputs.shifted_squares, 10, AREA),
+    Case("holes", inputs.holes, 100, AREA),
+    Case("properties of a feature", inputs.properties_of_a_feature, 1000, AREA[:3]),
+    Case("objects in a list", inputs.objects_in_a_list, 3000, SCENARIO),
+    Case("empty objects", inputs.empty_objects, 50000, SCENARIO),
+    Case("keys of an object", inputs.keys_of_an_object, 10000, SCENARIO),
+    Case("nested objects", inputs.nested_objects, 10000, SCENARIO),
+    Case("numbers in a list", inputs.numbers_in_a_list, 100_000, CHECK),
+    Case("rows of a drive", inputs.rows_of_a_drive, 1000, AUDIT),
+    Case("rows apart", inputs.rows_apart, 100, AUDIT),
+    Case("outlier", inputs.outlier, 20_000, AUDIT),
+    Case("movers", inputs.movers, 1000, MOVERS),
+    Case("points .xyz", inputs.xyz, 10000, CLOUD),
+    Case("points .pcd", inputs.pcd_binary, 10000, CLOUD),
+    Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD),
+    Case("compressed .pcd", inputs.pcd_bomb, 50_000, CLOUD),
+    Case("full .bt", inputs.bt_checked, 10_000, OCTREE),
+    Case("job lines", inputs.job_lines, 100, BATCH),
+]
+
+
+def all_cases(pattern: str):
+    return [case for case in CASES if fnmatchcase(case.name, pattern)]

@@ -1,0 +1,568 @@
+"""Inputs that grow along one dimension: functions from a folder and a number to a file in it."""
+
+import json
+import math
+import random
+import struct
+from pathlib import Path
+
+
+def written(path: Path, text: str | bytes) -> Path:
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
+
+
+# OpenDRIVE
+
+LANE = '<lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
+
+
+def lanes_section(lanes: str = LANE, s: float = 0.0) -> str:
+    return (
+        f'<laneSection s="{s:g}"><center><lane id="0" type="none"/></center>'
+        f"<right>{lanes}</right></laneSection>"
+    )
+
+
+def line_piece(s: float, x: float, y: float, length: float, heading: float = 0.0) -> str:
+    return (
+        f'<geometry s="{s:g}" x="{x:.6f}" y="{y:.6f}" hdg="{heading:.6f}" length="{length:g}">'
+        "<line/></geometry>"
+    )
+
+
+def road(
+    name,
+    x: float = 0.0,
+    y: float = 0.0,
+    length: float = 100.0,
+    heading: float = 0.0,
+    junction: str = "-1",
+    link: str = "",
+    pieces: str = "",
+    sections: str = "",
+    extra: str = "",
+) -> str:
+    return (
+        f'<road id="{name}" length="{length:g}" junction="{junction}">{link}<planView>'
+        f"{pieces or line_piece(0, x, y, length, heading)}</planView>"
+        f"<lanes>{sections or lanes_section()}</lanes>{extra}</road>"
+    )
+
+
+def open_drive(folder: Path, content: str) -> Path:
+    header = '<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="6"/>'
+    return written(folder / "in.xodr", f"{header}{content}</OpenDRIVE>")
+
+
+def roads_apart(folder: Path, n: int) -> Path:
+    columns = math.isqrt(n) + 1
+    return open_drive(
+        folder, "".join(road(i, i % columns * 120, i // columns * 20) for i in range(n))
+    )
+
+
+def roads_in_a_row(folder: Path, n: int) -> Path:
+    def link(i: int) -> str:
+        before = f'<predecessor elementType="road" elementId="{i - 1}" contactPoint="end"/>'
+        after = f'<successor elementType="road" elementId="{i + 1}" contactPoint="start"/>'
+        return f"<link>{before if i else ''}{after if i + 1 < n else ''}</link>"
+
+    lane = LANE.replace("<width", '<link><predecessor id="-1"/><successor id="-1"/></link><width')
+    return open_drive(
+        folder,
+        "".join(
+            road(i, i * 50, length=50, link=link(i), sections=lanes_section(lane)) for i in range(n)
+        ),
+    )
+
+
+def same_roads(folder: Path, n: int) -> Path:
+    return open_drive(folder, "".join(road(i) for i in range(n)))
+
+
+def shifted_roads(folder: Path, n: int) -> Path:
+    return open_drive(folder, "".join(road(i, i * 0.5, i * 0.003) for i in range(n)))
+
+
+def crossing_roads(folder: Path, n: int) -> Path:
+    """A star: all pass one place."""
+    headings = [math.pi * i / n for i in range(n)]
+    return open_drive(
+        folder,
+        "".join(
+            road(i, -50 * math.cos(h), -50 * math.sin(h), heading=h) for i, h in enumerate(headings)
+        ),
+    )
+
+
+def woven_roads(folder: Path, n: int) -> Path:
+    """Half of them across the other half."""
+    length = 10.0 * n
+    return open_drive(
+        folder,
+        "".join(
+            road(i, 0, i * 5, length)
+            if i % 2
+            else road(i, i * 5, 0, length, heading=math.pi / 2)
+            for i in range(n)
+        ),
+    )
+
+
+def connecting_roads(folder: Path, n: int) -> Path:
+    into = '<link><successor elementType="junction" elementId="9"/></link>'
+    link = '<link><predecessor elementType="road" elementId="a" contactPoint="end"/></link>'
+    connections = "".join(
+        f'<connection id="{i}" incomingRoad="a" connectingRoad="c{i}" contactPoint="start">'
+        '<laneLink from="-1" to="-1"/></connection>'
+        for i in range(n)
+    )
+    return open_drive(
+        folder,
+        road("a", -100, link=into)
+        + "".join(road(f"c{i}", junction="9", length=10, link=link) for i in range(n))
+        + f'<junction id="9" name="j">{connections}</junction>',
+    )
+
+
+def lanes_in_a_section(folder: Path, n: int) -> Path:
+    lanes = "".join(LANE.replace('"-1"', f'"-{i + 1}"').replace("3.5", "3") for i in range(n))
+    return open_drive(folder, road(1, sections=lanes_section(lanes)))
+
+
+def narrow_lanes(folder: Path, n: int) -> Path:
+    lanes = "".join(LANE.replace('"-1"', f'"-{i + 1}"').replace("3.5", "0.01") for i in range(n))
+    return open_drive(folder, road(1, sections=lanes_section(lanes)))
+
+
+def sections_of_a_road(folder: Path, n: int) -> Path:
+    lane = LANE.replace("<width", '<link><predecessor id="-1"/><successor id="-1"/></link><width')
+    return open_drive(
+        folder, road(1, length=n, sections="".join(lanes_section(lane, i) for i in range(n)))
+    )
+
+
+def pieces_of_a_road(folder: Path, n: int) -> Path:
+    return open_drive(
+        folder, road(1, length=n, pieces="".join(line_piece(i, i, 0, 1) for i in range(n)))
+    )
+
+
+def widths_of_a_lane(folder: Path, n: int) -> Path:
+    widths = "".join(
+        f'<width sOffset="{100 * i / n:g}" a="3.5" b="0" c="0" d="0"/>' for i in range(n)
+    )
+    lane = f'<lane id="-1" type="driving">{widths}</lane>'
+    return open_drive(folder, road(1, sections=lanes_section(lane)))
+
+
+def signals_of_a_road(folder: Path, n: int) -> Path:
+    signals = "".join(
+        f'<signal id="{i}" s="{100 * i / n:g}" t="-5" type="1000001" subtype="-1" dynamic="yes" '
+        'orientation="+" zOffset="0" country="DE" value="-1"/>'
+        for i in range(n)
+    )
+    return open_drive(folder, road(1, extra=f"<signals>{signals}</signals>"))
+
+
+def repeated_objects(folder: Path, n: int) -> Path:
+    objects = "".join(
+        f'<object id="{i}" s="50" t="-5" type="barrier" zOffset="0" length="1" width="1" '
+        'height="1"><repeat s="0" length="100" distance="0.01" tStart="0" tEnd="0" widthStart="1" '
+        'widthEnd="1" heightStart="1" heightEnd="1" zOffsetStart="0" zOffsetEnd="0"/></object>'
+        for i in range(n)
+    )
+    return open_drive(folder, road(1, extra=f"<objects>{objects}</objects>"))
+
+
+def roads_of_one_name(folder: Path, n: int) -> Path:
+    return open_drive(folder, "".join(road("same", 200 * i) for i in range(n)))
+
+
+def unknown_elements(folder: Path, n: int) -> Path:
+    return open_drive(folder, "".join(f'<u{i} a="x">y</u{i}>' for i in range(n)) + road(1))
+
+
+def attributes_of_a_road(folder: Path, n: int) -> Path:
+    attributes = " ".join(f'a{i}="1"' for i in range(n))
+    return open_drive(folder, road(1).replace("<road ", f"<road {attributes} "))
+
+
+def nested_elements(folder: Path, n: int) -> Path:
+    return open_drive(folder, "<userData>" * n + "</userData>" * n + road(1))
+
+
+def long_name(folder: Path, n: int) -> Path:
+    return open_drive(folder, road("n" * n, sections=lanes_section(LANE)))
+
+
+# Lanelet2
+
+
+def osm_node(name: int, x: float, y: float) -> str:
+    return (
+        f'<node id="{name}" lat="48.7" lon="7.6"><tag k="local_x" v="{x:g}"/>'
+        f'<tag k="local_y" v="{y:g}"/><tag k="ele" v="1"/></node>'
+    )
+
+
+def osm_way(name: int, nodes, tags: str = "") -> str:
+    refs = "".join(f'<nd ref="{node}"/>' for node in nodes)
+    return f'<way id="{name}">{refs}<tag k="type" v="line_thin"/>{tags}</way>'
+
+
+def lanelet(name: int, left: int, right: int, members: str = "") -> str:
+    return (
+        f'<relation id="{name}"><member type="way" ref="{left}" role="left"/>'
+        f'<member type="way" ref="{right}" role="right"/>{members}<tag k="type" v="lanelet"/>'
+        '<tag k="subtype" v="road"/><tag k="location" v="urban"/><tag k="one_way" v="yes"/>'
+        "</relation>"
+    )
+
+
+def osm(folder: Path, content: str) -> Path:
+    return written(folder / "in.osm", f'<?xml version="1.0"?><osm version="0.6">{content}</osm>')
+
+
+CORNERS = osm_node(1, 0, 3) + osm_node(2, 0, 0) + osm_node(3, 100, 3) + osm_node(4, 100, 0)
+SIDES = osm_way(11, [1, 3]) + osm_way(12, [2, 4])
+
+
+def lanelets_in_a_row(folder: Path, n: int) -> Path:
+    nodes = "".join(
+        osm_node(2 * i + 1, 20 * i, 3) + osm_node(2 * i + 2, 20 * i, 0) for i in range(n + 1)
+    )
+    ways = "".join(
+        osm_way(10_000_000 + 2 * i, [2 * i + 1, 2 * i + 3])
+        + osm_way(10_000_001 + 2 * i, [2 * i + 2, 2 * i + 4])
+        for i in range(n)
+    )
+    return osm(
+        folder,
+        nodes
+        + ways
+        + "".join(
+            lanelet(30_000_000 + i, 10_000_000 + 2 * i, 10_000_001 + 2 * i) for i in range(n)
+        ),
+    )
+
+
+def same_lanelets(folder: Path, n: int) -> Path:
+    return osm(folder, CORNERS + SIDES + "".join(lanelet(100 + i, 11, 12) for i in range(n)))
+
+
+def zigzag_border(folder: Path, n: int) -> Path:
+    nodes = "".join(osm_node(i, i * 100 / n, 3 + 0.5 * (i % 2)) for i in range(n))
+    return osm(
+        folder,
+        nodes
+        + osm_node(n + 1, 0, 0)
+        + osm_node(n + 2, 100, 0)
+        + osm_way(n + 11, range(n))
+        + osm_way(n + 12, [n + 1, n + 2])
+        + lanelet(n + 21, n + 11, n + 12),
+    )
+
+
+def border_back_and_forth(folder: Path, n: int) -> Path:
+    return osm(
+        folder,
+        CORNERS + osm_way(11, [1, 3] * (n // 2)) + osm_way(12, [2, 4]) + lanelet(21, 11, 12),
+    )
+
+
+def tags_of_a_way(folder: Path, n: int) -> Path:
+    tags = "".join(f'<tag k="k{i}" v="1"/>' for i in range(n))
+    ways = osm_way(11, [1, 3], tags) + osm_way(12, [2, 4])
+    return osm(folder, CORNERS + ways + lanelet(21, 11, 12))
+
+
+def regulations(folder: Path, n: int) -> Path:
+    elements = "".join(
+        f'<relation id="{1000 + i}"><member type="way" ref="12" role="refers"/>'
+        '<member type="way" ref="11" role="ref_line"/><tag k="type" v="regulatory_element"/>'
+        '<tag k="subtype" v="traffic_light"/></relation>'
+        for i in range(n)
+    )
+    members = "".join(
+        f'<member type="relation" ref="{1000 + i}" role="regulatory_element"/>' for i in range(n)
+    )
+    return osm(folder, CORNERS + SIDES + elements + lanelet(21, 11, 12, members))
+
+
+# CommonRoad
+
+
+def common_road(folder: Path, content: str) -> Path:
+    return written(
+        folder / "in.xml",
+        '<?xml version="1.0"?><commonRoad commonRoadVersion="2020a" benchmarkID="A_B-1_1_T-1" '
+        'timeStepSize="0.1" author="" affiliation="" source="" date="2020-01-01"><location>'
+        "<geoNameId>-999</geoNameId><gpsLatitude>999</gpsLatitude><gpsLongitude>999</gpsLongitude>"
+        f"</location><scenarioTags><urban/></scenarioTags>{content}</commonRoad>",
+    )
+
+
+def bound(side: str, points) -> str:
+    inside = "".join(f"<point><x>{x:g}</x><y>{y:g}</y></point>" for x, y in points)
+    return f"<{side}>{inside}</{side}>"
+
+
+def cr_lanelet(name: int, x: float, length: float, links: str = "") -> str:
+    left, right = [(x, 3), (x + length, 3)], [(x, 0), (x + length, 0)]
+    return (
+        f'<lanelet id="{name}">{bound("leftBound", left)}{bound("rightBound", right)}{links}'
+        "<laneletType>urban</laneletType></lanelet>"
+    )
+
+
+def cr_lanelets_in_a_row(folder: Path, n: int) -> Path:
+    def links(i: int) -> str:
+        before = f'<predecessor ref="{i}"/>' if i else ""
+        return before + (f'<successor ref="{i + 2}"/>' if i + 1 < n else "")
+
+    return common_road(folder, "".join(cr_lanelet(i + 1, 20 * i, 20, links(i)) for i in range(n)))
+
+
+def cr_same_lanelets(folder: Path, n: int) -> Path:
+    return common_road(folder, "".join(cr_lanelet(i + 1, 0, 100) for i in range(n)))
+
+
+def cr_obstacles(folder: Path, n: int) -> Path:
+    obstacles = "".join(
+        f'<staticObstacle id="{i + 10}"><type>parkedVehicle</type><shape><rectangle><length>4'
+        "</length><width>2</width></rectangle></shape><initialState><position><point>"
+        f"<x>{i % 100}</x><y>{20 + i // 100}</y></point></position><orientation><exact>0</exact>"
+        "</orientation><time><exact>0</exact></time></initialState></staticObstacle>"
+        for i in range(n)
+    )
+    return common_road(folder, cr_lanelet(1, 0, 100) + obstacles)
+
+
+# GeoJSON
+
+
+def geojson(folder: Path, features) -> Path:
+    return written(
+        folder / "in.geojson",
+        json.dumps(
+            {
+                "type": "FeatureCollection",
+                "crs": {"type": "name", "properties": {"name": "EPSG:25832"}},
+                "features": list(features),
+            }
+        ),
+    )
+
+
+def polygon(rings, properties=None):
+    return {
+        "type": "Feature",
+        "properties": properties or {"a": 1},
+        "geometry": {"type": "Polygon", "coordinates": rings},
+    }
+
+
+def square(x: float, y: float, side: float = 10.0):
+    ring = [[x, y], [x + side, y], [x + side, y + side], [x, y + side]]
+    return ring + ring[:1]
+
+
+def circle(folder: Path, n: int) -> Path:
+    ring = [
+        [100 * math.cos(2 * math.pi * i / n), 100 * math.sin(2 * math.pi * i / n)] for i in range(n)
+    ]
+    return geojson(folder, [polygon([ring + ring[:1]])])
+
+
+def roundabout(folder: Path, n: int) -> Path:
+    """A ring road: two circles."""
+
+    def ring(radius: float, count: int):
+        points = [
+            [radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count)]
+            for i in range(count)
+        ]
+        return points + points[:1]
+
+    return geojson(folder, [polygon([ring(20, n // 2), ring(14, n // 2)[::-1]])])
+
+
+def random_ring(folder: Path, n: int) -> Path:
+    """Crosses itself n² times."""
+    chance = random.Random(1)
+    ring = [[chance.uniform(0, 100), chance.uniform(0, 100)] for _ in range(n)]
+    return geojson(folder, [polygon([ring + ring[:1]])])
+
+
+def comb(folder: Path, n: int) -> Path:
+    teeth = [[[i, 0], [i + 0.2, 50 + i % 7], [i + 0.4, 0]] for i in range(n // 3)]
+    ring = [point for tooth in teeth for point in tooth] + [[n // 3, -5], [0, -5]]
+    return geojson(folder, [polygon([ring + ring[:1]])])
+
+
+def same_squares(folder: Path, n: int) -> Path:
+    return geojson(folder, [polygon([square(0, 0)])] * n)
+
+
+def squares_apart(folder: Path, n: int) -> Path:
+    columns = math.isqrt(n) + 1
+    places = ((i % columns * 20, i // columns * 20) for i in range(n))
+    return geojson(folder, (polygon([square(x, y)]) for x, y in places))
+
+
+def shifted_squares(folder: Path, n: int) -> Path:
+    return geojson(folder, (polygon([square(i * 0.013, i * 0.007)]) for i in range(n)))
+
+
+def holes(folder: Path, n: int) -> Path:
+    columns = math.isqrt(n) + 1
+    inner = [square(i % columns * 9 + 1, i // columns * 9 + 1, 4)[::-1] for i in range(n)]
+    return geojson(folder, [polygon([square(0, 0, columns * 9 + 2)] + inner)])
+
+
+def properties_of_a_feature(folder: Path, n: int) -> Path:
+    return geojson(folder, [polygon([square(0, 0)], {f"k{i}": 1 for i in range(n)})])
+
+
+# JSON
+
+
+def scenario(folder: Path, text: str) -> Path:
+    return written(folder / "in.json", text)
+
+
+def objects_in_a_list(folder: Path, n: int) -> Path:
+    objects = ",".join(f'{{"id":"a{i}"}}' for i in range(n))
+    head = '"roadbed_scenario":1,"name":"a","map":"m"'
+    return scenario(folder, f'{{{head},"obstacles":[{objects}]}}')
+
+
+def empty_objects(folder: Path, n: int) -> Path:
+    return scenario(folder, f'{{"roadbed_scenario":1,"obstacles":[{",".join(["{}"] * n)}]}}')
+
+
+def keys_of_an_object(folder: Path, n: int) -> Path:
+    return scenario(folder, "{" + ",".join(f'"k{i}":1' for i in range(n)) + "}")
+
+
+def nested_objects(folder: Path, n: int) -> Path:
+    return scenario(folder, '{"a":' * n + "1" + "}" * n)
+
+
+def numbers_in_a_list(folder: Path, n: int) -> Path:
+    return scenario(folder, "[" + "1," * n + "1]")
+
+
+# Drives
+
+
+def drive(folder: Path, rows) -> Path:
+    text = "".join(f"{t:g},{x:.9g},{y:.9g},{heading:g}\n" for t, x, y, heading in rows)
+    return written(folder / "in.csv", "t_s,x_m,y_m,heading_rad\n" + text)
+
+
+def rows_of_a_drive(folder: Path, n: int) -> Path:
+    return drive(folder, ((i * 0.001, 100 + i * 50 / n, 198.2, 0) for i in range(n)))
+
+
+def rows_apart(folder: Path, n: int) -> Path:
+    return drive(folder, ((i, 100 + 2 * i, 198.2, 0) for i in range(n)))
+
+
+def outlier(folder: Path, n: int) -> Path:
+    """One row n metres away, and time enough to drive there and back."""
+    rows = [(i * 1e5, 150 + i, 198.2, 0) for i in range(9)]
+    rows[4] = (4e5, 150 + n, 198.2 + n, 0)
+    return drive(folder, rows)
+
+
+def movers(folder: Path, n: int) -> Path:
+    rows = "".join(
+        f"0,o{i},{200 + i % 100},{300 + i // 100},0,1,1\n"
+        f"90,o{i},{210 + i % 100},{300 + i // 100},0,1,1\n"
+        for i in range(n)
+    )
+    drive(folder, ((i, 100 + i, 198.2, 0) for i in range(50)))
+    return written(
+        folder / "movers.csv", "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n" + rows
+    )
+
+
+# Clouds
+
+
+def xyz(folder: Path, n: int) -> Path:
+    chance = random.Random(1)
+    return written(
+        folder / "in.xyz",
+        "".join(
+            f"{chance.uniform(0, 50):.3f} {chance.uniform(0, 50):.3f} {chance.uniform(0, 3):.3f}\n"
+            for _ in range(n)
+        ),
+    )
+
+
+def pcd_header(points: int, data: str) -> bytes:
+    return (
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+        f"WIDTH {points}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points}\nDATA {data}\n"
+    ).encode()
+
+
+def pcd_binary(folder: Path, n: int) -> Path:
+    chance = random.Random(1)
+    points = b"".join(
+        struct.pack("<fff", chance.uniform(0, 50), chance.uniform(0, 50), chance.uniform(0, 3))
+        for _ in range(n)
+    )
+    return written(folder / "in.pcd", pcd_header(n, "binary") + points)
+
+
+def pcd_one_place(folder: Path, n: int) -> Path:
+    return written(folder / "in.pcd", pcd_header(n, "binary") + bytes(12 * n))
+
+
+def lzf_of_zeros(size: int) -> bytes:
+    """References of 264 bytes each to the zero before them."""
+    whole, rest = divmod(size - 1, 264)
+    packed = b"\x00\x00" + bytes([7 << 5, 255, 0]) * whole
+    return packed + (bytes([rest - 1]) + bytes(rest) if 0 < rest <= 32 else b"")
+
+
+def pcd_bomb(folder: Path, n: int) -> Path:
+    """n packed bytes, 88 n in memory."""
+    points = n * 88 // 264 * 22
+    plain = 12 * points
+    while (plain - 1) % 264 > 32:
+        points += 1
+        plain = 12 * points
+    packed = lzf_of_zeros(plain)
+    sizes = struct.pack("<II", len(packed), plain)
+    return written(folder / "in.pcd", pcd_header(points, "binary_compressed") + sizes + packed)
+
+
+def bt_checked(folder: Path, n: int) -> Path:
+    """Full to the leaves, which are occupied and free in turns: two bytes are eight nodes."""
+    leaves, levels = b"\x66\x66", 0
+    data = leaves
+    while len(data) * 8 <= n:
+        data = b"\xff\xff" + data * 8
+        levels += 1
+    nodes = 8
+    for _ in range(levels):
+        nodes = 8 + nodes * 8
+    header = f"# Octomap OcTree binary file\nid OcTree\nsize {nodes + 1}\nres 0.1\ndata\n"
+    drive(folder, ((i, 2000 + i, 2000, 0) for i in range(5)))
+    return written(folder / "in.bt", header.encode() + data)
+
+
+def job_lines(folder: Path, n: int) -> Path:
+    return written(
+        folder / "in.jsonl",
+        "".join(
+            json.dumps({"job": "locate", "inputs": {"map": "m"}, "options": {"at": [i, 0]}}) + "\n"
+            for i in range(n)
+        ),
+    )
