@@ -54,10 +54,10 @@ Json seen_through_json(const std::optional<map::SeeThroughRemoval>& removed) {
 
 Json octree_info(const map::OccupancyMap& occupancy) {
   Space occupied, free, known;
-  for (const map::OccupancyCell& cell : occupancy.cells()) {
+  occupancy.for_each_cell([&](const map::OccupancyCell& cell) {
     known.add(cell);
     (cell.state == map::CellState::occupied ? occupied : free).add(cell);
-  }
+  });
   Json info;
   info["kind"] = "octree";
   info["crs"] = crs_json(occupancy.crs());

@@ -1,11 +1,8 @@
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 
-#include <fmt/format.h>
-#include <octomap/octomap.h>
-
+#include <cstdint>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,48 +11,60 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
+#include "roadbed/map/occupancy/octree/compact_octree.h"
 #include "roadbed/map/occupancy/octree/octree_file.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 
 struct OccupancyMap::Tree {
-  octomap::OcTree octree;
+  double resolution_m;
+  CompactOctree octree;
+  std::size_t nodes = 0;
+  std::string log_odds;  // the data of an `.ot` where clouds were added up; else they are clamped
   Eigen::Vector3d origin_in_source{0, 0, 0};
   std::string crs;
   std::optional<SeeThroughRemoval> seen_through;
   std::once_flag bounded;  // of the bounds, for which all leaves are looked at
   std::optional<Box3> bounds;
 
-  explicit Tree(double resolution_m) : octree(resolution_m) {}
+  explicit Tree(double cell_m) : resolution_m(cell_m) {}
 
-  OctreeHeader header(std::size_t nodes) const {
-    return {octree.getResolution(), nodes, origin_in_source, crs, seen_through};
+  std::string file(OctreeForm form, const OctreeBytes& bytes) const {
+    return octree_header(form, {resolution_m, bytes.nodes, origin_in_source, crs, seen_through}) +
+           bytes.data;
+  }
+
+  // As OctoMap computes it, whose bits others compare.
+  OccupancyCell cell_of(const CompactOctree::Leaf& leaf) const {
+    const double side = leaf.side, size_m = resolution_m * side;
+    const auto middle = [&](std::uint32_t least) {
+      return ((static_cast<double>(least) - kHalfRange) / side + 0.5) * size_m;
+    };
+    return {origin_in_source + Eigen::Vector3d(middle(leaf.least[0]), middle(leaf.least[1]),
+                                               middle(leaf.least[2])),
+            size_m, leaf.state};
   }
 };
 
 namespace {
 
-octomap::OcTreeKey octomap_key(const CellKey& key) { return {key[0], key[1], key[2]}; }
-
 // The key of a point's cell, or of the nearest one in range.
-octomap::OcTreeKey key_around(const Eigen::Vector3d& in_tree, double resolution_m) {
+CellKey key_around(const Eigen::Vector3d& in_tree, double resolution_m) {
   const Eigen::Array3d cells =
       (in_tree.array() / resolution_m).floor().max(-kHalfRange).min(kHalfRange - 1.0) + kHalfRange;
   return {static_cast<std::uint16_t>(cells.x()), static_cast<std::uint16_t>(cells.y()),
           static_cast<std::uint16_t>(cells.z())};
 }
 
-template <typename Leaf>
-OccupancyCell cell_of(const octomap::OcTree& octree, const Leaf& leaf,
-                      const Eigen::Vector3d& origin_in_source) {
-  return {origin_in_source + Eigen::Vector3d(leaf.getX(), leaf.getY(), leaf.getZ()), leaf.getSize(),
-          octree.isNodeOccupied(*leaf) ? CellState::occupied : CellState::free};
-}
-
 std::optional<SeeThroughRemoval> seen_through_of(const OccupancyOptions& options,
                                                  const CloudMeasurements& cells) {
   if (options.remove_seen_through == 0) return std::nullopt;
   return SeeThroughRemoval{options.remove_seen_through, cells.removed()};
+}
+
+CompactOctree octree_of(OctreeForm form, std::string_view data, std::size_t nodes) {
+  if (nodes == 0) return {};
+  return form == OctreeForm::bt ? CompactOctree::of_bt(data) : CompactOctree::of_ot(data);
 }
 
 }  // namespace
@@ -73,14 +82,10 @@ OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
   tree->origin_in_source = measured.origin_in_source;
   OctreeBytes bytes = options.sticky_hits ? measured.cells.bt() : measured.cells.ot();
   tree->seen_through = seen_through_of(options, measured.cells);
-  if (bytes.nodes > 0) {
-    std::istringstream data{std::move(bytes.data)};
-    if (options.sticky_hits) {
-      tree->octree.readBinaryData(data);
-    } else {
-      tree->octree.readData(data);
-    }
-  }
+  tree->octree =
+      octree_of(options.sticky_hits ? OctreeForm::bt : OctreeForm::ot, bytes.data, bytes.nodes);
+  tree->nodes = bytes.nodes;
+  if (!options.sticky_hits) tree->log_odds = std::move(bytes.data);
   return OccupancyMap(std::move(tree));
 }
 
@@ -108,82 +113,62 @@ OccupancyMap OccupancyMap::parse(std::string_view bytes, const std::string& name
   tree->origin_in_source = file.origin_in_source;
   tree->crs = file.crs;
   tree->seen_through = file.seen_through;
-  if (file.nodes > 0) {
-    std::istringstream data{std::string(file.data)};
-    if (file.form == OctreeForm::bt) {
-      tree->octree.readBinaryData(data);
-    } else {
-      tree->octree.readData(data);
-      tree->octree.toMaxLikelihood();
-    }
-  }
+  tree->octree = octree_of(file.form, file.data, file.nodes);
+  tree->nodes = file.nodes;
   return OccupancyMap(std::move(tree));
 }
 
-double OccupancyMap::resolution_m() const { return tree_->octree.getResolution(); }
+double OccupancyMap::resolution_m() const { return tree_->resolution_m; }
 const Eigen::Vector3d& OccupancyMap::origin_in_source() const { return tree_->origin_in_source; }
 const std::string& OccupancyMap::crs() const { return tree_->crs; }
 std::optional<SeeThroughRemoval> OccupancyMap::seen_through() const { return tree_->seen_through; }
-std::size_t OccupancyMap::node_count() const { return tree_->octree.size(); }
+std::size_t OccupancyMap::node_count() const { return tree_->nodes; }
 
 CellState OccupancyMap::at(const Eigen::Vector3d& in_source) const {
   const auto key = key_at(in_source - tree_->origin_in_source, resolution_m());
-  if (!key) return CellState::unknown;
-  const octomap::OcTreeNode* node = tree_->octree.search(octomap_key(*key));
-  if (node == nullptr) return CellState::unknown;
-  return tree_->octree.isNodeOccupied(node) ? CellState::occupied : CellState::free;
+  return key ? tree_->octree.at(*key) : CellState::unknown;
+}
+
+void OccupancyMap::for_each_cell(const std::function<void(const OccupancyCell&)>& use) const {
+  tree_->octree.for_each({}, [&](const CompactOctree::Leaf& leaf) { use(tree_->cell_of(leaf)); });
 }
 
 std::vector<OccupancyCell> OccupancyMap::cells() const {
-  const octomap::OcTree& octree = tree_->octree;
   std::vector<OccupancyCell> cells;
-  for (auto leaf = octree.begin_leafs(), end = octree.end_leafs(); leaf != end; ++leaf) {
-    cells.push_back(cell_of(octree, leaf, tree_->origin_in_source));
-  }
+  cells.reserve(tree_->octree.leaves());
+  for_each_cell([&](const OccupancyCell& cell) { cells.push_back(cell); });
   return cells;
 }
 
 std::vector<OccupancyCell> OccupancyMap::cells_in(const Box3& box) const {
-  const octomap::OcTree& octree = tree_->octree;
+  const Eigen::Vector3d& origin = tree_->origin_in_source;
   std::vector<OccupancyCell> cells;
-  if (octree.size() == 0) return cells;  // its iterator needs a root
-  const auto from = key_around(box.min_in_source - tree_->origin_in_source, resolution_m());
-  const auto to = key_around(box.max_in_source - tree_->origin_in_source, resolution_m());
-  for (auto leaf = octree.begin_leafs_bbx(from, to), end = octree.end_leafs_bbx(); leaf != end;
-       ++leaf) {
-    cells.push_back(cell_of(octree, leaf, tree_->origin_in_source));
-  }
+  tree_->octree.for_each(
+      {key_around(box.min_in_source - origin, resolution_m()),
+       key_around(box.max_in_source - origin, resolution_m())},
+      [&](const CompactOctree::Leaf& leaf) { cells.push_back(tree_->cell_of(leaf)); });
   return cells;
 }
 
 std::optional<Box3> OccupancyMap::bounds() const {
   std::call_once(tree_->bounded, [&] {
     std::optional<Box3>& box = tree_->bounds;
-    for (const OccupancyCell& cell : cells()) {
+    for_each_cell([&](const OccupancyCell& cell) {
       const Eigen::Vector3d least = cell.centre_in_source.array() - 0.5 * cell.size_m;
       const Eigen::Vector3d most = cell.centre_in_source.array() + 0.5 * cell.size_m;
       if (!box) box = Box3{least, most};
       box = Box3{box->min_in_source.cwiseMin(least), box->max_in_source.cwiseMax(most)};
-    }
+    });
   });
   return tree_->bounds;
 }
 
-std::string OccupancyMap::to_bt() const {
-  octomap::OcTree judged(tree_->octree);
-  judged.toMaxLikelihood();
-  judged.prune();
-  std::ostringstream out;
-  out << octree_header(OctreeForm::bt, tree_->header(judged.size()));
-  if (judged.size() > 0) judged.writeBinaryData(out);
-  return std::move(out).str();
-}
+std::string OccupancyMap::to_bt() const { return tree_->file(OctreeForm::bt, tree_->octree.bt()); }
 
 std::string OccupancyMap::to_ot() const {
-  std::ostringstream out;
-  out << octree_header(OctreeForm::ot, tree_->header(tree_->octree.size()));
-  if (tree_->octree.size() > 0) tree_->octree.writeData(out);
-  return std::move(out).str();
+  return tree_->file(OctreeForm::ot, tree_->log_odds.empty()
+                                         ? tree_->octree.ot()
+                                         : OctreeBytes{tree_->log_odds, tree_->nodes});
 }
 
 bool is_occupancy_file(std::string_view bytes) { return is_octree_file(bytes); }

@@ -59,9 +59,6 @@ class Assembly {
   Writer& writer_;
 };
 
-/// What two bits say of a child: the lower one free, the upper one occupied, both: it has children.
-enum Pair : unsigned { kUnknown = 0, kFree = 1, kOccupied = 2, kInner = 3 };
-
 // The bits of a byte, each followed by a zero.
 constexpr std::array<std::uint16_t, 256> kApart = [] {
   std::array<std::uint16_t, 256> apart{};
@@ -73,13 +70,11 @@ constexpr std::array<std::uint16_t, 256> kApart = [] {
   return apart;
 }();
 
-constexpr unsigned kAllFree = 0x5555, kAllOccupied = 0xaaaa;
-
 class BtWriter {
  public:
-  using Node = Pair;
+  using Node = BtPair;
 
-  static Node none() { return kUnknown; }
+  static Node none() { return BtPair::unknown; }
 
   // Two bytes say which children there are; the children's own follow.
   template <typename Child>
@@ -102,9 +97,9 @@ class BtWriter {
 
  private:
   Node word(std::uint64_t hit, std::uint64_t free) {
-    if ((hit | free) == 0) return kUnknown;
-    if (hit == ~std::uint64_t{0}) return kOccupied;
-    if (free == ~std::uint64_t{0}) return kFree;
+    if ((hit | free) == 0) return BtPair::unknown;
+    if (hit == ~std::uint64_t{0}) return BtPair::occupied;
+    if (free == ~std::uint64_t{0}) return BtPair::free;
     return node([&](unsigned i) { return leaves(hit >> 8 * i & 0xffu, free >> 8 * i & 0xffu); });
   }
 
@@ -117,12 +112,12 @@ class BtWriter {
   Node close(std::size_t at, unsigned pairs) {
     if (pairs == 0 || pairs == kAllFree || pairs == kAllOccupied) {
       bytes_.data.resize(at);
-      return static_cast<Pair>(pairs & 3u);
+      return pair_of(pairs, 0);
     }
     bytes_.data[at] = static_cast<char>(pairs & 0xffu);
     bytes_.data[at + 1] = static_cast<char>(pairs >> 8);
     for (; pairs != 0; pairs >>= 2) bytes_.nodes += (pairs & 3u) != 0;
-    return kInner;
+    return BtPair::inner;
   }
 
   OctreeBytes bytes_;

@@ -18,7 +18,7 @@ enum class OctreeForm {
   ot,  ///< log-odds and a byte of child flags a node
 };
 
-/// A `.bt` or `.ot` file whose header and data agree, so that OctoMap can read the data.
+/// A `.bt` or `.ot` file whose header and data agree, so that its data can be read.
 struct OctreeFile {
   OctreeForm form = OctreeForm::bt;
   double resolution_m = 0.0;
@@ -34,8 +34,8 @@ struct OctreeFile {
 bool is_octree_file(std::string_view bytes);
 
 /// Reads the header and walks over the data without building anything: depth at most 16, as many
-/// nodes as the header says, no byte missing and none left over, log-odds finite. OctoMap itself
-/// recurses without bound and takes what is cut. O(bytes), O(1) memory.
+/// nodes as the header says, no byte missing and none left over, log-odds finite. O(bytes), O(1)
+/// memory.
 /// @throws InputError naming the byte.
 OctreeFile parse_octree_file(std::string_view bytes, const std::string& name);
 
