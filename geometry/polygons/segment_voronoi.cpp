@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/geometry/polygons/exact.h"
@@ -101,7 +104,12 @@ std::pair<Grid, std::vector<GridEdge>> simple_edges(const Polygon& polygon) {
 /// What a cell of the diagram lies around.
 class Sites {
  public:
-  explicit Sites(const std::vector<GridEdge>& edges) : edges_(edges) {}
+  explicit Sites(const std::vector<GridEdge>& edges) : edges_(edges) {
+    for (const GridEdge& edge : edges) {
+      corners_[key(edge.from)].out.push_back(&edge);
+      corners_[key(edge.to)].in.push_back(&edge);
+    }
+  }
 
   const GridEdge& edge(const Cell& cell) const { return edges_[cell.source_index()]; }
 
@@ -118,8 +126,24 @@ class Sites {
     return (point - a - fraction * along).norm();
   }
 
+  /// Whether the places that are nearest to a corner are inside: where rings, which keep the inside
+  /// to their left, turn right. None where several rings meet, or go straight on.
+  std::optional<bool> is_inside_around(const Cell& corner_cell) const {
+    const Corner& at = corners_.at(key(corner(corner_cell)));
+    if (at.in.size() != 1 || at.out.size() != 1) return std::nullopt;
+    const GridEdge& out = *at.out.front();
+    const int turn = exact::turn(at.in.front()->from, out.from, out.to);
+    return turn == 0 ? std::nullopt : std::optional(turn < 0);
+  }
+
  private:
+  struct Corner {
+    std::vector<const GridEdge*> in, out;
+  };
+  static std::pair<double, double> key(const Vector2d& at) { return {at.x(), at.y()}; }
+
   const std::vector<GridEdge>& edges_;
+  std::map<std::pair<double, double>, Corner> corners_;
 };
 
 /// Calls `see` for the cells around a vertex until it returns true; whether one did.
@@ -135,7 +159,7 @@ bool any_cell_around(const Diagram::vertex_type& vertex, const See& see) {
 }
 
 /// Whether a place is inside, seen from one of its nearest sites: rings keep the inside to their
-/// left, and what is nearest to an edge lies beside it.
+/// left; what is nearest to an edge lies beside it, and between corners only what they turn from.
 bool is_inside(const Diagram::vertex_type& vertex, const Sites& sites, const Vector2d& at,
                const std::function<bool()>& is_contained) {
   bool is_left = false;
@@ -147,7 +171,12 @@ bool is_inside(const Diagram::vertex_type& vertex, const Sites& sites, const Vec
     return true;
   };
   if (any_cell_around(vertex, beside_edge)) return is_left;
-  return is_contained();  // between corners only: rare
+  std::optional<bool> is_inside;
+  const auto tells = [&](const Cell& cell) {
+    is_inside = sites.is_inside_around(cell);
+    return is_inside.has_value();
+  };
+  return any_cell_around(vertex, tells) ? *is_inside : is_contained();
 }
 
 // A ring without a fork begins at the first node: nodes by place, edges by nodes.

@@ -1,6 +1,7 @@
 #include "roadbed/map/derived/lane_relations.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace roadbed::map::inline derived {
 namespace {
@@ -11,23 +12,57 @@ std::vector<LaneId> sorted(std::vector<LaneId> lanes) {
   return lanes;
 }
 
-/// Goes from lane to lane across the borders of one side; `side` names the member of the links.
-std::optional<LaneId> first_against(const LaneGraph& graph, LaneId lane,
-                                    std::optional<Neighbour> LaneLinks::*side) {
-  for (std::size_t steps = 0; steps < graph.size(); ++steps) {  // neighbours may form a circle
-    const std::optional<Neighbour>& beside = graph.of(lane).*side;
-    if (!beside) return std::nullopt;
-    if (!beside->same_direction) return beside->lane;
-    lane = beside->lane;
+/// Goes from lane to lane across the borders of one side, each only once; `side` names the member
+/// of the links.
+class FirstAgainst {
+ public:
+  FirstAgainst(const LaneGraph& graph, std::optional<Neighbour> LaneLinks::*side)
+      : graph_(graph), side_(side), found_(graph.size()), is_met_(graph.size(), false) {}
+
+  std::vector<std::optional<LaneId>> of_all() {
+    for (std::uint32_t i = 0; i < graph_.size(); ++i) {
+      if (!is_met_[i]) look_from(LaneId{i});
+    }
+    return std::move(found_);
   }
-  return std::nullopt;
-}
+
+ private:
+  void look_from(LaneId lane) {
+    std::vector<std::size_t> passed;
+    std::optional<LaneId> against;
+    while (true) {
+      is_met_[lane.index] = true;
+      passed.push_back(lane.index);
+      const std::optional<Neighbour>& beside = graph_.of(lane).*side_;
+      if (!beside) break;
+      if (!beside->same_direction) {
+        against = beside->lane;
+        break;
+      }
+      lane = beside->lane;
+      if (is_met_[lane.index]) {  // neighbours may form a circle: then nothing was found yet
+        against = found_[lane.index];
+        break;
+      }
+    }
+    for (const std::size_t i : passed) found_[i] = against;
+  }
+
+  const LaneGraph& graph_;
+  std::optional<Neighbour> LaneLinks::*side_;
+  std::vector<std::optional<LaneId>> found_;
+  std::vector<bool> is_met_;
+};
 
 }  // namespace
 
-std::optional<LaneId> opposite_lane(const LaneGraph& graph, LaneId lane) {
-  const std::optional<LaneId> left = first_against(graph, lane, &LaneLinks::left);
-  return left ? left : first_against(graph, lane, &LaneLinks::right);
+std::vector<std::optional<LaneId>> opposite_lanes(const LaneGraph& graph) {
+  std::vector<std::optional<LaneId>> left = FirstAgainst(graph, &LaneLinks::left).of_all();
+  const std::vector<std::optional<LaneId>> right = FirstAgainst(graph, &LaneLinks::right).of_all();
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (!left[i]) left[i] = right[i];
+  }
+  return left;
 }
 
 std::vector<Merge> merges(const LaneGraph& graph) {

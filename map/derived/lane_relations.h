@@ -7,9 +7,9 @@
 
 namespace roadbed::map::inline derived {
 
-/// The nearest lane beside this one that runs against it, across any lanes of its own direction
-/// that lie between; none on a one-way road. O(lanes of the section).
-std::optional<LaneId> opposite_lane(const LaneGraph& graph, LaneId lane);
+/// Of each lane the nearest one beside it that runs against it, across any lanes of its own
+/// direction that lie between; none on a one-way road. O(lanes).
+std::vector<std::optional<LaneId>> opposite_lanes(const LaneGraph& graph);
 
 /// Lanes that lead into one lane.
 struct Merge {

@@ -124,16 +124,14 @@ Layer lanes_layer(const RoadMap& road_map) {
                                         {"right", ColumnKind::text},
                                         {"opposite", ColumnKind::text},
                                         {"attributes", ColumnKind::list}});
+  const std::vector<std::optional<LaneId>> opposite = opposite_lanes(road_map.graph());
   for (const Lane& lane : road_map.lanes()) {
     const LaneLinks& links = road_map.graph().of(lane.id);
-    std::vector<Value> more = {geometry::signed_area_m2(lane.polygon),
-                               lane.one_way,
-                               names_of(road_map, links.successors),
-                               names_of(road_map, links.predecessors),
-                               neighbour_name(road_map, links.left),
-                               neighbour_name(road_map, links.right),
-                               lane_name(road_map, opposite_lane(road_map.graph(), lane.id)),
-                               text_of(lane.attributes)};
+    std::vector<Value> more = {
+        geometry::signed_area_m2(lane.polygon),       lane.one_way,
+        names_of(road_map, links.successors),         names_of(road_map, links.predecessors),
+        neighbour_name(road_map, links.left),         neighbour_name(road_map, links.right),
+        lane_name(road_map, opposite[lane.id.index]), text_of(lane.attributes)};
     layer.features.push_back(
         {ring_shape(lane.polygon), joined(lane_values(road_map, lane), std::move(more))});
   }

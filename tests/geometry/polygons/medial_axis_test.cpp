@@ -112,6 +112,23 @@ TEST(MedialAxis, ABayShorterThanTheRoadIsWideIsPrunedAndASideRoadIsNot) {
   EXPECT_THAT(medial_axis(with_bay(30)), SizeIs(3));
 }
 
+TEST(MedialAxis, RunsThroughThePlacesBetweenFourPosts) {
+  Polygon field{{{0, 0}, {47, 0}, {47, 47}, {0, 47}}, {}};
+  for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 5; ++y) {
+      const Vector2d at(9.0 * x + 3.0, 9.0 * y + 3.0);
+      field.holes.push_back({at, at + Vector2d(0, 4), at + Vector2d(4, 4), at + Vector2d(4, 0)});
+    }
+  }
+  const VoronoiGraph graph = interior_voronoi(field);
+  int between = 0;  // nearest to corners only
+  for (const auto& node : graph.nodes) {
+    EXPECT_TRUE(contains(field, node.at)) << node.at.transpose();
+    between += std::abs(node.clearance_m - 2.5 * std::sqrt(2.0)) < 1e-6;
+  }
+  EXPECT_EQ(between, 16);
+}
+
 TEST(MedialAxis, EveryPlaceIsHalfItsWidthFromTheBoundary) {
   std::mt19937 random(20261121);
   std::uniform_real_distribution<double> radius(8.0, 20.0);

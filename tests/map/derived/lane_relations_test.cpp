@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "roadbed/tests/support/made_maps.h"
 
 namespace roadbed::map {
@@ -12,20 +15,33 @@ TEST(OppositeLane, IsAcrossTheMiddleOfTheRoad) {
   const LaneId outer = made.add_lane(RoadId{0}, "-2", {{0, -3.5}, {50, -3.5}}, {{0, -7}, {50, -7}});
   made.put_beside(LaneId{0}, outer);
   const RoadMap road_map = made.build();
-  EXPECT_EQ(opposite_lane(road_map.graph(), LaneId{0}), LaneId{1});
-  EXPECT_EQ(opposite_lane(road_map.graph(), LaneId{1}), LaneId{0});
-  EXPECT_EQ(opposite_lane(road_map.graph(), outer), LaneId{1});
+  const auto opposite = opposite_lanes(road_map.graph());
+  EXPECT_EQ(opposite[0], LaneId{1});
+  EXPECT_EQ(opposite[1], LaneId{0});
+  EXPECT_EQ(opposite[outer.index], LaneId{1});
 }
 
 TEST(OppositeLane, IsMissingOnAOneWayRoad) {
   const RoadMap road_map = tests::three_roads_in_a_row().build();
-  EXPECT_FALSE(opposite_lane(road_map.graph(), LaneId{0}).has_value());
+  EXPECT_FALSE(opposite_lanes(road_map.graph())[0].has_value());
 }
 
 TEST(OppositeLane, ComesToAnEndWhereNeighboursFormACircle) {
   const LaneGraph graph(
       {{{}, {}, Neighbour{LaneId{1}, true, {}}, {}}, {{}, {}, Neighbour{LaneId{0}, true, {}}, {}}});
-  EXPECT_FALSE(opposite_lane(graph, LaneId{0}).has_value());
+  EXPECT_FALSE(opposite_lanes(graph)[0].has_value());
+}
+
+TEST(OppositeLane, IsThatOfEveryLaneOnTheWayThere) {
+  constexpr std::uint32_t kLanes = 50;  // the last one runs against the others
+  std::vector<LaneLinks> links(kLanes);
+  for (std::uint32_t i = 0; i + 1 < kLanes; ++i) {
+    links[i].left = Neighbour{LaneId{i + 1}, i + 2 < kLanes, {}};
+  }
+  links[kLanes - 1].left = Neighbour{LaneId{kLanes - 2}, false, {}};
+  const auto opposite = opposite_lanes(LaneGraph(links));
+  for (std::uint32_t i = 0; i + 1 < kLanes; ++i) EXPECT_EQ(opposite[i], LaneId{kLanes - 1}) << i;
+  EXPECT_EQ(opposite[kLanes - 1], LaneId{kLanes - 2});
 }
 
 TEST(Merges, AreWhereLanesShareASuccessor) {
