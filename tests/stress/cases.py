@@ -145,6 +145,9 @@ CASES = [
     Case("job lines", inputs.job_lines, 100, BATCH),
 ]
 
+# What grows faster than it should: the exponent that it may have, and why it has it.
+KNOWN_EXPONENTS: dict[tuple[str, str], tuple[float, str]] = {}
+
 
 def all_cases(pattern: str):
     return [case for case in CASES if fnmatchcase(case.name, pattern)]

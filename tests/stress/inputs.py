@@ -559,10 +559,10 @@ def bt_checked(folder: Path, n: int) -> Path:
 
 
 def job_lines(folder: Path, n: int) -> Path:
+    """Jobs that are one, and as many lines that are refused."""
+    roads_apart(folder, 1)
+    job = json.dumps({"job": "validate", "inputs": ["in.xodr"]})
     return written(
         folder / "in.jsonl",
-        "".join(
-            json.dumps({"job": "locate", "inputs": {"map": "m"}, "options": {"at": [i, 0]}}) + "\n"
-            for i in range(n)
-        ),
+        "".join(f'{job}\n{{"job": "locate", "inputs": [{i}]}}\n' for i in range(n)),
     )
