@@ -68,6 +68,8 @@ std::string well_known_text(const std::string& crs) {
   return wkt.data();
 }
 
+void open_projection_module() { function_of_module("libroadbed_proj", "roadbed_proj_wkt"); }
+
 std::optional<int> epsg_code(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
   if (!crs.starts_with(kPrefix)) return std::nullopt;

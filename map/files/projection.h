@@ -21,6 +21,9 @@ void from_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points);
 /// The horizontal part of a system as well-known text (WKT 1). Throws as above.
 std::string well_known_text(const std::string& crs);
 
+/// Opens PROJ, where it is installed, as the first use of it does.
+void open_projection_module();
+
 /// The number of a system that names itself "EPSG:25832"; none otherwise.
 std::optional<int> epsg_code(const std::string& crs);
 

@@ -18,8 +18,8 @@
 
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
-#include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/input_cache.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/commands/commands.h"

@@ -1,4 +1,4 @@
-#include "roadbed/tools/batch/batch_summary.h"
+#include "roadbed/tools/batch/batch_results.h"
 
 #include <fmt/format.h>
 

@@ -94,9 +94,10 @@ void list_missing(const BatchOptions& options, const JobKinds& kinds, const Resu
   std::set<JobHash> listed;
   while (const auto line = lines.next()) {
     try {
-      const std::string hash = hash_of(parse_job(line->text, kinds), files);
+      const Job job = parse_job(line->text, kinds);
+      const std::string hash = hash_of(job, files);
       const JobHash key = *parse_hash(hash);
-      if (store.stands(key) || !listed.insert(key).second) continue;
+      if (store.stands(key, &job) || !listed.insert(key).second) continue;
       fmt::print(out, "{}\t{}\n", hash, line->text);
     } catch (const map::InputError&) {
       continue;  // the batch itself says what is wrong with it
@@ -150,7 +151,7 @@ std::optional<BatchRun::Taken> BatchRun::take() {
 void BatchRun::bring(const Taken& taken, JobRunner& runner) {
   const JobLines::Line& line = taken.line;
   const auto keep_bad = [&](const std::string& reason) {
-    if (claim(taken.index, *parse_hash(hash_of_bad_line(line.text)))) {
+    if (claim(taken.index, *parse_hash(hash_of_bad_line(line.text)), nullptr)) {
       store_.add(line_of_bad_line(line.text, reason));
       progress_.done_one();
     }
@@ -169,7 +170,7 @@ void BatchRun::bring(const Taken& taken, JobRunner& runner) {
     is_complete_ = false;
     return;
   }
-  if (!claim(taken.index, *parse_hash(hash))) return;
+  if (!claim(taken.index, *parse_hash(hash), &*job)) return;
   if (options_.merges) {
     const std::scoped_lock lock(mutex_);
     ++missing_;
@@ -180,13 +181,22 @@ void BatchRun::bring(const Taken& taken, JobRunner& runner) {
 }
 
 // Whether the job of this hash is to be run now.
-bool BatchRun::claim(std::size_t index, const JobHash& hash) {
+bool BatchRun::claim(std::size_t index, const JobHash& hash, const Job* job) {
+  {
+    const std::scoped_lock lock(mutex_);
+    order_[index].hash = hash;
+    const auto [found, is_first] = were_there_by_hash_.try_emplace(hash, false);
+    if (!is_first) {
+      if (found->second) ++were_there_;
+      progress_.skip_one();
+      return false;
+    }
+  }
+  const bool stands = store_.stands(hash, job, options_.merges);  // reads files: not under the lock
   const std::scoped_lock lock(mutex_);
-  order_[index].hash = hash;
-  const auto [claim, is_first] = were_there_by_hash_.try_emplace(hash, false);
-  if (is_first) claim->second = store_.stands(hash, options_.merges);
-  if (claim->second) ++were_there_;
-  if (is_first && !claim->second) return true;
+  were_there_by_hash_[hash] = stands;
+  if (!stands) return true;
+  ++were_there_;
   progress_.skip_one();
   return false;
 }

@@ -78,7 +78,7 @@ class BatchRun {
   void work(JobRunner& runner);
   std::optional<Taken> take();
   void bring(const Taken& taken, JobRunner& runner);
-  bool claim(std::size_t index, const JobHash& hash);
+  bool claim(std::size_t index, const JobHash& hash, const Job* job);
   void run_job_of(const JobLines::Line& line, const Job& job, const std::string& hash,
                   JobRunner& runner);
   void keep_time(const Job& job, const std::string& hash, double wall_s);

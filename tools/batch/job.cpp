@@ -129,7 +129,7 @@ void add_inputs(const json& value, const FilesNamed* named, std::vector<JobInput
 }
 
 const std::string& program() {
-  static const std::string text = version() + " " + build_id();
+  static const std::string text = version() + " " + build_id() + " " + libraries_id();
   return text;
 }
 

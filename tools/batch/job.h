@@ -35,9 +35,9 @@ struct JobInput {
 };
 std::vector<JobInput> inputs_of(const Job& job);
 
-/// What a job is known by: SHA-256 (64 hexadecimal digits) over the program's build (see build_id),
-/// the job as its line says it (the order of options and outputs does not matter), and the contents
-/// of every file that it reads. Two jobs of one hash have one result.
+/// What a job is known by: SHA-256 (64 hexadecimal digits) over the program's build and its
+/// libraries (see build_id), the job as its line says it (the order of options and outputs does not
+/// matter), and the contents of every file that it reads. Two jobs of one hash have one result.
 std::string hash_of(const Job& job, FileHashes& files);
 
 /// That of a line which is no job.
@@ -57,6 +57,10 @@ std::vector<JobOutput> outputs_of(const Job& job, const std::string& hash,
 /// The files that are there of these outputs, relative to the folder, sorted.
 std::vector<std::string> files_of(const std::vector<JobOutput>& outputs,
                                   const std::filesystem::path& folder);
+
+/// SHA-256 of a file that a job wrote, which may be empty.
+/// @throws InputError if it cannot be read.
+std::string sha256_of_output(const std::filesystem::path& file);
 
 /// Removes whatever a job left in the folder, half-written files too.
 void remove_files_of(const std::string& hash, const std::filesystem::path& folder);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "roadbed/map/files/sha256.h"
+
 namespace roadbed::tools::inline batch {
 namespace {
 
@@ -66,6 +68,12 @@ std::vector<std::string> files_of(const std::vector<JobOutput>& outputs, const f
   }
   std::ranges::sort(files);
   return files;
+}
+
+std::string sha256_of_output(const fs::path& file) {
+  std::error_code error;
+  const bool is_empty = fs::file_size(file, error) == 0 && !error;
+  return is_empty ? map::sha256_of_bytes("") : map::sha256_of_file(file);
 }
 
 void remove_files_of(const std::string& hash, const fs::path& folder) {

@@ -28,7 +28,7 @@ std::string line(const JobResult& result, const json& kind, const std::string& r
          ",\"reason\":" + json_text(result.reason) +
          ",\"cause\":" + (result.cause ? json_text(to_string(*result.cause)) : "null") + rest +
          ",\"result\":" + (result.document.empty() ? "null" : result.document) +
-         ",\"files\":" + json_text(result.files) + "}";
+         ",\"files\":" + json_text(result.files) + ",\"sha256\":" + json_text(result.sha256) + "}";
 }
 
 std::string one_line(std::string text) {
@@ -67,12 +67,12 @@ std::optional<JobHash> hash_in(const json& head) {
                                                  : std::nullopt;
 }
 
-bool read_files(const json& head, std::vector<std::string>& files) {
-  const auto list = head.find("files");
+bool read_texts(const json& head, const char* key, std::vector<std::string>& texts) {
+  const auto list = head.find(key);
   if (list == head.end() || !list->is_array()) return false;
-  for (const json& file : *list) {
-    if (!file.is_string()) return false;
-    files.push_back(file.get<std::string>());
+  for (const json& text : *list) {
+    if (!text.is_string()) return false;
+    texts.push_back(text.get<std::string>());
   }
   return true;
 }
@@ -131,8 +131,12 @@ std::optional<ResultHead> read_head(std::string_view line) {
   const auto status = by_name<JobStatus>(head.value("status", json()), JobStatus::done,
                                          JobStatus::no, JobStatus::failed);
   const json cause = head.value("cause", json());
-  ResultHead result{.hash = {}, .status = JobStatus::failed, .cause = {}, .files = {}};
-  if (!hash || !status || !read_files(head, result.files)) return {};
+  ResultHead result{
+      .hash = {}, .status = JobStatus::failed, .cause = {}, .files = {}, .sha256 = {}};
+  if (!hash || !status || !read_texts(head, "files", result.files) ||
+      !read_texts(head, "sha256", result.sha256) || result.files.size() != result.sha256.size()) {
+    return {};
+  }
   result.hash = *hash;
   result.status = *status;
   result.cause = by_name<Cause>(cause, Cause::line, Cause::input, Cause::changed, Cause::crash,

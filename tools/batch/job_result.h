@@ -46,12 +46,13 @@ struct JobResult {
   std::string reason = {};          ///< of `no` and `failed`, one line
   std::optional<Cause> cause = {};  ///< of `failed`
   std::string document = {};        ///< JSON that the command printed, on one line; may be empty
-  std::vector<std::string> files = {};  ///< relative to the folder of the batch
+  std::vector<std::string> files = {};   ///< relative to the folder of the batch
+  std::vector<std::string> sha256 = {};  ///< of each of them, hexadecimal
 };
 
 /// The line of a result, without its end:
 /// `{"hash":…,"job":…,"status":…,"exit":…,"reason":…,"cause":…,"inputs":…,"options":…,"outputs":…,
-/// "result":…,"files":…}`.
+/// "result":…,"files":…,"sha256":…}`.
 std::string line_of(const Job& job, const JobResult& result);
 
 /// The line of one that is no job.
@@ -76,7 +77,7 @@ struct ResultHead {
   JobHash hash;
   JobStatus status;
   std::optional<Cause> cause;
-  std::vector<std::string> files;
+  std::vector<std::string> files, sha256;  ///< as many of both
 
   /// Whether the same job may come to something else another time.
   bool may_change() const { return cause && may_pass(*cause); }

@@ -112,6 +112,9 @@ JobResult run_command(const Job& job, const std::string& hash, const fs::path& f
                    .exit = static_cast<int>(exit),
                    .document = compact_json(out.view()),
                    .files = files_of(outputs, folder)};
+  for (const std::string& file : result.files) {
+    result.sha256.push_back(sha256_of_output(folder / file));
+  }
   if (exit != Exit::ok) {
     result.reason = verdict_of(job.kind->name, nlohmann::json::parse(result.document)).text;
   }

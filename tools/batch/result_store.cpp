@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
+#include "roadbed/tools/batch/batch_summary.h"
+#include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/job_lines.h"
 #include "roadbed/tools/files/streamed_output.h"
 
@@ -47,11 +50,34 @@ fs::path next_journal(const fs::path& folder) {
                          .remedy = "check its rights, or remove it: its jobs run again"});
 }
 
-bool are_there(const std::vector<std::string>& files, const fs::path& folder) {
-  return std::ranges::all_of(files, [&](const std::string& file) {
-    std::error_code error;
-    return fs::exists(folder / file, error);
+bool is_as_it_was(const fs::path& folder, const std::string& file, const std::string& sha256) {
+  const fs::path path = fs::path(file).lexically_normal();
+  if (path.is_absolute() || *path.begin() == "..") return false;
+  try {
+    return sha256_of_output(folder / path) == sha256;
+  } catch (const map::InputError&) {  // it is gone
+    return false;
+  }
+}
+
+bool are_as_they_were(const ResultHead& head, const fs::path& folder) {
+  return std::ranges::equal(head.files, head.sha256, [&](const auto& file, const auto& sha256) {
+    return is_as_it_was(folder, file, sha256);
   });
+}
+
+// Journals are no more to be believed than other inputs.
+bool is_result_of(const std::string& line, const Job* job) {
+  const auto result = nlohmann::json::parse(line, nullptr, false);
+  try {
+    BatchSummary(1).add(1, line);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  if (job == nullptr) return result.at("job").is_null();
+  return result.at("job") == job->kind->name && result.at("inputs") == job->inputs &&
+         result.at("options") == job->options &&
+         result.value("outputs", nlohmann::json()) == job->outputs;
 }
 
 }  // namespace
@@ -70,7 +96,7 @@ void ResultStore::read_journal(std::uint32_t index) {
   while (const auto line = lines.next()) {
     if (!line->is_whole || line->is_too_long) continue;
     const auto head = read_head(line->text);
-    if (!head || !are_there(head->files, folder_)) continue;
+    if (!head) continue;
     note(*head, {.journal = index,
                  .is_answer = head->status != JobStatus::failed,
                  .may_change = head->may_change(),
@@ -84,10 +110,15 @@ void ResultStore::note(const ResultHead& head, const Entry& entry) {
   if (is_new || entry.is_answer || !found->second.is_answer) found->second = entry;
 }
 
-bool ResultStore::stands(const JobHash& hash, bool keeps_failed) const {
-  const std::scoped_lock lock(mutex_);
-  const auto found = entries_.find(hash);
-  return found != entries_.end() && (keeps_failed || !found->second.may_change);
+bool ResultStore::stands(const JobHash& hash, const Job* job, bool keeps_failed) const {
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = entries_.find(hash);
+    if (found == entries_.end() || (found->second.may_change && !keeps_failed)) return false;
+  }
+  const std::string text = line(hash);
+  const auto head = read_head(text);
+  return head && head->hash == hash && is_result_of(text, job) && are_as_they_were(*head, folder_);
 }
 
 void ResultStore::add(std::string_view line) {

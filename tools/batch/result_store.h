@@ -27,14 +27,16 @@ struct LineResult {
 class ResultStore {
  public:
   /// Reads all journals, and makes nothing; of several results of a job an answer counts before a
-  /// failure, else the last one of the last journal by name. What is no whole line, or names a file
-  /// that is gone, does not count.
+  /// failure, else the last one of the last journal by name. What is no whole line does not
+  /// count.
   /// @throws InputError if a journal cannot be read.
   explicit ResultStore(std::filesystem::path folder);
 
   /// Whether there is a result that the same job would come to again, or just any with
-  /// `keeps_failed`.
-  bool stands(const JobHash& hash, bool keeps_failed = false) const;
+  /// `keeps_failed`. A line that is no result, or one of another job, and one whose files are gone
+  /// or not as they were, do not count. Reads these files.
+  /// @param job  null for a line that is none.
+  bool stands(const JobHash& hash, const Job* job, bool keeps_failed = false) const;
 
   /// Adds a result to this run's journal, in place of any before.
   /// @throws OutputError if it cannot be written.

@@ -18,4 +18,9 @@ std::string name_and_version();
 /// change of the code. Empty where the linker wrote none.
 std::string build_id();
 
+/// A hash of the build ids of all libraries that the program has loaded, with PROJ, which some
+/// outputs need: SHA-256, hexadecimal. Another one after an update of any of them. Of a library
+/// without a build id its bytes count.
+std::string libraries_id();
+
 }  // namespace roadbed::tools::cli

@@ -10,8 +10,8 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
-#include "roadbed/tools/batch/batch_summary.h"
 #include "roadbed/tools/batch/folder_lock.h"
 #include "roadbed/tools/batch/memory.h"
 #include "roadbed/tools/batch/serve_process.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/tests/support/sha256sum.h"
 #include "roadbed/tests/tools/batch/batch_runs.h"
 
 namespace roadbed::tests {
@@ -147,6 +149,100 @@ TEST(BatchCommand, RunsAgainAJobOneOfWhoseFilesIsGone) {
   std::filesystem::remove(folder / results_in(folder.path())[2]["files"][0].get<std::string>());
   EXPECT_THAT(batch(jobs, folder.path()).out, HasSubstr("12 were there already"));
   EXPECT_TRUE(outputs_of_batch(folder.path()) == first);
+}
+
+TEST(BatchCommand, RunsAgainAJobOneOfWhoseFilesIsNotAsItWas) {
+  const TemporaryFolder inputs, folder;
+  const std::string jobs = inputs.write("jobs.jsonl", audit_jobs(inputs, 5));
+  batch(jobs, folder.path());
+  const auto first = outputs_of_batch(folder.path());
+  const std::string file = results_in(folder.path())[2]["files"][1];
+  std::string bytes = bytes_of(folder / file);
+  bytes[bytes.size() / 2] ^= 1;
+  folder.write(file, bytes);
+  EXPECT_EQ(batch(jobs, folder.path(), {"--merge"}).status, 3);
+  EXPECT_THAT(batch(jobs, folder.path()).out, HasSubstr("4 were there already"));
+  EXPECT_TRUE(outputs_of_batch(folder.path()) == first);
+}
+
+// The folder's journal, with one of its lines in place of what it was.
+void tamper(const TemporaryFolder& folder, std::size_t which,
+            const std::function<void(json&)>& change) {
+  std::istringstream journal(bytes_of(folder / "journal/000001.jsonl"));
+  std::string lines;
+  for (std::string line; std::getline(journal, line);) {
+    if (which-- == 0) {
+      json result = json::parse(line);
+      change(result);
+      line = result.dump();
+    }
+    lines += line + "\n";
+  }
+  folder.write("journal/000001.jsonl", lines);
+}
+
+TEST(BatchCommand, RunsAgainOnlyTheJobWhoseLineWasTamperedWith) {
+  const TemporaryFolder inputs, calm;
+  const std::string jobs = inputs.write("jobs.jsonl", audit_jobs(inputs, 4));
+  batch(jobs, calm.path());
+  const auto first = outputs_of_batch(calm.path());
+  const std::string other = results_in(calm.path())[3]["hash"];
+  const std::vector<std::function<void(json&)>> changes = {
+      [](json& line) { line["job"] = "tea"; },
+      [](json& line) { line["job"] = 7; },
+      [](json& line) { line["job"] = "route"; },
+      [](json& line) {
+        line["inputs"] = {{"a", 1}};
+      },
+      [](json& line) {
+        line["inputs"] = {1, 2};
+      },
+      [](json& line) { line["options"] = "none"; },
+      [](json& line) { line.erase("options"); },
+      [](json& line) { line["options"]["inflate"] = 5; },
+      [](json& line) { line["outputs"] = 3; },
+      [](json& line) { line["status"] = "great"; },
+      [](json& line) { line["cause"] = "weather"; },
+      [](json& line) {
+        line["files"] = {{"a", 1}};
+      },
+      [](json& line) {
+        line["files"] = {"/etc/passwd", "/etc/passwd"};
+      },
+      [](json& line) {
+        line["files"] = {"../../x", ""};
+      },
+      [](json& line) { line["files"][0] = "journal"; },
+      [](json& line) { line["sha256"][0] = std::string(64, '0'); },
+      [](json& line) { line.erase("sha256"); },
+      [](json& line) { line.erase("hash"); },
+      [](json& line) { line["hash"] = std::string(64, 'f'); },
+      [&](json& line) { line["hash"] = other; },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const TemporaryFolder folder;
+    std::filesystem::copy(calm.path(), folder.path(), std::filesystem::copy_options::recursive);
+    std::filesystem::remove(folder / "results.jsonl");
+    tamper(folder, 1, changes[i]);
+    const ProgramRun run = batch(jobs, folder.path());
+    EXPECT_EQ(run.status, 0) << i << ": " << run.err;
+    EXPECT_THAT(run.out, HasSubstr("3 were there already")) << i;
+    EXPECT_EQ(outputs_of_batch(folder.path()).size(), first.size()) << i;
+  }
+}
+
+TEST(BatchCommand, WorksInAFolderOfOthersOnlyWithForce) {
+  const TemporaryFolder inputs, folder;
+  const std::string jobs =
+      inputs.write("jobs.jsonl", route_job_of("lane:1/0/-1@10", "lane:7/0/1@55").dump() + "\n");
+  folder.write("thesis.txt", "mine");
+  const ProgramRun run = batch(jobs, folder.path());
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.err, HasSubstr("holds files already"));
+  EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"thesis.txt"});
+  EXPECT_EQ(batch(jobs, folder.path(), {"--force"}).status, 0);
+  EXPECT_EQ(batch(jobs, folder.path()).status, 0);  // by now it is a batch's own
+  EXPECT_EQ(bytes_of(folder / "thesis.txt"), "mine");
 }
 
 TEST(BatchCommand, ListsWhatIsMissingByHashAndLine) {
@@ -293,8 +389,9 @@ TEST(BatchCommand, LetsWhatHasFailedStandWhereItMergesAndAnAnswerCountBeforeIt) 
   std::string one, two;
   std::getline(journal, one);
   std::getline(journal, two);
-  const json crash = {{"status", "failed"}, {"exit", nullptr},         {"cause", "crash"},
-                      {"result", nullptr},  {"reason", "worker lost"}, {"files", json::array()}};
+  const json crash = {{"status", "failed"},     {"exit", nullptr},         {"cause", "crash"},
+                      {"result", nullptr},      {"reason", "worker lost"}, {"files", json::array()},
+                      {"sha256", json::array()}};
   folder.write("journal/000001.jsonl", two + "\n");
   folder.write("journal/z.jsonl", changed_line(one, crash) + changed_line(two, crash));
   batch(jobs, folder.path(), {"--merge"});
@@ -314,7 +411,9 @@ TEST(BatchCommand, LinksFilesThatOthersHaveNamedAsTheyLike) {
   std::istringstream journal(bytes_of(folder / "journal/000001.jsonl"));
   std::string line;
   std::getline(journal, line);
-  folder.write("journal/000001.jsonl", changed_line(line, {{"files", {"50% #1?.txt"}}}));
+  const std::string sha256 = sha256sum_of_bytes("");
+  folder.write("journal/000001.jsonl",
+               changed_line(line, {{"files", {"50% #1?.txt"}}, {"sha256", json::array({sha256})}}));
   batch(jobs, folder.path(), {"--merge"});
   EXPECT_THAT(bytes_of(folder / "index.html"),
               HasSubstr("<a href=\"50%25%20%231%3F.txt\">50% #1?.txt</a>"));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -256,9 +257,11 @@ TEST(Batch, KnowsAJobByWhatSha256sumMakesOfProgramJobAndInputs) {
   const json job = route_job("lane:7/0/1@55");
   const ProgramRun listed = run_roadbed(
       {"batch", folder.write("jobs.jsonl", job.dump()), "-o", folder / "out", "--list-missing"});
-  std::string program = run_roadbed({"--version"}).out;  // "roadbed 0.1.0 (build abcd)\n…"
+  std::string program =
+      run_roadbed({"--version"}).out;  // "roadbed 0.1.0 (build ab, libraries cd)\n…"
   program = program.substr(0, program.find(')')).substr(std::string("roadbed ").size());
   program.replace(program.find("(build "), std::string("(build ").size(), "");
+  program.replace(program.find(", libraries "), std::string(", libraries ").size(), " ");
   const json town = json::array({kTownMap, sha256sum_of(kTownMap)});
   const json identity = json::array(
       {program, "route", job["inputs"], job["options"], json::array(), json::array({town})});
@@ -278,14 +281,35 @@ TEST(Serve, KnowsAJobOfAnotherProgramByAnotherHash) {
 
 TEST(Program, SaysTheBuildThatItsLinkerWroteIntoIt) {
   const std::string shown = run_roadbed({"--version"}).out;
-  const std::size_t begin = shown.find("(build ") + 7, end = shown.find(')');
+  const std::size_t begin = shown.find("(build ") + 7, end = shown.find(", libraries ");
   ASSERT_EQ(end - begin, 40U) << shown;
-  EXPECT_LT(end, shown.find('\n'));
+  EXPECT_EQ(shown.find('\n'), end + 12 + 64 + 1);
   std::string note("GNU\0", 4);
   for (std::size_t i = begin; i < end; i += 2) {
     note += static_cast<char>(std::stoi(shown.substr(i, 2), nullptr, 16));
   }
   EXPECT_NE(bytes_of(program_file()).find(note), std::string::npos);
+}
+
+// An update of a library is another build id; here it is one library more.
+TEST(Program, SaysAnotherHashOfItsLibrariesWhereOneIsAnother) {
+  const std::string shown = run_roadbed({"--version"}).out;
+  EXPECT_EQ(run_roadbed({"--version"}).out, shown);
+  const TemporaryFolder folder;
+  const std::string library = (folder / "libmore.so").string();
+  const std::string make =
+      "echo 'int roadbed_more = 1;' | c++ -shared -fPIC -Wl,--build-id=sha1 "
+      "-x c++ - -o '" +
+      library + "'";
+  ASSERT_EQ(std::system(make.c_str()), 0);
+  ::setenv("LD_PRELOAD", library.c_str(), 1);
+  ::setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);  // where the program is sanitized
+  const std::string other = run_roadbed({"--version"}).out;
+  ::unsetenv("ASAN_OPTIONS");
+  ::unsetenv("LD_PRELOAD");
+  const std::size_t end = shown.find(", libraries ");
+  EXPECT_EQ(other.substr(0, end), shown.substr(0, end));
+  EXPECT_NE(other.substr(0, other.find('\n')), shown.substr(0, shown.find('\n')));
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ def result_line(hash_: str, options: dict[str, object]) -> str:
     return json.dumps({"hash": hash_, "job": "audit", "status": "done", "exit": 0, "reason": "",
                        "cause": None, "inputs": [], "options": options, "outputs": [],
                        "result": {"verdict": "clear", "least_clearance_m": 0.5},
-                       "files": []})  # fmt: skip
+                       "files": [], "sha256": []})  # fmt: skip
 
 
 def client_rows(folder: Path) -> None:

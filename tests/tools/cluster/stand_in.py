@@ -78,6 +78,7 @@ def answer(line: str, output: Path) -> dict[str, object]:
         "outputs": [],
         "result": result if status != "failed" else None,
         "files": files,
+        "sha256": [hashlib.sha256((output / name).read_bytes()).hexdigest() for name in files],
     }
 
 

@@ -80,6 +80,7 @@ def _run(options: argparse.Namespace) -> int:
             chunk_s=options.chunk,
             wait_for_workers_s=options.wait,
             tables=not options.no_tables,
+            force=options.force,
             quiet=options.quiet,
         ),
     )
@@ -161,6 +162,9 @@ def _run_parser() -> argparse.ArgumentParser:
     )
     _add_cluster_options(parser)
     _add_job_options(parser)
+    parser.add_argument(
+        "--force", action="store_true", help="work in a folder that holds files and is no batch's"
+    )
     parser.add_argument("--no-tables", action="store_true", help="write no Parquet tables")
     parser.add_argument("--quiet", action="store_true", help="no progress and no notes")
     return parser

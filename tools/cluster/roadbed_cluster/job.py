@@ -54,5 +54,6 @@ def failed_line(job: Job, reason: str, cause: str) -> str:
         "outputs": sorted(asked.get("outputs", [])),
         "result": None,
         "files": [],
+        "sha256": [],
     }
     return json.dumps(result, ensure_ascii=False, separators=(",", ":"))

@@ -21,12 +21,15 @@ class Journal:
     that fails (full disk) leaves the file as it was before.
     """
 
-    def __init__(self, output: Path) -> None:
+    def __init__(self, output: Path, force: bool = False) -> None:
         """Lock `output` as `roadbed batch` does, and open the journal in it.
 
         Raises:
-            RunStopped: if another run has it, or it cannot be written.
+            RunStopped: if another run has it, it cannot be written, or without `force` it holds
+                files and is no batch's.
         """
+        if not force and output.is_dir() and not _is_of_batch(output):
+            raise RunStopped(f"{output}: holds files already; give --force to work in it")
         self._path = output / "journal" / "cluster.jsonl"
         self._files: list[int] = []
         #: What stands in the folder's `MARK` during this run, so that workers know the folder.
@@ -87,6 +90,13 @@ class Journal:
         """Sync and close."""
         os.fsync(self._file)
         self.close()
+
+
+def _is_of_batch(output: Path) -> bool:
+    """Return whether a folder is empty, or one that batches have been at work in."""
+    if (output / "journal").is_dir() or (output / MARK).exists():
+        return True
+    return all(entry.name == "lock" for entry in output.iterdir())
 
 
 def _end_of_lines(file: int) -> int:

@@ -25,6 +25,7 @@ class RunOptions:
     chunk_s: float = 1.5
     wait_for_workers_s: float = 60.0
     tables: bool = True
+    force: bool = False
     quiet: bool = False
 
 
@@ -58,7 +59,7 @@ def _run_missing(batch: Batch, version: str, cluster: ClusterOptions, options: R
 
     begin = time.monotonic()
     progress = Progress(options.quiet)
-    with Journal(batch.output) as journal, connect(cluster) as client:
+    with Journal(batch.output, options.force) as journal, connect(cluster) as client:
         serve = ServeOptions(
             program=batch.program,
             version=version,
