@@ -52,7 +52,7 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) 
 
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options) {
-  write_output(file, format_to_write(file).write(road_map, options));
+  write_output(file, format_to_write(file).write(road_map, options), true);
 }
 
 }  // namespace roadbed::map

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -80,12 +81,17 @@ Exit run_guarded(Command& command, const CommonOptions& common) {
   }
 }
 
+// The first line tells programs apart that may come to different results.
+std::string version_text() {
+  return name_and_version() + " (build " + build_id() + ", libraries " + libraries_id() +
+         ")\n" ROADBED_LIBRARIES;
+}
+
 int run_command_line(int argc, char** argv) {
   CLI::App app("Digital road maps to exact lanes, routes, drives and collision audits");
   app.name("roadbed");
   app.formatter(make_help_formatter());
-  app.set_version_flag("--version",
-                       name_and_version() + " (build " + build_id() + ")\n" ROADBED_LIBRARIES);
+  app.set_version_flag("--version", version_text);
   app.fallthrough();
   app.failure_message(usage_message);
 
@@ -117,6 +123,12 @@ int run_command_line(int argc, char** argv) {
   }
   for (const Registered& registered : commands) {
     if (registered.arguments.given()) {
+      common.input_files = registered.arguments.input_files();
+      const std::string fault = registered.arguments.output_fault(common.input_files);
+      if (!fault.empty()) {
+        fmt::print(std::cerr, "roadbed: {}\n", fault);
+        return static_cast<int>(Exit::usage);
+      }
       return static_cast<int>(run_guarded(*registered.command, common));
     }
   }
@@ -127,6 +139,7 @@ int run_command_line(int argc, char** argv) {
 
 int run_program(int argc, char** argv) {
   hold_closed_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing
   StandardOutput standard_output;
   const StandardError standard_error;
   const int status = run_command_line(argc, argv);

@@ -4,115 +4,82 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <cstring>
+#include <cstdio>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "roadbed/map/files/read_file.h"
 
 namespace roadbed::map::inline storage {
 namespace {
 
-[[noreturn]] void refuse_output(const std::filesystem::path& file, const std::string& found,
-                                const std::string& remedy) {
-  throw OutputError({.file = file.string(), .found = found, .remedy = remedy});
-}
-
-[[noreturn]] void refuse_write(const std::filesystem::path& file) {
-  refuse_output(file, std::string("cannot be written: ") + std::strerror(errno),
-                "free some space or choose another folder");
-}
-
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
-/// Where a link leads, so that it is not the link that is replaced.
-std::filesystem::path behind_links(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_symlink(file, error)) return file;
-  const std::filesystem::path target = std::filesystem::canonical(file, error);
-  return error ? file : target;
+[[noreturn]] void refuse_existing(const std::filesystem::path& file) {
+  refuse_output(file, "exists already", "give --force to replace it");
 }
 
 /// Replaced by a file, a device such as /dev/null would be lost to all programs.
-void refuse_other_than_file(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (std::filesystem::is_directory(status))
-    refuse_output(file, "is a folder", "name a file in it");
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+OutputPlace look_at_file(const std::filesystem::path& file) {
+  OutputPlace place = look_at_output(file);
+  if (!place.there) return place;
+  if (S_ISDIR(place.there->st_mode)) refuse_output(file, "is a folder", "name a file in it");
+  if (!S_ISREG(place.there->st_mode)) {
     refuse_output(file, "is a device or a pipe, which a file would replace", "name a file");
   }
+  return place;
 }
 
-void sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // the file itself is synced; some systems refuse to open folders
-  ::fsync(descriptor);
+std::string name_of_descriptor(int descriptor) {
+  return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+/// A file without a name; negative where there are none, or none that can be named later.
+int open_nameless(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0 || ::access(name_of_descriptor(descriptor).c_str(), F_OK) == 0) {
+    return descriptor;
+  }
   ::close(descriptor);
+  return -1;
 }
 
 }  // namespace
 
 void check_writable(const std::filesystem::path& file, bool force) {
   if (is_standard_stream(file)) return;
-  const auto folder = folder_of(behind_links(file));
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) {
+  if (!std::filesystem::is_directory(folder_around(file), error)) {
     refuse_output(file, "cannot be written: its folder does not exist", "make the folder first");
   }
-  refuse_other_than_file(file);
-  if (std::filesystem::exists(file, error) && !force) {
-    refuse_output(file, "exists already", "give --force to replace it");
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
+  const OutputPlace place = look_at_file(file);
+  if (place.there && !force) refuse_existing(file);
+  if (::access(folder_around(place.path).c_str(), W_OK) != 0) {
     refuse_output(file, std::string("cannot be written: ") + std::strerror(errno),
                   "choose a folder that you may write to");
   }
 }
 
-void make_output_folder(const std::filesystem::path& folder, bool force) {
-  std::error_code error;
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error)) {
-    refuse_output(folder, "exists and is not a folder", "choose another place");
-  }
-  if (std::filesystem::is_directory(folder, error)) {
-    if (!std::filesystem::is_empty(folder, error) && !force) {
-      refuse_output(folder, "holds files already", "give --force to replace them");
-    }
-  } else if (!std::filesystem::create_directories(folder, error)) {
-    refuse_output(folder, "cannot be made: " + error.message(),
-                  "choose a folder that you may write to");
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    refuse_output(folder, std::string("cannot be written: ") + std::strerror(errno),
-                  "choose a folder that you may write to");
-  }
-}
-
-OutputFile::OutputFile(const std::filesystem::path& file) : file_(behind_links(file)) {
-  refuse_other_than_file(file_);
-  // Not by mkstemp: its files have rights of their own, and the process's mask, which says what
-  // they should be, can only be read by changing it under the feet of other threads.
-  static std::atomic<unsigned> next = 0;
-  const auto stem = (folder_of(file_) / ("." + file_.filename().string())).string();
-  do {
-    temporary_ = fmt::format("{}.{}-{}", stem, ::getpid(), next++);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) {
-    temporary_.clear();
-    refuse_output(file_, std::string("cannot be written: ") + std::strerror(errno),
-                  "choose a folder that you may write to");
-  }
+OutputFile::OutputFile(const std::filesystem::path& file, bool force)
+    : place_(look_at_file(file)), force_(force) {
+  if (place_.there && !force_) refuse_existing(file);
+  remove_abandoned(place_.path);
+  descriptor_ = open_nameless(folder_around(place_.path));
+  if (descriptor_ >= 0) return;
+  hidden_ = take_name(place_.path, [this](const std::filesystem::path& name) {
+    // Not by mkstemp: its files have rights of their own, and the process's mask, which says what
+    // they should be, can only be read by changing it under the feet of other threads.
+    descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 || lock_in_the_making(descriptor_)) return descriptor_ >= 0;
+    ::close(std::exchange(descriptor_, -1));
+    errno = EAGAIN;
+    return false;
+  });
 }
 
 OutputFile::~OutputFile() {
+  if (!hidden_.empty()) ::unlink(hidden_.c_str());
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
@@ -120,18 +87,45 @@ void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
     const ssize_t written =
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) refuse_write(file_);
+    if (written == 0) errno = ENOSPC;
+    if (written <= 0) refuse_write(place_.path);
     bytes.remove_prefix(static_cast<std::size_t>(written));
     offset += static_cast<std::uint64_t>(written);
   }
 }
 
 void OutputFile::commit() {
-  if (::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
-    refuse_write(file_);
+  place_.there = look_at_file(place_.path).there;
+  if (place_.there && !force_) refuse_existing(place_.path);
+  if (place_.there) keep_permissions(descriptor_, *place_.there, place_.path);
+  if (::fsync(descriptor_) != 0) refuse_write(place_.path);
+  if (place_.there || !put_at_free_name()) replace();
+  hidden_.clear();
+  sync_folder(folder_around(place_.path));
+}
+
+bool OutputFile::give_name(const std::filesystem::path& name) const {
+  return ::linkat(AT_FDCWD, name_of_descriptor(descriptor_).c_str(), AT_FDCWD, name.c_str(),
+                  AT_SYMLINK_FOLLOW) == 0;
+}
+
+/// Returns false where something is there by now that may be replaced.
+bool OutputFile::put_at_free_name() {
+  if (hidden_.empty() ? give_name(place_.path) : rename_to_free_name(hidden_, place_.path)) {
+    return true;
   }
-  temporary_.clear();
-  sync_folder(folder_of(file_));
+  if (errno != EEXIST) refuse_write(place_.path);
+  if (!force_) refuse_existing(place_.path);
+  return false;
+}
+
+/// A file without a name cannot take the place of another: it has a hidden one for that moment.
+void OutputFile::replace() {
+  if (hidden_.empty()) {
+    lock_in_the_making(descriptor_);
+    hidden_ = take_name(place_.path, [this](const auto& name) { return give_name(name); });
+  }
+  if (::rename(hidden_.c_str(), place_.path.c_str()) != 0) refuse_write(place_.path);
 }
 
 void write_to_standard_output(std::string_view bytes) {
@@ -143,9 +137,9 @@ void write_to_standard_output(std::string_view bytes) {
   }
 }
 
-void write_output(const std::filesystem::path& file, std::string_view bytes) {
+void write_output(const std::filesystem::path& file, std::string_view bytes, bool force) {
   if (is_standard_stream(file)) return write_to_standard_output(bytes);
-  OutputFile output(file);
+  OutputFile output(file, force);
   output.write(0, bytes);
   output.commit();
 }

@@ -5,45 +5,43 @@
 #include <string>
 #include <string_view>
 
-#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/storage/chunked_file.h"
+#include "roadbed/map/storage/output_place.h"
 
 namespace roadbed::map::inline storage {
 
-/// An output that cannot be written, for want of space or rights: no fault of the inputs.
-class OutputError : public InputError {
- public:
-  using InputError::InputError;
-};
-
 /// Checks before the work begins that `file` can be written later; `-`, standard output, always.
-/// @throws OutputError if its folder is missing or not writable, the file is a device or a pipe, or
-///         it exists and `force` is not set.
+/// @throws OutputError if its folder is missing or not writable, the file is a device or a pipe, it
+///         exists and `force` is not set, or its place cannot be looked at, see look_at_output.
 void check_writable(const std::filesystem::path& file, bool force);
 
-/// Makes the folder (with its parents) that a command writes several files to.
-/// @throws OutputError if it cannot be made, or holds something and `force` is not set.
-void make_output_folder(const std::filesystem::path& folder, bool force);
-
-/// A file that is written piece by piece: to a temporary file beside it, which is synced and
-/// renamed in the end. At every moment there is the old file, or the new one, whole; without
-/// `commit` nothing is left behind. Of a link, what it leads to is replaced.
+/// A file that is written piece by piece: without a name where the file system has such files, else
+/// to a hidden one beside it; synced, and named in the end. At every moment there is the old file,
+/// or the new one, whole; without `commit` nothing is left behind, and what a kill left is removed
+/// when the same output is written again. Of a link, what it leads to is replaced. The new file has
+/// the permissions of the one that it replaces.
 class OutputFile : public ByteSink {
  public:
+  /// @param force  what is there is replaced, also what others make there meanwhile.
   /// @throws OutputError if it cannot be written.
-  explicit OutputFile(const std::filesystem::path& file);
+  explicit OutputFile(const std::filesystem::path& file, bool force = true);
   ~OutputFile() override;
 
   /// @throws OutputError if it cannot be written.
   void write(std::uint64_t offset, std::string_view bytes) override;
 
   /// Puts the new file in place.
-  /// @throws OutputError if it cannot be written.
+  /// @throws OutputError if it cannot be written, or without `force` if there is a file by now.
   void commit();
 
  private:
-  std::filesystem::path file_;
-  std::string temporary_;  // empty: it has got its name
+  bool give_name(const std::filesystem::path& name) const;
+  bool put_at_free_name();
+  void replace();
+
+  OutputPlace place_;
+  bool force_;
+  std::filesystem::path hidden_;  // its name in the making; empty: it has none, or its own
   int descriptor_ = -1;
 };
 
@@ -53,6 +51,6 @@ void write_to_standard_output(std::string_view bytes);
 
 /// Writes a whole file in that way; to standard output where it is `-`.
 /// @throws OutputError if it cannot be written; nothing is left behind then.
-void write_output(const std::filesystem::path& file, std::string_view bytes);
+void write_output(const std::filesystem::path& file, std::string_view bytes, bool force = true);
 
 }  // namespace roadbed::map::storage

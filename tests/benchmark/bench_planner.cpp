@@ -183,7 +183,7 @@ void run(const Options& options) {
   const std::ptrdiff_t cheaper = colliding(scene, options);
   const Work work = work_of(options);
   const double gflops = 1e3 * work.gflop / timing.median_cpu_ms;
-  if (!options.dump_file.empty()) map::write_output(options.dump_file, dump(scene, options));
+  if (!options.dump_file.empty()) map::write_output(options.dump_file, dump(scene, options), true);
   if (options.json) {
     const ordered_json json = {{"candidates", 5396},
                                {"terms", planning::kCostTerms},

@@ -181,7 +181,7 @@ std::string batch_page(const BatchSummary& summary, const std::string& title) {
 BatchSummary write_results(const ResultStore& store, const std::vector<LineResult>& order,
                            const std::filesystem::path& folder) {
   BatchSummary summary(kMostListed);
-  BufferedOutput results(folder / "results.jsonl");
+  BufferedOutput results(folder / "results.jsonl", true);
   for (const LineResult& job : order) {
     const std::string line = store.line(job.hash);
     results.add(fmt::format("{{\"line\":{},", job.line));
@@ -190,9 +190,9 @@ BatchSummary write_results(const ResultStore& store, const std::vector<LineResul
     summary.add(job.line, line);
   }
   results.commit();
-  map::write_output(folder / "summary.json", summary.document(kMostInSummary));
+  map::write_output(folder / "summary.json", summary.document(kMostInSummary), true);
   map::write_output(folder / "index.html",
-                    batch_page(summary, fmt::format("{} jobs", with_commas(order.size()))));
+                    batch_page(summary, fmt::format("{} jobs", with_commas(order.size()))), true);
   return summary;
 }
 

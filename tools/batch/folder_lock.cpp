@@ -20,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kLock = "lock";
+constexpr const char* kUnfinished = "unfinished";
+
 int open_or_refuse(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor >= 0) return descriptor;
@@ -40,28 +43,39 @@ bool is_page_in_the_making(const std::string& name) {
 }
 
 template <typename Walk>
-void remove_files(const fs::path& folder, IsLeft is_left) {
-  std::error_code error, unknown;
+void remove_left(const fs::path& folder, IsLeft is_left) {
+  std::error_code error;
   std::vector<fs::path> left;
   auto entry = Walk(folder, error);
   for (; !error && entry != Walk(); entry.increment(error)) {
-    const bool is_file = entry->is_regular_file(unknown);
-    if (is_file && is_left(entry->path().filename().native())) left.push_back(entry->path());
+    if (is_left(entry->path().filename().native())) left.push_back(entry->path());
   }
-  for (const fs::path& file : left) fs::remove(file, error);
+  for (const fs::path& path : left) fs::remove_all(path, error);
 }
 
 // Below these folders everything is the batch's own; beside them the user may keep what he likes.
 void sweep(const fs::path& folder) {
-  remove_files<fs::directory_iterator>(folder, is_page_in_the_making);
+  remove_left<fs::directory_iterator>(folder, is_page_in_the_making);
   for (const char* own : {"files", "journal", "tables"}) {
-    remove_files<fs::recursive_directory_iterator>(folder / own, has_dot);
+    remove_left<fs::recursive_directory_iterator>(folder / own, has_dot);
   }
 }
 
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(folder / "lock")) {
+bool is_of_batch(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder / "journal", error) || fs::exists(folder / kUnfinished, error)) {
+    return true;
+  }
+  // What a run made first that was killed then.
+  const auto is_lock = [](const fs::directory_entry& entry) {
+    return entry.path().filename() == kLock;
+  };
+  return std::ranges::all_of(fs::directory_iterator(folder, error), is_lock);
+}
+
+FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(folder / kLock)) {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
   throw map::InputError({.file = folder.string(),
@@ -71,7 +85,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(open_or_refuse(fold
 
 FolderLock::~FolderLock() { ::close(descriptor_); }
 
-UnfinishedMark::UnfinishedMark(const fs::path& folder) : mark_(folder / "unfinished") {
+UnfinishedMark::UnfinishedMark(const fs::path& folder) : mark_(folder / kUnfinished) {
   if (fs::exists(mark_)) sweep(folder);
   ::close(open_or_refuse(mark_));
 }

@@ -4,6 +4,9 @@
 
 namespace roadbed::tools::inline batch {
 
+/// Whether a folder is one that batches have been at work in.
+bool is_of_batch(const std::filesystem::path& folder);
+
 /// Keeps a folder to one run at a time, by flock on the file `lock` in it: gone with the process,
 /// however it ends.
 class FolderLock {

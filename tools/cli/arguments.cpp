@@ -6,10 +6,27 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <system_error>
 #include <utility>
+
+#include "roadbed/map/files/read_file.h"
 
 namespace roadbed::tools::inline cli {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether two paths lead to one file, which need not be there.
+bool are_one(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  const auto is_device = [&](const fs::path& path) {
+    return fs::is_character_file(path, error) || fs::is_fifo(path, error);
+  };
+  if (is_device(a)) return false;
+  if (fs::equivalent(a, b, error)) return true;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
 
 std::string refuse_nan(const std::string& text) {
   double number = 0.0;
@@ -188,6 +205,54 @@ Arguments Arguments::part(const std::string& name) {
 
 bool Arguments::given() const { return app_->parsed(); }
 
+std::vector<std::pair<std::string, fs::path>> Arguments::outputs() const {
+  std::vector<std::pair<std::string, fs::path>> paths;
+  for (const ArgumentInfo& argument : *declared_) {
+    if (argument.use != ArgumentInfo::Use::output) continue;
+    const std::string name = (argument.is_positional ? "" : "--") + argument.name;
+    for (const std::string& path : argument.option->results()) {
+      if (!map::is_standard_stream(path)) paths.emplace_back(name, path);
+    }
+  }
+  for (const Arguments& part : *parts_) {
+    if (part.given()) std::ranges::move(part.outputs(), std::back_inserter(paths));
+  }
+  return paths;
+}
+
+std::vector<fs::path> Arguments::input_files() const {
+  std::vector<fs::path> files;
+  for (const ArgumentInfo& argument : *declared_) {
+    if (argument.use != ArgumentInfo::Use::input) continue;
+    for (const std::string& path : argument.option->results()) {
+      if (map::is_standard_stream(path)) continue;
+      files.emplace_back(path);
+      if (argument.named) std::ranges::move(argument.named(path), std::back_inserter(files));
+    }
+  }
+  for (const Arguments& part : *parts_) {
+    if (part.given()) std::ranges::move(part.input_files(), std::back_inserter(files));
+  }
+  return files;
+}
+
+std::string Arguments::output_fault(const std::vector<fs::path>& inputs) const {
+  const auto all = outputs();
+  for (auto output = all.begin(); output != all.end(); ++output) {
+    const auto is_same = [&](const fs::path& other) { return are_one(output->second, other); };
+    if (const auto input = std::ranges::find_if(inputs, is_same); input != inputs.end()) {
+      return fmt::format("{} {} is an input; choose another output", output->first,
+                         output->second.string());
+    }
+    for (auto other = all.begin(); other != output; ++other) {
+      if (!is_same(other->second)) continue;
+      return fmt::format("{} and {} are both {}; give each a file of its own", other->first,
+                         output->first, output->second.string());
+    }
+  }
+  return {};
+}
+
 void Arguments::require(std::function<std::string()> fault) {
   app_->callback([fault = std::move(fault)] {
     const std::string missing = fault();
@@ -202,8 +267,10 @@ std::string Arguments::help(const std::string& line) const {
 Argument Arguments::note(CLI::Option& option, ArgumentInfo::Kind kind) {
   if (kind == ArgumentInfo::Kind::path) option.type_name("PATH");
   option.group(*group_);
-  declared_->push_back(
-      {.name = option.get_single_name(), .kind = kind, .is_positional = option.get_positional()});
+  declared_->push_back({.name = option.get_single_name(),
+                        .kind = kind,
+                        .is_positional = option.get_positional(),
+                        .option = &option});
   return {option, declared_->back()};
 }
 

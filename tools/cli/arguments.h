@@ -36,6 +36,7 @@ struct ArgumentInfo {
   std::string suffix = {};                ///< of an output: see Argument::writes
   std::vector<std::string> choices = {};  ///< the only words that it takes; empty: any
   std::string_view endings = {};          ///< of a path: see Argument::ending
+  CLI::Option* option = nullptr;
 };
 
 /// What files of a kind end in, for Argument::ending.
@@ -131,6 +132,12 @@ class Arguments {
   /// Whether the command line names this command or part.
   bool given() const;
 
+  /// Files and folders that the command line names as inputs, and those that these name.
+  std::vector<std::filesystem::path> input_files() const;
+  /// Of two outputs that are one file, or an output that is an input, what is wrong; else nothing.
+  /// @param inputs  all of them.
+  std::string output_fault(const std::vector<std::filesystem::path>& inputs) const;
+
   /// Looks at all arguments together; `fault` says what is missing, and nothing if all is there.
   void require(std::function<std::string()> fault);
 
@@ -146,6 +153,8 @@ class Arguments {
 
  private:
   Argument note(CLI::Option& option, ArgumentInfo::Kind kind);
+  /// The outputs that the command line names, each with the name of its argument.
+  std::vector<std::pair<std::string, std::filesystem::path>> outputs() const;
   Argument choose(const std::string& names, const std::vector<std::string>& words,
                   const std::string& standing, std::function<void(std::size_t)> take,
                   const std::string& help);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <exception>
+#include <filesystem>
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "roadbed/tools/cli/arguments.h"
 #include "roadbed/tools/cli/inputs.h"
@@ -32,6 +34,9 @@ struct CommonOptions {
   int threads = 1;
   /// Whether the process runs this command only, which may then set up its heap.
   bool is_alone = true;
+  /// Files that the command line names as inputs, and those that these name; no output replaces
+  /// one.
+  std::vector<std::filesystem::path> input_files = {};
   /// Where it gets what it may share with other runs in the process; never null.
   std::shared_ptr<const Inputs> inputs = std::make_shared<const Inputs>();
 };

@@ -297,7 +297,8 @@ class AuditCommand : public Command {
           if (common.quiet) return;
           streams.err << ground_note(ground, question, scene.occupancy->resolution_m());
         });
-    if (!saved_drive_.empty()) map::write_output(saved_drive_, write_trajectory_csv(audited.drive));
+    if (!saved_drive_.empty())
+      map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
     write_picture(audited, question, scene);
     write_report(audited, question, scene);
     write_certificate(audited.audit, question);
@@ -348,9 +349,11 @@ class AuditCommand : public Command {
     if (svg_.empty()) return;
     const map::HeightBand heights = question.heights(audited.audit.ground);
     map::write_output(
-        svg_, audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
-                         occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
-                         drawn_lanes(audited, question, scene), question.moving_in_source}));
+        svg_,
+        audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
+                   occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
+                   drawn_lanes(audited, question, scene), question.moving_in_source}),
+        force_);
   }
 
   // The vehicle's rectangle, grown by the margin on every side.
@@ -383,8 +386,9 @@ class AuditCommand : public Command {
     if (!subjects_.is_swept()) {
       page.sources.push_back(source("trajectory", hashed_input(subjects_.file())));
     }
-    map::write_output(
-        report_, drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)));
+    map::write_output(report_,
+                      drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)),
+                      force_);
   }
 
   void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
@@ -401,7 +405,8 @@ class AuditCommand : public Command {
       index.back().pictures = close_ups(
           audited.audit.report, {audited.drive, parts, occupied, lanes, question.moving_in_source});
     }
-    map::write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()));
+    map::write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()),
+                      force_);
   }
 
   static ReportSource source(const char* role, const CertifiedFile& file) {
@@ -437,14 +442,15 @@ class AuditCommand : public Command {
     }
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
     if (!map_.empty()) file.roads = hashed_once(map_);
-    map::write_output(certificate_, write_certificate_json(file));
+    map::write_output(certificate_, write_certificate_json(file), force_);
   }
 
   void write_files(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                    const Scene& scene) const {
-    if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, occupancy_.string()));
+    if (!junit_.empty())
+      map::write_output(junit_, audits_junit(audits, occupancy_.string()), force_);
     if (!geojson_.empty()) {
-      map::write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()));
+      map::write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()), force_);
     }
   }
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/batch/batch_results.h"
 #include "roadbed/tools/batch/batch_run.h"
 #include "roadbed/tools/batch/folder_lock.h"
@@ -79,6 +79,7 @@ class BatchCommand : public Command {
     arguments.flag("--serve", serves_,
                    "Take job lines from standard input instead, one after the other, and print the "
                    "line of each result at once");
+    arguments.flag("--force", force_, "Work in a folder that holds files and is no batch's");
     arguments.require([this] { return fault(); });
     arguments.says_no_if("a job says no, or has failed");
     arguments.example(
@@ -99,7 +100,7 @@ class BatchCommand : public Command {
       list_missing(options(common), job_kinds(), ResultStore(folder_), streams.out);
       return Exit::ok;
     }
-    map::make_output_folder(folder_, true);
+    make_folder();
     const FolderLock lock(folder_);
     return run_jobs(streams, common);
   }
@@ -121,8 +122,10 @@ class BatchCommand : public Command {
     return "";
   }
 
+  void make_folder() const { map::make_output_folder(folder_, force_ || is_of_batch(folder_)); }
+
   Exit run_server(const Streams& streams) const {
-    map::make_output_folder(folder_, true);
+    make_folder();
     if (!job_memory_.empty()) limit_memory(*parse_memory_size(job_memory_));
     serve(std::cin, streams.out, job_kinds(),
           {.folder = folder_,
@@ -204,7 +207,8 @@ class BatchCommand : public Command {
   std::filesystem::path jobs_file_, folder_;
   std::string memory_, job_memory_;
   std::optional<double> time_limit_s_;
-  bool isolates_ = false, json_ = false, serves_ = false, merges_ = false, lists_ = false;
+  bool isolates_ = false, json_ = false, serves_ = false, merges_ = false, lists_ = false,
+       force_ = false;
 };
 
 }  // namespace

@@ -53,9 +53,10 @@ class ExportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format, told by the output's suffix");
-    arguments.add("MAP", input_, "Any readable map").required().ending(kMapEndings);
+    arguments.add("MAP", input_, "Any readable map").required().reads().ending(kMapEndings);
     arguments.add("-o,--output", output_, suffixes_with_meaning() + "; - for standard output")
-        .required();
+        .required()
+        .writes("");
     declare_format(arguments, format_, written_suffixes());
     declare_options(arguments);
     arguments.require([this] { return stream_or_anchor_fault(); });
@@ -89,7 +90,7 @@ class ExportCommand : public Command {
     std::vector<std::string> notes;
     const std::string bytes =
         format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
-    map::write_output(output_, bytes);
+    map::write_output(output_, bytes, force_);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
                  road_map.lanes().size(), bytes.size());
@@ -136,13 +137,15 @@ class ConvertCommand : public ExportCommand {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Write a map in another format: import and export in one");
-    arguments.add("A", input_, "Any readable map").required().ending(kMapEndings);
-    const Argument b = arguments.add("B", positional_output_, "The output, in place of -o");
+    arguments.add("A", input_, "Any readable map").required().reads().ending(kMapEndings);
+    const Argument b =
+        arguments.add("B", positional_output_, "The output, in place of -o").writes("");
     std::vector<std::string> suffixes = written_suffixes();
     arguments
         .add("-o,--output", output_,
              fmt::format(".rbm: compiled map; or as of export: {}; - for standard output",
                          fmt::join(suffixes, " ")))
+        .writes("")
         .excludes(b);
     suffixes.insert(suffixes.begin(), ".rbm");
     declare_format(arguments, format_, suffixes);

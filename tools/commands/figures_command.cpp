@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/report/paper_figures.h"
 
@@ -25,18 +25,21 @@ class FiguresCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Compute the paper's figures 2 to 10 and 12 to 14, each as SVG and CSV");
-    arguments.add("-o,--output", folder_, "Folder for the figures").required();
+    arguments.add("-o,--output", folder_, "Folder for the figures").required().writes("/");
     arguments.flag("-f,--force", force_, "Replace files in the folder");
     arguments.example("  roadbed figures -o figures");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
-    map::make_output_folder(folder_, force_);
-    const std::filesystem::path folder = folder_;
-    for (const Figure& figure : all_figures()) {
-      map::write_output(folder / (figure.name + ".svg"), chart_svg(figure.chart));
-      map::write_output(folder / (figure.name + ".csv"), chart_csv(figure.chart));
-      fmt::print(streams.out, "{}\n", (folder / figure.name).string());
+    map::OutputFolder folder(folder_, {.force = force_});
+    const std::vector<Figure> figures = all_figures();
+    for (const Figure& figure : figures) {
+      folder.write(figure.name + ".svg", chart_svg(figure.chart));
+      folder.write(figure.name + ".csv", chart_csv(figure.chart));
+    }
+    folder.commit();
+    for (const Figure& figure : figures) {
+      fmt::print(streams.out, "{}\n", (std::filesystem::path(folder_) / figure.name).string());
     }
     return Exit::ok;
   }

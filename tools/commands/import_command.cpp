@@ -118,7 +118,7 @@ class ImportCommand : public Command {
     if (map::is_standard_stream(output_)) {
       return map::write_to_standard_output(map::write_compiled_map(road_map, network));
     }
-    map::OutputFile output(output_);
+    map::OutputFile output(output_, force_);
     map::write_compiled_map(road_map, network, output);
     output.commit();
   }

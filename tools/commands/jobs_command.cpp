@@ -253,7 +253,7 @@ class JobsCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     const KindOptions& options = *std::ranges::find_if(options_, &KindOptions::given);
     map::check_writable(options.file(), options.force());
-    BufferedOutput lines(options.file());
+    BufferedOutput lines(options.file(), options.force());
     std::size_t written = 0;
     const std::size_t count = options.for_each_job([&](const Json& job) {
       const std::string line = line_of_job(job);

@@ -17,6 +17,7 @@
 #include "roadbed/map/occupancy/octree/tile_builder.h"
 #include "roadbed/map/occupancy/octree/tiles_index.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 
@@ -34,12 +35,14 @@ class OccupancyBuildCommand : public Command {
              "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
              "(.bt .ot) to convert")
         .required()
+        .reads()
         .ending(kCloudEndings);
     arguments
         .add("-o,--output", output_,
              "OctoMap file to write (.bt, or .ot with log-odds), or a folder (.tiles); - for "
              "standard output")
-        .required();
+        .required()
+        .writes(".bt");
     declare_format(arguments, format_, {".bt", ".ot"});
     arguments.add("--resolution", resolution_m_, "Side of a cell [m]")
         .within(1e-3, 1e3)
@@ -51,12 +54,13 @@ class OccupancyBuildCommand : public Command {
              "sensor_y sensor_z, vp_x…, x_origin… or BeamOriginX…), else the viewpoint of a .pcd")
         .separated_by(',')
         .values(3)
-        .excludes(
-            arguments.add("--poses", poses_file_,
-                          "Where the sensor was, a line for each cloud in their order (TUM: "
-                          "timestamp tx ty tz qx "
-                          "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame, "
-                          "and so are positions that they have for each point"));
+        .excludes(arguments
+                      .add("--poses", poses_file_,
+                           "Where the sensor was, a line for each cloud in their order (TUM: "
+                           "timestamp tx ty tz qx "
+                           "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame, "
+                           "and so are positions that they have for each point")
+                      .reads());
     arguments.flag("--no-carving", no_carving_,
                    "Only mark hits, whatever viewpoints the files name");
     arguments.add("--carve-range", carve_range_m_, "Rays carve this far from the sensor [m]")
@@ -118,7 +122,7 @@ class OccupancyBuildCommand : public Command {
     if (tiles_m_) return build_tiles(streams, common);
     map::check_writable(output_, force_);
     const Made made = make(streams.err, common.quiet);
-    map::write_output(output_, made.file.bytes);
+    map::write_output(output_, made.file.bytes, force_);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} nodes of {} m, {} bytes\n", output_name(output_),
                  made.file.nodes, made.resolution_m, made.file.bytes.size());
@@ -192,7 +196,7 @@ class OccupancyBuildCommand : public Command {
   // What there is to know before the first cell: where all clouds lie, and in which frame.
   map::TileBuilder::Plan plan_of_tiles(const std::vector<Eigen::Isometry3d>& poses,
                                        std::ostream& err, bool quiet) const {
-    map::TileBuilder::Plan plan{.folder = output_, .resolution_m = resolution_m_, .crs = {}};
+    map::TileBuilder::Plan plan{.name = output_.string(), .resolution_m = resolution_m_, .crs = {}};
     if (carve_range_m_) plan.carve_range_m = *carve_range_m_;
     plan.sticky_hits = !no_sticky_;
     plan.remove_seen_through = remove_seen_through_;
@@ -231,36 +235,28 @@ class OccupancyBuildCommand : public Command {
   }
 
   Exit build_tiles(const Streams& streams, const CommonOptions& common) const {
-    if (std::filesystem::exists(output_)) map::make_output_folder(output_, force_);
+    map::OutputFolder folder(output_, {.force = force_, .is_dropped = map::is_tile_file_name});
     const std::vector<Eigen::Isometry3d> poses = poses_of_clouds();
-    const map::TileBuilder::Plan plan = plan_of_tiles(poses, streams.err, common.quiet);
-    map::make_output_folder(output_, force_);
-    try {
-      const map::TilesIndex index = write_tiles(plan, poses);
-      if (!common.quiet) {
-        fmt::print(streams.err, "{}: {} tiles of {} m\n", output_.string(), index.tiles.size(),
-                   index.side_m());
-        print_removed(streams.err, index.seen_through);
-      }
-    } catch (...) {
-      std::error_code ignored;
-      std::filesystem::remove(output_, ignored);  // if it is empty
-      throw;
+    map::TileBuilder::Plan plan = plan_of_tiles(poses, streams.err, common.quiet);
+    plan.folder = folder.in_the_making();
+    const map::TilesIndex index = write_tiles(plan, poses, folder);
+    folder.commit();
+    if (!common.quiet) {
+      fmt::print(streams.err, "{}: {} tiles of {} m\n", output_.string(), index.tiles.size(),
+                 index.side_m());
+      print_removed(streams.err, index.seen_through);
     }
     return Exit::ok;
   }
 
-  // The index last: without it there are no tiles.
   map::TilesIndex write_tiles(const map::TileBuilder::Plan& plan,
-                              const std::vector<Eigen::Isometry3d>& poses) const {
+                              const std::vector<Eigen::Isometry3d>& poses,
+                              map::OutputFolder& folder) const {
     map::TileBuilder builder(plan);
     for (std::size_t i = 0; i < clouds_.size(); ++i) builder.add(cloud_to_tile(i, poses));
-    std::error_code ignored;
-    std::filesystem::remove(map::tiles_index_file(output_), ignored);
-    map::TilesIndex index = builder.finish([this](const std::string& file, std::string_view bytes) {
-      map::write_output(output_ / file, bytes);
-    });
-    map::write_output(map::tiles_index_file(output_), map::write_tiles_index(index));
+    map::TilesIndex index = builder.finish(
+        [&](const std::string& file, std::string_view bytes) { folder.write(file, bytes); });
+    folder.write(map::tiles_index_file("").string(), map::write_tiles_index(index));
     return index;
   }
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "roadbed/map/files/json_text.h"
-#include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/planning/plan.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/plan_output.h"
@@ -59,9 +59,14 @@ class PlanCommand : public Command {
             "Scenario (.json): the cycle at t = 0 is planned. Or DIR@T: the cycle at T seconds of "
             "the drive that simulate wrote to DIR is done again, byte for byte, as the drive up to "
             "there is")
-        .required();
+        .required()
+        .reads([](const std::filesystem::path& scene) {
+          return names_drive_time(scene.string()) ? std::vector<std::filesystem::path>()
+                                                  : files_named_by_scenario(scene);
+        });
     arguments.add("-o,--output", folder_, "Folder for candidates.csv, trajectory.csv and plan.svg")
-        .required();
+        .required()
+        .writes("/");
     const Argument options = arguments.add(
         "--options", options_file_,
         "How to drive (.json): a style (gentle, normal, sporty), limits, and weights of the "
@@ -89,24 +94,37 @@ class PlanCommand : public Command {
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    if (!names_drive_time(scene_)) return plan_scenario(streams);
+    const bool is_replay = names_drive_time(scene_);
+    map::OutputFolder folder(
+        folder_, {.force = force_,
+                  .is_dropped = [](const std::string& name) { return name == "trajectory.csv"; },
+                  .inputs = common.input_files});
+    if (!is_replay) return plan_scenario(streams, folder);
     bool is_found = false;
-    replay_cycle(parse_drive_time(scene_), *common.inputs, [&](const ReplayedCycle& replayed) {
-      show(streams.out, replayed);
+    const DriveTime drive = parse_drive_time(scene_);
+    refuse_own_drive(drive.folder);
+    replay_cycle(drive, *common.inputs, [&](const ReplayedCycle& replayed) {
+      show(streams.out, replayed, folder);
       is_found = replayed.explained.plan.chosen.has_value();
     });
     return is_found ? Exit::ok : Exit::no;
   }
 
  private:
-  Exit plan_scenario(const Streams& streams) const {
+  // Its trajectory would be replaced by that of one cycle.
+  void refuse_own_drive(const std::filesystem::path& drive) const {
+    std::error_code error;
+    if (!std::filesystem::equivalent(drive, folder_, error)) return;
+    map::refuse_output(folder_, "is the drive that the cycle is of", "choose another folder");
+  }
+
+  Exit plan_scenario(const Streams& streams, map::OutputFolder& folder) const {
     Scenario scenario = read_scenario(scene_);
     if (!options_file_.empty()) read_planner_options(options_file_).apply_to(scenario.options);
     planning::PlanOptions options = options_of(scenario);
     options.circles = circles_;
     const World world = make_world(scenario);
     const planning::PlanInput input = input_of(scenario, world);
-    map::make_output_folder(folder_, force_);
     const Plan plan = planning::plan_path(input, scenario.vehicle, options);
     const PlannedCycle cycle{.world = world,
                              .vehicle = scenario.vehicle,
@@ -114,7 +132,7 @@ class PlanCommand : public Command {
                              .plan = plan,
                              .weights = options.weights,
                              .title = scenario.name};
-    write_plan(cycle, folder_);
+    write_plan(cycle, folder);
     if (json_) {
       fmt::print(streams.out, "{}\n", map::json_text(versioned("plan", plan_json(plan)), 2));
     } else {
@@ -124,7 +142,7 @@ class PlanCommand : public Command {
     return plan.chosen ? Exit::ok : Exit::no;
   }
 
-  void show(std::ostream& out, const ReplayedCycle& replayed) const {
+  void show(std::ostream& out, const ReplayedCycle& replayed, map::OutputFolder& folder) const {
     const auto& [scenario, world, decided, row, explained] = replayed;
     const PlannedCycle cycle{.world = world,
                              .vehicle = scenario.vehicle,
@@ -132,8 +150,7 @@ class PlanCommand : public Command {
                              .plan = explained.plan,
                              .weights = scenario.options.weights,
                              .title = fmt::format("{}, {:.2f} s", scenario.name, decided.t_s)};
-    map::make_output_folder(folder_, force_);
-    write_plan(cycle, folder_);
+    write_plan(cycle, folder);
     if (json_) {
       Json document = {{"cycle", cycle_json(decided, row)}};
       document.update(plan_json(cycle.plan));

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/plan_svg.h"
 #include "roadbed/tools/report/surroundings.h"
@@ -116,18 +115,19 @@ std::vector<map::Box2> occupied_around(const PlannedCycle& cycle) {
 
 }  // namespace
 
-void write_plan(const PlannedCycle& cycle, const std::filesystem::path& folder) {
-  map::write_output(folder / "candidates.csv", candidates_csv(cycle.plan));
+void write_plan(const PlannedCycle& cycle, map::OutputFolder& folder) {
+  folder.write("candidates.csv", candidates_csv(cycle.plan));
   if (cycle.plan.chosen) {
-    map::write_output(folder / "trajectory.csv",
-                      write_trajectory_csv(in_source(cycle.plan, cycle.input.origin_in_source)));
+    folder.write("trajectory.csv",
+                 write_trajectory_csv(in_source(cycle.plan, cycle.input.origin_in_source)));
   }
-  map::write_output(folder / "plan.svg", plan_svg({.input = cycle.input,
-                                                   .plan = cycle.plan,
-                                                   .vehicle = cycle.vehicle,
-                                                   .obstacles = cycle.world.obstacles,
-                                                   .occupied = occupied_around(cycle),
-                                                   .title = cycle.title}));
+  folder.write("plan.svg", plan_svg({.input = cycle.input,
+                                     .plan = cycle.plan,
+                                     .vehicle = cycle.vehicle,
+                                     .obstacles = cycle.world.obstacles,
+                                     .occupied = occupied_around(cycle),
+                                     .title = cycle.title}));
+  folder.commit();
 }
 
 Json plan_json(const Plan& plan) {

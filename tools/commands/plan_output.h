@@ -1,10 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <ostream>
 #include <string>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/report/drive_replay.h"
@@ -23,7 +23,8 @@ struct PlannedCycle {
 };
 
 /// Writes candidates.csv, plan.svg and, if there is one, the plan's trajectory.csv.
-void write_plan(const PlannedCycle& cycle, const std::filesystem::path& folder);
+/// @throws OutputError if they cannot be written.
+void write_plan(const PlannedCycle& cycle, map::OutputFolder& folder);
 
 Json plan_json(const planning::Plan& plan);
 

@@ -59,7 +59,7 @@ class ReachCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Find the lanes that can be reached within a time or a distance (isochrone)");
-    arguments.add("MAP", map_file_, "Any readable map").required().ending(kMapEndings);
+    arguments.add("MAP", map_file_, "Any readable map").required().reads().ending(kMapEndings);
     arguments.add("--from", from_, std::string("Start: ") + kPlaceSyntax)
         .required()
         .checked(place_syntax_fault);
@@ -71,10 +71,11 @@ class ReachCommand : public Command {
     rules_.declare(arguments, false);
     declare_lon_lat(arguments, wants_lon_lat_);
     arguments.flag("-j,--json", json_, "Print one JSON document");
-    arguments.add(
-        "-o,--output", output_,
-        "Write too: .geojson the area, .csv a row per lane, .svg a picture; - for standard "
-        "output, in place of what is printed");
+    arguments
+        .add("-o,--output", output_,
+             "Write too: .geojson the area, .csv a row per lane, .svg a picture; - for standard "
+             "output, in place of what is printed")
+        .writes(".geojson");
     declare_format(arguments, format_, kAreaSuffixes);
     arguments.require(
         [this] { return standard_output_fault(output_, true, format_, json_ ? "--json" : ""); });
@@ -109,16 +110,19 @@ class ReachCommand : public Command {
 
   void write(const map::RoadMap& road_map, const std::vector<planning::ReachedLane>& reached,
              const char* unit) const {
-    if (suffix() == ".csv")
-      return map::write_output(output_, reached_csv(road_map, reached, unit, wants_lon_lat_));
+    if (suffix() == ".csv") {
+      const std::string rows = reached_csv(road_map, reached, unit, wants_lon_lat_);
+      return map::write_output(output_, rows, force_);
+    }
     std::vector<planning::LanePart> parts;
     for (const planning::ReachedLane& lane : reached) parts.push_back(lane.part);
     const auto area = planning::area_of(road_map, parts);
-    map::write_output(
-        output_, suffix() == ".svg"
-                     ? area_svg(road_map, area, {})
-                     : area_geojson(road_map, area, {{"within", within_}},
-                                    wants_lon_lat_ ? Coordinates::lon_lat : Coordinates::source));
+    map::write_output(output_,
+                      suffix() == ".svg" ? area_svg(road_map, area, {})
+                                         : area_geojson(road_map, area, {{"within", within_}},
+                                                        wants_lon_lat_ ? Coordinates::lon_lat
+                                                                       : Coordinates::source),
+                      force_);
   }
 
   void print(const Streams& streams, const map::RoadMap& road_map,

@@ -65,10 +65,14 @@ class ReferenceCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Draw the smooth line to drive along a route, or through way-points");
-    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints").ending(kMapEndings);
+    arguments.add("MAP", map_file_, "Any readable map; none with --waypoints")
+        .reads()
+        .ending(kMapEndings);
     question_.declare(arguments, true);
     way_points_.declare(arguments);
-    arguments.add("-o,--output", output_, "CSV file to write; - for standard output").required();
+    arguments.add("-o,--output", output_, "CSV file to write; - for standard output")
+        .required()
+        .writes(".csv");
     arguments.add("--step", step_m_, "Distance between rows [m]")
         .within(1e-3, 100.0)
         .with_default();
@@ -105,7 +109,7 @@ class ReferenceCommand : public Command {
 
   Exit through_way_points(const Streams& streams, const CommonOptions& common) const {
     const WayPointLine::Table table = way_points_.table(step_m_, options_.max_smoothing_m);
-    map::write_output(output_, table.csv);
+    map::write_output(output_, table.csv, force_);
     if (!common.quiet) {
       for (const std::string& note : table.notes) fmt::print(streams.err, "note: {}\n", note);
       fmt::print(streams.err,
@@ -129,7 +133,8 @@ class ReferenceCommand : public Command {
     options.corner_vehicle = way_points_.vehicle();
     const auto line = planning::ReferenceLine::along(road_map, *answer.route, options);
     map::write_output(output_,
-                      line_csv(road_map, line, stations(line.goal_s_m(), step_m_), wants_lon_lat_));
+                      line_csv(road_map, line, stations(line.goal_s_m(), step_m_), wants_lon_lat_),
+                      force_);
     if (!common.quiet) {
       const planning::LineDriving driving = planning::driving_along(
           line, line.goal_s_m(), options.corner_vehicle.value_or(geometry::VehicleShape{}),

@@ -95,7 +95,7 @@ class RouteCommand : public Command {
       }
     }
     if (!output_.empty()) {
-      map::write_output(output_, file_text(suffix(), road_map, routes, coordinates()));
+      map::write_output(output_, file_text(suffix(), road_map, routes, coordinates()), force_);
     }
     if (!map::is_standard_stream(output_)) print(streams, road_map, asked, routes, shared);
     if (!common.quiet) note_defaults(streams, routes.front());
@@ -133,7 +133,7 @@ class RouteCommand : public Command {
     if (output_.empty()) {
       fmt::print(streams.out, "{}", json_ ? answer.json : answer.csv);
     } else {
-      map::write_output(output_, answer.csv);
+      map::write_output(output_, answer.csv, force_);
       if (json_) fmt::print(streams.out, "{}", answer.json);
     }
     for (const std::string& fault : answer.faults) {

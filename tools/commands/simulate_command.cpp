@@ -15,6 +15,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/line_process.h"
@@ -38,16 +39,19 @@ bool can_replay(const DrivenScenario& driven) {
 
 /// Of what an earlier drive left, the solution and the record go, too, where this drive has none:
 /// nobody could tell that they are not this drive's.
-void write_files(const DrivenScenario& driven, const fs::path& folder) {
-  for (const auto& [name, bytes] : driven.files) map::write_output(folder / name, bytes);
+map::OutputFolderOptions folder_options(bool force, const CommonOptions& common) {
+  const auto is_dropped = [](const std::string& name) {
+    return name == "solution.xml" || name == kDriveRecordName;
+  };
+  return {.force = force, .is_dropped = is_dropped, .inputs = common.input_files};
+}
+
+void write_files(const DrivenScenario& driven, const fs::path& place, map::OutputFolder& folder) {
+  for (const auto& [name, bytes] : driven.files) folder.write(name, bytes);
   if (can_replay(driven)) {
-    map::write_output(folder / kDriveRecordName, write_drive_record(driven.record, folder));
-  } else {
-    fs::remove(folder / kDriveRecordName);
+    folder.write(kDriveRecordName, write_drive_record(driven.record, place));
   }
-  if (std::ranges::find(driven.files, "solution.xml", &DrivenFile::first) == driven.files.end()) {
-    fs::remove(folder / "solution.xml");
-  }
+  folder.commit();
 }
 
 std::string timings_csv(const std::vector<double>& cycle_ms) {
@@ -98,18 +102,18 @@ void note_times(std::vector<double> cycle_ms, ScenarioRow& row) {
 struct DriveOptions {
   fs::path output;
   DriveChoice choice;
-  std::shared_ptr<const Inputs> inputs;
-  int threads;
+  const CommonOptions& common;
+  bool force;
 };
 
 /// Drives one; whatever is wrong with it is its own outcome.
 /// @throws OutputError, std::bad_alloc  which say nothing of the scenario.
 void drive_row(const DriveOptions& options, ScenarioRow& row) {
   try {
-    const DrivenScenario driven = drive_scenario(row.file, options.choice, *options.inputs);
-    const fs::path folder = options.output / row.file.stem();
-    map::make_output_folder(folder, true);
-    write_files(driven, folder);
+    const DrivenScenario driven = drive_scenario(row.file, options.choice, *options.common.inputs);
+    const fs::path place = options.output / row.file.stem();
+    map::OutputFolder folder(place, folder_options(options.force, options.common));
+    write_files(driven, place, folder);
     row.outcome = to_string(driven.verdict.outcome);
     row.text = driven.verdict.text;
     row.at_s = driven.verdict.at_s;
@@ -126,7 +130,7 @@ void drive_row(const DriveOptions& options, ScenarioRow& row) {
 }
 
 void drive_all(std::vector<ScenarioRow>& rows, const DriveOptions& options, ProgressBar& progress) {
-  in_threads(rows.size(), options.threads, [&](std::size_t i) {
+  in_threads(rows.size(), options.common.threads, [&](std::size_t i) {
     drive_row(options, rows[i]);
     progress.done_one();
   });
@@ -238,10 +242,12 @@ class SimulateCommand : public Command {
   }
 
   Exit run_one(const Streams& streams, const CommonOptions& common) const {
+    map::OutputFolder folder(folder_, folder_options(force_, common));
     const DrivenScenario driven = drive_scenario(scenario_file_, choice_, *common.inputs);
-    map::make_output_folder(folder_, force_);
-    write_files(driven, folder_);
-    if (!timings_file_.empty()) map::write_output(timings_file_, timings_csv(driven.cycle_ms));
+    write_files(driven, folder_, folder);
+    if (!timings_file_.empty()) {
+      map::write_output(timings_file_, timings_csv(driven.cycle_ms), force_);
+    }
     print_one(streams.out, driven);
     if (!common.quiet) {
       if (!can_replay(driven)) {
@@ -274,9 +280,11 @@ class SimulateCommand : public Command {
     }
     map::make_output_folder(folder_, force_);
     ProgressBar progress(rows.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
-    drive_all(rows, {folder_, choice_, common.inputs, common.threads}, progress);
-    map::write_output(folder_ / "drives.csv", table_csv(rows));
-    if (!timings_file_.empty()) map::write_output(timings_file_, folder_timings_csv(rows));
+    drive_all(rows, {folder_, choice_, common, force_}, progress);
+    map::write_output(folder_ / "drives.csv", table_csv(rows), force_);
+    if (!timings_file_.empty()) {
+      map::write_output(timings_file_, folder_timings_csv(rows), force_);
+    }
     json_ ? print_json(streams.out, rows) : print_table(streams.out, rows);
     const bool all_good = std::ranges::all_of(rows, &ScenarioRow::is_good);
     return all_good ? Exit::ok : Exit::no;

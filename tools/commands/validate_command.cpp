@@ -95,12 +95,12 @@ class ValidateCommand : public Command {
   void write_files(const Streams& streams, const Validation& validation) const {
     const std::string name = map::one_line(input_.filename().string());
     const std::string source = input_.generic_string();
-    if (!junit_.empty()) map::write_output(junit_, findings_junit(validation, name));
-    if (!sarif_.empty()) map::write_output(sarif_, findings_sarif(validation, source));
-    if (!geojson_.empty()) map::write_output(geojson_, findings_geojson(validation));
+    if (!junit_.empty()) map::write_output(junit_, findings_junit(validation, name), force_);
+    if (!sarif_.empty()) map::write_output(sarif_, findings_sarif(validation, source), force_);
+    if (!geojson_.empty()) map::write_output(geojson_, findings_geojson(validation), force_);
     if (svg_.empty()) return;
     if (validation.road_map) {
-      map::write_output(svg_, findings_svg(validation));
+      map::write_output(svg_, findings_svg(validation), force_);
     } else {
       fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
                  svg_.string());

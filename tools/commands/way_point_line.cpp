@@ -60,6 +60,7 @@ WayPointLine::Line WayPointLine::smooth_line(const planning::ReferenceLine& line
 
 void WayPointLine::declare(Arguments& arguments) {
   arguments.add("--waypoints", file_, "CSV file with columns x_m and y_m, instead of MAP and route")
+      .reads()
       .ending(".csv");
   arguments.flag("--interpolate", interpolate_,
                  "Through the way-points: a cubic spline, not smoothed");

@@ -34,8 +34,8 @@ std::size_t write_all(int descriptor, std::string_view bytes) {
 
 }  // namespace
 
-BufferedOutput::BufferedOutput(const std::filesystem::path& file) {
-  if (!map::is_standard_stream(file)) file_.emplace(file);
+BufferedOutput::BufferedOutput(const std::filesystem::path& file, bool force) {
+  if (!map::is_standard_stream(file)) file_.emplace(file, force);
 }
 
 void BufferedOutput::add(std::string_view bytes) {

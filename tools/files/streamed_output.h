@@ -15,7 +15,7 @@ namespace roadbed::tools::inline files {
 class BufferedOutput {
  public:
   /// @throws OutputError if it cannot be written, as do the others.
-  explicit BufferedOutput(const std::filesystem::path& file);
+  BufferedOutput(const std::filesystem::path& file, bool force);
 
   void add(std::string_view bytes);
 

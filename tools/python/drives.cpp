@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/python/motion.h"
 #include "roadbed/tools/python/routes.h"
 #include "roadbed/tools/report/drive_files.h"
@@ -157,9 +157,10 @@ nb::list lines_of(const std::string& json_lines) {
 }
 
 void save(const DrivenScenario& driven, const std::filesystem::path& folder, bool force) {
-  map::make_output_folder(folder, force);
-  for (const auto& [name, bytes] : driven.files) map::write_output(folder / name, bytes);
-  map::write_output(folder / kDriveRecordName, write_drive_record(driven.record, folder));
+  map::OutputFolder output(folder, {.force = force});
+  for (const auto& [name, bytes] : driven.files) output.write(name, bytes);
+  output.write(kDriveRecordName, write_drive_record(driven.record, folder));
+  output.commit();
 }
 
 void bind_seen(nb::module_& module) {

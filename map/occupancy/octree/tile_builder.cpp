@@ -42,9 +42,8 @@ std::int64_t axis_of(std::uint64_t code, int axis) {
   throw InputError({.file = file.string(), .found = found, .remedy = "check the disk"});
 }
 
-[[noreturn]] void refuse_clouds(const std::filesystem::path& folder, const char* what,
-                                const char* found) {
-  throw InputError({.file = folder.string(),
+[[noreturn]] void refuse_clouds(const std::string& name, const char* what, const char* found) {
+  throw InputError({.file = name,
                     .element = fmt::format("{} of all clouds", what),
                     .found = found,
                     .remedy = "take a coarser resolution, or cut the clouds"});
@@ -165,7 +164,7 @@ std::optional<SeeThroughRemoval> TileBuilder::seen_through(std::size_t removed) 
 void TileBuilder::start(const Shift& shift) {
   constexpr std::int64_t farthest = 5'000'000'000;  // what blocks put aside have room for
   if (std::ranges::any_of(shift, [](auto cells) { return std::abs(cells) > farthest; })) {
-    refuse_clouds(plan_.folder, "extent", "is over 10000000000 cells");
+    refuse_clouds(plan_.name, "extent", "is over 10000000000 cells");
   }
   shift_ = shift;
   const Eigen::Vector3d moved(static_cast<double>(shift[0]), static_cast<double>(shift[1]),
@@ -247,7 +246,7 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
                                           kBlockSide * aside.at[1] - first_y + middle,
                                           kBlockSide * aside.at[2] + middle};
     if (key[2] < 0 || key[2] >= 2 * middle)
-      refuse_clouds(plan_.folder, "height", "is over 65536 cells");
+      refuse_clouds(plan_.name, "height", "is over 65536 cells");
     CellBlock& block =
         blocks.merge({static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
                       static_cast<std::uint16_t>(key[2])},

@@ -35,7 +35,8 @@ std::int64_t tile_side_cells(double side_m, double resolution_m);
 class TileBuilder {
  public:
   struct Plan {
-    std::filesystem::path folder;  ///< for files in between; they are removed in the end
+    std::string name = {};              ///< of the output, in messages
+    std::filesystem::path folder = {};  ///< for files in between; they are removed in the end
     double resolution_m = 0.1;
     double carve_range_m = std::numeric_limits<double>::infinity();
     bool sticky_hits = true;  ///< and the next: as in OccupancyOptions

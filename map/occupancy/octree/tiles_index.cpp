@@ -173,6 +173,10 @@ std::string tile_file_name(std::int64_t x, std::int64_t y) {
   return fmt::format("tile_{}_{}.bt", x, y);
 }
 
+bool is_tile_file_name(const std::string& name) {
+  return name.starts_with("tile_") && name.ends_with(".bt");
+}
+
 std::string write_tiles_index(const TilesIndex& index) {
   Ordered json;
   json["format"] = kTilesFormat;

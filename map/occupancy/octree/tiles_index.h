@@ -38,6 +38,9 @@ struct TilesIndex {
 /// "tile_3_-1.bt"
 std::string tile_file_name(std::int64_t x, std::int64_t y);
 
+/// Whether a file may be one of these.
+bool is_tile_file_name(const std::string& name);
+
 std::string write_tiles_index(const TilesIndex& index);
 
 /// @throws InputError naming what is wrong. `name` stands for the file in messages.
