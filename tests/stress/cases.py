@@ -88,6 +88,23 @@ OCTREE: Commands = CLOUD + [
 
 ALL = map_commands("50,-1.7", "reach", "diff", ".xodr", ".osm", ".xml", ".geojson", ".fgb")
 CHECK: Commands = [("audit --check", ["audit", "--check", "IN"])]
+TOWN_MAP = str(DATA / "town.xodr")
+ROUTES: Commands = [
+    ("route --batch", ["route", TOWN_MAP, "--batch", "IN", "-o", "out.csv", "--force"])
+]
+LINES: Commands = [
+    ("reference", ["reference", "--waypoints", "IN", "-o", "out.csv", "--force"]),
+    (
+        "reference --interpolate",
+        ["reference", "--waypoints", "IN", "--interpolate", "-o", "out.csv", "--force"],
+    ),
+]
+POSES: Commands = [
+    (
+        "occupancy build",
+        ["occupancy", "build", "cloud.pcd", "--poses", "IN", "-o", "out.bt", "--force"],
+    )
+]
 BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
 
 CASES = [
@@ -142,11 +159,21 @@ CASES = [
     Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD),
     Case("compressed .pcd", inputs.pcd_bomb, 50_000, CLOUD),
     Case("full .bt", inputs.bt_checked, 10_000, OCTREE),
+    Case("full .ot", inputs.ot_chain, 10_000, OCTREE),
+    Case("points .ply", inputs.ply, 10_000, CLOUD),
+    Case("points .las", inputs.las, 10_000, CLOUD),
+    Case("poses", inputs.poses, 1000, POSES),
+    Case("pairs", inputs.pairs, 100, ROUTES),
+    Case("way-points", inputs.way_points, 100, LINES),
     Case("job lines", inputs.job_lines, 100, BATCH),
 ]
 
 # What grows faster than it should: the exponent that it may have, and why it has it.
 KNOWN_EXPONENTS: dict[tuple[str, str], tuple[float, str]] = {
+    ("way-points", "reference"): (
+        1.5,
+        "how far each way-point lies from the line is looked for among all of its knots",
+    ),
     ("woven roads", "validate"): (
         1.9,
         "roads grow longer with their number, and are compared every 4 m, up to 2000 times a lane",

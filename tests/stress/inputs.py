@@ -543,6 +543,50 @@ def pcd_bomb(folder: Path, n: int) -> Path:
     return written(folder / "in.pcd", pcd_header(points, "binary_compressed") + sizes + packed)
 
 
+def ply(folder: Path, n: int) -> Path:
+    chance = random.Random(1)
+    points = (chance.uniform(0, 50) for _ in range(3 * n))
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {n}\nproperty float x\n"
+        "property float y\nproperty float z\nend_header\n"
+    )
+    return written(folder / "in.ply", header.encode() + struct.pack(f"<{3 * n}f", *points))
+
+
+def las(folder: Path, n: int) -> Path:
+    """Version 1.2, point format 0, millimetres."""
+    chance = random.Random(1)
+    header = b"LASF" + bytes(20) + struct.pack("<BB", 1, 2) + bytes(68)
+    header += struct.pack("<HIIBHI5I", 227, 227, 0, 0, 20, n, n, 0, 0, 0, 0)
+    header += struct.pack("<12d", *[0.001] * 3, *[0.0] * 3, 50, 0, 50, 0, 3, 0)
+    points = (
+        struct.pack("<3iHBBbBH", *(chance.randrange(50_000) for _ in range(2)),
+                    chance.randrange(3000), 0, 9, 0, 0, 0, 0)
+        for _ in range(n)
+    )  # fmt: skip
+    return written(folder / "in.las", header + b"".join(points))
+
+
+def poses(folder: Path, n: int) -> Path:
+    """A line for the one cloud there is, and others."""
+    pcd_binary(folder, 100).rename(folder / "cloud.pcd")
+    return written(folder / "in.txt", "".join(f"{i} {i} 0 0 0 0 0 1\n" for i in range(n)))
+
+
+def ot_chain(folder: Path, n: int) -> Path:
+    """Leaves that are occupied and free in turns, under inner nodes of eight."""
+    def leaf(value: float) -> bytes:
+        return struct.pack("<fB", value, 0)
+
+    data, nodes, levels = (leaf(1.0) + leaf(-1.0)) * 4, 8, 0
+    while len(data) * 8 <= 20 * n and levels < 15:
+        data, nodes, levels = (struct.pack("<fB", 1.0, 255) + data) * 8, 8 * nodes + 8, levels + 1
+    data, nodes = struct.pack("<fB", 1.0, 255) + data, nodes + 1
+    header = f"# Octomap OcTree file\nid OcTree\nsize {nodes}\nres 0.1\ndata\n"
+    drive(folder, ((i, 2000 + i, 2000, 0) for i in range(5)))
+    return written(folder / "in.ot", header.encode() + data)
+
+
 def bt_checked(folder: Path, n: int) -> Path:
     """Full to the leaves, which are occupied and free in turns: two bytes are eight nodes."""
     leaves, levels = b"\x66\x66", 0
@@ -556,6 +600,24 @@ def bt_checked(folder: Path, n: int) -> Path:
     header = f"# Octomap OcTree binary file\nid OcTree\nsize {nodes + 1}\nres 0.1\ndata\n"
     drive(folder, ((i, 2000 + i, 2000, 0) for i in range(5)))
     return written(folder / "in.bt", header.encode() + data)
+
+
+# Tables
+
+
+def table(folder: Path, columns: str, rows) -> Path:
+    return written(folder / "in.csv", columns + "\n" + "".join(f"{row}\n" for row in rows))
+
+
+def pairs(folder: Path, n: int) -> Path:
+    here, there = "lane:1/0/-1@", "lane:7/0/1@"
+    rows = (f"{here}{10 + i % 20},{there}{30 + i % 20}" for i in range(n))
+    return table(folder, "from,to", rows)
+
+
+def way_points(folder: Path, n: int) -> Path:
+    rows = (f"{5 * i},{20 * math.sin(0.05 * i):.6f}" for i in range(n))
+    return table(folder, "x_m,y_m", rows)
 
 
 def job_lines(folder: Path, n: int) -> Path:
