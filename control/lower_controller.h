@@ -43,9 +43,11 @@ double resistance_N(double speed_mps, double grade_rad, const DriveTrain& train)
 /// is used, left only on the side that was used last: small changes do not make the foot jump.
 class PedalController {
  public:
+  /// @param band_N  of force, in which neither pedal is used.
   explicit PedalController(const DriveTrain& train, double band_N = 50.0)
       : train_(train), band_N_(band_N) {}
 
+  /// To be called at every step; a positive grade is uphill.
   Pedals update(double desired_mps2, double speed_mps, double grade_rad);
 
  private:

@@ -13,6 +13,7 @@ struct SingleTrackState {
   double steering_rad = 0.0;
 };
 
+/// What moves it over a step.
 struct SingleTrackInput {
   double acceleration_mps2 = 0.0;
   double steering_rate_radps = 0.0;

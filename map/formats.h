@@ -32,15 +32,18 @@ struct FileContent {
 struct Format {
   std::string_view name;  ///< "OpenDRIVE": RoadMap::format() begins with it
 
+  /// Whether a file is of this format.
   bool (*sniff)(const FileContent& content) = nullptr;
+  /// Reads it; `name` stands for the file in messages.
   RoadMap (*read)(std::string bytes, const std::string& name, const LoadOptions& options) = nullptr;
 
   /// Reads it and judges its text by the format's own rules.
   JudgedFile (*judge)(std::string bytes, const std::string& name,
                       const validation::ValidateOptions& options) = nullptr;
-  std::vector<validation::RuleInfo> (*rules)() = nullptr;
+  std::vector<validation::RuleInfo> (*rules)() = nullptr;  ///< of its text
 
   std::string_view suffix = {};  ///< ".osm", empty if it is not written
+  /// The bytes of a file.
   std::string (*write)(const RoadMap& road_map, const SaveOptions& options) = nullptr;
   std::size_t most_layers = 0;  ///< that may be named for one file
   std::string_view what = {};   ///< for a help: what is written

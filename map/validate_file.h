@@ -20,6 +20,7 @@ struct Validation {
   std::vector<validation::Finding>
       findings;  ///< places are in the map's frame, else in the source's
 
+  /// Where a finding is, in the file's own coordinates.
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const {
     return road_map ? road_map->to_source(in_map) : in_map;
   }

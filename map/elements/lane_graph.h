@@ -57,7 +57,7 @@ class LaneGraph {
   }
 
   std::size_t size() const { return links_.size(); }
-  const LaneLinks& of(LaneId lane) const { return links_.at(lane.index); }
+  const LaneLinks& of(LaneId lane) const { return links_.at(lane.index); }  ///< a lane's
 
  private:
   void check(LaneId id) const {

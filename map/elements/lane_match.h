@@ -24,8 +24,8 @@ struct LaneMatches {
   };
   std::vector<LaneMatch> all;
   std::vector<Range> ranges;  ///< in `all`, one per point
-
   std::size_t size() const { return ranges.size(); }
+  /// The lanes of one point, the nearest first.
   std::span<const LaneMatch> of(std::size_t point) const {
     return std::span(all).subspan(ranges[point].from, ranges[point].to - ranges[point].from);
   }
@@ -40,8 +40,8 @@ class LaneTypes {
   static LaneTypes drivable() { return those(is_drivable); }
   static LaneTypes surface() { return those(is_surface); }
 
-  bool has(LaneType type) const { return has(static_cast<std::uint32_t>(type)); }
-  bool has(std::uint32_t type) const { return type < 32 && (bits_ >> type & 1U) != 0; }
+  bool has(LaneType type) const { return has(static_cast<std::uint32_t>(type)); }        ///< one
+  bool has(std::uint32_t type) const { return type < 32 && (bits_ >> type & 1U) != 0; }  ///< one
 
  private:
   template <typename Wants>

@@ -26,7 +26,7 @@ struct Road {
 
 /// How a junction joins roads (ASAM OpenDRIVE 1.8, section 12).
 enum class JunctionKind { common, direct, virtual_, crossing };
-
+/// Where roads meet, with the roads that lead across.
 struct Junction {
   JunctionId id;
   std::string source_id;

@@ -19,7 +19,7 @@ class InputError : public std::runtime_error {
     std::string needed = {};   ///< what has to be there
     std::string remedy = {};   ///< what the user can do
   };
-  explicit InputError(const Parts& parts);
+  explicit InputError(const Parts& parts);  ///< Makes the message of its parts.
 
   const Parts& parts() const { return *parts_; }
 

@@ -1,11 +1,13 @@
 #include "roadbed/map/files/proj_module.h"
 
+#include <dlfcn.h>
 #include <proj.h>
 #include <proj_experimental.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -31,9 +33,21 @@ int say_fault(const Context& context, char* message, std::size_t size) {
              size);
 }
 
+/// Where PROJ's own tables are, in a package that brings them along; empty: where PROJ has them.
+std::string own_tables() {
+  Dl_info found{};
+  if (::dladdr(reinterpret_cast<void*>(&own_tables), &found) == 0) return {};
+  const std::filesystem::path folder =
+      std::filesystem::path(found.dli_fname).parent_path() / "proj";
+  return std::filesystem::exists(folder / "proj.db") ? folder.string() : std::string();
+}
+
 Context quiet_context() {
   Context context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
+  static const std::string tables = own_tables();
+  const char* const folder = tables.c_str();
+  if (!tables.empty()) proj_context_set_search_paths(context.get(), 1, &folder);
   return context;
 }
 

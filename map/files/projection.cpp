@@ -27,10 +27,11 @@ using Message = std::array<char, 256>;
 
 template <typename Function>
 Function& proj_function(const char* name, const std::string& crs) {
-  void* found = function_of_module("libroadbed_proj", name);
-  if (found != nullptr) return *reinterpret_cast<Function*>(found);
-  refuse(crs, "libroadbed_proj.so cannot be opened",
-         "install libproj-dev and build roadbed again, or write another format");
+  const ModuleFunction found = function_of_module("libroadbed_proj", name);
+  if (found.address != nullptr) return *reinterpret_cast<Function*>(found.address);
+  refuse(crs, found.fault,
+         "install PROJ (Debian: libproj25; libproj-dev before roadbed is built), or write another "
+         "format");
 }
 
 [[noreturn]] void refuse_unknown(const std::string& crs, const Message& message) {

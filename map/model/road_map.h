@@ -41,8 +41,8 @@ class RoadMap {
   const CrsOffset& offset_in_crs() const { return content_.offset_in_crs; }
   const Eigen::Vector2d& origin_in_source() const { return content_.origin_in_source; }
   const Attributes& attributes() const { return content_.attributes; }
-  Eigen::Vector2d to_map(const Eigen::Vector2d& in_source) const;
-  Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const;
+  Eigen::Vector2d to_map(const Eigen::Vector2d& in_source) const;  ///< from the source's
+  Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const;  ///< to the source's
 
   const LazyList<Lane>& lanes() const { return content_.lanes; }
   const Lane& lane(LaneId id) const { return content_.lanes.at(id.index); }

@@ -56,6 +56,7 @@ using ElementLines = std::map<std::string, long, std::less<>>;
 /// past the first thousand are only counted, which a last finding says.
 class Report {
  public:
+  /// Puts what a rule finds behind other findings; both are kept by reference.
   Report(const RuleInfo& rule, std::vector<Finding>& findings)
       : rule_(&rule), findings_(&findings) {}
 

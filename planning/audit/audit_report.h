@@ -18,6 +18,7 @@ namespace roadbed::planning::inline audit {
 enum class UnknownPolicy { free, occupied, report };
 std::string_view to_string(UnknownPolicy policy);
 
+/// What is asked of a drive.
 struct AuditOptions {
   double clearance_m = 0.0;  ///< less than this is a conflict, an overlap always; < horizon / 2
   double inflate_m = 0.0;    ///< localisation margin added around the vehicle
@@ -70,6 +71,7 @@ struct Conflict {
   DeepestOverlap deepest = {};
 };
 
+/// What was found of it: the verdict of all, and every stretch that speaks against `clear`.
 struct AuditReport {
   Verdict verdict = Verdict::undecided;
 

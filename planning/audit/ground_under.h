@@ -14,6 +14,7 @@ namespace roadbed::planning::inline audit {
 /// What the heights of a vehicle are to be above: a level, the lanes of a map, or what was
 /// measured.
 struct GroundRule {
+  /// A level, the lanes of a map, or the lowest that was measured.
   enum class Kind { level, map, measured };
   Kind kind = Kind::level;
   double level_m = 0.0;

@@ -19,12 +19,12 @@ namespace roadbed::planning::inline behaviour {
 /// s–t graph finds it.
 class Planner {
  public:
-  explicit Planner(const PlannerSetup& setup);
+  explicit Planner(const PlannerSetup& setup);  ///< keeps what that refers to
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  PlannerCommand decide(const PlannerView& view);
+  PlannerCommand decide(const PlannerView& view);  ///< one cycle
 
   /// The path to follow; of the last decision.
   const LateralReplanner& replanner() const;

@@ -36,6 +36,7 @@ struct PlannerCommand {
   std::optional<Detour> detour = {};
 };
 
+/// How it plans, whatever it drives.
 struct PlannerOptions {
   /// Beyond either, planning starts from the measured state instead of the last plan.
   double max_tracking_error_m = 0.3;

@@ -72,7 +72,7 @@ class Grid {
 
   /// Candidates are numbered with d_e fastest.
   double end_d_m(std::size_t index) const { return end_d_m_[index % offset_count()]; }
-  double end_l_m(std::size_t index) const { return end_l_m_[index / offset_count()]; }
+  double end_l_m(std::size_t index) const { return end_l_m_[index / offset_count()]; }  ///< too
 
  private:
   std::vector<double> end_d_m_, end_l_m_;
@@ -135,9 +135,9 @@ std::vector<Station> stations_over(const CycleContext& context, double end_l_m, 
 
 /// The two quintics that make all candidates of one length: d = at_zero + d_e · per_unit.
 struct QuinticFamily {
-  QuinticFamily(const LateralState& start, double end_l_m);
+  QuinticFamily(const LateralState& start, double end_l_m);  ///< of one length
   geometry::Quintic at_zero, per_unit;
-  geometry::Quintic member(double end_d_m) const;
+  geometry::Quintic member(double end_d_m) const;  ///< that ends there
 };
 
 /// κ … κ⁗ of a reference point.

@@ -42,8 +42,8 @@ struct ObstacleIn {
   TimeSpan validity = kAlways;  ///< when it is there
 
   bool is_static() const { return motion.points().size() == 1; }
-  bool is_there(double t_s) const { return validity.holds(t_s); }
-
+  bool is_there(double t_s) const { return validity.holds(t_s); }  ///< at a time
+  /// Pose of the centre at a time, there or not.
   geometry::Pose2 pose_at(double t_s) const {
     if constexpr (requires { motion.at(t_s).pose(); }) {
       return motion.at(t_s).pose();

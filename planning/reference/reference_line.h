@@ -18,7 +18,7 @@
 namespace roadbed::planning::inline reference {
 
 struct ReferenceLineData;
-
+/// How a reference line is laid.
 struct ReferenceLineOptions {
   double step_m = 0.5;                 ///< between support points
   double max_smoothing_m = 0.3;        ///< largest move off the centreline, or of a way-point
@@ -88,9 +88,9 @@ class LineView {
         corridor_at_([line](double s_m) { return line.corridor_at(s_m); }) {}
   LineView(std::function<ReferencePoint(double)> at, std::function<Corridor(double)> corridor_at)
       : at_(std::move(at)), corridor_at_(std::move(corridor_at)) {}
-
+  /// As those of a ReferenceLine.
   ReferencePoint at(double s_m) const { return at_(s_m); }
-  Corridor corridor_at(double s_m) const { return corridor_at_(s_m); }
+  Corridor corridor_at(double s_m) const { return corridor_at_(s_m); }  ///< the same
 
  private:
   std::function<ReferencePoint(double)> at_;

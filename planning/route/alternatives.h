@@ -7,12 +7,14 @@
 
 namespace roadbed::planning::inline route {
 
+/// How many other routes are wanted, and how different.
 struct AlternativeOptions {
   int count = 3;             ///< routes wanted, with the cheapest
   double most_shared = 0.7;  ///< fraction of a route's length on stretches of any route before it
   double most_cost = 1.5;    ///< times the cheapest route's cost
 };
 
+/// A route that differs from those before it.
 struct Alternative {
   Route route;
   double shared =

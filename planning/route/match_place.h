@@ -14,6 +14,7 @@ namespace roadbed::planning::inline route {
 enum class MatchVerdict { chosen, possible, against_heading, not_for_participant, too_far };
 std::string_view to_string(MatchVerdict verdict);
 
+/// A lane that a point may mean.
 struct PlaceCandidate {
   map::LanePlace place;
   double distance_m = 0.0;      ///< to the lane; 0 on it
@@ -23,6 +24,7 @@ struct PlaceCandidate {
   MatchVerdict verdict = MatchVerdict::possible;
 };
 
+/// How a point is matched to a lane.
 struct MatchOptions {
   map::Participant participant = map::Participant::car;
   double reach_m = 0.5;            ///< a point belongs to lanes that are so near

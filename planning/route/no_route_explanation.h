@@ -40,7 +40,7 @@ class NoRouteExplainer {
   NoRouteExplainer(const map::RoadMap& road_map, const RouteSolver& solver);
   ~NoRouteExplainer();
   NoRouteExplainer(NoRouteExplainer&&) noexcept;
-
+  /// @pre no way leads from one place to the other.
   NoRouteExplanation find(const RoutePlace& from, const RoutePlace& to);
 
  private:

@@ -35,7 +35,7 @@ struct RouteStop {
   std::size_t leg = 0;
   double s_m = 0.0;  ///< station of that leg's lane
 };
-
+/// A way over lanes, leg by leg, from its start to its goal.
 struct Route {
   std::vector<RouteLeg> legs;
   double cost_s = 0.0;    ///< travel time at the limits, and manoeuvres: the sum of the legs'

@@ -26,7 +26,7 @@ struct BlockedStretch {
   map::LaneId lane;
   map::StationRange stations;
 };
-
+/// What is asked of a route.
 struct RouteOptions {
   RouteCost cost = RouteCost::time;
   map::Participant participant = map::Participant::car;

@@ -22,10 +22,12 @@ namespace {
 }
 
 RoadbedPclFilter& open_module() {
-  void* found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
-  if (found != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found);
-  refuse("libroadbed_pcl.so cannot be opened",
-         "install libpcl-dev and build roadbed again, or leave the filters out");
+  const ModuleFunction found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
+  if (found.address != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found.address);
+  refuse(
+      found.fault,
+      "install PCL (Debian: libpcl-filters1.13; libpcl-dev before roadbed is built), or leave the "
+      "filters out");
 }
 
 /// Points in a row that were measured from one place.

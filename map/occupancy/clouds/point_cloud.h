@@ -38,7 +38,7 @@ struct PointCloud {
 
   /// Whether rays can be drawn to some of its points.
   bool has_sensor() const { return sensor_in_source.has_value() || !scans.empty(); }
-
+  /// A point in the source's coordinates.
   Eigen::Vector3d in_source(std::size_t i) const {
     return origin_in_source + points[i].cast<double>();
   }

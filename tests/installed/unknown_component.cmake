@@ -1,0 +1,1 @@
+find_package(roadbed REQUIRED COMPONENTS lanes)

@@ -1,0 +1,60 @@
+# Run by cpack when the files of its packages are in place: adds what Debian wants beside them, and
+# finds what they depend on.
+cmake_policy(VERSION 3.25)
+set(date $ENV{SOURCE_DATE_EPOCH})
+if(NOT date)
+  message(FATAL_ERROR "SOURCE_DATE_EPOCH is not set; tools/package sets it")
+endif()
+execute_process(COMMAND date --utc --rfc-email --date=@${date} OUTPUT_VARIABLE changed
+  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+set(changelog "roadbed (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium
+
+  * The changes are listed in tools/README.md of the source.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${changed}
+")
+
+# dpkg-shlibdeps reads it.
+set(control ${CPACK_TEMPORARY_DIRECTORY}/shlibdeps/debian)
+file(WRITE ${control}/control "Source: roadbed\n\nPackage: roadbed\nArchitecture: any\n")
+
+# Sets RESULT to what programs and libraries need, and RESULT_recommended to what others need more.
+function(find_dependencies result needed recommended)
+  list(TRANSFORM needed PREPEND -e OUTPUT_VARIABLE arguments)
+  list(TRANSFORM recommended PREPEND -e)
+  if(recommended)
+    list(PREPEND recommended -dRecommends)
+  endif()
+  execute_process(COMMAND dpkg-shlibdeps --ignore-missing-info -O ${arguments} ${recommended}
+    WORKING_DIRECTORY ${control}/.. OUTPUT_VARIABLE found COMMAND_ERROR_IS_FATAL ANY ERROR_QUIET)
+  string(REGEX MATCH "shlibs:Depends=([^\n]*)" ignored "${found}")
+  set(${result} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+  set(${result}_recommended "" PARENT_SCOPE)
+  if(found MATCHES "shlibs:Recommends=([^\n]*)")
+    set(${result}_recommended "${CMAKE_MATCH_1}" PARENT_SCOPE)
+  endif()
+endfunction()
+
+foreach(component ${CPACK_COMPONENTS_ALL})
+  string(TOUPPER ${component} name)
+  set(root ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr)
+  set(documentation ${root}/share/doc/${CPACK_DEBIAN_${name}_PACKAGE_NAME})
+  configure_file(${CPACK_ROADBED_SOURCE}/tools/install/copyright ${documentation}/copyright COPYONLY)
+  file(WRITE ${documentation}/changelog "${changelog}")
+  file(GLOB_RECURSE pages ${root}/share/man/*.1)
+  execute_process(COMMAND gzip -9n ${documentation}/changelog ${pages} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+
+set(root ${CPACK_TEMPORARY_DIRECTORY}/program/usr)
+configure_file(${CPACK_ROADBED_SOURCE}/tools/install/lintian_overrides
+  ${root}/share/lintian/overrides/roadbed COPYONLY)
+file(GLOB modules ${root}/${CPACK_ROADBED_MODULES}/*.so)
+find_dependencies(depends ${root}/bin/roadbed "${modules}")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${depends}")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "${depends_recommended}")
+
+# What the archives are linked with: the packages of library.cmake's and roadbedConfig.cmake's names.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libgeographic-dev | \
+libgeographiclib-dev, libgmp-dev, liblzf-dev, libmpfr-dev, liboctomap-dev, libpugixml-dev, \
+libsqlite3-dev, libxxhash-dev, nettle-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "roadbed (= ${CPACK_PACKAGE_VERSION})")
