@@ -29,10 +29,12 @@ std::vector<fs::path> module_folders() {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing here changes the environment
   if (const char* named = std::getenv("ROADBED_MODULES")) folders.emplace_back(named);
   const fs::path own = own_file().parent_path();
-  for (const fs::path place : {".", "../lib", "roadbed", "../" ROADBED_MODULE_FOLDER}) {
+  for (const fs::path place : {"lib", "../lib", "roadbed", "../" ROADBED_MODULE_FOLDER}) {
     folders.push_back(own / place);
   }
-  folders.emplace_back(ROADBED_INSTALLED_MODULES);
+  if (const fs::path installed = ROADBED_INSTALLED_MODULES; installed.is_absolute()) {
+    folders.push_back(installed);  // a wheel is installed nowhere in particular
+  }
   return folders;
 }
 

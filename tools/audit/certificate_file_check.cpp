@@ -65,7 +65,7 @@ class CertificateCheck {
     if (!named) {
       if (!demanded.empty()) {
         faults_.push_back(
-            fmt::format("it is about no {}, and {} is asked for", role, demanded.string()));
+            fmt::format("it is about no {}, and {} is required", role, demanded.string()));
       }
       return;
     }
@@ -215,14 +215,14 @@ std::string CertificateCheck::question() const {
   for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
   if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
     const auto [low_m, high_m] = map::heights_at_samples_m(*ground, drive_);
-    text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's rows ({}); ", low_m,
-                        high_m, ground_text());
+    text += fmt::format("above ground at z {:.2f} m to {:.2f} m at the drive's samples ({}); ",
+                        low_m, high_m, ground_text());
   }
-  return text + fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
-                            audit.inflate_m, audit.clearance_m,
-                            planning::to_string(audit.unknown_policy),
-                            file_.obstacles ? "what moves is that of " + file_.obstacles->name
-                                            : "nothing moves");
+  return text +
+         fmt::format("grown by {} m; clearance {} m; unknown space counts as {}; {}",
+                     audit.inflate_m, audit.clearance_m, planning::to_string(audit.unknown_policy),
+                     file_.obstacles ? "dynamic obstacles are those of " + file_.obstacles->name
+                                     : "no dynamic obstacles");
 }
 
 void CertificateCheck::print(std::ostream& out) const {
@@ -236,7 +236,7 @@ void CertificateCheck::print(std::ostream& out) const {
     line(checked.role, fmt::format("{}, SHA-256 {}", checked.file.name, checked.file.sha256));
   }
   if (!file_.vehicle) line("vehicle", "none named: CommonRoad's vehicle 2");
-  line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % asked for",
+  line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % required",
                                100.0 * file_.measured_fraction(), 100.0 * file_.least_measured));
   std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
   for (const planning::AuditCertificate& part : file_.parts) {
@@ -245,7 +245,7 @@ void CertificateCheck::print(std::ostream& out) const {
     from_moving += part.from_moving.size();
   }
   line("proven spans",
-       fmt::format("{} from occupied space, {} from unknown space, {} from what moves",
+       fmt::format("{} from occupied space, {} from unknown space, {} from dynamic obstacles",
                    from_occupied, from_unknown, from_moving));
   if (is_whole()) line("certified", fmt::format("{:.3f} m", file_.certified_clearance_m()));
   for (const std::string& fault : faults_) line("fault", fault);

@@ -28,7 +28,7 @@ struct CertificateDemands {
 /// Whether every claim of a certificate holds, by brute force, and it is about what is demanded;
 /// what does not or is not is printed, with the files that were looked at and their hashes. All
 /// that is claimed is taken from these files anew: the vehicle's parts and their heights, the
-/// ground, what moves, what was measured.
+/// ground, dynamic obstacles, what was measured.
 /// @throws InputError if the certificate, or what a file of the right hash holds, is unusable.
 bool check_certificate_file(const std::filesystem::path& certificate,
                             const CertificateDemands& demands, bool json, const Inputs& inputs,

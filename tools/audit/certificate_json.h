@@ -37,14 +37,14 @@ struct CertifiedGround {
 struct CertificateFile {
   std::string program;  ///< name and version of what wrote it
   CertifiedFile occupancy, trajectory;
-  /// Of what moves, if anything does; the hash is that of the obstacles, not of the file's bytes,
+  /// Of dynamic obstacles, if there are any; the hash is that of the obstacles, not of the file's bytes,
   /// since a scenario names other files.
   std::optional<CertifiedFile> obstacles = {};
   std::optional<CertifiedFile> vehicle = {};  ///< none: CommonRoad's vehicle 2
   std::optional<CertifiedFile> roads = {};
   double underside_m = 0.2;     ///< above the ground, of the body and of circles without their own
   CertifiedGround ground = {};  ///< what the parts' bands are above
-  double least_measured = 0.0;  ///< asked for of `measured_fraction`
+  double least_measured = 0.0;  ///< required of `measured_fraction`
   /// One for each part of the vehicle, the body first; all of one question but for their heights.
   std::vector<planning::AuditCertificate> parts;
 

@@ -134,20 +134,25 @@ Eigen::Vector2d in_source(const map::RoadMap& road_map, const std::string& text)
   return point;
 }
 
-Place at_point(const map::RoadMap& road_map, const std::string& text,
-               map::Participant participant) {
-  const auto parts = point_words(text);
-  const Eigen::Vector2d in_map = road_map.to_map(in_source(road_map, text));
-  const auto heading_rad = parts.size() > 2 ? heading(parts[2]) : std::nullopt;
+PointPlace point_of(const map::RoadMap& road_map, const std::string& text) {
+  const auto words = point_words(text);
+  return {in_source(road_map, text), words.size() > 2 ? heading(words[2]) : std::nullopt};
+}
+
+/// @param text_of  how it is written, for what is refused
+template <typename TextOf>
+Place at_point(const map::RoadMap& road_map, const PointPlace& point, map::Participant participant,
+               const TextOf& text_of) {
+  const Eigen::Vector2d in_map = road_map.to_map(point.in_source);
   auto candidates =
-      planning::match_place(road_map, in_map, heading_rad, {.participant = participant});
+      planning::match_place(road_map, in_map, point.heading_rad, {.participant = participant});
   if (candidates.empty() || candidates.front().verdict != planning::MatchVerdict::chosen) {
-    refuse_far(road_map, text, candidates, participant);
+    refuse_far(road_map, text_of(), candidates, participant);
   }
   const planning::PlaceCandidate& chosen = candidates.front();
   Place place{chosen.place,
-              {in_map.x(), in_map.y(), heading_rad.value_or(chosen.heading_rad)},
-              heading_rad.has_value(),
+              {in_map.x(), in_map.y(), point.heading_rad.value_or(chosen.heading_rad)},
+              point.heading_rad.has_value(),
               chosen.sense,
               {}};
   place.candidates = std::move(candidates);
@@ -188,8 +193,20 @@ Place find_place(const map::RoadMap& road_map, const std::string& text,
                  map::Participant participant) {
   const std::string fault = place_syntax_fault(text);
   if (!fault.empty()) refuse_place(text, fault, "", "");
-  return text.starts_with(kLanePrefix) ? at_lane(road_map, text)
-                                       : at_point(road_map, text, participant);
+  if (text.starts_with(kLanePrefix)) return at_lane(road_map, text);
+  return at_point(road_map, point_of(road_map, text), participant, [&] { return text; });
+}
+
+Place find_place(const map::RoadMap& road_map, const PointPlace& point,
+                 map::Participant participant) {
+  const auto text_of = [&] {
+    const std::string text = fmt::format("{},{}", point.in_source.x(), point.in_source.y());
+    return point.heading_rad ? fmt::format("{},{}", text, *point.heading_rad) : text;
+  };
+  if (!point.in_source.allFinite() || !std::isfinite(point.heading_rad.value_or(0.0))) {
+    refuse_place(text_of(), "X, Y or the heading is not a number", "", "");
+  }
+  return at_point(road_map, point, participant, text_of);
 }
 
 }  // namespace roadbed::tools::cli

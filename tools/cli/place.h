@@ -17,6 +17,12 @@ inline constexpr const char* kPlaceSyntax =
     "X,Y[,HEADING] in the map's coordinates, heading from their x axis in radians or as 90deg; "
     "lonlat:LON,LAT[,HEADING] in degrees (WGS 84), the same heading; or lane:NAME[@S]";
 
+/// A point, and which way is meant there, in source coordinates.
+struct PointPlace {
+  Eigen::Vector2d in_source{0, 0};
+  std::optional<double> heading_rad;  ///< of any size
+};
+
 /// A place on a drivable lane.
 struct Place {
   map::LanePlace on_lane;
@@ -43,6 +49,8 @@ Eigen::Vector2d find_point(const map::RoadMap& road_map, const std::string& text
 /// @throws InputError, whose element is the text, if it is no place, its lane is not there or not
 ///         that long, or there is no drivable lane near the point; it names the nearest.
 Place find_place(const map::RoadMap& road_map, const std::string& text,
+                 map::Participant participant = map::Participant::car);
+Place find_place(const map::RoadMap& road_map, const PointPlace& point,
                  map::Participant participant = map::Participant::car);
 
 }  // namespace roadbed::tools::cli

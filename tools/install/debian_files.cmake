@@ -53,8 +53,16 @@ find_dependencies(depends ${root}/bin/roadbed "${modules}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${depends}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "${depends_recommended}")
 
+if(python IN_LIST CPACK_COMPONENTS_ALL)
+  file(GLOB module ${CPACK_TEMPORARY_DIRECTORY}/python/usr/lib/python3/dist-packages/roadbed/*.so)
+  find_dependencies(depends ${module} "")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, \
+roadbed (= ${CPACK_PACKAGE_VERSION}), ${depends}")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-geopandas, python3-shapely")
+endif()
+
 # What the archives are linked with: the packages of library.cmake's and roadbedConfig.cmake's names.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libgeographic-dev | \
 libgeographiclib-dev, libgmp-dev, liblzf-dev, libmpfr-dev, liboctomap-dev, libpugixml-dev, \
-libsqlite3-dev, libxxhash-dev, nettle-dev")
+libsqlite3-dev, libxxhash-dev, libzstd-dev, nettle-dev, zlib1g-dev")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "roadbed (= ${CPACK_PACKAGE_VERSION})")

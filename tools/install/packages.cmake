@@ -1,4 +1,4 @@
-# What `cpack` makes of what library.cmake installs: two Debian packages. tools/package calls it.
+# What `cpack` makes of what library.cmake and tools/python install: Debian packages. tools/package calls it.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME roadbed)
 set(CPACK_PACKAGE_CONTACT "roadbed maintainers <maintainers@roadbed.invalid>" CACHE STRING
@@ -12,6 +12,9 @@ set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL program library)
+if(ROADBED_BUILD_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -31,6 +34,13 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Development files: headers, static libraries and CMake files of roadbed.
 Lanes and queries, lane-level routes, reference lines, the planning cycle,
 controllers, occupancy, and audits with certificates.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-roadbed)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of roadbed: road maps, routes, plans, drives and audits
+Maps of any format, lanes, routes, reference lines, the planning cycle,
+closed-loop drives with a planner of one's own, occupancy and audits, by
+arrays of numpy.")
 
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian_files.cmake)
 set(CPACK_ROADBED_SOURCE ${PROJECT_SOURCE_DIR})

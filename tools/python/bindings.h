@@ -18,12 +18,14 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/tools/cli/place.h"
 
 namespace roadbed::tools::inline python {
 
@@ -93,9 +95,19 @@ struct Map {
 /// Of a text or anything with `__fspath__`.
 std::filesystem::path path_of(nb::handle path);
 
-/// A place as the command line has it: text stands as it is, a lane is its start, numbers are
-/// X, Y and the heading.
-std::string place_text(nb::handle place);
+/// A place on a map, told from outside.
+struct AskedPlace {
+  std::variant<std::string, PointPlace> told;
+
+  /// @throws InputError as find_place() does.
+  Place on(const map::RoadMap& road_map, map::Participant participant) const;
+};
+
+/// Text is as on the command line, a lane is its start, numbers are X, Y and the heading.
+AskedPlace place_of(nb::handle place);
+
+/// Many, of an array (N, 2) or (N, 3) or whatever gives one after the other.
+std::vector<AskedPlace> places_of(nb::handle places);
 
 void bind_errors(nb::module_& module);
 void bind_maps(nb::module_& module);

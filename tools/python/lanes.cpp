@@ -252,17 +252,45 @@ void bind_lanes(nb::module_& module) {
       });
 }
 
-std::string place_text(nb::handle place) {
-  if (nb::isinstance<nb::str>(place)) return nb::cast<std::string>(place);
+namespace {
+
+PointPlace point_of_row(const Rows& rows, std::size_t i) {
+  const double* const row = rows.data() + i * rows.shape(1);
+  PointPlace point{{row[0], row[1]}, {}};
+  if (rows.shape(1) == 3) point.heading_rad = row[2];
+  return point;
+}
+
+bool is_table(nb::handle places) {
+  return nb::hasattr(places, "ndim") && nb::cast<int>(places.attr("ndim")) == 2;
+}
+
+}  // namespace
+
+Place AskedPlace::on(const map::RoadMap& road_map, map::Participant participant) const {
+  return std::visit([&](const auto& place) { return find_place(road_map, place, participant); },
+                    told);
+}
+
+AskedPlace place_of(nb::handle place) {
+  if (nb::isinstance<nb::str>(place)) return {nb::cast<std::string>(place)};
   if (nb::isinstance<LaneOfMap>(place)) {
-    return "lane:" + nb::cast<const LaneOfMap&>(place).lane().name;
+    return {"lane:" + nb::cast<const LaneOfMap&>(place).lane().name};
   }
   const Rows row = rows_of(place, "place", 2, 3);
   if (row.shape(0) != 1) throw std::invalid_argument("place: is many places, needs one");
-  std::string text = fmt::format("{},{}", row.data()[0], row.data()[1]);
-  // Headings of arrays are often not wrapped.
-  if (row.shape(1) == 3) text += fmt::format(",{}", std::remainder(row.data()[2], 2.0 * M_PI));
-  return text;
+  return {point_of_row(row, 0)};
+}
+
+std::vector<AskedPlace> places_of(nb::handle places) {
+  std::vector<AskedPlace> found;
+  if (is_table(places)) {
+    const Rows rows = rows_of(places, "places", 2, 3);
+    for (std::size_t i = 0; i < rows.shape(0); ++i) found.push_back({point_of_row(rows, i)});
+    return found;
+  }
+  for (const nb::handle place : places) found.push_back(place_of(place));
+  return found;
 }
 
 }  // namespace roadbed::tools::python

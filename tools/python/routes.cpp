@@ -9,7 +9,6 @@
 #include "roadbed/planning/route/guidance.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/route_path.h"
-#include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/route_output.h"
 #include "roadbed/tools/files/json.h"
 
@@ -58,36 +57,27 @@ std::shared_ptr<Map::Routers::Entry> router_of(const Map& map, const nb::kwargs&
   return kept[key] = std::move(made);
 }
 
-std::vector<std::string> texts_of(nb::handle start, nb::handle via, nb::handle goal) {
-  std::vector<std::string> texts{place_text(start)};
-  for (const nb::handle place : via) texts.push_back(place_text(place));
-  texts.push_back(place_text(goal));
-  return texts;
-}
-
-planning::RouteAnswer answer_to(planning::Router& router, const std::vector<std::string>& texts) {
-  std::vector<planning::RoutePlace> places;
-  for (const std::string& text : texts) {
-    places.push_back(find_place(router.road_map(), text, router.options().participant).for_route());
-  }
-  return router.find(places);
+planning::RoutePlace on_map(const planning::Router& router, const AskedPlace& place) {
+  return place.on(router.road_map(), router.options().participant).for_route();
 }
 
 RouteOfMap route(const Map& map, nb::handle start, nb::handle goal, nb::handle via,
                  const nb::kwargs& given) {
   const auto entry = router_of(map, given, false);
-  const std::vector<std::string> texts = texts_of(start, via, goal);
+  std::vector<AskedPlace> asked = places_of(via);
+  asked.insert(asked.begin(), place_of(start));
+  asked.push_back(place_of(goal));
   const nb::gil_scoped_release released;
   const std::lock_guard lock(entry->mutex);
-  return {map.road_map, answer_to(entry->router, texts)};
+  std::vector<planning::RoutePlace> places;
+  for (const AskedPlace& place : asked) places.push_back(on_map(entry->router, place));
+  return {map.road_map, entry->router.find(places)};
 }
 
 std::vector<RouteOfMap> routes(const Map& map, nb::handle starts, nb::handle goals,
                                const nb::kwargs& given) {
   const auto entry = router_of(map, given, true);
-  std::vector<std::string> from, to;
-  for (const nb::handle place : starts) from.push_back(place_text(place));
-  for (const nb::handle place : goals) to.push_back(place_text(place));
+  const std::vector<AskedPlace> from = places_of(starts), to = places_of(goals);
   if (from.size() != to.size()) {
     throw std::invalid_argument(
         fmt::format("goals: {}, needs one for each of {} starts", to.size(), from.size()));
@@ -97,7 +87,8 @@ std::vector<RouteOfMap> routes(const Map& map, nb::handle starts, nb::handle goa
   std::vector<RouteOfMap> found;
   found.reserve(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) {
-    found.push_back({map.road_map, answer_to(entry->router, {from[i], to[i]})});
+    planning::Router& router = entry->router;
+    found.push_back({map.road_map, router.find(on_map(router, from[i]), on_map(router, to[i]))});
   }
   return found;
 }
@@ -108,16 +99,13 @@ std::vector<RouteOfMap> alternatives(const Map& map, nb::handle start, nb::handl
     throw std::invalid_argument(fmt::format("count: {}, needs 1 to 20", count));
   }
   const auto entry = router_of(map, given, false);
-  const std::vector<std::string> texts = texts_of(start, nb::list(), goal);
+  const AskedPlace from = place_of(start), to = place_of(goal);
   const nb::gil_scoped_release released;
   const std::lock_guard lock(entry->mutex);
   planning::Router& router = entry->router;
-  const auto place = [&](const std::string& text) {
-    return find_place(*map.road_map, text, router.options().participant).for_route();
-  };
   std::vector<RouteOfMap> found;
   for (planning::Alternative& other : planning::find_alternatives(
-           router, place(texts.front()), place(texts.back()), {.count = count})) {
+           router, on_map(router, from), on_map(router, to), {.count = count})) {
     planning::RouteAnswer answer;
     answer.route = std::move(other.route);
     found.push_back({map.road_map, std::move(answer), other.shared});
@@ -133,10 +121,10 @@ Reach reach(const Map& map, nb::handle start, std::optional<double> within_s,
   if (given.contains("cost")) throw nb::type_error("cost: says within_s or within_m");
   given["cost"] = within_s ? "time" : "distance";
   const auto entry = router_of(map, given, false);
-  const std::string text = place_text(start);
+  const AskedPlace asked = place_of(start);
   const nb::gil_scoped_release released;
   const std::lock_guard lock(entry->mutex);
-  const Place from = find_place(*map.road_map, text, entry->router.options().participant);
+  const Place from = asked.on(*map.road_map, entry->router.options().participant);
   const std::string fault = entry->router.unfit(from.on_lane, "start");
   if (!fault.empty()) throw std::invalid_argument("nothing can be reached: " + fault);
   return {map.road_map,

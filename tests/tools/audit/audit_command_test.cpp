@@ -114,7 +114,7 @@ TEST_F(AuditCommand, FollowsTheGroundOfAMapOrOfTheMeasuredRoad) {
     const ProgramRun holds = run_roadbed({"audit", "--check", proof});
     EXPECT_EQ(holds.status, 0) << holds.out << holds.err;
     EXPECT_THAT(holds.out, testing::ContainsRegex("above ground at z (1.9|2.0)[0-9] m to [0-9.]+ "
-                                                  "m at the drive's rows"));
+                                                  "m at the drive's samples"));
     EXPECT_EQ(audit_on("hit.csv", ground).status, 1);
   }
   // Certificates whose ground is not under the drive, is no ground, or is not what their files say.
@@ -201,7 +201,7 @@ TEST_F(AuditCommand, AsksForAMeasuredShareAndPrintsIt) {
               HasSubstr("100.0 % of the space that the vehicle takes, but at least 25 %"));
   const ProgramRun check = run_roadbed({"audit", "--check", proof});
   EXPECT_EQ(check.status, 0) << check.out;
-  EXPECT_THAT(check.out, HasSubstr("0.0 % of the space that the vehicle takes, 25 % asked for"));
+  EXPECT_THAT(check.out, HasSubstr("0.0 % of the space that the vehicle takes, 25 % required"));
   Json forged = Json::parse(bytes_of(proof));
   forged.at("measured_share") = 0.3;
   const ProgramRun refuted =

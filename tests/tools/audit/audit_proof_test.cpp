@@ -106,7 +106,7 @@ TEST_F(AuditCommand, ChecksNoProofAgainstObstaclesThatItIsNotAbout) {
   ASSERT_EQ(audit({"--trajectory", drive, "--certificate", proof}).status, 0);
   const ProgramRun alone = run_roadbed({"audit", "--check", proof});
   EXPECT_EQ(alone.status, 0);
-  EXPECT_THAT(alone.out, HasSubstr("; nothing moves\n"));
+  EXPECT_THAT(alone.out, HasSubstr("; no dynamic obstacles\n"));
   const std::string header = "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n";
   const std::string against = folder_.write("against.csv", header + "0,van,10,-3,0,4,2\n");
   for (const std::string& obstacles : {against, std::string(folder_ / "not_there.csv")}) {
@@ -122,7 +122,7 @@ TEST_F(AuditCommand, ChecksNoProofAgainstObstaclesThatItIsNotAbout) {
   const ProgramRun json = run_roadbed({"audit", "--check", about, "--json"});
   EXPECT_EQ(json.status, 0);
   EXPECT_THAT(Json::parse(json.out).at("question").get<std::string>(),
-              HasSubstr("what moves is that of " + beside));
+              HasSubstr("dynamic obstacles are those of " + beside));
 }
 
 // A car may be in box A all through steps 0 to 10, and in box B in steps 11 to 20.

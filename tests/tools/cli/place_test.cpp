@@ -55,6 +55,33 @@ TEST(FindPlace, HeadingDecidesBetweenLanesWithinReach) {
   EXPECT_NEAR(place.map_from_vehicle.heading_rad, -std::numbers::pi / 18.0, 1e-12);
 }
 
+TEST(FindPlace, OfNumbersIsThatOfTheirText) {
+  const map::RoadMap road_map = two_lane_road();
+  const PointPlace point{{500020.0, 3999999.9}, std::numbers::pi + 40.0 * std::numbers::pi};
+  const Place of_text = find_place(road_map, "500020,3999999.9,180deg");
+  const Place of_numbers = find_place(road_map, point);
+  EXPECT_EQ(of_numbers.on_lane.lane, of_text.on_lane.lane);
+  EXPECT_EQ(of_numbers.on_lane.s_m, of_text.on_lane.s_m);
+  EXPECT_EQ(of_numbers.sense, of_text.sense);
+  EXPECT_TRUE(of_numbers.has_heading);
+  EXPECT_FALSE(find_place(road_map, PointPlace{{500020.0, 3999998.0}, {}}).has_heading);
+}
+
+TEST(FindPlace, RefusesNumbersAsItRefusesText) {
+  const map::RoadMap road_map = two_lane_road();
+  const auto fault = [&](const PointPlace& point) -> std::string {
+    try {
+      find_place(road_map, point);
+    } catch (const map::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault({{500020.0, 4000050.0}, {}}), fault_of(road_map, "500020,4000050"));
+  EXPECT_THAT(fault({{500020.0, NAN}, {}}), HasSubstr("not a number"));
+  EXPECT_THAT(fault({{500020.0, 4000000.0}, INFINITY}), HasSubstr("not a number"));
+}
+
 TEST(FindPlace, NamesALaneAndAStation) {
   const map::RoadMap road_map = two_lane_road();
   const Place place = find_place(road_map, "lane:1/0/1@30.5");

@@ -82,6 +82,21 @@ def test_many_routes_cost_what_each_costs(town: roadbed.Map) -> None:
         town.routes(starts, goals[1:])
 
 
+def test_many_places_may_be_an_array_with_headings(town: roadbed.Map) -> None:
+    lanes = [lane for lane in town.lanes if lane.drivable and len(lane.centre) > 2][:20]
+    ahead = [lane.centre[2, :2] - lane.centre[1, :2] for lane in lanes]
+    headings = [np.arctan2(y, x) + 6 * np.pi for x, y in ahead]
+    points = [lane.centre[1, :2] for lane in lanes]
+    places = np.column_stack([points, headings])
+    found = town.routes(places, np.flipud(places))
+    alone = [town.route(start, goal) for start, goal in zip(places, places[::-1], strict=True)]
+    assert [bool(route) for route in found] == [bool(route) for route in alone]
+    for together, one in zip(found, alone, strict=True):
+        assert not one or together.cost_s == pytest.approx(one.cost_s, abs=1e-3)
+    with pytest.raises(roadbed.InputError, match="not a number"):
+        town.routes([[150.0, np.nan]], [[150.0, 198.0]])
+
+
 def test_alternatives_share_at_most_seventy_percent(town: roadbed.Map) -> None:
     found = town.alternatives((270, 203), GOAL, count=3)
     assert found[0].lanes == town.route((270, 203), GOAL).lanes
