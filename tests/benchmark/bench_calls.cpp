@@ -77,9 +77,11 @@ int main(int count, char** words) {
     return planning::match_place(road_map, road_map.to_map({at[0], at[1]}), {}).front().place;
   };
   const auto routes = seconds_of(reps, [&] {
+    std::vector<planning::RouteAnswer> answers;  // kept, as Python's list keeps them
+    answers.reserve(pairs.size() / 4);
     for (std::size_t i = 0; i + 3 < pairs.size(); i += 4) {
-      const auto answer = router.find(place(&pairs[i]), place(&pairs[i + 2]));
-      if (answer.route) sum += answer.route->cost_s;
+      answers.push_back(router.find(place(&pairs[i]), place(&pairs[i + 2])));
+      if (answers.back().route) sum += answers.back().route->cost_s;
     }
   });
   fmt::print("{{\"locate_s\":[{}],\"clearance_s\":[{}],\"routes_s\":[{}],\"sum\":{}}}\n",

@@ -37,6 +37,8 @@ controllers, occupancy, and audits with certificates.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-roadbed)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/python/postinst
+                                              ${CMAKE_CURRENT_LIST_DIR}/python/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of roadbed: road maps, routes, plans, drives and audits
 Maps of any format, lanes, routes, reference lines, the planning cycle,
 closed-loop drives with a planner of one's own, occupancy and audits, by
