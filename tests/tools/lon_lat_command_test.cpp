@@ -169,7 +169,7 @@ TEST(LonLatAnswers, AreRefusedWithAReasonWhereProjIsNotInstalled) {
   const std::string err = folder / "err", program = folder / "roadbed";
   const std::string words = " locate " + town() + " --at lonlat:9,48.5 > /dev/null 2> " + err;
   EXPECT_NE(std::system((program + words).c_str()), 0);
-  EXPECT_THAT(bytes_of(err), HasSubstr("libroadbed_proj.so cannot be opened"));
+  EXPECT_THAT(bytes_of(err), HasSubstr("libroadbed_proj.so is not installed"));
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ class BatchCommand : public Command {
     arguments.flag("--serve", serves_,
                    "Take job lines from standard input instead, one after the other, and print the "
                    "line of each result at once");
-    arguments.flag("--force", force_, "Work in a folder that holds files and is no batch's");
+    arguments.flag("-f,--force", force_, "Work in a folder that holds files and is no batch's");
     arguments.require([this] { return fault(); });
     arguments.says_no_if("a job says no, or has failed");
     arguments.example(
