@@ -89,6 +89,7 @@ OCTREE: Commands = CLOUD + [
 ALL = map_commands("50,-1.7", "reach", "diff", ".xodr", ".osm", ".xml", ".geojson", ".fgb")
 CHECK: Commands = [("audit --check", ["audit", "--check", "IN"])]
 TOWN_MAP = str(DATA / "town.xodr")
+LOCATE: Commands = [("locate --points", ["locate", TOWN_MAP, "--points", "IN"])]
 ROUTES: Commands = [
     ("route --batch", ["route", TOWN_MAP, "--batch", "IN", "-o", "out.csv", "--force"])
 ]
@@ -163,6 +164,7 @@ CASES = [
     Case("points .ply", inputs.ply, 10_000, CLOUD),
     Case("points .las", inputs.las, 10_000, CLOUD),
     Case("poses", inputs.poses, 1000, POSES),
+    Case("places", inputs.places, 1000, LOCATE),
     Case("pairs", inputs.pairs, 100, ROUTES),
     Case("way-points", inputs.way_points, 100, LINES),
     Case("job lines", inputs.job_lines, 100, BATCH),

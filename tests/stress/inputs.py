@@ -609,6 +609,10 @@ def table(folder: Path, columns: str, rows) -> Path:
     return written(folder / "in.csv", columns + "\n" + "".join(f"{row}\n" for row in rows))
 
 
+def places(folder: Path, n: int) -> Path:
+    return table(folder, "x_m,y_m", (f"{200 + i % 100},{200 + i / n:.6f}" for i in range(n)))
+
+
 def pairs(folder: Path, n: int) -> Path:
     here, there = "lane:1/0/-1@", "lane:7/0/1@"
     rows = (f"{here}{10 + i % 20},{there}{30 + i % 20}" for i in range(n))

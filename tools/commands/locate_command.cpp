@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <numeric>
@@ -130,32 +131,61 @@ class LocateCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions&) override {
     const map::RoadMap road_map = map::load_map(map_file_);
-    Json answers = Json::array();
-    bool all_found = true;
     const std::vector<Eigen::Vector2d> in_source = points(road_map);
-    std::vector<Eigen::Vector2d> in_map, lon_lat;
+    std::vector<Eigen::Vector2d> lon_lat;
     if (wants_lon_lat_) {
       lon_lat = in_source;
       map::source_to_lon_lat(road_map, lon_lat);
     }
-    for (const Eigen::Vector2d& point : in_source) in_map.push_back(road_map.to_map(point));
-    const auto nearest = nearest_lanes(road_map, in_map, count_, only_drivable_);
-    for (std::size_t i = 0; i < in_source.size(); ++i) {
-      answers.push_back(
-          located(road_map, in_source[i], wants_lon_lat_ ? &lon_lat[i] : nullptr, nearest[i]));
-      all_found = all_found && !answers.back()["lanes"].empty();
+    const auto [head, tail] = around_answers();
+    if (json_) streams.out << head;
+    bool all_found = true;
+    for (std::size_t from = 0; from < in_source.size(); from += kPointsAtOnce) {
+      all_found = answer(road_map, in_source, lon_lat, from, streams.out) && all_found;
     }
-    if (json_) {
-      fmt::print(streams.out, "{}\n",
-                 map::json_text(versioned("locate", {{"points", answers}}), 2));
-    } else {
-      for (const Json& answer : answers) print_places(streams.out, answer);
-    }
+    if (json_) streams.out << tail;
     if (!all_found) fmt::print(streams.err, "roadbed: a point has no lane within 50 km\n");
     return all_found ? Exit::ok : Exit::no;
   }
 
  private:
+  // Answers take some kilobytes a point, and are printed before the next ones are looked for.
+  static constexpr std::size_t kPointsAtOnce = 1000;
+
+  // The document of all answers before the first one and behind the last one.
+  static std::pair<std::string, std::string> around_answers() {
+    const std::string document =
+        map::json_text(versioned("locate", {{"points", Json::array({nullptr})}}), 2);
+    const std::size_t at = document.find("null");
+    return {document.substr(0, at), document.substr(at + 4) + '\n'};
+  }
+
+  // Of the points from one on; returns whether each of them has a lane.
+  bool answer(const map::RoadMap& road_map, const std::vector<Eigen::Vector2d>& in_source,
+              const std::vector<Eigen::Vector2d>& lon_lat, std::size_t from,
+              std::ostream& out) const {
+    const std::size_t to = std::min(in_source.size(), from + kPointsAtOnce);
+    std::vector<Eigen::Vector2d> in_map;
+    for (std::size_t i = from; i < to; ++i) in_map.push_back(road_map.to_map(in_source[i]));
+    const auto nearest = nearest_lanes(road_map, in_map, count_, only_drivable_);
+    bool all_found = true;
+    for (std::size_t i = from; i < to; ++i) {
+      const Json found = located(road_map, in_source[i], wants_lon_lat_ ? &lon_lat[i] : nullptr,
+                                 nearest[i - from]);
+      all_found = all_found && !found["lanes"].empty();
+      json_ ? print_json(out, found, i == 0) : print_places(out, found);
+    }
+    return all_found;
+  }
+
+  static void print_json(std::ostream& out, const Json& found, bool is_first) {
+    if (!is_first) out << ",\n    ";
+    for (const char c : map::json_text(found, 2)) {
+      out << c;
+      if (c == '\n') out << "    ";  // as deep as it lies
+    }
+  }
+
   std::vector<Eigen::Vector2d> points(const map::RoadMap& road_map) const {
     if (points_file_.empty()) return {find_point(road_map, at_)};
     PointTable table = read_point_table(points_file_);
