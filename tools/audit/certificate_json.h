@@ -37,8 +37,8 @@ struct CertifiedGround {
 struct CertificateFile {
   std::string program;  ///< name and version of what wrote it
   CertifiedFile occupancy, trajectory;
-  /// Of dynamic obstacles, if there are any; the hash is that of the obstacles, not of the file's bytes,
-  /// since a scenario names other files.
+  /// Of dynamic obstacles, if there are any; the hash is that of the obstacles, not of the file's
+  /// bytes, since a scenario names other files.
   std::optional<CertifiedFile> obstacles = {};
   std::optional<CertifiedFile> vehicle = {};  ///< none: CommonRoad's vehicle 2
   std::optional<CertifiedFile> roads = {};
