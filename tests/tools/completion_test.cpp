@@ -90,14 +90,15 @@ class Share : public testing::Test {
   }
 
   /// What zsh shows when each of the lines is typed and then Tab: on a terminal of its own, as it
-  /// completes on one only. A key of our own says when it has shown all.
+  /// completes on one only. A key of our own says when it has shown all. Both words are printed
+  /// while its line editor has the terminal: outside of it keys would be lost.
   Words shown_by_zsh(const Words& lines) const {
     std::string script = R"(zmodload zsh/zpty
 zpty z 'TERM=dumb zsh -f -i'
 zpty -w z 'stty cols 200 rows 200; PS1=; setopt no_auto_menu; LISTMAX=1000'
 zpty -w z 'fpath=(SHARE/zsh/site-functions $fpath); autoload -Uz compinit; compinit -D -u'
-zpty -w z 'all() { zle -I; print A""LL }; zle -N all; bindkey "^X^X" all'
-zpty -w z 'print REA""DY'
+zpty -w z 'all() { print A""LL >$TTY }; zle -N all; bindkey "^X^X" all'
+zpty -w z 'zle-line-init() { print REA""DY >$TTY }; zle -N zle-line-init'
 zpty -r z text '*READY*'
 )";
     script.replace(script.find("SHARE"), 5, share());
