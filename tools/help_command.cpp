@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/cli/command_page.h"
 #include "roadbed/tools/cli/completion.h"
 #include "roadbed/tools/cli/manual.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 void write_file(const fs::path& file, const std::string& text) {
   map::make_output_folder(file.parent_path(), true);
-  map::write_output(file, text);
+  map::write_output(file, text, true);
 }
 
 void write_manuals(const CommandPage& page, const CommandPage& program, const fs::path& folder) {

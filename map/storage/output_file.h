@@ -24,7 +24,7 @@ class OutputFile : public ByteSink {
  public:
   /// @param force  what is there is replaced, also what others make there meanwhile.
   /// @throws OutputError if it cannot be written.
-  explicit OutputFile(const std::filesystem::path& file, bool force = true);
+  explicit OutputFile(const std::filesystem::path& file, bool force);
   ~OutputFile() override;
 
   /// @throws OutputError if it cannot be written.
@@ -51,6 +51,6 @@ void write_to_standard_output(std::string_view bytes);
 
 /// Writes a whole file in that way; to standard output where it is `-`.
 /// @throws OutputError if it cannot be written; nothing is left behind then.
-void write_output(const std::filesystem::path& file, std::string_view bytes, bool force = true);
+void write_output(const std::filesystem::path& file, std::string_view bytes, bool force);
 
 }  // namespace roadbed::map::storage

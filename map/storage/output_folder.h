@@ -71,4 +71,8 @@ class OutputFolder {
   std::vector<std::string> names_;  // in the order in which they were written
 };
 
+/// Makes the folder (with its parents) that a command goes on working in for long.
+/// @throws OutputError if it cannot be made, or holds something and `force` is not set.
+void make_output_folder(const std::filesystem::path& folder, bool force);
+
 }  // namespace roadbed::map::storage

@@ -38,10 +38,6 @@ OutputPlace look_at_output(const std::filesystem::path& output);
 /// The folder that a file or folder is in.
 std::filesystem::path folder_around(const std::filesystem::path& path);
 
-/// Makes the folder (with its parents) that a command goes on working in for long.
-/// @throws OutputError if it cannot be made, or holds something and `force` is not set.
-void make_output_folder(const std::filesystem::path& folder, bool force);
-
 /// Name `number` of an output in the making: hidden, beside it, and the same in each run, so that a
 /// later one finds what a run that was killed has left. Whoever writes has the file locked by
 /// flock.

@@ -96,7 +96,7 @@ void save_certificate(Audit& audit, nb::handle path, nb::handle trajectory) {
   const std::filesystem::path certificate = path_of(path);
   if (!trajectory.is_none()) {
     audit.trajectory.file = path_of(trajectory);
-    map::write_output(audit.trajectory.file, write_trajectory_csv(audit.trajectory.drive));
+    map::write_output(audit.trajectory.file, write_trajectory_csv(audit.trajectory.drive), true);
   }
   const auto require = [](bool is_there, const char* what) {
     if (!is_there)
@@ -124,7 +124,7 @@ void save_certificate(Audit& audit, nb::handle path, nb::handle trajectory) {
   }
   if (!audit.vehicle.file.empty()) file.vehicle = certified_file(audit.vehicle.file);
   if (audit.road_map) file.roads = certified_file(audit.map_file);
-  map::write_output(certificate, write_certificate_json(file));
+  map::write_output(certificate, write_certificate_json(file), true);
 }
 
 std::string picture_of(const Audit& audit) {

@@ -221,7 +221,7 @@ std::vector<std::string> save(const Map& map, const std::filesystem::path& file,
   if (file.extension() == ".rbm") {
     const std::string network =
         planning::write_route_network(planning::route_network_of(*map.road_map));
-    map::OutputFile output(file);
+    map::OutputFile output(file, true);
     map::write_compiled_map(*map.road_map, network, output);
     output.commit();
     return notes;

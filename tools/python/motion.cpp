@@ -72,7 +72,7 @@ void bind_trajectory(nb::module_& module) {
           "save",
           [](Trajectory& self, nb::handle path) {
             const std::filesystem::path file = path_of(path);
-            map::write_output(file, write_trajectory_csv(self.drive));
+            map::write_output(file, write_trajectory_csv(self.drive), true);
             self.file = file;
           },
           nb::arg("path"), nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),

@@ -162,7 +162,7 @@ void save(Occupancy& occupancy, nb::handle path) {
   {
     const nb::gil_scoped_release released;
     const map::OccupancyMap& octree = occupancy.octree();
-    map::write_output(file, suffix == ".ot" ? octree.to_ot() : octree.to_bt());
+    map::write_output(file, suffix == ".ot" ? octree.to_ot() : octree.to_bt(), true);
   }
   occupancy.file = file;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -68,6 +69,8 @@ void append_log_odds(OctreeBytes& bytes, float value, unsigned children) {
 }  // namespace
 
 CompactOctree CompactOctree::of_bt(std::string_view data) {
+  constexpr std::size_t kMostNodes = std::numeric_limits<std::uint32_t>::max();
+  if (data.size() / kPairsBytes > kMostNodes) throw std::length_error("over 2^32 inner nodes");
   CompactOctree tree;
   tree.pairs_.reserve(data.size() / kPairsBytes);
   tree.first_inner_.reserve(data.size() / kPairsBytes);

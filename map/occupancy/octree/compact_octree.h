@@ -36,6 +36,7 @@ class CompactOctree {
   CompactOctree() = default;
 
   /// @param data  of a `.bt` with at least one node, as parse_octree_file has walked over it.
+  /// @throws std::length_error over 2³² inner nodes.
   static CompactOctree of_bt(std::string_view data);
 
   /// The same of an `.ot`; log-odds of 0 and above are occupied, OctoMap's threshold.

@@ -163,7 +163,10 @@ def _run_parser() -> argparse.ArgumentParser:
     _add_cluster_options(parser)
     _add_job_options(parser)
     parser.add_argument(
-        "--force", action="store_true", help="work in a folder that holds files and is no batch's"
+        "-f",
+        "--force",
+        action="store_true",
+        help="work in a folder that holds files and is no batch's",
     )
     parser.add_argument("--no-tables", action="store_true", help="write no Parquet tables")
     parser.add_argument("--quiet", action="store_true", help="no progress and no notes")
