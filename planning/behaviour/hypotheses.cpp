@@ -151,8 +151,12 @@ void Hypotheses::add_others(const PlanningScene& scene,
 
 ManeuverHypothesis Hypotheses::hypothesis_of(const PlanningScene& scene, const PathQuery& query) {
   GoalLine& on = *query.goal_line;
-  return hypothesis_on(scene, on, query.maneuver,
-                       on.replanner.propose(query.question, query.offsets, query.may_leave_lanes));
+  LateralReplanner::Proposal proposal =
+      on.replanner.propose(query.question, query.offsets, query.may_leave_lanes);
+  if (!proposal.plan.chosen && query.bounds_kept_path) {
+    proposal.checked_m = on.replanner.kept_within_m(query.offsets);
+  }
+  return hypothesis_on(scene, on, query.maneuver, std::move(proposal));
 }
 
 ManeuverHypothesis Hypotheses::hypothesis_on(const PlanningScene& scene, GoalLine& on,

@@ -29,7 +29,18 @@ constexpr double kFallsBack_mps = 2.0;                // slower than who is besi
 constexpr double kLeastWidth_m = 2.6;                 // of a lane to pass in
 constexpr double kSoon_s = 8.0;                       // who is closed up to within that is no gain
 
-// 1: one drives on the right.
+/// What keeps the body out of a lane at this offset.
+double keeps_out_of_m(const PassingLane& lane, const geometry::VehicleShape& vehicle) {
+  return std::max(0.0, 0.5 * std::abs(lane.offset_m) - 0.5 * vehicle.width_m);
+}
+
+const PassingLane* lane_at(const std::vector<PassingLane>& lanes, double s_m) {
+  const auto found = std::ranges::find_if(
+      lanes, [&](const PassingLane& lane) { return s_m >= lane.from_s_m && s_m <= lane.to_s_m; });
+  return found == lanes.end() ? nullptr : &*found;
+}
+
+/// 1: one drives on the right.
 double side_to_pass_on(const map::RoadMap& road_map) {
   int left = 0, right = 0;
   for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
@@ -108,7 +119,11 @@ void join(PassingLane next, std::vector<PassingLane>& lanes) {
 
 std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
                                        const ReferenceLine& line) {
-  const double side = side_to_pass_on(road_map);
+  return lanes_beside(road_map, route, line, side_to_pass_on(road_map));
+}
+
+std::vector<PassingLane> lanes_beside(const map::RoadMap& road_map, const Route& route,
+                                      const ReferenceLine& line, double side) {
   std::vector<PassingLane> lanes;
   for (const RouteLeg& leg : route.legs) {
     if (auto lane = beside(road_map, leg, side, line)) join(*std::move(lane), lanes);
@@ -129,13 +144,9 @@ LanePassing::LanePassing(const geometry::VehicleShape& vehicle, const DrivingTas
     : vehicle_(vehicle),
       task_(task),
       ceiling_(ceiling),
-      lanes_(passing_lanes(task.road_map, task.route, task.line)) {}
-
-const PassingLane* LanePassing::lane_at(double s_m) const {
-  const auto found = std::ranges::find_if(
-      lanes_, [&](const PassingLane& lane) { return s_m >= lane.from_s_m && s_m <= lane.to_s_m; });
-  return found == lanes_.end() ? nullptr : &*found;
-}
+      side_(side_to_pass_on(task.road_map)),
+      lanes_(lanes_beside(task.road_map, task.route, task.line, side_)),
+      lanes_on_wrong_side_(lanes_beside(task.road_map, task.route, task.line, -side_)) {}
 
 /// The nearest one that drives ahead in the route's lane.
 const MoverOnLine* LanePassing::lead_of(const Scene& scene) const {
@@ -291,18 +302,22 @@ bool LanePassing::has_left_lane(const Scene& scene) const {
 }
 
 LanePassing::Decision LanePassing::look(const ViewOnLine& view) {
-  const PassingLane* lane = lane_at(view.at.s_m);
-  if (lane == nullptr) {
-    passed_.reset();
-    return {};
-  }
-  const Scene scene{view, *lane, movers_on_line(task_.line, view.traffic, view.t_s, true),
+  const PassingLane* lane = lane_at(lanes_, view.at.s_m);
+  const PassingLane* on_wrong_side = lane_at(lanes_on_wrong_side_, view.at.s_m);
+  if (lane == nullptr) passed_.reset();
+  if (lane == nullptr && on_wrong_side == nullptr) return {};
+  const Scene scene{view, lane != nullptr ? *lane : *on_wrong_side,
+                    movers_on_line(task_.line, view.traffic, view.t_s, true),
                     ceiling_.at(view.at.s_m).speed_mps};
   const MoverOnLine* lead = lead_of(scene);
-  Decision decision{.side = lane->offset_m < 0.0 ? -1.0 : 1.0};
+  Decision decision{.side = side_};
   if (lead != nullptr) {
-    decision.keep_within_m = std::max(0.0, 0.5 * std::abs(lane->offset_m) - 0.5 * vehicle_.width_m);
+    if (lane != nullptr) decision.keep_within_m = keeps_out_of_m(*lane, vehicle_);
+    if (on_wrong_side != nullptr) {
+      decision.keep_within_on_wrong_side_m = keeps_out_of_m(*on_wrong_side, vehicle_);
+    }
   }
+  if (lane == nullptr) return decision;
   if (!passed_) {
     if (lead == nullptr || gained_s(scene, *lead) < kLeastGain_s) return decision;
     if (gap_m(scene, *lead) > soon_m(scene, *lead)) return decision;

@@ -27,6 +27,10 @@ struct PassingLane {
 std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
                                        const ReferenceLine& line);
 
+/// The same on a side: 1 left, −1 right.
+std::vector<PassingLane> lanes_beside(const map::RoadMap& road_map, const Route& route,
+                                      const ReferenceLine& line, double side);
+
 /// Whether to pass slower traffic in the next lane of the own direction, and when to come back.
 ///
 ///     ───────────────────────────────────────────────────────
@@ -49,7 +53,9 @@ class LanePassing {
     /// Offsets that keep to the route's lane, towards the passing lane: while somebody drives
     /// ahead.
     std::optional<double> keep_within_m = {};
-    double side = 1.0;                       ///< of the passing lane: 1 left, −1 right
+    /// The same towards a lane of the own direction on the other side, in which nobody is passed.
+    std::optional<double> keep_within_on_wrong_side_m = {};
+    double side = 1.0;                       ///< on which one passes: 1 left, −1 right
     std::optional<std::size_t> passed = {};  ///< obstacle that is passed
     double lane_end_s_m = 1e9;               ///< of the lane that is driven in: not to be passed
     std::optional<double> most_mps = {};     ///< to fall back with
@@ -63,7 +69,6 @@ class LanePassing {
 
  private:
   struct Scene;
-  const PassingLane* lane_at(double s_m) const;
   const MoverOnLine* lead_of(const Scene& scene) const;
   double gap_m(const Scene& scene, const MoverOnLine& lead) const;
   double gained_s(const Scene& scene, const MoverOnLine& lead) const;
@@ -80,7 +85,8 @@ class LanePassing {
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
   const SpeedCeiling& ceiling_;
-  std::vector<PassingLane> lanes_;
+  double side_;  ///< on which one passes
+  std::vector<PassingLane> lanes_, lanes_on_wrong_side_;
   std::optional<std::size_t> passed_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -195,7 +196,25 @@ LateralReplanner::Proposal LateralReplanner::propose(const Question& question,
     const bool waits = !bounds_.squeezes_past && last.plan.meets_something();
     if (last.plan.chosen || waits) break;
   }
+  if (!last.plan.chosen) last.checked_m = std::numeric_limits<double>::infinity();
   return last;
+}
+
+double LateralReplanner::kept_within_m(const Offsets& offsets) const {
+  constexpr double kFarther_m = 0.1;
+  const PlannedPath path = kept_path();
+  const auto front_d_m = [&](double s_m) {
+    const LateralState lateral = path.lateral_at(s_m);
+    return lateral.d_m + vehicle_.front_m() * lateral.d_slope;
+  };
+  const double here_m = front_d_m(s_m_);
+  const double most_m = std::max(offsets.most_m, here_m + kFarther_m);
+  const double least_m = std::min(offsets.least_m, here_m - kFarther_m);
+  for (double s_m = s_m_; s_m < checked_to_s_m_; s_m += kDrawnStep_m) {
+    const double d_m = front_d_m(s_m);
+    if (d_m > most_m || d_m < least_m) return std::max(0.0, s_m - kDrawnStep_m - s_m_);
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 /// Past the plan's end its offset is held as long as the corridor is wide enough for it.
@@ -324,11 +343,14 @@ void LateralReplanner::take(const Proposal& proposal) {
   cycles_.reset();  // they ask for the path so far
   plan_ = proposal.plan;
   beyond_the_edge_m_ = proposal.beyond_the_edge_m;
+  kept_to_s_m_ = std::numeric_limits<double>::infinity();
   if (plan_.chosen) {
     path_end_s_m_ = plan_.start.s_m + plan_.chosen->end_l_m;
     checked_to_s_m_ = plan_.start.s_m + proposal.checked_m;
     path_.emplace(path_of(proposal));
-  } else if (!path_) {
+  } else if (path_) {
+    kept_to_s_m_ = s_m_ + proposal.checked_m;
+  } else {
     path_end_s_m_ = checked_to_s_m_ = start_.s_m;
     path_.emplace(kept_path());
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -80,7 +82,7 @@ class LateralReplanner {
   struct Proposal {
     Plan plan;
     double beyond_the_edge_m = 0.0;
-    double checked_m = 0.0;  ///< from the start on
+    double checked_m = 0.0;  ///< from the start on; of a path that is kept: that it may be driven
     /// What found it, and how, if candidates are kept or explained; valid as long as the question
     /// is.
     std::shared_ptr<PlanningCycle> cycle = nullptr;
@@ -112,6 +114,9 @@ class LateralReplanner {
   /// the drive does not go along the line.
   /// @param drive  states of the rear axle every 0.1 s, from the vehicle's own at `start_s` on.
   std::optional<Proposal> through(std::span<const VehicleState> drive, double start_s) const;
+  /// How far the kept path can be driven from here with the front inside these offsets, or no
+  /// farther outside than it is [m]; infinite if it stays there as far as it was found feasible.
+  double kept_within_m(const Offsets& offsets) const;
   /// What was taken last, if that is such a path, and the vehicle is on it; it can be taken again.
   /// Its trajectory goes on from now at the speed of now.
   std::optional<Proposal> kept_drive(double now_s, double speed_mps) const;
@@ -138,8 +143,9 @@ class LateralReplanner {
   /// Station of the measured rear axle at the last cycle.
   double s_m() const { return s_m_; }
 
-  /// How far the kept path was found feasible when it was planned, from the vehicle on.
-  double checked_ahead_m() const { return checked_to_s_m_ - s_m_; }
+  /// How far the kept path was found feasible when it was planned, from the vehicle on, and may be
+  /// driven now.
+  double checked_ahead_m() const { return std::min(checked_to_s_m_, kept_to_s_m_) - s_m_; }
 
   /// Whether the last cycle rejected candidates because they would touch something.
   bool something_is_in_the_way() const;
@@ -184,6 +190,7 @@ class LateralReplanner {
   std::optional<Proposal> drive_;  ///< that path_ is the path of, if it has knots
   double path_end_s_m_ = 0.0;
   double checked_to_s_m_ = 0.0;
+  double kept_to_s_m_ = std::numeric_limits<double>::infinity();  // in this cycle
   double s_m_ = 0.0;
   double beyond_the_edge_m_ = 0.0;
   bool from_measurement_ = false;

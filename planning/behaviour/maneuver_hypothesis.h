@@ -36,6 +36,8 @@ struct PathQuery {
   LateralReplanner::Question question;
   LateralReplanner::Offsets offsets = {};
   bool may_leave_lanes = true;
+  /// Without a candidate the path that is kept is not driven out of these offsets, either.
+  bool bounds_kept_path = false;
 };
 
 /// One path, its profile, and the best drive found on it.

@@ -55,7 +55,7 @@ bool somebody_moves_near(const Question& question) {
 bool somebody_drives_beside(const Question& question, double side) {
   constexpr double kFarBehind_m = 30.0, kNotFarAhead_m = 15.0, kLeastAside_m = 1.5,
                    kMostAside_m = 6.0;
-  constexpr double kDrives_mps = 0.5, kSameWay = 0.7;
+  constexpr double kDrives_mps = 0.1, kSameWay = 0.7;
   const geometry::Pose2& here = question.measured.map_from_vehicle;
   return std::ranges::any_of(question.obstacles, [&](const Obstacle& obstacle) {
     if (!obstacle.is_there(question.t_s)) return false;
@@ -95,6 +95,7 @@ Offsets offsets_in_lane(const PassingDecision& passing) {
   Offsets offsets;
   keep_within(passing.overtaking.keep_within_m, passing.overtaking.side, offsets);
   keep_within(passing.in_lane.keep_within_m, passing.in_lane.side, offsets);
+  keep_within(passing.in_lane.keep_within_on_wrong_side_m, -passing.in_lane.side, offsets);
   return offsets;
 }
 
@@ -119,7 +120,8 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
   PathQuery keep{.goal_line = &on,
                  .maneuver = Maneuver::keep_lane,
                  .question = question,
-                 .offsets = offsets_in_lane(passing)};
+                 .offsets = offsets_in_lane(passing),
+                 .bounds_kept_path = queries.empty()};
   // Nobody is passed on the way from lane to lane, but who stands.
   if (passing.merging.is_near() && somebody_moves_near(question)) {
     keep_within(kMerging_m, 1.0, keep.offsets);
