@@ -62,7 +62,15 @@ std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) 
   return std::move(file.bytes);
 }
 
-constexpr std::array<Format, 9> kFormats = {{
+std::string page_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  MapPageOptions page = options.page;
+  page.crs = options.crs;
+  page.is_own_crs = options.is_own_crs;
+  page.notes = options.notes;
+  return write_map_page(road_map, page);
+}
+
+constexpr std::array<Format, 10> kFormats = {{
     {.name = "compiled map",
      .sniff = [](const FileContent& content) { return is_compiled_map(content.bytes); },
      .read = [](std::string bytes, const std::string& name,
@@ -97,6 +105,10 @@ constexpr std::array<Format, 9> kFormats = {{
      .suffix = ".svg",
      .write = [](const RoadMap& road_map, const SaveOptions&) { return write_svg(road_map); },
      .what = "a picture"},
+    {.name = "page",
+     .suffix = ".html",
+     .write = page_bytes,
+     .what = "a page to look at the map in a browser, without a server"},
     {.name = "CSV",
      .suffix = ".csv",
      .write = [](const RoadMap& road_map, const SaveOptions&) { return write_csv(road_map); },

@@ -9,6 +9,7 @@
 #include "roadbed/map/judged_file.h"
 #include "roadbed/map/model/load_options.h"
 #include "roadbed/map/model/road_map.h"
+#include "roadbed/map/page/map_page.h"
 #include "roadbed/map/validation/rule.h"
 
 namespace roadbed::map {
@@ -19,6 +20,7 @@ struct SaveOptions {
   std::string crs;                            ///< of the output's coordinates, empty if unknown
   bool is_own_crs = false;                    ///< the map's: its offset counts
   std::vector<std::string>* notes = nullptr;  ///< takes what the user should know, a line each
+  MapPageOptions page;                        ///< what else a page shows
 };
 
 /// What tells formats apart.

@@ -55,7 +55,8 @@ TEST(ExportCommand, LeavesNothingBehindWhenItCannotDoIt) {
   const ProgramRun suffix =
       run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.txt"});
   EXPECT_EQ(suffix.status, 3);
-  EXPECT_NE(suffix.err.find(".geojson, .gpkg, .fgb, .svg, .csv"), std::string::npos) << suffix.err;
+  EXPECT_NE(suffix.err.find(".geojson, .gpkg, .fgb, .svg, .html, .csv"), std::string::npos)
+      << suffix.err;
   EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 3);
   EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 3);
   EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{"bad.xodr"});

@@ -16,6 +16,7 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/page_overlays.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -59,9 +60,10 @@ class ExportCommand : public Command {
         .writes("");
     declare_format(arguments, format_, written_suffixes());
     declare_options(arguments);
-    arguments.require([this] { return stream_or_anchor_fault(); });
+    arguments.require([this] { return output_fault(); });
     arguments.example(
         "  roadbed export town.xodr -o town.svg\n"
+        "  roadbed export town.xodr -o town.html --route route.json\n"
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
@@ -80,6 +82,7 @@ class ExportCommand : public Command {
                   "Coordinate system of the map, in place of what it says itself: EPSG:25832, a "
                   "PROJ string, or \"unknown\"");
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    overlays_.declare(arguments);
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -88,8 +91,13 @@ class ExportCommand : public Command {
     map::check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
     std::vector<std::string> notes;
-    const std::string bytes =
-        format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
+    map::SaveOptions options{layers_,
+                             system_of(road_map),
+                             is_own_system(road_map),
+                             &notes,
+                             {.title = input_.filename().string()}};
+    overlays_.add_to(options.page, road_map);
+    const std::string bytes = format.write(road_map, options);
     map::write_output(output_, bytes, force_);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
@@ -102,12 +110,21 @@ class ExportCommand : public Command {
  protected:
   std::string suffix() const { return suffix_of_output(output_, format_); }
 
-  std::string stream_or_anchor_fault() const {
-    const std::string fault = standard_output_fault(output_, true, format_, "");
-    if (!fault.empty()) return fault;
+  std::string output_fault() const {
+    std::string fault = standard_output_fault(output_, true, format_, "");
+    if (fault.empty()) fault = anchor_fault();
+    return fault.empty() ? overlay_fault() : fault;
+  }
+
+  std::string anchor_fault() const {
     if (anchor_deg_.empty()) return {};
     if (std::abs(anchor_deg_[0]) <= 90.0 && std::abs(anchor_deg_[1]) <= 180.0) return {};
     return "--anchor: latitude is within ±90, longitude within ±180";
+  }
+
+  std::string overlay_fault() const {
+    if (overlays_.empty() || suffix() == ".html") return {};
+    return "--route, --reach, --trajectory, --occupancy and --findings are for .html";
   }
 
  private:
@@ -129,6 +146,7 @@ class ExportCommand : public Command {
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
   std::string crs_, format_;
+  PageOverlays overlays_;
   bool force_ = false;
 };
 
@@ -169,7 +187,7 @@ class ConvertCommand : public ExportCommand {
     if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
       return "--layer and --anchor are for outputs other than .rbm";
     }
-    return stream_or_anchor_fault();
+    return output_fault();
   }
 
   Exit import(const Streams& streams, const CommonOptions& common) const {

@@ -18,15 +18,15 @@ endforeach()
 
 set(report_page ${CMAKE_CURRENT_LIST_DIR}/page)
 # In this order: what comes later uses what comes before.
-set(report_scripts decode.js motion.js view.js clock.js scene.js cycle.js draw.js map.js plots.js player.js
-                   report.js)
-list(TRANSFORM report_scripts PREPEND ${report_page}/ OUTPUT_VARIABLE report_script_files)
+set(report_scripts decode.js motion.js clock.js scene.js cycle.js draw.js map.js plots.js player.js report.js)
+list(TRANSFORM report_scripts PREPEND ${report_page}/)
+list(PREPEND report_scripts ${PROJECT_SOURCE_DIR}/map/page/scripts/view.js)  # of the map page, too
+list(JOIN report_scripts , report_scripts)
 set(report_page_source ${CMAKE_CURRENT_BINARY_DIR}/report_page_parts.cpp)
-add_custom_command(
-  OUTPUT ${report_page_source}
-  COMMAND ${CMAKE_COMMAND} -DOUT=${report_page_source} -DDYGRAPHS=${ROADBED_DYGRAPHS_DIR}
-          -DLICENCE=${ROADBED_DYGRAPHS_LICENCE} -DPAGE=${report_page} "-DSCRIPTS=${report_scripts}"
-          -P ${CMAKE_CURRENT_LIST_DIR}/embed.cmake
-  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/embed.cmake ${report_page}/template.html ${report_page}/report.css
-          ${report_script_files} ${report_dygraphs_files}
-  COMMENT "Embedding the report's page" VERBATIM)
+roadbed_embed(OUT ${report_page_source} HEADER roadbed/tools/report/page_parts.h
+  NAMESPACE "roadbed::tools::inline report"
+  PARTS kPageTemplate=${report_page}/template.html kPageCss=${report_page}/report.css
+        kPageJs=${report_scripts} kDygraphsCss=${ROADBED_DYGRAPHS_DIR}/dygraph.min.css
+        kDygraphsJs=${ROADBED_DYGRAPHS_DIR}/dygraph.min.js
+        kSynchronizerJs=${ROADBED_DYGRAPHS_DIR}/extras/synchronizer.js
+        kDygraphsLicence=${ROADBED_DYGRAPHS_LICENCE})

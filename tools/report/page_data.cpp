@@ -298,21 +298,4 @@ std::string page_data_json(const ReportInput& input) {
   return map::json_text(data);
 }
 
-std::string escape_json_for_script(std::string_view json) {
-  std::string escaped;
-  escaped.reserve(json.size());
-  for (const char letter : json) {
-    if (letter == '<') {
-      escaped += "\\u003c";
-    } else if (letter == '>') {
-      escaped += "\\u003e";
-    } else if (letter == '&') {
-      escaped += "\\u0026";
-    } else {
-      escaped += letter;
-    }
-  }
-  return escaped;
-}
-
 }  // namespace roadbed::tools::report

@@ -40,8 +40,4 @@ std::string page_foot(const ReportInput& input);
 /// @throws std::invalid_argument if a plot's series differ in length from its times.
 std::string page_data_json(const ReportInput& input);
 
-/// JSON that may stand in a <script> element: `<`, `>` and `&` are written as \u003c and so on,
-/// which JSON allows inside its strings, the only place where it has them.
-std::string escape_json_for_script(std::string_view json);
-
 }  // namespace roadbed::tools::report
