@@ -72,14 +72,14 @@ Validation validate_bytes(std::string bytes, const std::string& name,
                           const validation::ValidateOptions& options) {
   JudgedFile judged = judge(map_bytes(std::move(bytes), name), name, options);
   Validation validation{std::move(judged.road_map), std::move(judged.refusal),
-                        std::move(judged.findings)};
+                        std::move(judged.findings), std::move(judged.lines)};
   if (validation.road_map) {
     for (validation::Finding& finding : validation.findings) {
       if (finding.in_map) finding.in_map = validation.road_map->to_map(*finding.in_map);
     }
     Findings of_map = validation::validate(*validation.road_map, options);
     drop_told(of_map, validation.findings);
-    add_lines(of_map, judged.lines);
+    add_lines(of_map, validation.lines);
     append(validation.findings, std::move(of_map));
   }
   sort_by_rule(validation.findings);

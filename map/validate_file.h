@@ -18,7 +18,8 @@ struct Validation {
   std::optional<RoadMap> road_map;  ///< none if the file cannot be read as a map
   std::string refusal;              ///< then: the reader's one line about it
   std::vector<validation::Finding>
-      findings;  ///< places are in the map's frame, else in the source's
+      findings;                    ///< places are in the map's frame, else in the source's
+  validation::ElementLines lines;  ///< empty of a compiled map
 
   /// Where a finding is, in the file's own coordinates.
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const {

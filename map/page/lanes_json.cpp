@@ -19,6 +19,12 @@ bool is_plain(const Lane& lane) {
   return ring == lane.polygon;
 }
 
+/// 0 if unknown.
+long line_of(const Lane& lane, const validation::ElementLines& lines) {
+  const auto found = lines.find("lane " + lane.name);
+  return found == lines.end() ? 0 : found->second;
+}
+
 /// Texts of which many are alike: each is kept once, and told by its number.
 class Pool {
  public:
@@ -44,13 +50,14 @@ class LaneColumns {
  public:
   explicit LaneColumns(const RoadMap& road_map) : road_map_(road_map) {}
 
-  void add(const Lane& lane, int level) {
+  void add(const Lane& lane, int level, long line) {
     names_.push_back(lane.name);
     type_.add(types_.number_of(std::string(to_string(lane.type))));
     drivable_.add(is_drivable(lane.type) ? 1 : 0);
     road_.add_step(lane.road ? lane.road->index + 1 : 0);
     junction_.add_step(lane.junction ? lane.junction->index + 1 : 0);
     level_.add(level);
+    line_.add_step(line);
     one_way_.add(lane.one_way ? 1 : 0);
     participants_.add(lane.participants.bits());
     attributes_.add(texts_.number_of(attribute_lines(lane.attributes)));
@@ -73,6 +80,7 @@ class LaneColumns {
             {"road", road_.text()},
             {"junction", junction_.text()},
             {"level", level_.text()},
+            {"line", line_.text()},
             {"oneWay", one_way_.text()},
             {"participants", participants_.text()},
             {"attributes", attributes_.text()},
@@ -145,7 +153,7 @@ class LaneColumns {
   const RoadMap& road_map_;
   std::vector<std::string> names_;
   Pool types_, texts_;
-  Column type_, drivable_, road_, junction_, level_, one_way_, participants_, attributes_;
+  Column type_, drivable_, road_, junction_, level_, line_, one_way_, participants_, attributes_;
   Column heights_, plain_, left_, right_, road_from_, road_to_;
   LineColumns lines_, rings_;
   Lists successors_, predecessors_, speeds_, marks_;
@@ -153,10 +161,12 @@ class LaneColumns {
 
 }  // namespace
 
-Json lanes_json(const RoadMap& road_map) {
+Json lanes_json(const RoadMap& road_map, const validation::ElementLines& lines) {
   const std::vector<int> levels = levels_of_lanes(road_map);
   LaneColumns columns(road_map);
-  for (const Lane& lane : road_map.lanes()) columns.add(lane, levels[lane.id.index]);
+  for (const Lane& lane : road_map.lanes()) {
+    columns.add(lane, levels[lane.id.index], line_of(lane, lines));
+  }
   return columns.json();
 }
 

@@ -85,6 +85,15 @@ Json lon_lat_json(const RoadMap& road_map, AlignedBox2d box, const MapPageOption
   }
 }
 
+/// Of everything but lanes, which have a column of their own.
+Json lines_of_things_json(const validation::ElementLines& lines) {
+  Json made = Json::object();
+  for (const auto& [element, line] : lines) {
+    if (!element.starts_with("lane ") && line > 0) made[element] = line;
+  }
+  return made;
+}
+
 }  // namespace
 
 std::vector<PageRemark> remarks_of(const std::vector<validation::Finding>& findings) {
@@ -104,7 +113,7 @@ std::string write_map_page(const RoadMap& road_map, const MapPageOptions& option
   const Vector2d& origin = road_map.origin_in_source();
   const std::string title = options.title.empty() ? "Map" : options.title;
   Json data = {
-      {"title", title},
+      {"file", options.file.empty() ? title : options.file},
       {"format", road_map.format()},
       {"crs", options.crs},
       {"origin", {origin.x(), origin.y()}},
@@ -115,7 +124,8 @@ std::string write_map_page(const RoadMap& road_map, const MapPageOptions& option
   data["remarks"] =
       remarks_json(options.remarks ? *options.remarks : remarks_of(validation::validate(road_map)));
   data["overlays"] = overlays_json(options.overlays);
-  data["lanes"] = lanes_json(road_map);
+  data["lanes"] = lanes_json(road_map, options.lines);
+  data["lines"] = lines_of_things_json(options.lines);
   data.update(things_json(road_map));
   return filled_page(kMapTemplate, {{"title", html_text(title)},
                                     {"css", std::string(kMapCss)},

@@ -36,11 +36,13 @@ struct PageRemark {
 };
 
 struct MapPageOptions {
-  std::string title = {};          ///< the file's name
+  std::string title = {};          ///< on top of the page
+  std::string file = {};           ///< the map in the commands that it shows; the title if empty
   std::string crs = {};            ///< of the coordinates below, empty if unknown
   bool is_own_crs = false;         ///< the map's: its offset counts
   std::string remarks_title = {};  ///< "Findings" if empty
   std::optional<std::vector<PageRemark>> remarks = {};  ///< none: what `validate` finds in the map
+  validation::ElementLines lines = {};                  ///< in the source file; empty if unknown
   std::vector<PageOverlay> overlays = {};
   std::vector<std::string>* notes = nullptr;  ///< takes what the user should know, a line each
 };

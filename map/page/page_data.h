@@ -9,6 +9,7 @@
 
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/page/column.h"
+#include "roadbed/map/validation/rule.h"
 
 // Private to map_page.cpp and its parts; the other side of it is scripts/decode.js.
 
@@ -38,7 +39,7 @@ class LineColumns {
 };
 
 /// Lanes as columns, in order of id.
-Json lanes_json(const RoadMap& road_map);
+Json lanes_json(const RoadMap& road_map, const validation::ElementLines& lines);
 
 /// What else a map holds: roads, junctions, signals, objects, stop lines, regulations, areas.
 Json things_json(const RoadMap& road_map);

@@ -65,7 +65,7 @@ std::string page_after_scripts(const std::filesystem::path& browser, const std::
   std::ofstream(page, std::ios::binary) << html;
   return output_of(fmt::format(
       "timeout 120 '{}' --headless --no-sandbox --disable-gpu --user-data-dir='{}' "
-      "--window-size=1400,1000 --virtual-time-budget=2000 --dump-dom 'file://{}{}' 2>/dev/null",
+      "--window-size=1400,900 --virtual-time-budget=2000 --dump-dom 'file://{}{}' 2>/dev/null",
       browser.string(), (folder.path() / "profile").string(), page.string(), fragment));
 }
 

@@ -14,6 +14,7 @@
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/map/validate_file.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/page_overlays.h"
@@ -89,15 +90,12 @@ class ExportCommand : public Command {
     const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
-    const map::RoadMap road_map = map::load_map(input_);
+    map::MapPageOptions page{.title = input_.filename().string()};
+    const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
+    overlays_.add_to(page, road_map);
     std::vector<std::string> notes;
-    map::SaveOptions options{layers_,
-                             system_of(road_map),
-                             is_own_system(road_map),
-                             &notes,
-                             {.title = input_.filename().string()}};
-    overlays_.add_to(options.page, road_map);
-    const std::string bytes = format.write(road_map, options);
+    const std::string bytes = format.write(
+        road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes, std::move(page)});
     map::write_output(output_, bytes, force_);
     if (!common.quiet) {
       fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
@@ -128,6 +126,15 @@ class ExportCommand : public Command {
   }
 
  private:
+  /// The map, and for its page what `validate` says of its file, with the lines of its elements.
+  map::RoadMap judged_map(map::MapPageOptions& page) const {
+    map::Validation validation = map::validate_file(input_);
+    if (!validation.road_map) throw map::InputError({.file = validation.refusal});
+    page.remarks = map::remarks_of(validation.findings);
+    page.lines = std::move(validation.lines);
+    return std::move(*validation.road_map);
+  }
+
   std::string system_of(const map::RoadMap& road_map) const {
     const std::string own = crs_.empty() ? road_map.crs() : crs_ == "unknown" ? "" : crs_;
     if (anchor_deg_.empty()) return own;

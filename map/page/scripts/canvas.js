@@ -68,6 +68,7 @@ function viewMoved(stage) {
 }
 
 function resizeStage(stage) {
+  if (matchMedia("print").matches) return;  // printed as it was drawn for the screen
   const ratio = window.devicePixelRatio || 1, {clientWidth, clientHeight} = stage.canvas;
   stage.canvas.width = Math.round(clientWidth * ratio);
   stage.canvas.height = Math.round(clientHeight * ratio);
@@ -112,9 +113,10 @@ function watchFingers(stage) {
     if (fingers.size === 2 && last) return pinch(stage, event);
     if (last) {
       stage.dragged ||= Math.hypot(now[0] - stage.from[0], now[1] - stage.from[1]) > CLICK_PX;
-      if (stage.dragged) panStage(stage, now[0] - last[0], now[1] - last[1]);
-      if (stage.dragged) fingers.set(event.pointerId, now);
-      if (stage.dragged) hooks.dragged?.();
+      if (!stage.dragged) return;
+      panStage(stage, now[0] - last[0], now[1] - last[1]);
+      fingers.set(event.pointerId, now);
+      return;
     }
     hooks.hovered?.(toWorld(stage.view, now), now);
   });

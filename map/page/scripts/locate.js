@@ -44,6 +44,7 @@ function isNearer(a, b) {
 function lanesNear(map, [x, y], radius) {
   const found = [];
   for (const i of inBox(map.grid, [x - radius, y - radius, x + radius, y + radius])) {
+    if (distanceToBox(map.lanes.boxes, i, [x, y]) > radius) continue;
     const ring = ringOf(map.lanes, i);
     if (ring.length < 6) continue;
     const distance = Math.sqrt(squaredToRing(ring, [x, y]));
@@ -52,11 +53,26 @@ function lanesNear(map, [x, y], radius) {
   return found.sort((a, b) => (isNearer(a, b) ? -1 : 1));
 }
 
+function distanceToBox(boxes, i, [x, y]) {
+  return Math.hypot(Math.max(boxes[4 * i] - x, 0, x - boxes[4 * i + 2]), Math.max(boxes[4 * i + 1] - y, 0, y - boxes[4 * i + 3]));
+}
+
+/** How far the lane is away whose box is nearest: no farther lane can be the nearest one. */
+function boundOf({lanes}, ids, point) {
+  let nearest = ids[0], least = Infinity;
+  for (const i of ids) {
+    const distance = distanceToBox(lanes.boxes, i, point);
+    if (distance < least) [nearest, least] = [i, distance];
+  }
+  return Math.sqrt(squaredToRing(ringOf(lanes, nearest), point));
+}
+
 /** The lane that `roadbed locate` names first; null if there is none within 50 km. */
 function locate(map, point) {
-  for (const radius of [1, 5, 50, 500, 5e3, 5e4]) {
-    const [nearest] = lanesNear(map, point, radius);
-    if (nearest) return nearest;
+  const [x, y] = point, {lanes} = map;
+  for (let radius = 1; radius < 1e5; radius *= 2) {
+    const ids = inBox(map.grid, [x - radius, y - radius, x + radius, y + radius]).filter((i) => ringOf(lanes, i).length >= 6);
+    if (ids.length > 0) return lanesNear(map, point, boundOf(map, ids, point) + 1e-6)[0];
   }
   return null;
 }

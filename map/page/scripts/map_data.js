@@ -9,6 +9,7 @@ function decodeLanes(coded, unit) {
   for (const key of ["participants", "attributes", "left", "right"]) lanes[key] = Int32Array.from(numbersOf(coded[key]));
   for (const key of ["road", "junction"]) lanes[key] = Int32Array.from(sumsOf(coded[key]), (n) => n - 1);
   for (const key of ["successors", "predecessors", "speeds", "marks"]) lanes[key] = listsOf(coded[key]);
+  lanes.line = sumsOf(coded.line);
   lanes.heights = sumsOf(coded.heights);
   lanes.roadFrom = sumsOf(coded.roadFrom);
   lanes.roadTo = sumsOf(coded.roadTo);
@@ -178,8 +179,8 @@ function allLines(coded, unit) {
 function decodeMap(data) {
   const {unit} = data;
   const map = {
-    title: data.title, format: data.format, crs: data.crs, origin: data.origin, box: data.box,
-    lonLat: data.lonLat, remarksTitle: data.remarksTitle, remarks: data.remarks,
+    file: data.file, format: data.format, crs: data.crs, origin: data.origin, box: data.box,
+    lonLat: data.lonLat, remarksTitle: data.remarksTitle, remarks: data.remarks, lines: data.lines,
     hiddenRules: new Set(),
     lanes: decodeLanes(data.lanes, unit), roads: decodeRoads(data.roads, unit),
     junctions: data.junctions, signals: data.signals, regulations: data.regulations,

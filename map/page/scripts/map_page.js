@@ -53,35 +53,40 @@ function listLayers(page) {
   page.map.overlays.forEach((overlay, n) => {
     const label = addCheck(list, "overlay_" + n, "", true, (shown) => {
       overlay.shown = shown;
-      redraw(page.stage);
+      repaint(page);
     });
     addText(label, "i", "swatch", "").style.background = `var(--over-${overlay.kind})`;
-    label.append(overlay.name);
+    addText(label, "span", "", overlay.name);
     if (overlay.text) addText(label, "span", "note", overlay.text);
+    addButton(label, "Show", "small", () => visit(page, {kind: "overlays", index: n})).setAttribute("aria-label", `Show ${overlay.name}`);
   });
 }
 
 /** Selects a thing. */
 function select(page, selection) {
   page.selection = selection;
+  if (page.mode === "select") say(page, "");
   showSelection(page);
   noteLink(page);
   redraw(page.stage);
 }
 
+/** What to show of a thing: its lanes, or all of an overlay; null if it is but a place. */
+function boxToVisit(map, target) {
+  if (target.kind === "overlays") return boxOfOverlay(map, map.overlays[target.index]);
+  const {boxes} = map.lanes;
+  return boxOf(lanesOf(map, target).slice(0, 500).flatMap((i) => [boxes.subarray(4 * i, 4 * i + 2), boxes.subarray(4 * i + 2, 4 * i + 4)]));
+}
+
 /** Selects a thing and shows it. */
 function visit(page, target) {
-  const {map, stage} = page, place = placeOf(map, target), lanes = lanesOf(map, target);
-  if (place) {
-    const box = boxOf(lanes.slice(0, 500).flatMap((i) => [[map.lanes.boxes[4 * i], map.lanes.boxes[4 * i + 1]], [map.lanes.boxes[4 * i + 2], map.lanes.boxes[4 * i + 3]]]));
-    if (box && target.kind !== "remark") fitBox(stage.view, box, 0.25 * Math.min(stage.view.width, stage.view.height));
-    else [stage.view.x, stage.view.y, stage.view.scale] = [...place, Math.max(stage.view.scale, 6)];
-    stage.view.scale = Math.min(stage.view.scale, 20);
-    stage.fitted = false;
-  } else {
-    say(page, `${nameOf(map, target)} has no place`);
-  }
+  const {map, stage} = page, {view} = stage, place = placeOf(map, target), box = boxToVisit(map, target);
+  if (box) fitBox(view, box, (target.kind === "overlays" ? 0.06 : 0.25) * Math.min(view.width, view.height));
+  else if (place) [view.x, view.y, view.scale] = [...place, Math.max(view.scale, 6)];
+  view.scale = Math.min(view.scale, 20);
+  stage.fitted &&= !(box || place);
   select(page, target.kind === "lane" && place ? {...target, place} : target);
+  if (!box && !place) say(page, `${nameOf(map, target)} has no place`);
 }
 
 /** Selects the lane at a place, and shows it. */
@@ -106,9 +111,20 @@ function iconAt(page, [x, y]) {
   const near = (kind, things) => thingsIn(map, things, box)
       .filter((index) => map[things][index].at && Math.hypot(map[things][index].at[0] - x, map[things][index].at[1] - y) < reach)
       .map((index) => ({kind, index}));
+  const points = () => near("objects", "objects").filter(({index}) => map.objects[index].points.length < 3);
   const found = [...(layers.remarks ? near("remark", "remarks").filter(({index}) => !map.hiddenRules.has(map.remarks[index].rule)) : []),
-                 ...(layers.signals ? near("signals", "signals") : [])];
+                 ...(layers.signals ? near("signals", "signals") : []), ...(layers.objects ? points() : [])];
   return found[0] ?? null;
+}
+
+/** A second click at a place selects what else is there; false if there is nothing, or it is the first. */
+function nextAt(page, place) {
+  const {selection, stage} = page, first = selection?.place;
+  if (!first || stage.view.scale * Math.hypot(place[0] - first[0], place[1] - first[1]) > CLICK_PX) return false;
+  const all = thingsAt(page, first), now = all.findIndex((one) => isSame(one, selection));
+  if (all.length < 2) return false;
+  select(page, all[(now + 1) % all.length]);
+  return true;
 }
 
 function clicked(page, place) {
@@ -118,6 +134,7 @@ function clicked(page, place) {
   if (page.mode === "route") return routeTo(page, rounded);
   const icon = iconAt(page, place);
   if (icon) return select(page, icon);
+  if (nextAt(page, place)) return;
   selectPlace(page, rounded);
 }
 
@@ -137,7 +154,8 @@ function showHover(page) {
   if (!hover) return void (output.textContent = "");
   const [under] = lanesNear(map, hover, 0), geographic = lonLatText(map, hover);
   const lane = under ? ` · lane ${map.lanes.names[under.lane]} · s ${under.s.toFixed(1)} m, d ${under.d.toFixed(2)} m` : "";
-  output.textContent = `x, y ${coordinatesText(map, hover)}${geographic ? ` · lat, lon ${geographic}` : ""}${lane}`;
+  const icon = iconAt(page, hover), thing = icon ? ` · ${nameOf(map, icon)}` : "";
+  output.textContent = `x, y ${coordinatesText(map, hover)}${geographic ? ` · lat, lon ${geographic}` : ""}${lane}${thing}`;
   const index = under?.lane ?? -1;
   if (index !== page.hoveredLane) {
     page.hoveredLane = index;
@@ -197,6 +215,12 @@ function drawNames(page, ctx) {
   }
 }
 
+/** Sets the context to metres of the map. */
+function toMetres(ctx, view, ratio) {
+  const k = ratio * view.scale, [x, y] = toScreen(view, [0, 0]);
+  ctx.setTransform(k, 0, 0, -k, ratio * x, ratio * y);
+}
+
 function drawPage(page, stage, ctx, ratio) {
   const {tiles} = page, home = homeView(stage), now = performance.now(), waits = choosePass(tiles, stage.view, home, ratio, now);
   const missing = waits ? true : drawSomeTiles(tiles, stage.view, home);
@@ -204,24 +228,46 @@ function drawPage(page, stage, ctx, ratio) {
   showTiles(tiles, ctx, stage.view);
   ctx.save();
   toMetres(ctx, stage.view, ratio);
-  drawOverlays(page.map, ctx, stage.view, (name) => inkOf(stage, name));
   drawSelected(page, ctx);
   ctx.restore();
   drawNames(page, ctx);
   drawMeasured(page, ctx);
   drawScaleBar(stage, ctx);
+  if (stage.canvas.matches(":focus-visible")) drawCross(stage, ctx);
   document.documentElement.dataset.drawn = missing ? "part" : "all";
   if (missing) redraw(stage);
 }
 
+/** Where Enter selects. */
+function drawCross(stage, ctx) {
+  const {width, height} = stage.view;
+  ctx.strokeStyle = inkOf(stage, "text");
+  ctx.lineWidth = 1.5;
+  ctx.setLineDash([]);
+  ctx.beginPath();
+  for (const [dx, dy] of [[10, 0], [0, 10]]) {
+    ctx.moveTo(width / 2 - dx, height / 2 - dy);
+    ctx.lineTo(width / 2 + dx, height / 2 + dy);
+  }
+  ctx.stroke();
+}
+
 function watchKeys(page) {
+  const {canvas} = page.stage;
+  for (const name of ["focus", "blur"]) canvas.addEventListener(name, () => redraw(page.stage));
+  canvas.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") clicked(page, [page.stage.view.x, page.stage.view.y]);
+  });
   const acts = {n: () => nextRemark(page, 1), p: () => nextRemark(page, -1), m: () => setMode(page, "measure"), r: () => setMode(page, "route"),
                 c: () => setColours(page, Object.keys(SCHEMES)[(Object.keys(SCHEMES).indexOf(page.map.colouring.key) + 1) % 4]),
                 "/": () => element("search").focus(), Escape: () => clearAll(page)};
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== "checkbox";
-    if (typing && event.key === "Escape") return event.target.blur();
+    if (typing && event.key === "Escape") {
+      element("hits").hidden = true;
+      return event.target.blur();
+    }
     if (typing) return;
     if (keyOfStage(page.stage, event.key) || acts[event.key]) event.preventDefault();
     acts[event.key]?.();

@@ -28,7 +28,7 @@ function endAt(page, place) {
 
 function routeCommand(page) {
   const {from, to} = page.ends;
-  return from && to ? `roadbed route ${quoted(page.map.title)} --from ${quoted(from.argument)} --to ${quoted(to.argument)}` : "";
+  return from && to ? `roadbed route ${quoted(page.map.file)} --from ${quoted(from.argument)} --to ${quoted(to.argument)}` : "";
 }
 
 function setEnd(page, which, end) {
@@ -48,13 +48,12 @@ function routeTo(page, place) {
 }
 
 function showRouteEnds(page, box) {
-  const {selection, map} = page;
+  const {selection} = page;
   if (selection.kind !== "lane" || !selection.place) return;
   const row = addText(box, "p", "buttons", "");
   for (const which of ["from", "to"]) {
     addButton(row, `Route ${which} here`, "", () => setEnd(page, which, endAt(page, selection.place)));
   }
-  void map;
 }
 
 function drawMeasured(page, ctx) {

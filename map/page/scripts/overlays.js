@@ -1,58 +1,63 @@
-// Routes, drives, occupied cells: drawn anew in each frame over the tiles, in metres.
+// Routes, drives, occupied cells: painted into the tiles, over the lanes and under the signs.
 
-const WIDTHS = {route: [2, 5], drive: [0.4, 2.5], reference: [0.2, 1.5], before: [0.15, 1.5]};  // metres, pixels
-
-function pathOfPieces(map, pieces) {
-  const path = new Path2D();
-  for (const {lane, from, to} of pieces) {
-    const points = pieceOfLane(map.lanes, lane, from, to);
-    points.forEach(([x, y], n) => (n === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
-  }
-  return path;
-}
+const WIDTHS = {route: [2, 5], drive: [0.4, 2.5], reference: [0.2, 1.5], before: [0.15, 1.5], reach: [2, 3]};  // metres, pixels
 
 /** Points of a lane's centreline between two stations. */
-function pieceOfLane(lanes, lane, from, to) {
+function pieceOfLane(lanes, {lane, from, to}) {
   const stations = stationsOfLine(lanes, lane, CENTRE), line = pointsAt(lanes.lines, 3 * lane + CENTRE);
   return [pointOnLane(lanes, lane, from), ...line.filter((_, n) => stations[n] > from && stations[n] < to),
           pointOnLane(lanes, lane, to)];
 }
 
-function pathOfOverlay(map, overlay) {
-  const path = pathOfPieces(map, overlay.pieces ?? []);
-  for (const line of overlay.lines) line.forEach(([x, y], n) => (n === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
-  return path;
+/** Shapes with a grid over them, to find those that a tile shows. */
+function withGrid(shapes) {
+  const boxes = new Float64Array(4 * shapes.length);
+  shapes.forEach((points, i) => boxes.set(boxOf(points) ?? [Infinity, Infinity, -Infinity, -Infinity], 4 * i));
+  return {shapes, grid: makeGrid(boxes, shapes.length)};
 }
 
-function areaOfOverlay(overlay) {
-  const area = new Path2D();
-  for (const ring of overlay.rings) {
-    ring.forEach(([x, y], n) => (n === 0 ? area.moveTo(x, y) : area.lineTo(x, y)));
-    area.closePath();
+/** The lines and areas of an overlay, made when they are first asked for. */
+function shapesOf(map, overlay) {
+  const corners = ([[x0, y0], [x1, y1]]) => [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+  overlay.made ??= {
+    strokes: withGrid([...overlay.pieces.map((piece) => pieceOfLane(map.lanes, piece)), ...overlay.lines]),
+    areas: withGrid([...overlay.rings, ...overlay.boxes.map(corners)]),
+  };
+  return overlay.made;
+}
+
+/** The box of everything that is drawn of an overlay; null if that is nothing. */
+function boxOfOverlay(map, overlay) {
+  const {strokes, areas} = shapesOf(map, overlay);
+  return boxOf([...strokes.shapes, ...areas.shapes].flat());
+}
+
+/** Puts shapes into the path, as many as may be drawn at once, and lets them be drawn. */
+function* batchesOf(pen, {shapes, grid}, box, close) {
+  const found = inBox(grid, box);
+  for (let from = 0; from < found.length; from += 4 * BATCH) {
+    pen.ctx.beginPath();
+    for (const i of found.slice(from, from + 4 * BATCH)) addPoints(pen, pen.ctx, shapes[i], close);
+    yield;
   }
-  for (const [[x0, y0], [x1, y1]] of overlay.boxes) area.rect(x0, y0, x1 - x0, y1 - y0);
-  return area;
 }
 
-/** Sets the context to metres of the map. */
-function toMetres(ctx, view, ratio) {
-  const k = ratio * view.scale, [x, y] = toScreen(view, [0, 0]);
-  ctx.setTransform(k, 0, 0, -k, ratio * x, ratio * y);
-}
-
-function drawOverlays(map, ctx, view, ink) {
-  for (const overlay of map.overlays) {
-    if (!overlay.shown) continue;
-    overlay.path ??= pathOfOverlay(map, overlay);
-    overlay.area ??= areaOfOverlay(overlay);
-    const colour = ink("over-" + overlay.kind), [metres, pixels] = WIDTHS[overlay.kind] ?? [0.2, 2];
+function* paintOverlays(pen, map, box) {
+  const {ctx} = pen;
+  for (const overlay of map.overlays.filter(({shown}) => shown)) {
+    const {strokes, areas} = shapesOf(map, overlay), [metres, pixels] = WIDTHS[overlay.kind] ?? [0.2, 2];
+    ctx.fillStyle = ctx.strokeStyle = pen.ink("over-" + overlay.kind);
+    for (const _ of batchesOf(pen, areas, box, true)) {
+      ctx.fill();
+      yield;
+    }
     ctx.globalAlpha = overlay.kind === "route" ? 0.75 : 1;
-    ctx.fillStyle = colour;
-    ctx.fill(overlay.area);
-    ctx.strokeStyle = colour;
-    ctx.lineWidth = Math.max(metres, pixels / view.scale);
-    ctx.setLineDash(overlay.isAlternative ? [6 / view.scale, 4 / view.scale] : []);
-    ctx.stroke(overlay.path);
+    ctx.lineWidth = Math.max(metres * pen.k, pixels * pen.ratio);
+    ctx.setLineDash(overlay.isAlternative ? [6 * pen.ratio, 4 * pen.ratio] : []);
+    for (const _ of batchesOf(pen, strokes, box, false)) {
+      ctx.stroke();
+      yield;
+    }
     ctx.setLineDash([]);
     ctx.globalAlpha = 1;
   }

@@ -11,7 +11,7 @@ const BATCH = 250;     // lanes drawn between two looks at the time
 const SOLID = new Set([1, 3, 4, 5]), BROKEN = new Set([2, 6, 7]), BUILT = new Set([8, 10]);  // map::MarkType
 
 function makePen(ctx, box, scale, ratio, ink) {
-  return {ctx, box, scale, ratio, ink, k: scale * ratio, x0: box[0], y1: box[3]};
+  return {ctx, box, scale, ratio, ink, k: scale * ratio, x0: box[0], y1: box[3], seen: new Map()};
 }
 
 function px(pen, x) {
@@ -70,6 +70,18 @@ function* eachClass(pen, map, ids, draw) {
   }
 }
 
+/** Whether a lane of a few pixels looks like one that the tile has in this colour already. */
+function isRepeated(pen, lanes, colour, i) {
+  const {xy} = lanes.lines, [from, to] = rangeOfLine(lanes, i, CENTRE), {seen} = pen;
+  const [x0, y0, x1, y1] = [px(pen, xy[from]), py(pen, xy[from + 1]), px(pen, xy[to - 2]), py(pen, xy[to - 1])].map(Math.round);
+  const [left, low, right, high] = lanes.boxes.subarray(4 * i, 4 * i + 4);
+  if ((right - left) * pen.k > 6 || (high - low) * pen.k > 6) return false;
+  if (!seen.has(colour)) seen.set(colour, new Set());
+  const key = ((x0 * 2048 + y0) * 16 + (x1 - x0)) * 16 + (y1 - y0), known = seen.get(colour).has(key);
+  seen.get(colour).add(key);
+  return known;
+}
+
 function strokeLanes(pen, lanes, colour, ids) {
   const {ctx} = pen, byWidth = new Map();
   for (const i of ids) {
@@ -81,7 +93,9 @@ function strokeLanes(pen, lanes, colour, ids) {
   for (const [width, those] of byWidth) {
     ctx.lineWidth = width * pen.ratio;
     ctx.beginPath();
-    for (const i of those) addFlat(pen, ctx, lanes.lines.xy, ...rangeOfLine(lanes, i, CENTRE), true);
+    for (const i of those) {
+      if (!isRepeated(pen, lanes, colour, i)) addFlat(pen, ctx, lanes.lines.xy, ...rangeOfLine(lanes, i, CENTRE), true);
+    }
     ctx.stroke();
   }
 }
@@ -218,5 +232,6 @@ function* paintMap(map, layers, pen) {
       yield* paintLanes(pen, map, ids.filter((i) => map.lanes.level[i] === level), layers);
     }
   }
+  yield* paintOverlays(pen, map, around);
   yield* paintThings(pen, map, around, layers);
 }

@@ -43,14 +43,20 @@ function lonLatText(map, place) {
   return found && `${found[1].toFixed(8)}, ${found[0].toFixed(8)}`;
 }
 
+function wordOf(kind) {
+  const words = {signals: "signal", objects: "object", stopLines: "stop line", areas: "area", regulations: "regulation",
+                 overlays: "overlay"};
+  return words[kind] ?? kind;
+}
+
 /** "lane 12/0/-1", as findings, links and the list of hits name things. */
 function nameOf(map, {kind, index}) {
   if (kind === "lane") return `lane ${map.lanes.names[index]}`;
   if (kind === "road") return `road ${map.roads.ids[index]}`;
   if (kind === "junction") return `junction ${map.junctions[index].id}`;
   if (kind === "remark") return `${map.remarks[index].severity}: ${map.remarks[index].rule}`;
-  const words = {signals: "signal", objects: "object", stopLines: "stop line", areas: "area", regulations: "regulation"};
-  return `${words[kind]} ${map[kind][index].id}`;
+  if (kind === "overlays") return map.overlays[index].name;
+  return `${wordOf(kind)} ${map[kind][index].id}`;
 }
 
 /** Buttons that select things, with what is said of each. */
@@ -197,7 +203,19 @@ function describeRemark(page, table, {index}) {
   addRow(table, "message", remark.message);
 }
 
-const DESCRIBE = {lane: describeLane, road: describeRoad, junction: describeJunction, remark: describeRemark};
+function describeOverlay(page, table, {index}) {
+  const {pieces, lines, text} = page.map.overlays[index];
+  addRow(table, "says", text);
+  addRow(table, "length", pieces.length > 0 ? `${lengthOfPieces(pieces).toFixed(2)} m` : lines.length === 1 ? `${lengthOfPoints(lines[0]).toFixed(2)} m` : "");
+  if (pieces.length > 0) addRow(table, "lanes", linksTo(page, lanesAsTargets([...new Set(pieces.map(({lane}) => lane))])));
+}
+
+const DESCRIBE = {lane: describeLane, road: describeRoad, junction: describeJunction, remark: describeRemark, overlays: describeOverlay};
+
+/** The line of the source that a thing stands in; 0 if it is not known. */
+function lineOf(map, selection) {
+  return selection.kind === "lane" ? map.lanes.line[selection.index] : map.lines[nameOf(map, selection)] ?? 0;
+}
 
 /** Lanes that a selection stands for. */
 function lanesOf(map, {kind, index}) {
@@ -226,11 +244,13 @@ function showSelection(page) {
   box.replaceChildren();
   element("selected").textContent = !selection ? "" :
       selection.kind === "lane" ? map.lanes.names[selection.index] : nameOf(map, selection);
-  element("kind").textContent = selection ? selection.kind.replace(/s$/, "").replace("stopLine", "stop line") : "Click on the map";
+  element("kind").textContent = !selection ? "Click on the map" : selection.kind === "remark" ?
+      map.remarksTitle.toLowerCase().replace(/s$/, "") : wordOf(selection.kind);
   if (!selection) return;
   const table = document.createElement("table");
   (DESCRIBE[selection.kind] ?? describeThing)(page, table, selection);
-  const place = placeOf(map, selection);
+  const line = lineOf(map, selection), place = placeOf(map, selection);
+  if (line > 0) addRow(table, "source line", String(line));
   if (place) {
     addCopy(page, table, "x, y", coordinatesText(map, place));
     addRow(table, "lat, lon", lonLatText(map, place));
@@ -242,17 +262,27 @@ function showSelection(page) {
   showAlsoHere(page, box);
 }
 
-/** Other lanes and things under the same place. */
+/** Lanes and things at a place, as what is selected. */
+function thingsAt(page, place) {
+  const {map} = page, reach = 6 / page.stage.view.scale;
+  const around = [place[0] - reach, place[1] - reach, place[0] + reach, place[1] + reach];
+  const lanes = lanesNear(map, place, 0).map(({lane}) => ({kind: "lane", index: lane, place}));
+  const things = ["signals", "objects", "stopLines", "areas"].flatMap((kind) => thingsIn(map, kind, around).map((index) => ({kind, index, place})));
+  return [...lanes, ...things].slice(0, 12);
+}
+
+function isSame(a, b) {
+  return a && b && a.kind === b.kind && a.index === b.index;
+}
+
 function showAlsoHere(page, box) {
-  const {map, selection} = page, {place} = selection;
-  if (selection.kind !== "lane" || !place) return;
-  const others = lanesNear(map, place, 0).filter((one) => one.lane !== selection.index);
-  const reach = 6 / page.stage.view.scale, around = [place[0] - reach, place[1] - reach, place[0] + reach, place[1] + reach];
-  const things = ["signals", "objects", "stopLines", "areas"].flatMap((kind) => thingsIn(map, kind, around).map((index) => ({target: {kind, index}})));
-  const all = [...others.map(({lane}) => ({target: {kind: "lane", index: lane, place}})), ...things].slice(0, 12);
-  if (all.length === 0) return;
-  addText(box, "h3", "", "Also here");
-  linksTo(page, all)(addText(box, "p", "", ""));
+  const {selection} = page;
+  if (!selection.place) return;
+  const others = thingsAt(page, selection.place).filter((one) => !isSame(one, selection));
+  if (others.length === 0) return;
+  addText(box, "h3", "", "Also here: click again, or");
+  const list = addText(box, "p", "", "");
+  for (const one of others) addButton(list, nameOf(page.map, one), "link", () => select(page, one));
 }
 
 function say(page, text) {

@@ -40,10 +40,17 @@ function drawProfile(box, points, title) {
   box.append(figure);
 }
 
-/** The elevation of the selected lane. */
+function lengthOfPieces(pieces) {
+  return pieces.reduce((sum, {from, to}) => sum + to - from, 0);
+}
+
+/** The elevation of the selected lane, or along a route. */
 function showProfile(page, box) {
-  const {selection, map} = page;
-  if (selection.kind !== "lane") return;
-  const pieces = [{lane: selection.index, from: 0, to: lengthOf(map.lanes, selection.index)}];
-  drawProfile(box, profileOf(map.lanes, pieces), "Elevation along the lane");
+  const {selection, map} = page, {kind, index} = selection;
+  if (kind === "lane") {
+    const whole = [{lane: index, from: 0, to: lengthOf(map.lanes, index)}];
+    drawProfile(box, profileOf(map.lanes, whole), "Elevation along the lane");
+  } else if (kind === "overlays" && map.overlays[index].kind === "route") {
+    drawProfile(box, profileOf(map.lanes, map.overlays[index].pieces), "Elevation along the route");
+  }
 }

@@ -4,12 +4,15 @@ const MOST_HITS = 30;
 
 /** What a finding or a search names: "lane 12/0/-1", "road 12", "lanelet 4"; null if nothing does. */
 function findElement(map, text) {
-  const [, word, id] = /^(\S+)\s+(.+)$/.exec(text) ?? [];
+  const overlay = map.overlays.findIndex(({name}) => name === text);
+  if (overlay >= 0) return {kind: "overlays", index: overlay};
+  const [, word, id] = /^(\S+)\s+(.+)$/.exec(text.replace(/^stop line /, "stop_line ")) ?? [];
   if (!word) return null;
   if (["lane", "lanelet"].includes(word)) return map.laneNumbers.has(id) ? {kind: "lane", index: map.laneNumbers.get(id)} : null;
   const lists = {road: ["road", map.roads.ids], junction: ["junction", map.junctions.map((one) => one.id)],
                  signal: ["signals", map.signals.map((one) => one.id)], object: ["objects", map.objects.map((one) => one.id)],
-                 area: ["areas", map.areas.map((one) => one.id)]};
+                 area: ["areas", map.areas.map((one) => one.id)], "stop_line": ["stopLines", map.stopLines.map((one) => one.id)],
+                 regulation: ["regulations", map.regulations.map((one) => one.id)]};
   const [kind, ids] = lists[word] ?? [];
   const index = kind ? ids.indexOf(id) : -1;
   return index < 0 ? null : {kind, index};

@@ -95,11 +95,11 @@ function paintPoints(pen, map, box) {
   }
 }
 
-/** The gravest on top; far away small, and without mere notes. */
+/** The gravest on top; far away small, and mere notes only from near. */
 function paintRemarks(pen, map, box) {
   const far = pen.scale < ICONS, found = thingsIn(map, "remarks", box).map((i) => map.remarks[i]);
   for (const severity of [...SEVERITIES].reverse()) {
-    if (far && severity === "info") continue;
+    if (severity === "info" && pen.scale < MARKINGS) continue;
     for (const one of found) {
       const shown = one.severity === severity && !map.hiddenRules.has(one.rule);
       if (shown) dot(pen, one.at, far ? 1.8 : Math.min(4, 2 + pen.scale / 2), pen.ink(severity), severity !== "error");

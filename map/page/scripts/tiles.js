@@ -2,7 +2,7 @@
 // was drawn before is shown at another size. So moving costs the same on a map of any size.
 
 const TILE = 256;          // pixels of the page
-const BUDGET_MS = 5;       // for new tiles in one frame
+const BUDGET_MS = 4;       // for new tiles in one frame
 const REST_MS = 120;       // without a change of scale, until tiles of the new scale are drawn
 const MOST_TILES = 300;    // kept of one scale
 
@@ -99,7 +99,7 @@ function choosePass(tiles, view, homeView, ratio, now) {
 
 function forgetFarTiles(tiles, view) {
   const {current} = tiles;
-  if (current === tiles.home || current.tiles.size <= MOST_TILES) return;
+  if (current === tiles.home || current.tiles.size <= MOST_TILES || !isShown(current, view)) return;
   const kept = new Set(tilesInView(view, current.scale).map(nameOfTile));
   for (const name of current.tiles.keys()) if (!kept.has(name)) current.tiles.delete(name);
 }

@@ -15,7 +15,7 @@ function toWorld(view, [px, py]) {
 /** Zooms so that the place under a pixel stays there. */
 function zoomAt(view, pixel, factor) {
   const before = toWorld(view, pixel);
-  view.scale = Math.min(400, Math.max(0.02, view.scale * factor));
+  view.scale = Math.min(400, Math.max(0.0005, view.scale * factor));
   const after = toWorld(view, pixel);
   view.x += before[0] - after[0];
   view.y += before[1] - after[1];

@@ -201,6 +201,110 @@ setTimeout(() => note("hash", location.hash), 500);)"),
   EXPECT_THAT(data_of(page, "hash"), testing::ContainsRegex("^#view=.*colour=speed.*hide=signals"));
 }
 
+TEST(MapPageInBrowser, ASecondClickSelectsWhatElseIsThere) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  tests::MadeMap made = tests::three_roads_in_a_row();
+  MapObject object;
+  object.source_id = "7";
+  object.type = "crosswalk";
+  object.in_map = {75, 0};
+  object.outline_in_map = {{70, -3}, {80, -3}, {80, 3}, {70, 3}};
+  made.parts.objects.push_back(object);
+  const std::string page =
+      page_after_scripts(browser, with_script(write_map_page(made.build()), std::string(kHand) + R"(
+const seen = [];
+for (let i = 0; i < 3; ++i) {
+  clickAt(frame.width / 2, frame.height / 2 + 10);
+  seen.push(selected());
+}
+note("seen", seen.join(";"));)"),
+                         "#view=75,0,10");
+  EXPECT_EQ(data_of(page, "seen"), "2/0/-1;object 7;2/0/-1");
+}
+
+TEST(MapPageInBrowser, WorksWithKeysAlone) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const RoadMap road_map = tests::three_roads_in_a_row().build();
+  const std::string page =
+      page_after_scripts(browser, with_script(write_map_page(road_map), std::string(kHand) + R"(
+canvas.focus();
+canvas.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter", bubbles: true}));
+note("centre", selected());
+press("ArrowRight");
+press("+");
+press("c");
+note("colours", document.getElementById("colours").value);
+press("Escape");
+note("cleared", selected());
+setTimeout(() => note("hash", location.hash), 500);)"),
+                         "#view=75,1,10");
+  EXPECT_EQ(data_of(page, "centre"), "2/0/-1");
+  EXPECT_EQ(data_of(page, "colours"), "speed");
+  EXPECT_EQ(data_of(page, "cleared"), "");
+  EXPECT_THAT(data_of(page, "hash"), testing::HasSubstr("view=83.00,1.00,15"));
+}
+
+// Two colours of a pixel: with all layers, and without some.
+TEST(MapPageInBrowser, DrawsTheLayersThatAreSwitchedOn) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const RoadMap road_map = tests::three_roads_in_a_row().build();
+  const std::string page =
+      page_after_scripts(browser, with_script(write_map_page(road_map), std::string(kHand) + R"(
+const colour = () => [...canvas.getContext("2d").getImageData(frame.width / 2, frame.height / 2 + 5, 1, 1).data].join(" ");
+const {dataset} = document.documentElement;
+const whenDrawn = (act) => (dataset.drawn === "all" ? act() : setTimeout(whenDrawn, 20, act));
+whenDrawn(() => {
+  note("with", colour());
+  delete dataset.drawn;
+  document.getElementById("layer_lanes").click();
+  whenDrawn(() => note("without", colour()));
+});)"),
+                         "#view=75,1,10&hide=arrows");
+  EXPECT_EQ(data_of(page, "with"), "136 147 161 255");     // --lane-junction
+  EXPECT_EQ(data_of(page, "without"), "238 240 234 255");  // --ground
+}
+
+TEST(MapPageInBrowser, ShowsARouteWithItsElevation) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const RoadMap road_map = tests::three_roads_in_a_row().build();
+  PageOverlay route;
+  route.kind = "route";
+  route.name = "Route there";
+  route.text = "40 m, 3 s";
+  route.pieces = {{*road_map.find_lane("1/0/-1"), 30.0, 50.0},
+                  {*road_map.find_lane("2/0/-1"), 0.0, 20.0}};
+  MapPageOptions options;
+  options.overlays = {route};
+  const std::string page = page_after_scripts(
+      browser, with_script(write_map_page(road_map, options), std::string(kHand) + R"(
+note("named", selected());
+note("length", textOf("length"));
+note("lanes", textOf("lanes"));
+note("profile", document.querySelector("#details figcaption").textContent);
+setTimeout(() => note("hash", location.hash), 500);)"),
+      "#find=Route%20there");
+  EXPECT_EQ(data_of(page, "named"), "Route there");
+  EXPECT_EQ(data_of(page, "length"), "40.00 m");
+  EXPECT_EQ(data_of(page, "lanes"), "1/0/-12/0/-1");
+  EXPECT_EQ(data_of(page, "profile"), "Elevation along the route");
+  EXPECT_THAT(data_of(page, "hash"), testing::HasSubstr("find=Route%20there"));
+}
+
+TEST(MapPageInBrowser, SaysWhichLineOfTheSourceAThingStandsIn) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const RoadMap road_map = tests::three_roads_in_a_row().build();
+  MapPageOptions options;
+  options.lines = {{"lane 2/0/-1", 42}, {"road 2", 40}};
+  const std::string page = page_after_scripts(
+      browser, with_script(write_map_page(road_map, options), std::string(kHand) + R"(
+note("lane", textOf("source line"));
+rowOf("road").querySelector("button").click();
+note("road", textOf("source line"));)"),
+      "#lane=2/0/-1");
+  EXPECT_EQ(data_of(page, "lane"), "42");
+  EXPECT_EQ(data_of(page, "road"), "40");
+}
+
 TEST(MapPageInBrowser, DrawsItsTilesAndAsksNoNetwork) {
   ROADBED_BROWSER_OR_SKIP(browser);
   const std::string page = page_after_scripts(browser, with_script(town_page(), R"(
