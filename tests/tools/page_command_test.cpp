@@ -1,4 +1,4 @@
-// Pages that commands write: what is shown over a map.
+// Pages that commands write: what is shown over a map, and what changed in it.
 
 #include <gtest/gtest.h>
 
@@ -78,6 +78,21 @@ TEST(MapPageCommand, RefusesAMapAsExportDoes) {
   const ProgramRun picture = run_roadbed({"export", bad, "-o", folder / "a.svg"});
   EXPECT_EQ(page.status, 3);
   EXPECT_EQ(page.err, picture.err);
+}
+
+TEST(DiffPageCommand, WritesAPageBesideItsAnswer) {
+  const TemporaryFolder folder;
+  std::string text = bytes_of(town());
+  text.replace(text.find("\"driving\""), 9, "\"parking\"");
+  const std::string changed = folder.write("new.xodr", text), page = folder / "d.html";
+  const ProgramRun plain = run_roadbed({"diff", town(), changed});
+  const ProgramRun run = run_roadbed({"diff", town(), changed, "-o", page});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.out, plain.out);
+  EXPECT_TRUE(holds(bytes_of(page), "; driving before, parking after\""));
+  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", page}).status, 3);
+  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", page, "--force"}).status, 1);
+  EXPECT_EQ(run_roadbed({"diff", town(), changed, "-o", folder / "d.svg"}).status, 2);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "roadbed/map/derived/map_diff.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/page/diff_page.h"
+#include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
@@ -59,13 +61,23 @@ class DiffCommand : public Command {
         .not_negative()
         .with_default();
     arguments.flag("-j,--json", json_, "Print one JSON document");
+    arguments.add("-o,--output", page_, "Show the changes on the newer map: a page (.html)")
+        .writes(".html");
+    arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.says_no_if("the maps differ");
-    arguments.example("  roadbed " + words_ + " old.xodr new.xodr --tolerance 0.01");
+    arguments.require([this] {
+      if (page_.empty() || page_.extension() == ".html") return std::string();
+      return "--output: a page, whose name ends in .html; not " + page_.string();
+    });
+    arguments.example("  roadbed " + words_ + " old.xodr new.xodr --tolerance 0.01\n  roadbed " +
+                      words_ + " old.xodr new.xodr -o changes.html");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
+    if (!page_.empty()) map::check_writable(page_, force_);
     const map::RoadMap before = map::load_map(before_), after = map::load_map(after_);
     const auto changes = diff(before, after, options_);
+    if (!page_.empty()) write_page(before, after, changes);
     if (json_) {
       Json list = Json::array();
       for (const auto& change : changes) list.push_back(change_json(change));
@@ -80,10 +92,21 @@ class DiffCommand : public Command {
   }
 
  private:
+  void write_page(const map::RoadMap& before, const map::RoadMap& after,
+                  const std::vector<map::MapChange>& changes) const {
+    const std::string title = fmt::format("{}, changed since {}", after_.filename().string(),
+                                          before_.filename().string());
+    const map::MapPageOptions options{.title = title,
+                                      .file = after_.filename().string(),
+                                      .crs = after.crs(),
+                                      .is_own_crs = !after.crs().empty()};
+    map::write_output(page_, write_diff_page(before, after, changes, options), force_);
+  }
+
   std::string words_;
-  std::filesystem::path before_, after_;
+  std::filesystem::path before_, after_, page_;
   map::MapDiffOptions options_;
-  bool json_ = false;
+  bool json_ = false, force_ = false;
 };
 
 class MapCommand : public Command {

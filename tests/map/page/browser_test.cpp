@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/page/diff_page.h"
 #include "roadbed/map/page/map_page.h"
 #include "roadbed/tests/support/browser.h"
 #include "roadbed/tests/support/made_maps.h"
@@ -303,6 +304,36 @@ note("road", textOf("source line"));)"),
       "#lane=2/0/-1");
   EXPECT_EQ(data_of(page, "lane"), "42");
   EXPECT_EQ(data_of(page, "road"), "40");
+}
+
+TEST(MapPageInBrowser, ShowsWhatChangedBetweenTwoMaps) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const RoadMap before = tests::three_roads_in_a_row().build();
+  tests::MadeMap made = tests::three_roads_in_a_row();
+  made.parts.lanes[1].type = LaneType::parking;
+  made.parts.lanes[1].speed_limits = {{0.0, 10.0}};
+  const RoadMap after = made.build();
+  const std::string page = page_after_scripts(
+      browser,
+      with_script(write_diff_page(before, after, diff(before, after)), std::string(kHand) + R"(
+const said = [];
+for (let i = 0; i < 2; ++i) {
+  press("n");
+  said.push(textOf("severity") + " " + textOf("rule") + ": " + textOf("message"));
+}
+note("said", said.join("|"));
+note("overlays", [...document.querySelectorAll("#layers label")].map((one) => one.textContent).filter((one) => /lanes,/.test(one)).join());
+rowOf("element").querySelector("button").click();
+note("went", selected());)"),
+      "");
+  EXPECT_EQ(data_of(page, "said"), "changed lane: " + after.lanes()[1].name +
+                                       " changed: type; driving before, parking after|"
+                                       "changed speed_limit: " +
+                                       after.lanes()[1].name +
+                                       " changed: 50.04 km/h before, 36 km/h after");
+  EXPECT_EQ(data_of(page, "overlays"), "Changed lanes, afterShow");
+  EXPECT_EQ(data_of(page, "went"), after.lanes()[1].name);
+  EXPECT_EQ(data_of(page, "error"), "");
 }
 
 TEST(MapPageInBrowser, DrawsItsTilesAndAsksNoNetwork) {
