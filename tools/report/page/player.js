@@ -102,8 +102,8 @@ function watchTrack(page) {
     if (track.hasPointerCapture(event.pointerId)) go(event);
   });
   track.addEventListener("pointerup", () => writeFragment(page));
-  track.setAttribute("aria-valuemin", page.clock.start);
-  track.setAttribute("aria-valuemax", page.clock.end);
+  element("needle").setAttribute("aria-valuemin", page.clock.start);
+  element("needle").setAttribute("aria-valuemax", page.clock.end);
 }
 
 function watchControls(page) {
@@ -186,7 +186,7 @@ function showTime(page) {
   element("play").textContent = clock.playing ? "❚❚" : "▶";
   element("play").setAttribute("aria-label", clock.playing ? "Pause" : "Play");
   element("needle").style.left = percent(shareOf(clock, clock.t));
-  element("track").setAttribute("aria-valuenow", clock.t.toFixed(2));
+  element("needle").setAttribute("aria-valuenow", clock.t.toFixed(2));
   const state = element("state");
   state.replaceChildren();
   if (decision) {
