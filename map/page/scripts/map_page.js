@@ -202,16 +202,21 @@ function pathOfPoints(points) {
   return path;
 }
 
-/** Names of the lanes in view that are long enough for them, in pixels. */
+const LETTER_PX = 7, LABEL_PX = 14;
+
+/** Names of the lanes in view that are long enough for them, in pixels; none on another. */
 function drawNames(page, ctx) {
   const {map, stage} = page, {view} = stage;
   if (!page.layers.names || view.scale < 5) return;
-  const wide = view.width / view.scale / 2, high = view.height / view.scale / 2;
+  const wide = view.width / view.scale / 2, high = view.height / view.scale / 2, taken = [];
   for (const i of inBox(map.grid, [view.x - wide, view.y - high, view.x + wide, view.y + high]).slice(0, 150)) {
     const length = lengthOf(map.lanes, i);
     if (length * view.scale < 120 || map.lanes.width[i] * view.scale < 14) continue;
     const [x, y] = toScreen(view, pointOnLane(map.lanes, i, length / 3));
-    drawLabel(stage, ctx, map.lanes.names[i], [x - 12, y + 4]);
+    const name = map.lanes.names[i], right = x + LETTER_PX * name.length;
+    if (taken.some((one) => x < one.right && right > one.x && Math.abs(y - one.y) < LABEL_PX)) continue;
+    taken.push({x, y, right});
+    drawLabel(stage, ctx, name, [x - 12, y + 4]);
   }
 }
 
