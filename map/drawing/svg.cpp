@@ -82,6 +82,29 @@ std::string svg_text(std::string_view css_class, const Vector2d& at_px, std::str
                      svg_number(at_px.x()), svg_number(at_px.y()), html_text(text));
 }
 
+double usual_width_px(std::string_view text, double font_px) {
+  double width = 0.0;  // in sizes of the font
+  for (const char letter : text) {
+    if ((static_cast<unsigned char>(letter) & 0xC0U) == 0x80U)
+      continue;  // goes with the one before
+    const bool is_narrow =
+        std::string_view("fijlrt .,:;'!|()[]I").find(letter) != std::string_view::npos;
+    const bool is_wide = std::string_view("mwMW%@").find(letter) != std::string_view::npos;
+    const bool is_capital = letter >= 'A' && letter <= 'Z';
+    width += is_narrow ? 0.33 : is_wide ? 0.87 : is_capital ? 0.68 : 0.58;
+  }
+  return width * font_px;
+}
+
+std::string svg_text_of_width(std::string_view css_class, const Vector2d& at_px,
+                              std::string_view text, double width_px) {
+  return fmt::format(
+      "<text class=\"{}\" x=\"{}\" y=\"{}\" textLength=\"{}\" "
+      "lengthAdjust=\"spacingAndGlyphs\">{}</text>\n",
+      css_class, svg_number(at_px.x()), svg_number(at_px.y()), svg_number(width_px),
+      html_text(text));
+}
+
 double round_length_m(double longest_m) {
   const double power = std::pow(10.0, std::floor(std::log10(longest_m)));
   for (const double digit : {5.0, 2.0}) {

@@ -42,6 +42,15 @@ std::string svg_path(std::string_view css_class, std::string_view data);
 std::string svg_text(std::string_view css_class, const Eigen::Vector2d& at_px,
                      std::string_view text);
 
+/// Width of a text in the proportions of usual sans-serif fonts [px]; those that are there may have
+/// others, in which svg_text() is wider or narrower.
+double usual_width_px(std::string_view text, double font_px);
+
+/// Text that is `width_px` wide in any font, and so is cut in none: what a font lacks or has too
+/// much is made up by its letters' widths.
+std::string svg_text_of_width(std::string_view css_class, const Eigen::Vector2d& at_px,
+                              std::string_view text, double width_px);
+
 /// The largest of 1, 2, 5 × 10ⁿ metres that is no longer: what a scale bar shows.
 double round_length_m(double longest_m);
 

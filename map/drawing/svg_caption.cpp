@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/map/drawing/svg.h"
 #include "roadbed/map/drawing/svg_drawing.h"
 #include "roadbed/map/files/xml_characters.h"
 
@@ -22,6 +23,10 @@ class Caption {
     drawing_.canvas.add(
         fmt::format(R"(<text x="{:.2f}" y="{:.2f}" font-size="{:.3f}" {}>{}</text>)", x(x_px),
                     y(y_px), size_px * px_, more, html_text(words)));
+  }
+  /// Attributes of a text that is so wide in any font.
+  std::string as_wide_as(double width_px) const {
+    return fmt::format(R"(textLength="{:.3f}" lengthAdjust="spacingAndGlyphs")", width_px * px_);
   }
   void path(const std::string& data_px, std::string_view attributes) {
     drawing_.canvas.add(
@@ -86,12 +91,23 @@ std::vector<LegendItem> legend_of(const Drawing& drawing) {
 }
 
 void draw_legend(const Drawing& drawing, Caption& caption) {
-  double x_px = 24.0;
-  for (const LegendItem& item : legend_of(drawing)) {
+  constexpr double kSide_px = 24.0, kFont_px = 13.0;
+  const std::vector<LegendItem> items = legend_of(drawing);
+  double swatches_px = 0.0, words_px = 0.0;
+  for (const LegendItem& item : items) {
+    swatches_px += 46.0;
+    words_px += usual_width_px(item.words, kFont_px);
+  }
+  // As wide as the letters are, or as there is room for.
+  const double room_px = std::max(caption.width_px() - 2.0 * kSide_px - swatches_px, 0.0);
+  const double share = std::min(1.0, room_px / words_px);
+  double x_px = kSide_px;
+  for (const LegendItem& item : items) {
     caption.path(fmt::format("M{:.2f} 63h18v12h-18z", x_px),
                  fmt::format(R"(fill="{}" stroke="{}" stroke-width="0.6")", item.colour, kFaint));
-    caption.text(x_px + 24.0, 74.0, 13, item.words);
-    x_px += 46.0 + 7.2 * static_cast<double>(item.words.size());
+    const double width_px = share * usual_width_px(item.words, kFont_px);
+    caption.text(x_px + 24.0, 74.0, kFont_px, item.words, caption.as_wide_as(width_px));
+    x_px += 46.0 + width_px;
   }
 }
 

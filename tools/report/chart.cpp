@@ -165,7 +165,9 @@ std::string chart_legend_svg(const Chart& chart) {
     svg += is_line(entries[i]) ? fmt::format("<path {} d=\"M{} {}h26\"/>", stroke(entries[i]),
                                              map::svg_number(from.x()), map::svg_number(from.y()))
                                : mark_svg(entries[i], {from.x() + 13.0, from.y()});
-    svg += map::svg_text("", {x_px + 34.0, y_px}, entries[i].name);
+    const double most_px = 0.5 * (kChartWidth_px - kLeft_px) - 34.0;
+    svg += map::svg_text_of_width("", {x_px + 34.0, y_px}, entries[i].name,
+                                  std::min(map::usual_width_px(entries[i].name, 13.0), most_px));
   }
   return svg;
 }

@@ -262,20 +262,21 @@ std::vector<LegendKey> legend_of(const planning::Plan& plan) {
   return keys;
 }
 
-/// In rows, none of which is cut in a font whose letters are 7 px wide.
+/// In rows, none of which is cut whatever the font.
 std::string candidates_legend_svg(const PlanPicture& picture, const PlanView& view) {
-  constexpr double kKey_px = 28.0, kLetter_px = 7.0, kBetween_px = 16.0, kRow_px = 22.0;
+  constexpr double kKey_px = 28.0, kFont_px = 12.0, kBetween_px = 16.0, kRow_px = 22.0;
   std::string svg;
   double x_px = kSide_px, y_px = kTitle_px + view.height_px + 16.0;
   for (const LegendKey& key : legend_of(picture.plan)) {
-    const double width_px = kKey_px + kLetter_px * static_cast<double>(key.words.size());
+    const double words_px = map::usual_width_px(key.words, kFont_px);
+    const double width_px = kKey_px + words_px;
     if (x_px + width_px > kPlanWidth_px) {
       x_px = kSide_px;
       y_px += kRow_px;
     }
     svg += map::svg_path(key.css_class, fmt::format("M{} {}h22", map::svg_number(x_px),
                                                     map::svg_number(y_px - 4.0)));
-    svg += map::svg_text("", {x_px + kKey_px, y_px}, key.words);
+    svg += map::svg_text_of_width("", {x_px + kKey_px, y_px}, key.words, words_px);
     x_px += width_px + kBetween_px;
   }
   return svg;

@@ -16,7 +16,7 @@ constexpr std::array<Colour, 6> kStops = {
     {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
 
 constexpr double kSwatch_px = 9.0;
-constexpr double kLetter_px = 7.0;  // of a 12 px font, on average and a little more
+constexpr double kFont_px = 12.0;
 
 }  // namespace
 
@@ -35,8 +35,14 @@ std::string speed_colour(double fraction) {
 void SvgLegend::add(std::string_view attributes, std::string_view text) {
   svg_ += fmt::format("<rect {} x=\"{}\" y=\"{}\" width=\"18\" height=\"9\" rx=\"1.5\"/>\n",
                       attributes, map::svg_number(x_px_), map::svg_number(y_px_ - kSwatch_px));
-  svg_ += map::svg_text("", {x_px_ + 25.0, y_px_}, text);
-  x_px_ += 25.0 + kLetter_px * static_cast<double>(text.size()) + 22.0;
+  x_px_ += 25.0;
+  add_text(text);
+}
+
+void SvgLegend::add_text(std::string_view text) {
+  const double width_px = map::usual_width_px(text, kFont_px);
+  svg_ += map::svg_text_of_width("", {x_px_, y_px_}, text, width_px);
+  x_px_ += width_px + 22.0;
 }
 
 void SvgLegend::add_speeds(double top_mps) {
@@ -47,10 +53,8 @@ void SvgLegend::add_speeds(double top_mps) {
                         speed_colour((i + 0.5) / kSteps), map::svg_number(x_px_ + kStep_px * i),
                         map::svg_number(y_px_ - kSwatch_px));
   }
-  x_px_ += kSteps * kStep_px;
-  svg_ +=
-      map::svg_text("", {x_px_ + 7.0, y_px_}, fmt::format("driven at 0 to {:.1f} m/s", top_mps));
-  x_px_ += 180.0;
+  x_px_ += kSteps * kStep_px + 7.0;
+  add_text(fmt::format("driven at 0 to {:.1f} m/s", top_mps));
 }
 
 }  // namespace roadbed::tools::report

@@ -10,7 +10,7 @@ namespace roadbed::tools::inline report {
 /// all kinds of colour vision.
 std::string speed_colour(double fraction);
 
-/// Entries of a picture's legend, one beside the other on one line.
+/// Entries of a picture's legend, one beside the other on one line; as wide in any font.
 class SvgLegend {
  public:
   explicit SvgLegend(double baseline_px) : y_px_(baseline_px) {}
@@ -24,6 +24,8 @@ class SvgLegend {
   const std::string& svg() const { return svg_; }
 
  private:
+  void add_text(std::string_view text);
+
   double x_px_ = 18.0;
   double y_px_;
   std::string svg_;
