@@ -60,12 +60,13 @@ std::filesystem::path find_browser() {
 
 std::string page_after_scripts(const std::filesystem::path& browser, const std::string& html,
                                const std::string& fragment) {
+  // Of the window's height, a browser without a screen leaves 900 px to the page.
   const ScratchFolder folder;
   const std::filesystem::path page = folder.path() / "page.html";
   std::ofstream(page, std::ios::binary) << html;
   return output_of(fmt::format(
       "timeout 120 '{}' --headless --no-sandbox --disable-gpu --user-data-dir='{}' "
-      "--window-size=1400,900 --virtual-time-budget=2000 --dump-dom 'file://{}{}' 2>/dev/null",
+      "--window-size=1400,1043 --virtual-time-budget=2000 --dump-dom 'file://{}{}' 2>/dev/null",
       browser.string(), (folder.path() / "profile").string(), page.string(), fragment));
 }
 

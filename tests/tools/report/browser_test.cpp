@@ -80,6 +80,31 @@ TEST(ReportInBrowser, GoesWhereKeysAndLinksSay) {
   EXPECT_TRUE(holds(page, "data-hash=\"#t=7.1\""));
 }
 
+// Whether the map and the last plot end above the bar of time, which ends where the window does.
+constexpr std::string_view kMeasure = R"(<script>
+const bottomOf = (selector) => Math.max(...[...document.querySelectorAll(selector)].map((one) => one.getBoundingClientRect().bottom));
+const player = document.getElementById("player").getBoundingClientRect();
+const shown = document.querySelectorAll("#plots figure").length;
+document.documentElement.dataset.fits = `${shown} ${bottomOf(".stage, #plots figure") <= player.top} ${player.bottom <= innerHeight}`;
+</script>)";
+
+std::string page_that_measures(ReportInput input, std::size_t plots) {
+  while (input.plots.size() > plots) input.plots.pop_back();
+  while (input.plots.size() < plots) input.plots.push_back(input.plots.front());
+  std::string html = drive_report_html(input);
+  return html.insert(html.rfind("</body>"), kMeasure);
+}
+
+TEST(ReportInBrowser, ShowsTheMapAndAllPlotsOnTheFirstScreen) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  for (const std::size_t plots : {2U, 4U, 6U}) {
+    const std::string page =
+        page_after_scripts(browser, page_that_measures(tests::sample_report(), plots), "");
+    EXPECT_TRUE(holds(page, "data-fits=\"" + std::to_string(plots) + " true true\""))
+        << plots << " plots: " << page.substr(0, 300);
+  }
+}
+
 TEST(ReportInBrowser, ComesUpWithNothingToShow) {
   ROADBED_BROWSER_OR_SKIP(browser);
   const std::string page = page_after_scripts(browser, drive_report_html({}), "");

@@ -115,6 +115,17 @@ function testPlots() {
               ["0.01", "0.012", "10"]);
 }
 
+function testRestlessSeries() {
+  const t = Array.from({length: 400}, (_, i) => i / 100), noisy = t.map((at, i) => at + (i % 2 === 0 ? 0.5 : -0.5));
+  expectEqual("a noisy series is restless, a slow wave is not", [noisy, t.map((at) => Math.sin(3 * at))].map(isRestless), [true, false]);
+  const course = smoothed(t, noisy, 0.5);
+  expectNear("its course is what it was before the noise", course[200], 2, 0.01);
+  expectEqual("a gap stays one", smoothed([0, 1, 2], [1, null, 3], 0.1), [1, null, 3]);
+  const lines = linesOf({t, series: [{name: "a", values: noisy}, {name: "b", values: t}]});
+  expectEqual("it is pale below its course", lines.map(({name, ink, isPale}) => [name, ink, isPale]),
+              [["a", 0, true], ["b", 1, false], ["a, smoothed", 0, false]]);
+}
+
 function testStrip() {
   const decisions = [{from: 0, to: 2, state: "a"}, {from: 2, to: 5, state: "b"}, {from: 5, to: 6, state: "a"}];
   const numbers = numberStates(decisions);
@@ -151,7 +162,7 @@ function testCycle() {
 }
 
 for (const test of [testDecoding, testMotion, testRectangle, testView, testClock, testKeys, testFragments,
-                    testPlots, testStrip, testTexts, testCycle]) {
+                    testPlots, testRestlessSeries, testStrip, testTexts, testCycle]) {
   try {
     test();
   } catch (error) {

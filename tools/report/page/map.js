@@ -55,9 +55,17 @@ function draw(map) {
   for (const layer of LAYERS) if (layer.shown && layer.pixels) layer.draw(pen);
 }
 
+/** Shows the whole drive; in a high frame, below the box that stands in its upper corner. */
+function fitDrive({view, scene}) {
+  const above = view.height > 0.6 * view.width ? element("hud").offsetHeight : 0;
+  const lower = {...view, height: view.height - above};
+  fitBox(lower, scene.home, HOME_MARGIN);
+  Object.assign(view, {x: lower.x, y: lower.y + above / 2 / lower.scale, scale: lower.scale});
+}
+
 function fitHome(map) {
   setFollow(map, false);
-  fitBox(map.view, map.scene.home, HOME_MARGIN);
+  fitDrive(map);
   map.fitted = true;
   redraw(map);
 }
@@ -68,7 +76,7 @@ function resize(map) {
   map.canvas.height = Math.round(clientHeight * ratio);
   map.view.width = Math.max(1, clientWidth);
   map.view.height = Math.max(1, clientHeight);
-  if (map.fitted) fitBox(map.view, map.scene.home, HOME_MARGIN);
+  if (map.fitted) fitDrive(map);
   draw(map);
 }
 

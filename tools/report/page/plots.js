@@ -1,6 +1,8 @@
 // Diagrams over time: zoomed together, one cursor, a click goes to its moment.
 
 const LINE_INKS = ["plot-1", "plot-2", "plot-3", "plot-4"];
+const MOST_TURNS = 15;   // how often a quiet series may go through its range
+const COURSE_S = 0.5;
 const LEAST_SPANS = {"1/m": 0.004, "rad": 0.01, "m": 0.1};
 
 function decodePlot(coded) {
@@ -20,6 +22,37 @@ function rangeOf(plot) {
     }
   }
   return low <= high ? [low, high] : null;
+}
+
+/** Whether a series goes up and down all the time, as what a noisy sensor says does. */
+function isRestless(values) {
+  const known = values.filter((value) => value !== null), range = Math.max(...known) - Math.min(...known);
+  const way = known.reduce((sum, value, i) => sum + (i > 0 ? Math.abs(value - known[i - 1]) : 0), 0);
+  return known.length > 100 && way > MOST_TURNS * range;
+}
+
+/** The mean of a series within `reach` before and after each time. */
+function smoothed(t, values, reach) {
+  const sums = [0], counts = [0];
+  for (const value of values) {
+    sums.push(sums.at(-1) + (value ?? 0));
+    counts.push(counts.at(-1) + (value === null ? 0 : 1));
+  }
+  let from = 0, to = 0;
+  return t.map((now, i) => {
+    while (t[from] < now - reach) ++from;
+    while (to < t.length && t[to] <= now + reach) ++to;
+    const count = counts[to] - counts[from];
+    return values[i] === null || count === 0 ? null : (sums[to] - sums[from]) / count;
+  });
+}
+
+/** The lines of a plot: a restless series is pale and thin, with its course over it. */
+function linesOf(plot) {
+  const lines = plot.series.map(({name, values}, i) => ({name, values, ink: i, isPale: isRestless(values)}));
+  const courses = lines.filter(({isPale}) => isPale).map((line) => (
+      {...line, name: line.name + ", smoothed", values: smoothed(plot.t, line.values, COURSE_S), isPale: false}));
+  return [...lines, ...courses];
 }
 
 /** What the axis shows: all values, a bound that they come near, and never a mere tremor. */
@@ -97,9 +130,10 @@ function shadeBounds(plot, ctx, area, graph, ink) {
 function plotOptions(plot, page) {
   const ink = (name) => inkOf(page.map, name), [low, high] = axisRange(plot);
   return {
-    labels: ["t", ...plot.series.map((one) => one.name)],
-    colors: plot.series.map((_, i) => ink(LINE_INKS[i % LINE_INKS.length])),
-    height: 132, legend: "never", strokeWidth: 1.6, highlightCircleSize: 3,
+    labels: ["t", ...plot.lines.map((line) => line.name)],
+    colors: plot.lines.map((line) => ink(LINE_INKS[line.ink % LINE_INKS.length]) + (line.isPale ? "50" : "")),
+    series: Object.fromEntries(plot.lines.filter((line) => line.isPale).map((line) => [line.name, {strokeWidth: 0.8}])),
+    legend: "never", strokeWidth: 1.6, highlightCircleSize: 3,
     valueRange: [low, high], dateWindow: [page.clock.start, page.clock.end],
     gridLineColor: ink("grid"), axisLineColor: ink("grid"), axisLabelFontSize: 11,
     rightGap: 8, connectSeparatedPoints: false,
@@ -119,20 +153,20 @@ function round(t) {
 }
 
 function rowsOf(plot) {
-  return plot.t.map((t, i) => [t, ...plot.series.map((one) => one.values[i])]);
+  return plot.t.map((t, i) => [t, ...plot.lines.map((line) => line.values[i])]);
 }
 
 function drawPlot(plot, page) {
+  plot.lines = linesOf(plot);
   plot.graph = new Dygraph(plot.box, rowsOf(plot), plotOptions(plot, page));
   plot.cursor = addText(plot.box, "div", "cursor", "");
 }
 
 function makePlots(coded, page) {
   page.plots = coded.map(decodePlot).filter((plot) => plot.t.length > 0);
-  page.plots.forEach((plot) => {
-    layOutPlot(plot);
-    drawPlot(plot, page);
-  });
+  page.plots.forEach(layOutPlot);  // all of them first: they share the height
+  page.plots.forEach((plot) => drawPlot(plot, page));
+  new ResizeObserver(() => page.plots.forEach(({graph}) => graph.resize())).observe(element("plots"));
   if (page.plots.length > 1) {
     Dygraph.synchronize(page.plots.map((plot) => plot.graph), {selection: true, zoom: true, range: false});
   }

@@ -35,17 +35,24 @@ function watchHead() {
   }).observe(head);
 }
 
+/** A drive along the page has a map that is low and wide, with the plots below it; many plots stand in two columns. */
+function chooseShape({home: [x0, y0, x1, y1]}, plots) {
+  const shape = x1 - x0 > 3 * (y1 - y0) ? "along" : plots.length > 4 ? "many" : "";
+  document.querySelector("main").className = shape;
+}
+
 function start() {
   const data = JSON.parse(element("data").textContent), scene = decodeScene(data);
   const clock = makeClock(...timesOf(scene, data.plots));
   const page = {clock, map: makeMap(scene, clock), plots: []};
+  chooseShape(scene, data.plots);
+  watchHead();
   makePlots(data.plots, page);
   makePlayer(data, page);
   clock.listeners.push(() => showState(page));
   clock.listeners.push(() => showCycle(page, {costs: data.costNames, causes: data.causeNames}));
   setFollow(page.map, followInFragment(location.hash));
   seek(clock, timeInFragment(location.hash) ?? clock.start);
-  watchHead();
   playOn(clock);
   document.documentElement.dataset.ready = "yes";
 }
