@@ -10,6 +10,7 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/streamed_output.h"
+#include "roadbed/tools/report/table_script.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::string_view kHead = R"(<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' file:">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <title>{title}</title>
@@ -71,7 +72,7 @@ td.files {{ font-size: 12.5px; }}
 th, td.files a {{ white-space: nowrap; }}
 td.files a {{ display: inline-block; margin-right: 0.8em; }}
 a {{ color: var(--accent); }}
-.note, footer {{ color: var(--quiet); }}
+{table_css}.note, footer {{ color: var(--quiet); }}
 footer {{ margin-top: 26px; }}
 </style>
 </head>
@@ -125,21 +126,24 @@ std::string shown_name(const std::string& file, const std::string& hash) {
 
 // A report first: it is what a reader wants to see.
 std::string links(const WorstCase& job) {
-  std::string reports, others;
+  std::string pictures, reports, others;
   for (const std::string& file : job.files) {
+    if (file.ends_with("drive.svg")) {
+      pictures += fmt::format("<img loading=\"lazy\" src=\"{}\" alt=\"\">", percent_encoded(file));
+    }
     const bool is_page = file.ends_with(".html");
     const std::string shown = is_page ? "report" : shown_name(file, job.hash);
     (is_page ? reports : others) +=
         fmt::format("<a href=\"{}\">{}</a> ", percent_encoded(file), map::html_text(shown));
   }
-  return reports + others;
+  return pictures + reports + others;
 }
 
 std::string row(const WorstCase& job) {
   const Look look = look_of(job.status);
   return fmt::format(
       "<tr><td class=\"line\">{}</td><td class=\"status {}\">{} {}</td><td>{}</td>"
-      "<td class=\"about\">{}</td><td class=\"files\">{}</td></tr>\n",
+      "<td class=\"about\">{}</td><td class=\"files thumb\">{}</td></tr>\n",
       job.line, look.css_class, look.sign, look.word, map::html_text(map::one_line(job.text)),
       map::html_text(map::one_line(job.about)), links(job));
 }
@@ -148,8 +152,8 @@ std::string section(const std::string& kind, const KindSummary& summary) {
   const std::vector<WorstCase> worst = summary.worst();
   std::string html = fmt::format(
       "<h2>{}</h2>\n<p class=\"note\">{} done, {} no, {} failed{}</p>\n"
-      "<table>\n<tr><th>line</th><th>status</th><th>what came out</th><th>job</th>"
-      "<th>files</th></tr>\n",
+      "<table class=\"sortable\">\n<thead><tr><th>line</th><th data-choose>status</th>"
+      "<th>what came out</th><th>job</th><th>files</th></tr></thead>\n<tbody>\n",
       kind.empty() ? "lines that are no jobs" : map::html_text(kind),
       with_commas(summary.count(JobStatus::done)), with_commas(summary.count(JobStatus::no)),
       with_commas(summary.count(JobStatus::failed)),
@@ -158,13 +162,14 @@ std::string section(const std::string& kind, const KindSummary& summary) {
                         with_commas(worst.size()))
           : "; worst first");
   for (const WorstCase& job : worst) html += row(job);
-  return html + "</table>\n";
+  return html + "</tbody></table>\n";
 }
 
 // One page of a batch that works offline: counts, then of each kind the worst cases first, each
 // with links to its files beside the page; in the light or the dark, as the reader's system is.
 std::string batch_page(const BatchSummary& summary, const std::string& title) {
-  std::string html = fmt::format(fmt::runtime(kHead), fmt::arg("title", map::html_text(title)));
+  std::string html = fmt::format(fmt::runtime(kHead), fmt::arg("title", map::html_text(title)),
+                                 fmt::arg("table_css", kTableCss));
   html += fmt::format("<ul class=\"counts\">\n<li>{} jobs</li>\n", with_commas(summary.count()));
   for (const JobStatus status : {JobStatus::failed, JobStatus::no, JobStatus::done}) {
     html += count_item(summary, status);
@@ -173,7 +178,8 @@ std::string batch_page(const BatchSummary& summary, const std::string& title) {
   for (const auto& [kind, of_kind] : summary.kinds()) html += section(kind, of_kind);
   return html + "<footer>" + name_and_version() +
          ": all results are in <a href=\"results.jsonl\">results.jsonl</a>, counts in "
-         "<a href=\"summary.json\">summary.json</a></footer>\n</body>\n</html>\n";
+         "<a href=\"summary.json\">summary.json</a></footer>\n<script>" +
+         std::string(kTableScript) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace

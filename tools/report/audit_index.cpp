@@ -9,6 +9,7 @@
 
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/tools/report/page_parts.h"
+#include "roadbed/tools/report/table_script.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -29,9 +30,10 @@ std::string_view css_of(Tone tone) {
 
 std::string row(const IndexedAudit& audit, std::size_t number) {
   return fmt::format(
-      "<tr><td><a href=\"#drive-{}\">{}</a></td><td class=\"{}\">{}</td><td>{}</td></tr>\n", number,
-      map::html_text(audit.name), css_of(audit.tone), map::html_text(audit.outcome),
-      map::html_text(audit.least));
+      "<tr><td class=\"thumb\">{}</td><td><a href=\"#drive-{}\">{}</a></td>"
+      "<td class=\"{}\">{}</td><td>{}</td></tr>\n",
+      audit.pictures.empty() ? "" : audit.pictures.front().svg, number, map::html_text(audit.name),
+      css_of(audit.tone), map::html_text(audit.outcome), map::html_text(audit.least));
 }
 
 std::string article(const IndexedAudit& audit, std::size_t number) {
@@ -74,20 +76,23 @@ std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std:
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "style-src 'unsafe-inline'\">\n"
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{0}</title>\n"
-      "<style>\n{1}{2}</style>\n</head>\n<body>\n<header><div class=\"name\"><h1>{0}</h1>"
+      "<style>\n{1}{2}{5}</style>\n</head>\n<body>\n<header><div class=\"name\"><h1>{0}</h1>"
       "<p class=\"scenario\">against {3}: {4}</p></div></header>\n<main>\n",
-      title, kPageCss, kIndexCss, map::html_text(occupancy), map::html_text(counts_text(audits)));
+      title, kPageCss, kIndexCss, map::html_text(occupancy), map::html_text(counts_text(audits)),
+      kTableCss);
   html +=
-      "<section class=\"card\"><table class=\"index\"><thead><tr><th>drive</th><th>verdict</th>"
-      "<th>least clearance</th></tr></thead><tbody>\n";
+      "<section class=\"card\"><table class=\"index sortable\"><thead><tr><th>picture</th>"
+      "<th>drive</th><th data-choose>verdict</th><th>least clearance</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < audits.size(); ++i) html += row(audits[i], i + 1);
   html += "</tbody></table></section>\n";
   for (std::size_t i = 0; i < audits.size(); ++i) html += article(audits[i], i + 1);
-  return html + fmt::format("</main>\n<footer><p>Made by {}</p></footer>\n</body>\n</html>\n",
-                            map::html_text(version));
+  return html + fmt::format(
+                    "</main>\n<footer><p>Made by {}</p></footer>\n<script>{}</script>\n"
+                    "</body>\n</html>\n",
+                    map::html_text(version), kTableScript);
 }
 
 }  // namespace roadbed::tools::report

@@ -39,8 +39,9 @@ struct IndexedAudit {
   std::vector<ReportPicture> pictures;
 };
 
-/// One HTML page of all audits: a table that leads to what was found in each, with its close-ups.
-/// It needs no other file, no network and no script. Same input, same bytes.
+/// One HTML page of all audits: a table that is sorted and chosen from by verdict, and leads to
+/// what was found in each, with its close-ups. It needs no other file and no network. Same input,
+/// same bytes.
 /// @param occupancy  the name of its file; `version` of the program.
 std::string audit_index_html(const std::vector<IndexedAudit>& audits, const std::string& occupancy,
                              const std::string& version);

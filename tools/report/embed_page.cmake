@@ -1,5 +1,5 @@
-# Included by tools/CMakeLists.txt: makes report_page_parts.cpp and names it in
-# ${report_page_source}.
+# Included by tools/CMakeLists.txt: makes report_page_parts.cpp and report_table_parts.cpp and names
+# them in ${report_page_source} and ${report_table_source}.
 set(ROADBED_DYGRAPHS_DIR /usr/share/javascript/dygraphs CACHE PATH
     "Folder with dygraph.min.js, dygraph.min.css and extras/synchronizer.js")
 set(ROADBED_DYGRAPHS_LICENCE /usr/share/doc/libjs-dygraphs/copyright CACHE FILEPATH
@@ -30,3 +30,7 @@ roadbed_embed(OUT ${report_page_source} HEADER roadbed/tools/report/page_parts.h
         kDygraphsJs=${ROADBED_DYGRAPHS_DIR}/dygraph.min.js
         kSynchronizerJs=${ROADBED_DYGRAPHS_DIR}/extras/synchronizer.js
         kDygraphsLicence=${ROADBED_DYGRAPHS_LICENCE})
+set(report_table_source ${CMAKE_CURRENT_BINARY_DIR}/report_table_parts.cpp)
+roadbed_embed(OUT ${report_table_source} HEADER roadbed/tools/report/table_script.h
+  NAMESPACE "roadbed::tools::inline report"
+  PARTS kTableScript=${report_page}/table.js kTableCss=${report_page}/table.css)

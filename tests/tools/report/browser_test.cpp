@@ -5,11 +5,13 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tests/support/browser.h"
 #include "roadbed/tests/support/real_data.h"
 #include "roadbed/tests/support/sample_report.h"
+#include "roadbed/tools/report/audit_pages.h"
 #include "roadbed/tools/report/page_parts.h"
 #include "roadbed/tools/report/report.h"
 
@@ -103,6 +105,30 @@ TEST(ReportInBrowser, ShowsTheMapAndAllPlotsOnTheFirstScreen) {
     EXPECT_TRUE(holds(page, "data-fits=\"" + std::to_string(plots) + " true true\""))
         << plots << " plots: " << page.substr(0, 300);
   }
+}
+
+TEST(AuditIndexInBrowser, IsSortedByAHeadAndChosenFromByVerdict) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  const std::vector<IndexedAudit> audits{{"b", Tone::good, "clear", "10.5 m", "", {}},
+                                         {"c", Tone::bad, "conflict", "0.0 m", "", {}},
+                                         {"a", Tone::open, "unusable", "", "", {}},
+                                         {"d", Tone::good, "clear", "2.5 m", "", {}}};
+  std::string html = audit_index_html(audits, "town.bt", "roadbed");
+  html.insert(html.rfind("</body>"), R"(<script>
+const order = () => [...document.querySelectorAll("tbody tr")].filter((row) => !row.hidden)
+    .map((row) => row.querySelector("a").textContent).join("");
+const seen = [order()];
+const heads = document.querySelectorAll("th button");
+for (const column of [1, 3, 3]) {
+  heads[column].click();
+  seen.push(order());
+}
+document.querySelector("fieldset input").click();
+seen.push(order());
+document.documentElement.dataset.seen = seen.join(" ");
+</script>)");
+  const std::string page = page_after_scripts(browser, html, "");
+  EXPECT_TRUE(holds(page, "data-seen=\"bcad abcd cdba bdca ca\"")) << page.substr(0, 200);
 }
 
 TEST(ReportInBrowser, ComesUpWithNothingToShow) {
