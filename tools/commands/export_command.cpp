@@ -11,6 +11,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
@@ -90,7 +91,8 @@ class ExportCommand : public Command {
     const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
-    map::MapPageOptions page{.title = input_.filename().string()};
+    const std::string file = input_.filename().string();
+    map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
     std::vector<std::string> notes;
