@@ -17,7 +17,7 @@ struct Known {
   std::array<std::string_view, 12> children;
 };
 
-constexpr std::array<Known, 29> kKnown = {{
+constexpr std::array<Known, 38> kKnown = {{
     {"OpenDRIVE", {"road", "junction", "controller", "header"}},
     {"header", {"geoReference", "offset"}},
     {"road",
@@ -28,7 +28,16 @@ constexpr std::array<Known, 29> kKnown = {{
     {"planView", {"geometry"}},
     {"geometry", {"line", "arc", "spiral", "poly3", "paramPoly3"}},
     {"elevationProfile", {"elevation"}},
-    {"lateralProfile", {"superelevation", "crossfall", "shape"}},
+    {"lateralProfile", {"superelevation", "crossfall", "shape", "crossSectionSurface"}},
+    {"crossSectionSurface", {"tOffset", "surfaceStrips"}},
+    {"surfaceStrips", {"strip"}},
+    {"strip", {"width", "constant", "linear", "quadratic", "cubic"}},
+    {"tOffset", {"coefficients"}},
+    {"width", {"coefficients"}},
+    {"constant", {"coefficients"}},
+    {"linear", {"coefficients"}},
+    {"quadratic", {"coefficients"}},
+    {"cubic", {"coefficients"}},
     {"lanes", {"laneSection", "laneOffset"}},
     {"laneSection", {"left", "center", "right"}},
     {"left", {"lane"}},

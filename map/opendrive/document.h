@@ -16,6 +16,7 @@
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/opendrive/lateral_shape.h"
+#include "roadbed/map/opendrive/surface_strips.h"
 
 /// What an OpenDRIVE file says, element by element. Names follow the standard (ASAM OpenDRIVE
 /// 1.4–1.8). Stations are those of the road everywhere: offsets from a lane section's start are
@@ -233,6 +234,7 @@ struct RoadRecord {
   Profile elevation, superelevation, lane_offset;
   geometry::PiecewiseCubic crossfall_left, crossfall_right;
   LateralShape shape;
+  SurfaceStrips strips;
   std::vector<LaneSection> sections;
   std::vector<SignalRecord> signals;
   std::vector<SignalReference> signal_references;

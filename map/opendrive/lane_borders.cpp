@@ -79,7 +79,7 @@ SideBorders::SideBorders(const RoadRecord& road, const geometry::PlanView& plan_
     : road_(road), plan_view_(plan_view), side_(side), outer_(side.lanes.size()) {}
 
 void SideBorders::enter(double from_s_m, double to_s_m) {
-  const double middle_s_m = 0.5 * (from_s_m + to_s_m);
+  const double middle_s_m = middle_s_m_ = 0.5 * (from_s_m + to_s_m);
   piece_ = &plan_view_.piece_at(middle_s_m);
   elevation_ = road_.elevation.cubic.record_at(middle_s_m);
   roll_ = road_.superelevation.cubic.record_at(middle_s_m);
@@ -130,7 +130,7 @@ double SideBorders::second_derivative_bound(double from_s_m, double to_s_m) cons
 // Of the height along s; none where the cross-section leans, or falls off changingly.
 std::optional<double> SideBorders::slope(const CubicValue& t, double from_s_m,
                                          double to_s_m) const {
-  const bool leans = roll_ != nullptr || !road_.shape.empty();
+  const bool leans = roll_ != nullptr || !road_.shape.empty() || !road_.strips.empty();
   if (leans || bounds(fall_, from_s_m, to_s_m).d1 != 0.0) return {};
   const double fall = std::abs(std::tan(value_at(fall_, from_s_m)));
   return bounds(elevation_, from_s_m, to_s_m).d1 + t.d1 * fall;
@@ -164,7 +164,7 @@ double SideBorders::fall_d2(const CubicValue& t, double from_s_m, double to_s_m)
 
 LateralShape::Bounds SideBorders::shape_bounds(double from_s_m, double to_s_m) const {
   LateralShape::Bounds worst;
-  if (road_.shape.empty()) return worst;
+  if (road_.shape.empty() && road_.strips.empty()) return worst;
   const double middle_s_m = 0.5 * (from_s_m + to_s_m);
   const double offset_m = value_at(offset_, middle_s_m);
   double t_m = offset_m;
@@ -174,11 +174,12 @@ LateralShape::Bounds SideBorders::shape_bounds(double from_s_m, double to_s_m) c
       t_m = outer_offset_m(outer_[i - 1], t_m, offset_m, middle_s_m);
       add_bounds(bounds(outer_[i - 1].record, from_s_m, to_s_m), t);
     }
-    const LateralShape::Bounds here = road_.shape.bounds(from_s_m, to_s_m, t_m, t);
-    worst.height.value = std::max(worst.height.value, here.height.value);
-    worst.height.d1 = std::max(worst.height.d1, here.height.d1);
-    worst.height.d2 = std::max(worst.height.d2, here.height.d2);
-    worst.kinks = std::max(worst.kinks, here.kinks);
+    const LateralShape::Bounds shape = road_.shape.bounds(from_s_m, to_s_m, t_m, t);
+    const LateralShape::Bounds strips = road_.strips.bounds(from_s_m, to_s_m, t_m, t, side_.sign);
+    worst.height.value = std::max(worst.height.value, shape.height.value + strips.height.value);
+    worst.height.d1 = std::max(worst.height.d1, shape.height.d1 + strips.height.d1);
+    worst.height.d2 = std::max(worst.height.d2, shape.height.d2 + strips.height.d2);
+    worst.kinks = std::max(worst.kinks, shape.kinks + strips.kinks);
   }
   return worst;
 }
@@ -203,7 +204,8 @@ void SideBorders::evaluate(double s_m, CrossSection& row) const {
   const Eigen::Vector2d normal(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
   // Sideways and upward from the reference line.
   const auto on_surface = [&](double t) {
-    const double h_m = road_.shape.height_m(s_m, t);
+    const double h_m =
+        road_.shape.height_m(s_m, t) + road_.strips.height_m(s_m, t, middle_s_m_, side_.sign);
     return Eigen::Vector2d(t * cos_roll - h_m * sin_roll,
                            t * sin_roll + h_m * cos_roll - std::abs(t) * fall);
   };

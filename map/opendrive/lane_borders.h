@@ -71,6 +71,7 @@ class SideBorders {
   const RoadRecord& road_;
   const geometry::PlanView& plan_view_;
   const SectionSide& side_;
+  double middle_s_m_ = 0.0;
   const geometry::PlanPiece* piece_ = nullptr;
   const geometry::CubicRecord *elevation_ = nullptr, *roll_ = nullptr, *fall_ = nullptr,
                               *offset_ = nullptr;

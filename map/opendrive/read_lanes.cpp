@@ -153,13 +153,23 @@ pugi::xml_node first_lane_beyond(std::size_t lanes_left, pugi::xml_node lanes) {
   return {};
 }
 
-// The records as a function of s; they are not needed one by one any more.
-void mend_profile(Profile& profile) {
+// The records in order of station; they are not needed one by one any more.
+std::vector<geometry::CubicRecord> taken_in_order(Profile& profile) {
   std::vector<geometry::CubicRecord> records;
   records.reserve(profile.listed.size());
   for (const CubicElement& element : profile.listed) records.push_back(element.record);
   profile.listed = {};
   sort_by_station(records);
+  return records;
+}
+
+void mend_profile(Profile& profile) {
+  profile.cubic = geometry::PiecewiseCubic(taken_in_order(profile));
+}
+
+void mend_road_profile(Profile& profile) {
+  std::vector<geometry::CubicRecord> records = taken_in_order(profile);
+  begin_at_zero(records);
   profile.cubic = geometry::PiecewiseCubic(std::move(records));
 }
 
@@ -232,7 +242,7 @@ void mend_road(RoadRecord& road) {
   road.geometry = {};
   sort_by_station(road.plan_pieces);
   for (Profile* profile : {&road.elevation, &road.superelevation, &road.lane_offset}) {
-    mend_profile(*profile);
+    mend_road_profile(*profile);
   }
   for (LaneSection& section : road.sections) {
     auto& lanes = section.lanes;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 #include <string_view>
 
@@ -11,22 +13,46 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-std::vector<geometry::CubicRecord> sorted(std::vector<geometry::CubicRecord> records) {
+// What a profile says from its first record on does not hold before it.
+void remark_late_start(const std::vector<CubicElement>& listed, const RoadRecord& road,
+                       const XmlDocument& xml, std::vector<ImportDiagnostic>& remarks) {
+  if (listed.empty()) return;
+  const auto& [node, first] = listed.front();
+  if (!(first.s_m > kRoundingM) || std::abs(first.a) <= kRoundingM) return;
+  remarks.push_back({"import.late-profile", true, "road " + road.id, xml.line_of(node),
+                     fmt::format("<{}> begins at s {} m with {}; before it the value is 0, begin "
+                                 "it at s 0",
+                                 node.name(), first.s_m, first.a)});
+}
+
+geometry::PiecewiseCubic cubic_of(std::vector<geometry::CubicRecord> records) {
   sort_by_station(records);
+  begin_at_zero(records);
+  return geometry::PiecewiseCubic(std::move(records));
+}
+
+std::vector<geometry::CubicRecord> records_of(const std::vector<CubicElement>& listed) {
+  std::vector<geometry::CubicRecord> records;
+  for (const CubicElement& element : listed) records.push_back(element.record);
   return records;
 }
 
-void read_crossfall(AttributeReader& in, pugi::xml_node lateral, RoadRecord& road) {
-  std::vector<geometry::CubicRecord> left, right;
+void read_crossfall(AttributeReader& in, pugi::xml_node lateral, RoadRecord& road,
+                    std::vector<ImportDiagnostic>& remarks) {
+  std::vector<CubicElement> left, right;
   for (const auto node : lateral.children("crossfall")) {
     const std::string_view side = node.attribute("side").value();
-    const geometry::CubicRecord record = read_cubic(in, node, "s", 0.0);
-    if (side != "right") left.push_back(record);
-    if (side != "left") right.push_back(record);
+    const CubicElement element{node, read_cubic(in, node, "s", 0.0)};
+    if (side != "right") left.push_back(element);
+    if (side != "left") right.push_back(element);
   }
   if (in.fault()) return;  // no map will ask
-  road.crossfall_left = geometry::PiecewiseCubic(sorted(std::move(left)));
-  road.crossfall_right = geometry::PiecewiseCubic(sorted(std::move(right)));
+  remark_late_start(left, road, in.xml, remarks);
+  if (left.empty() || right.empty() || left.front().node != right.front().node) {
+    remark_late_start(right, road, in.xml, remarks);
+  }
+  road.crossfall_left = cubic_of(records_of(left));
+  road.crossfall_right = cubic_of(records_of(right));
 }
 
 // Cubics over t, gathered by their station.
@@ -52,13 +78,62 @@ LateralShape read_shape(AttributeReader& in, pugi::xml_node lateral) {
   return LateralShape(std::move(profiles));
 }
 
-void read_profiles(AttributeReader& in, pugi::xml_node node, RoadRecord& road) {
+std::vector<geometry::CubicRecord> read_coefficients(AttributeReader& in, pugi::xml_node parent) {
+  std::vector<geometry::CubicRecord> records;
+  for (const auto node : parent.children("coefficients")) {
+    records.push_back({in.number(node, "s"), in.number_or(node, "a", 0.0),
+                       in.number_or(node, "b", 0.0), in.number_or(node, "c", 0.0),
+                       in.number_or(node, "d", 0.0)});
+  }
+  return records;
+}
+
+// A function of s; 0 if the numbers are broken, and no map will ask.
+geometry::PiecewiseCubic read_function(AttributeReader& in, pugi::xml_node parent) {
+  std::vector<geometry::CubicRecord> records = read_coefficients(in, parent);
+  if (in.fault()) return {};
+  return cubic_of(std::move(records));
+}
+
+SurfaceStrips::Strip read_strip(AttributeReader& in, pugi::xml_node strip) {
+  SurfaceStrips::Strip made;
+  made.is_there = static_cast<bool>(strip);
+  constexpr std::array<const char*, 4> kFactors = {"constant", "linear", "quadratic", "cubic"};
+  for (std::size_t k = 0; k < kFactors.size(); ++k) {
+    made.factors[k] = read_function(in, strip.child(kFactors[k]));
+  }
+  made.width = read_function(in, strip.child("width"));
+  made.is_relative = std::string_view(strip.attribute("mode").value()) == "relative";
+  return made;
+}
+
+// An outer strip is none where the inner one has no width: nobody knows where it begins.
+SurfaceStrips::Side read_strips(AttributeReader& in, pugi::xml_node strips, const char* inner,
+                                const char* outer) {
+  SurfaceStrips::Side side{read_strip(in, strips.find_child_by_attribute("strip", "id", inner)),
+                           read_strip(in, strips.find_child_by_attribute("strip", "id", outer))};
+  side.outer.is_there = side.outer.is_there && !side.inner.width.empty();
+  return side;
+}
+
+SurfaceStrips read_cross_section(AttributeReader& in, pugi::xml_node surface) {
+  const auto strips = surface.child("surfaceStrips");
+  return {read_function(in, surface.child("tOffset")), read_strips(in, strips, "1", "2"),
+          read_strips(in, strips, "-1", "-2")};
+}
+
+void read_profiles(AttributeReader& in, pugi::xml_node node, RoadRecord& road,
+                   std::vector<ImportDiagnostic>& remarks) {
   const auto lateral = node.child("lateralProfile");
   road.elevation.listed = read_cubics(in, node.child("elevationProfile"), "elevation", "s", 0.0);
   road.superelevation.listed = read_cubics(in, lateral, "superelevation", "s", 0.0);
   read_lane_offset(in, node.child("lanes"), road);
-  read_crossfall(in, lateral, road);
+  read_crossfall(in, lateral, road, remarks);
   road.shape = read_shape(in, lateral);
+  road.strips = read_cross_section(in, lateral.child("crossSectionSurface"));
+  for (const Profile* profile : {&road.elevation, &road.superelevation, &road.lane_offset}) {
+    remark_late_start(profile->listed, road, in.xml, remarks);
+  }
 }
 
 void read_speeds(AttributeReader& in, pugi::xml_node node, RoadRecord& road,
@@ -89,7 +164,7 @@ void read_road(AttributeReader& in, RoadRecord& road, Document& document) {
   road.successor = read_road_link(in, node.child("link").child("successor"));
   read_speeds(in, node, road, document.remarks);
   read_plan_view(in, road, document);
-  read_profiles(in, node, road);
+  read_profiles(in, node, road, document.remarks);
   read_lanes(in, node.child("lanes"), road, document);
   read_signals(in, node.child("signals"), road, document.remarks);
   read_objects(in, node.child("objects"), road, document.remarks);

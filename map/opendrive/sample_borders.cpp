@@ -69,6 +69,9 @@ class SideSampler {
     add(road_.superelevation.cubic.records());
     add(road_.lane_offset.cubic.records());
     add(road_.shape.profiles());
+    const auto& strips_m = road_.strips.stations_m();
+    breaks.insert(breaks.end(), std::ranges::lower_bound(strips_m, side_.from_s_m),
+                  std::ranges::upper_bound(strips_m, side_.to_s_m));
     add((side_.sign > 0 ? road_.crossfall_left : road_.crossfall_right).records());
     for (const LaneRecord* lane : side_.lanes) {
       add(lane->width.cubic.records());

@@ -85,6 +85,10 @@ std::vector<CubicElement> read_cubics(AttributeReader& in, pugi::xml_node parent
   return records;
 }
 
+void begin_at_zero(std::vector<geometry::CubicRecord>& records) {
+  if (!records.empty() && records.front().s_m > kRoundingM) records.insert(records.begin(), {{}});
+}
+
 std::optional<double> read_speed(const XmlDocument& xml, pugi::xml_node speed,
                                  std::vector<ImportDiagnostic>& remarks) {
   const std::string_view written = speed.attribute("max").value();

@@ -70,14 +70,39 @@ geometry::CubicRecord read_cubic(AttributeReader& in, pugi::xml_node node, const
 std::vector<CubicElement> read_cubics(AttributeReader& in, pugi::xml_node parent, const char* name,
                                       const char* s_attribute, double s_add_m);
 
-/// In order of station; records of one station stay as they are listed.
+/// Where a record begins; that of an element is a member of it.
 template <typename Record>
-void sort_by_station(std::vector<Record>& records) {
-  const auto earlier = [](const Record& a, const Record& b) { return a.s_m < b.s_m; };
-  if (!std::is_sorted(records.begin(), records.end(), earlier)) {
-    std::stable_sort(records.begin(), records.end(), earlier);
+auto& station_m(Record& record) {
+  if constexpr (requires { record.record; }) {
+    return record.record.s_m;
+  } else {
+    return record.s_m;
   }
 }
+
+/// Stations no farther apart than rounding puts them are one [m].
+constexpr double kRoundingM = 1e-6;
+
+/// In order of station; records of one station stay as they are listed, so that the last of them
+/// holds. A step back that rounding may have made is none: the record begins where the one before
+/// it does.
+template <typename Record>
+void sort_by_station(std::vector<Record>& records) {
+  bool in_order = true;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const double before_m = station_m(records[i - 1]);
+    double& here_m = station_m(records[i]);
+    if (here_m < before_m && before_m - here_m <= kRoundingM) here_m = before_m;
+    in_order = in_order && !(here_m < before_m);
+  }
+  if (in_order) return;
+  std::stable_sort(records.begin(), records.end(),
+                   [](const Record& a, const Record& b) { return station_m(a) < station_m(b); });
+}
+
+/// Up to its first record a profile of a road is 0 (ASAM OpenDRIVE 10.5.1, 11.4), not what that
+/// record would be there.
+void begin_at_zero(std::vector<geometry::CubicRecord>& records);
 
 /// max with its unit (m/s if there is none); none for "no limit", "undefined" or where there is no
 /// max. A value or unit that nobody can read is remarked and counts as none: a missing speed must

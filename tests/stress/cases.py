@@ -122,6 +122,7 @@ CASES = [
     Case("sections of a road", inputs.sections_of_a_road, 100, map_commands("50,-1.7", "reach")),
     Case("pieces of a road", inputs.pieces_of_a_road, 1000, map_commands("50,-1.7")),
     Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7")),
+    Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7")),
     Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7")),
     Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7")),
     Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2]),

@@ -157,6 +157,16 @@ def widths_of_a_lane(folder: Path, n: int) -> Path:
     return open_drive(folder, road(1, sections=lanes_section(lane)))
 
 
+def strips_of_a_road(folder: Path, n: int) -> Path:
+    records = "".join(f'<coefficients s="{i}" b="0.001"/>' for i in range(n))
+    surface = (
+        '<lateralProfile><crossSectionSurface><surfaceStrips><strip id="-1"><linear>'
+        f"{records}</linear></strip></surfaceStrips></crossSectionSurface></lateralProfile>"
+    )
+    sections = "".join(lanes_section(s=i) for i in range(n))
+    return open_drive(folder, road(1, length=n, sections=sections, extra=surface))
+
+
 def signals_of_a_road(folder: Path, n: int) -> Path:
     signals = "".join(
         f'<signal id="{i}" s="{100 * i / n:g}" t="-5" type="1000001" subtype="-1" dynamic="yes" '

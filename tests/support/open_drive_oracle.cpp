@@ -25,6 +25,15 @@ pugi::xml_node in_force(pugi::xml_node parent, const char* name, const char* sta
   return found;
 }
 
+// The last listed one that starts at or below `at`; none before the first.
+pugi::xml_node begun(pugi::xml_node parent, const char* name, const char* station, Real at) {
+  pugi::xml_node found;
+  for (const auto node : parent.children(name)) {
+    if (number(node, station) <= at) found = node;
+  }
+  return found;
+}
+
 Real cubic(pugi::xml_node node, Real ds) {
   if (!node) return 0;
   return number(node, "a") + number(node, "b") * ds + number(node, "c") * ds * ds +
@@ -121,13 +130,43 @@ Real shape_height(pugi::xml_node lateral, Real s, Real t) {
   return (1 - fraction) * shape_at(lateral, before, t) + fraction * shape_at(lateral, after, t);
 }
 
+// A function of s inside <crossSectionSurface>, 0 where it is missing.
+Real coefficients_at(pugi::xml_node parent, Real s, Real inside) {
+  const auto record = begun(parent, "coefficients", "s", inside);
+  return record ? cubic(record, s - number(record, "s")) : 0;
+}
+
+Real strip_height(pugi::xml_node strip, Real s, Real dt, Real inside) {
+  return coefficients_at(strip.child("constant"), s, inside) +
+         coefficients_at(strip.child("linear"), s, inside) * dt +
+         coefficients_at(strip.child("quadratic"), s, inside) * dt * dt +
+         coefficients_at(strip.child("cubic"), s, inside) * dt * dt * dt;
+}
+
+// Of the surface given by strips, by the formulas of ASAM OpenDRIVE 1.8; at its very middle the
+// side of the lane's sign counts.
+Real strips_height(pugi::xml_node surface, Real s, Real t, Real inside, int sign) {
+  if (!surface) return 0;
+  const Real effective = t - coefficients_at(surface.child("tOffset"), s, inside);
+  const bool left = effective > 0 || (effective == 0 && sign > 0);
+  const auto strips = surface.child("surfaceStrips");
+  const auto inner = strips.find_child_by_attribute("strip", "id", left ? "1" : "-1");
+  const auto outer = strips.find_child_by_attribute("strip", "id", left ? "2" : "-2");
+  const Real width = coefficients_at(inner.child("width"), s, inside);
+  if (!outer || std::abs(effective) <= width) return strip_height(inner, s, effective, inside);
+  const Real edge = left ? width : -width;
+  const Real height = strip_height(outer, s, effective - edge, inside);
+  const bool relative = std::string(outer.attribute("mode").value()) == "relative";
+  return relative ? height + strip_height(inner, s, edge, inside) : height;
+}
+
 // The crossfall in force on a side.
 Real crossfall_at(pugi::xml_node lateral, const std::string& side, Real s, Real inside) {
   pugi::xml_node found;
   for (const auto node : lateral.children("crossfall")) {
     const std::string names = node.attribute("side").value();
     if (names != side && names != "both") continue;
-    if (!found || number(node, "s") <= inside) found = node;
+    if (number(node, "s") <= inside) found = node;
   }
   return found ? cubic(found, s - number(found, "s")) : 0;
 }
@@ -184,19 +223,20 @@ std::pair<Vector3l, Vector3l> OpenDriveOracle::borders_with_height(const std::st
   const Real heading = start + local.heading;
 
   const auto lanes = node.child("lanes");
-  const auto offset = in_force(lanes, "laneOffset", "s", inside_s_m);
+  const auto offset = begun(lanes, "laneOffset", "s", inside_s_m);
   const Real offset_m = offset ? cubic(offset, s_m - number(offset, "s")) : 0;
   auto section_node = lanes.child("laneSection");
   for (int i = 0; i < section; ++i) section_node = section_node.next_sibling("laneSection");
   const Real section_s = number(section_node, "s");
   const auto side = section_node.child(lane > 0 ? "left" : "right");
   const auto lateral = node.child("lateralProfile");
-  const auto roll_record = in_force(lateral, "superelevation", "s", inside_s_m);
+  const auto roll_record = begun(lateral, "superelevation", "s", inside_s_m);
   const Real roll = roll_record ? cubic(roll_record, s_m - number(roll_record, "s")) : 0;
   const Real fall = crossfall_at(lateral, lane > 0 ? "left" : "right", s_m, inside_s_m);
   // Sideways and up, of a place at t on the surface.
   const auto surface = [&](Real t) {
-    const Real h = shape_height(lateral, s_m, t);
+    const Real h = shape_height(lateral, s_m, t) +
+                   strips_height(lateral.child("crossSectionSurface"), s_m, t, inside_s_m, lane);
     return Vector2l(t * std::cos(roll) - h * std::sin(roll),
                     t * std::sin(roll) + h * std::cos(roll) - std::abs(t) * std::tan(fall));
   };
@@ -217,7 +257,7 @@ std::pair<Vector3l, Vector3l> OpenDriveOracle::borders_with_height(const std::st
     const bool level = std::string(record.attribute("level").value()) == "true";
     outer += level ? Vector2l(t - before, 0) : Vector2l(surface(t) - surface(before));
   }
-  const auto rise = in_force(node.child("elevationProfile"), "elevation", "s", inside_s_m);
+  const auto rise = begun(node.child("elevationProfile"), "elevation", "s", inside_s_m);
   const Real elevation = rise ? cubic(rise, s_m - number(rise, "s")) : 0;
   const auto place = [&](const Vector2l& at) {
     return Vector3l(point.x() - at.x() * std::sin(heading), point.y() + at.x() * std::cos(heading),

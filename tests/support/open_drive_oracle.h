@@ -27,8 +27,8 @@ class OpenDriveOracle {
   std::pair<Vector2l, Vector2l> borders(const std::string& road, int section, int lane,
                                         long double s_m, long double inside_s_m) const;
 
-  /// The same with heights: elevation, superelevation, lateral shape, crossfall by side and level
-  /// lanes. Lane heights (<height>) are not in it.
+  /// The same with heights: elevation, superelevation, lateral shape, cross section surface,
+  /// crossfall by side and level lanes. Lane heights (<height>) are not in it.
   std::pair<Vector3l, Vector3l> borders_with_height(const std::string& road, int section, int lane,
                                                     long double s_m, long double inside_s_m) const;
 

@@ -92,6 +92,108 @@ TEST(OpenDriveBorders, OnShapedLeaningRoadsAreWithinAMillimetreInSpace) {
   EXPECT_LT(worst_border_m(tests::made_document(tests::made_road(road))), 1e-3);
 }
 
+std::string two_lanes_each_way() {
+  return tests::made_section(
+      0,
+      R"(<lane id="1" type="driving"><width sOffset="0" a="3" b="0.02" c="0" d="0"/></lane>
+         <lane id="2" type="driving"><width sOffset="0" a="2.5" b="0" c="0.0003" d="0"/></lane>)",
+      R"(<lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>
+         <lane id="-2" type="shoulder"><width sOffset="0" a="2" b="0.01" c="0" d="0"/></lane>
+         <lane id="-3" type="sidewalk" level="true"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>)");
+}
+
+// Strips that move aside, widen, bend, and stand on each other or not; lanes cross their edges.
+std::string surface_strips_xml(const char* mode, double constant_m) {
+  tests::MadeRoad road;
+  road.plan_view =
+      R"(<geometry s="0" x="0" y="0" hdg="0.2" length="100"><arc curvature="0.01"/></geometry>)";
+  road.elevation = R"(<elevation s="0" a="3" b="0.02" c="0.0001" d="0"/>)";
+  road.lateral = fmt::format(
+      R"(<crossSectionSurface>
+        <tOffset><coefficients s="0" a="0.5" b="-0.02" c="0.0001"/></tOffset>
+        <surfaceStrips>
+         <strip id="1"><width><coefficients s="0" a="2.5" b="0.015"/></width>
+          <linear><coefficients s="0" a="-0.03" b="0.001"/><coefficients s="40" a="0.01" c="-0.00002"/></linear>
+          <quadratic><coefficients s="0" a="0.004" d="0.0000001"/></quadratic></strip>
+         <strip id="2" mode="{0}"><constant><coefficients s="0" a="{1}"/></constant>
+          <linear><coefficients s="0" a="-0.05"/></linear>
+          <cubic><coefficients s="0" a="0.001" b="0.00001"/></cubic></strip>
+         <strip id="-1"><width><coefficients s="0" a="4"/></width>
+          <linear><coefficients s="0" a="0.02"/><coefficients s="60" a="0.02" b="0.0005"/></linear></strip>
+         <strip id="-2" mode="{0}"><linear><coefficients s="0" a="0.06"/></linear></strip>
+        </surfaceStrips></crossSectionSurface>)",
+      mode, constant_m);
+  road.lanes = two_lanes_each_way();
+  return tests::made_document(tests::made_road(road));
+}
+
+TEST(OpenDriveBorders, OnStripsThatStandOnEachOtherAreWithinAMillimetreInSpace) {
+  EXPECT_LT(worst_border_m(surface_strips_xml("relative", 0.0)), 1e-3);
+}
+
+TEST(OpenDriveBorders, OnAOneStripSurfaceLieAtTheHeightOfTheFormula) {
+  tests::MadeRoad road;
+  road.lateral = R"(<crossSectionSurface><surfaceStrips>
+      <strip id="1"><linear><coefficients s="0" a="-0.1"/></linear></strip>
+      <strip id="-1"><linear><coefficients s="0" a="0.15"/></linear></strip>
+    </surfaceStrips></crossSectionSurface>)";
+  road.lanes = tests::made_section(
+      0, R"(<lane id="1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>)",
+      R"(<lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>)");
+  const RoadMap road_map = parse_map(tests::made_document(tests::made_road(road)), "strips.xodr");
+  for (const Lane& lane : road_map.lanes()) {
+    const double outer_m = lane.origin.source_id == "1" ? -0.35 : -0.45;
+    for (const double z_m : lane.right.z_m) EXPECT_NEAR(z_m, outer_m, 1e-12) << lane.name;
+    for (const double z_m : lane.left.z_m) EXPECT_NEAR(z_m, 0.0, 1e-12) << lane.name;
+  }
+}
+
+TEST(OpenDriveBorders, OnIndependentStripsStepWhereTheStripsDo) {
+  tests::MadeRoad road;
+  road.lateral = R"(<crossSectionSurface><surfaceStrips>
+      <strip id="-1"><width><coefficients s="0" a="3"/></width>
+       <linear><coefficients s="0" a="0.1"/></linear></strip>
+      <strip id="-2" mode="independent"><constant><coefficients s="0" a="0.5"/></constant>
+       <linear><coefficients s="0" a="0.2"/></linear></strip>
+    </surfaceStrips></crossSectionSurface>)";
+  road.lanes = tests::made_section(
+      0, "", R"(<lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>
+                <lane id="-2" type="driving"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>)");
+  const std::string document = tests::made_document(tests::made_road(road));
+  const RoadMap road_map = parse_map(document, "strips.xodr");
+  EXPECT_NEAR(tests::lane_of(road_map, "A/0/-1").right.z_m.front(), -0.3, 1e-12);
+  EXPECT_NEAR(tests::lane_of(road_map, "A/0/-2").right.z_m.front(), 0.5 - 0.4, 1e-12);
+  EXPECT_LT(worst_border_m(document), 1e-3);
+}
+
+TEST(OpenDriveBorders, BeforeTheFirstRecordOfAProfileTheProfileIsZero) {
+  tests::MadeRoad road;
+  road.elevation = R"(<elevation s="30" a="2" b="0.02" c="0" d="0"/>)";
+  road.lateral = R"(<superelevation s="40" a="0.03" b="0.001" c="0" d="0"/>
+                    <crossfall side="left" s="20" a="0.02" b="0" c="0" d="0"/>)";
+  // The standard's own example of a lane offset (11.4) begins at 25 m.
+  road.lanes =
+      R"(<laneOffset s="25" a="0" b="0" c="0.0039" d="-0.000052"/>)" + two_lanes_each_way();
+  const std::string document = tests::made_document(tests::made_road(road));
+  EXPECT_LT(worst_border_m(document), 1e-3);
+  const RoadMap road_map = parse_map(document, "late.xodr");
+  const Lane& lane = tests::lane_of(road_map, "A/0/-1");
+  EXPECT_NEAR(lane.left.in_map.points().front().y(), 0.0, 1e-12);
+  EXPECT_EQ(tests::remarks_of(road_map, "import.late-profile").size(), 3u);
+}
+
+TEST(OpenDriveBorders, AStepBackOfRoundingIsNone) {
+  tests::MadeRoad road;
+  road.elevation = R"(<elevation s="0" a="0" b="0" c="0" d="0"/>
+    <elevation s="50.00000000001644" a="0" b="0.05" c="0" d="0"/>
+    <elevation s="49.99999999992425" a="0" b="0.02" c="0" d="0"/>)";
+  road.lanes = R"(<laneOffset s="0" a="-3.7" b="0" c="0" d="0"/>
+    <laneOffset s="37.70000000001644" a="-3.7" b="0" c="0.0038476" d="-0.00004775"/>
+    <laneOffset s="37.69999999992425" a="-3.7" b="0.05" c="0.0005" d="0"/>)" +
+               two_lanes_each_way();
+  EXPECT_LT(worst_border_m(tests::made_document(tests::made_road(road))), 1e-3);
+}
+
 // As netconvert writes gentle curves: s runs along them at 0.75 to 1.1 of the speed it should, so
 // that |position″| is twenty times what lies across the curve.
 std::string uneven_road_xml() {

@@ -34,15 +34,18 @@ def number(node, name):
 
 
 class Cubics:
-    """Records of a, b, c, d by station; 0 where there are none."""
+    """Records of a, b, c, d by station; 0 where there are none, and before the first one of a road.
+    """
 
-    def __init__(self, nodes, station, shift=0.0):
+    def __init__(self, nodes, station, shift=None):
+        self.of_road = shift is None
+        shift = shift or 0.0
         self.records = sorted(((shift + number(n, station), *(number(n, k) for k in "abcd"))
                                for n in nodes), key=lambda r: r[0])
         self.stations = [r[0] for r in self.records]
 
     def at(self, s, beside):
-        if not self.records:
+        if not self.records or (self.of_road and beside < self.stations[0]):
             return 0.0
         s0, a, b, c, d = self.records[max(0, bisect.bisect_right(self.stations, beside) - 1)]
         ds = s - s0
