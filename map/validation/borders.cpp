@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/polygons/ring.h"
@@ -69,11 +71,36 @@ void zero_widths(const RoadMap& road_map, const ValidateOptions&, Report& report
   }
 }
 
+/// Distance from a place on one border to the nearest of the other.
+double across_m(const Lane& lane, double s_m) {
+  const auto distance_m = [s_m](const LaneLine& from, const LaneLine& to) {
+    return std::abs(to.in_map.project(Lane::point_at(from, s_m)).d_m);
+  };
+  return std::min(distance_m(lane.left, lane.right), distance_m(lane.right, lane.left));
+}
+
+/// The greatest width where it is more than a limit. Places of one station may lie far apart along
+/// the lane where its borders are drawn by few points; how wide it is there, the nearest place of
+/// the other border says. That is asked at the widest stations only, as it takes the whole border.
+double greatest_width_m(const Lane& lane, double limit_m) {
+  constexpr std::size_t kMost = 64;
+  std::vector<std::pair<double, double>> wide;  // width, station
+  for (const double s_m : border_stations_m(lane)) {
+    if (const double width_m = lane.width_m(s_m); width_m > limit_m)
+      wide.emplace_back(width_m, s_m);
+  }
+  std::ranges::sort(wide, std::greater());
+  if (wide.size() > kMost) wide.resize(kMost);
+  double greatest_m = 0.0;
+  for (const auto& [width_m, s_m] : wide) greatest_m = std::max(greatest_m, across_m(lane, s_m));
+  return greatest_m;
+}
+
 void absurd_widths(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   constexpr double kWidest = 30.0;  // [m]
   for (const Lane& lane : road_map.lanes()) {
     if (!is_drivable(lane.type)) continue;
-    const double width_m = greatest_width_m(lane);
+    const double width_m = greatest_width_m(lane, kWidest);
     if (width_m <= kWidest) continue;
     report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
                fmt::format("is {:.1f} m wide; check the unit of its width, or whether its borders "
@@ -116,13 +143,22 @@ void short_lanes(const RoadMap& road_map, const ValidateOptions&, Report& report
   }
 }
 
-/// Curvature of the centreline about a station, from the turn between two chords of that length.
-double curvature_per_m(const Lane& lane, double s_m, double chord_m) {
+/// Curvature of the centreline about a vertex, from the turn between two chords of at least that
+/// length. A line drawn by few points turns at them for the whole bend between them, which then is
+/// as long as its segments, as far as the line can stand for the bend to a quarter of a metre: the
+/// middle of an arc of length L that turns by θ is L θ / 8 off its chord.
+double curvature_per_m(const Lane& lane, std::size_t vertex, double chord_m) {
+  constexpr double kDrawnTo = 0.25;  // [m]
   const auto& line = lane.centre.in_map;
+  const auto& stations_m = line.stations_m();
+  const double s_m = stations_m[vertex];
   const Vector2d before = line.at(s_m) - line.at(s_m - chord_m);
   const Vector2d after = line.at(s_m + chord_m) - line.at(s_m);
   const double cross = before.x() * after.y() - before.y() * after.x();
-  return std::atan2(cross, before.dot(after)) / chord_m;
+  const double turn_rad = std::atan2(cross, before.dot(after));
+  const double segment_m = 0.5 * (stations_m[vertex + 1] - stations_m[vertex - 1]);
+  const double drawn_m = std::min(segment_m, 8.0 * kDrawnTo / std::max(std::abs(turn_rad), 1e-9));
+  return turn_rad / std::max(chord_m, drawn_m);
 }
 
 struct Bend {
@@ -132,9 +168,11 @@ struct Bend {
 /// The tightest bend at a vertex, beyond which the line is straight.
 Bend tightest_bend(const Lane& lane, double chord_m) {
   Bend tightest;
-  for (const double s_m : lane.centre.in_map.stations_m()) {
+  const auto& stations_m = lane.centre.in_map.stations_m();
+  for (std::size_t i = 1; i + 1 < stations_m.size(); ++i) {
+    const double s_m = stations_m[i];
     if (s_m < chord_m || s_m > lane.length_m() - chord_m) continue;
-    const double curvature = std::abs(curvature_per_m(lane, s_m, chord_m));
+    const double curvature = std::abs(curvature_per_m(lane, i, chord_m));
     if (curvature > tightest.curvature_per_m) tightest = {s_m, curvature};
   }
   return tightest;

@@ -120,6 +120,13 @@ double kink_between(const Lane& from, const Lane& to) {
   return end_rad && start_rad ? geometry::wrap_angle(*start_rad - *end_rad) : 0.0;
 }
 
+/// Whether one lane runs against the other where they meet. Over half a metre: the last centimetre
+/// of a lane whose width slips there may point anywhere.
+bool runs_against(const Lane& from, const Lane& to) {
+  const Vector2d end = direction_at(from, from.length_m()), start = direction_at(to, 0.0);
+  return end.dot(start) < std::cos(kReversed);
+}
+
 void gaps(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
   for_each_link(road_map, [&](const Lane& from, const Lane& to) {
     const auto [left_m, right_m] = seam_between(road_map.graph(), from, to);
@@ -134,10 +141,30 @@ void gaps(const RoadMap& road_map, const ValidateOptions& options, Report& repor
   });
 }
 
+/// The greatest turn between two segments of a centreline near one of its ends: how coarsely it is
+/// drawn there. Corners that no bend is drawn by do not count.
+double corner_rad(const Lane& lane, bool at_end) {
+  constexpr double kNear = 10.0;     // [m]
+  constexpr double kCoarsest = 0.3;  // [rad]
+  constexpr std::size_t kMost = 16;
+  const Points& points = lane.centre.in_map.points();
+  const auto point = [&](std::size_t i) { return points[at_end ? points.size() - 1 - i : i]; };
+  double greatest_rad = 0.0;
+  for (std::size_t i = 1; i + 1 < std::min(points.size(), kMost); ++i) {
+    if ((point(i) - point(0)).norm() > kNear && i > 1) break;
+    const double turn_rad = geometry::wrap_angle(heading_rad(point(i), point(i + 1)) -
+                                                 heading_rad(point(i - 1), point(i)));
+    greatest_rad = std::max(greatest_rad, std::abs(turn_rad));
+  }
+  return std::min(greatest_rad, kCoarsest);
+}
+
 void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
   for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
     const double kink_rad = kink_between(from, to);
-    if (std::abs(kink_rad) <= options.max_kink_rad || std::abs(kink_rad) > kReversed) return;
+    if (std::abs(kink_rad) <= options.max_kink_rad || runs_against(from, to)) return;
+    // A line drawn by few points has corners; where two of them meet is one more.
+    if (std::abs(kink_rad) <= std::max(corner_rad(from, true), corner_rad(to, false))) return;
     Finding& finding = report.add(
         "lane " + from.name, from.centre.in_map.points().back(),
         fmt::format("lane {} goes on turned by {:.3f} rad; correct the heading of one of them, or "
@@ -149,7 +176,7 @@ void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& repo
 
 void reversals(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for_each_link(road_map, [&](const Lane& from, const Lane& to) {
-    if (std::abs(kink_between(from, to)) <= kReversed) return;
+    if (!runs_against(from, to)) return;
     if (is_folded(from) || is_folded(to)) return;  // which has a finding of its own
     report
         .add("lane " + from.name, from.centre.in_map.points().back(),

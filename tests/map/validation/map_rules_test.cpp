@@ -256,6 +256,56 @@ TEST(MapRules, TellOfAFoldOnce) {
   EXPECT_TRUE(of_rule(made, "neighbour.direction").empty());
 }
 
+TEST(MapRules, MeasureAWidthAcrossTheLaneHoweverItsBordersAreDrawn) {
+  const auto widths = [](double right_m) {
+    MadeMap made;
+    made.add_lane(made.add_road("1"), "-1", {{0, 3}, {1, 3}, {2, 3}, {100, 3}},
+                  {{0, 0}, {97, right_m}, {98, right_m}, {100, right_m}});
+    return of_rule(made, "geometry.absurd-width").size();
+  };
+  EXPECT_EQ(widths(0), 0u);
+  EXPECT_EQ(widths(-60), 1u);
+}
+
+TEST(MapRules, TakeNoSlipOfTheLastCentimetreForAReversal) {
+  MadeMap made = tests::three_roads_in_a_row();
+  Lane& first = made.lane(LaneId{0});
+  // The right border jumps out and back along the lane, so that the last chord points backwards.
+  first.centre.in_map = geometry::Polyline({{0, 0}, {49.99, 0}, {50.2, 0.0}, {50, 0.001}});
+  first.centre.station_m = first.centre.in_map.stations_m();
+  first.centre.z_m = {0, 0, 0, 0};
+  EXPECT_TRUE(of_rule(made, "link.reversed").empty());
+  EXPECT_EQ(of_rule(made, "geometry.kink").size(), 1u);
+}
+
+TEST(MapRules, TakeTheCornersOfALineDrawnByFewPointsForNoKink) {
+  // A bend to the left and one to the right, by a point every 2.4 m, and a corner between them; or
+  // between two straight lanes.
+  const auto kinks = [](int corners) {
+    MadeMap made;
+    Points left[2], right[2];
+    Eigen::Vector2d at(0, 0);
+    double heading_rad = 0.0;
+    for (int lane = 0; lane < 2; ++lane) {
+      for (int i = 0; i <= corners; ++i) {
+        const Eigen::Vector2d across(-std::sin(heading_rad), std::cos(heading_rad));
+        left[lane].push_back(at + 1.5 * across);
+        right[lane].push_back(at - 1.5 * across);
+        if (i == corners) break;
+        at += 2.4 * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
+        if (i + 1 < corners) heading_rad += lane == 0 ? 0.2 : -0.2;
+      }
+      heading_rad += 0.15;
+    }
+    const LaneId from = made.add_lane(made.add_road("1"), "-1", left[0], right[0]);
+    const LaneId to = made.add_lane(made.add_road("2"), "-1", left[1], right[1]);
+    made.link(from, to);
+    return of_rule(made, "geometry.kink").size();
+  };
+  EXPECT_EQ(kinks(5), 0u);
+  EXPECT_EQ(kinks(1), 1u);
+}
+
 TEST(MapRules, TakeNoBridgeForAnOverlap) {
   MadeMap made = faultless();
   const LaneId bridge =
