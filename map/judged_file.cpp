@@ -1,5 +1,7 @@
 #include "roadbed/map/judged_file.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <utility>
 
@@ -18,6 +20,10 @@ namespace {
 constexpr validation::RuleInfo kNotWellFormed = {
     "source.not-well-formed", "asam.net:xodr:1.0.0:xml.valid_xml_document",
     validation::Severity::error, "the file is no well-formed XML"};
+
+constexpr validation::RuleInfo kUnknownRoot = {
+    "source.root-element", "asam.net:xodr:1.0.0:xml.root_tag_is_opendrive",
+    validation::Severity::error, "the root element of an OpenDRIVE file has another name"};
 
 /// Line in a message of the form "FILE:LINE: …", 0 if there is none.
 long line_in(const std::string& message, const std::string& name) {
@@ -131,6 +137,25 @@ JudgedFile judge_common_road(std::string bytes, const std::string& name,
   return judged;
 }
 
+std::optional<JudgedFile> judge_unknown_root(const std::string& bytes, const std::string& name) {
+  JudgedFile judged;
+  const auto xml = parsed(judged, name, [&] { return XmlDocument(bytes, name); });
+  if (!xml) return {};
+  const pugi::xml_node root = xml->root();
+  if (!root.child("header").attribute("revMajor") && !root.child("road").child("planView")) {
+    return {};
+  }
+  validation::Report report(kUnknownRoot, judged.findings);
+  judged.refusal = fmt::format(
+      "{}:{}: root element <{}> of a file with OpenDRIVE's elements, needs <OpenDRIVE>; rename it",
+      name, xml->line_of(root), root.name());
+  report
+      .add("file", std::nullopt,
+           fmt::format("its root element is <{}>, needs <OpenDRIVE>; rename it", root.name()))
+      .line = xml->line_of(root);
+  return judged;
+}
+
 std::vector<validation::RuleInfo> open_drive_rules() {
   return infos_of(opendrive::rules::source_rules());
 }
@@ -143,6 +168,6 @@ std::vector<validation::RuleInfo> common_road_rules() {
   return infos_of(commonroad::rules::source_rules());
 }
 
-validation::RuleInfo well_formed_rule() { return kNotWellFormed; }
+std::vector<validation::RuleInfo> file_rules() { return {kNotWellFormed, kUnknownRoot}; }
 
 }  // namespace roadbed::map

@@ -26,10 +26,14 @@ JudgedFile judge_lanelet2(std::string bytes, const std::string& name,
 JudgedFile judge_common_road(std::string bytes, const std::string& name,
                              const validation::ValidateOptions& options);
 
-/// The rules of each, and the one about files that are no XML.
+/// A file whose root element is of no known format, but whose content is OpenDRIVE's; none if it is
+/// not.
+std::optional<JudgedFile> judge_unknown_root(const std::string& bytes, const std::string& name);
+
+/// The rules of each, and those about files that are no XML, or have an unknown root.
 std::vector<validation::RuleInfo> open_drive_rules();
 std::vector<validation::RuleInfo> lanelet2_rules();
 std::vector<validation::RuleInfo> common_road_rules();
-validation::RuleInfo well_formed_rule();
+std::vector<validation::RuleInfo> file_rules();
 
 }  // namespace roadbed::map

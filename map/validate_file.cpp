@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/validation/validate.h"
 
@@ -44,8 +46,12 @@ void add_lines(Findings& findings, const validation::ElementLines& lines) {
   }
 }
 
-JudgedFile judge(MapBytes map, const std::string& name,
+JudgedFile judge(std::string bytes, const std::string& name,
                  const validation::ValidateOptions& options) {
+  if (looks_like_xml(bytes) && format_of(bytes) == nullptr) {
+    if (auto judged = judge_unknown_root(bytes, name)) return *std::move(judged);
+  }
+  MapBytes map = map_bytes(std::move(bytes), name);
   if (map.format.judge != nullptr) return map.format.judge(std::move(map.bytes), name, options);
   JudgedFile judged;
   judged.road_map = map.format.read(std::move(map.bytes), name, {});
@@ -55,7 +61,7 @@ JudgedFile judge(MapBytes map, const std::string& name,
 }  // namespace
 
 std::vector<validation::RuleInfo> rule_catalogue() {
-  std::vector<validation::RuleInfo> catalogue{well_formed_rule()};
+  std::vector<validation::RuleInfo> catalogue = file_rules();
   for (const Format& format : formats()) {
     if (format.rules == nullptr) continue;
     for (const validation::RuleInfo& rule : format.rules()) catalogue.push_back(rule);
@@ -70,7 +76,7 @@ std::vector<validation::RuleInfo> rule_catalogue() {
 
 Validation validate_bytes(std::string bytes, const std::string& name,
                           const validation::ValidateOptions& options) {
-  JudgedFile judged = judge(map_bytes(std::move(bytes), name), name, options);
+  JudgedFile judged = judge(std::move(bytes), name, options);
   Validation validation{std::move(judged.road_map), std::move(judged.refusal),
                         std::move(judged.findings), std::move(judged.lines)};
   if (validation.road_map) {

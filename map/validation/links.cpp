@@ -37,12 +37,20 @@ void one_sided_links(const RoadMap& road_map, const ValidateOptions&, Report& re
   }
 }
 
-void add_zero_width(const Lane& lane, const char* end, const char* relation,
-                    const Eigen::Vector2d& in_map, Report& report) {
+/// ASAM's rules name the end by the reference line of an OpenDRIVE road, which runs against some
+/// lanes.
+const char* end_along_road(const Lane& lane, bool at_end) {
+  const bool against = lane.origin.road_from_s_m > lane.origin.road_to_s_m;
+  return at_end == against ? "start" : "end";
+}
+
+void add_zero_width(const Lane& lane, bool at_end, const Eigen::Vector2d& in_map, Report& report) {
   report
       .add("lane " + lane.name, in_map,
-           fmt::format("has no width at its {} but a {} there; remove the link", end, relation))
-      .asam_rule = fmt::format("asam.net:xodr:1.7.0:road.lane.link.zero_width_at_{}", end);
+           fmt::format("has no width at its {} but a {} there; remove the link",
+                       at_end ? "end" : "start", at_end ? "successor" : "predecessor"))
+      .asam_rule = fmt::format("asam.net:xodr:1.7.0:road.lane.link.zero_width_at_{}",
+                               end_along_road(lane, at_end));
 }
 
 void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& report) {
@@ -52,10 +60,10 @@ void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& r
     const LaneLinks& links = road_map.graph().of(lane.id);
     const auto& centre = lane.centre.in_map.points();
     if (!links.predecessors.empty() && lane.width_m(0.0) < kNone) {
-      add_zero_width(lane, "start", "predecessor", centre.front(), report);
+      add_zero_width(lane, false, centre.front(), report);
     }
     if (!links.successors.empty() && lane.width_m(lane.length_m()) < kNone) {
-      add_zero_width(lane, "end", "successor", centre.back(), report);
+      add_zero_width(lane, true, centre.back(), report);
     }
   }
 }
@@ -132,8 +140,10 @@ constexpr std::array<MapRule, 7> kLinkRules = {{
     {{"link.one-sided", "asam.net:xodr:1.4.0:road.lane.link.lanes_across_lane_sections",
       Severity::error, "a lane's successor or predecessor does not know of it"},
      one_sided_links},
-    {{"link.zero-width", "asam.net:xodr:1.7.0:road.lane.link.zero_width_at_start",
-      Severity::warning, "a drivable lane is linked at an end where it has no width"},
+    {{"link.zero-width",
+      {},
+      Severity::warning,
+      "a drivable lane is linked at an end where it has no width"},
      zero_width_links},
     {{"link.dead-end",
       {},

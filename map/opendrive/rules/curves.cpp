@@ -169,12 +169,10 @@ const geometry::ParamPoly3Curve* param_poly3(const CurveSource& piece) {
   return piece.start ? std::get_if<geometry::ParamPoly3Curve>(&piece.record.piece->curve) : nullptr;
 }
 
-/// A millimetre, as in ASAM's checker, and the digits of long curves.
-double tolerance_m(const CurveSource& piece) { return 1e-3 + 1e-6 * piece.record.length_m; }
-
 bool fits(const CurveSource& piece, geometry::ParamPoly3Curve curve, double p_end) {
+  constexpr double kOff_m = 1e-3;  // as in ASAM's checker
   curve.p_end = p_end;
-  return std::abs(geometry::arc_length_m(curve) - piece.record.length_m) <= tolerance_m(piece);
+  return std::abs(geometry::arc_length_m(curve) - piece.record.length_m) <= kOff_m;
 }
 
 void wrong_param_poly3_lengths(const Source& source, const validation::ValidateOptions&,
@@ -324,7 +322,7 @@ constexpr std::array<SourceRule, 16> kCurveRules = {{
     {{"curve.param-poly3-start", "asam.net:xodr:1.7.0:road.geometry.paramPoly3.valid_parameters",
       validation::Severity::warning, "a paramPoly3 does not start at its place along its heading"},
      shifted_param_poly3s},
-    {{"curve.several-shapes", "asam.net:xodr:1.4.0:road.geometry.one_geom_elem_per_spec",
+    {{"curve.several-shapes", "asam.net:xodr:1.7.0:road.geometry.one_geom_elem_per_spec",
       validation::Severity::error, "a geometry has more than one curve"},
      several_shapes},
     {{"curve.straight-arc", "asam.net:xodr:1.9.0:road.geometry.arc.no_zero_curvature",

@@ -130,9 +130,13 @@ void dangling_signals(const Source& source, const validation::ValidateOptions&,
   for (const RoadSource& road : source.roads) {
     for (const SignalReference& reference : road.record.signal_references) {
       if (known.contains(reference.signal_id)) continue;
-      add_at(report, source, road, reference.node,
-             fmt::format("refers to signal {}, which is not there; correct or remove it",
-                         reference.signal_id));
+      validation::Finding& finding =
+          add_at(report, source, road, reference.node,
+                 fmt::format("refers to signal {}, which is not there; correct or remove it",
+                             reference.signal_id));
+      if (source.is_since(7)) {
+        finding.asam_rule = "asam.net:xodr:1.7.0:road.signal.reference.used_for_signals_only";
+      }
     }
   }
   for (const auto controller : source.xml.root().children("controller")) {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/rules/lane_links.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
@@ -89,11 +89,12 @@ void connecting_roads_that_come_in(const Source& source, const validation::Valid
                                    validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
     if (connection.incoming == nullptr || connection.incoming->record.junction_id.empty()) return;
-    if (connection.incoming->record.junction_id != connection.junction.id) return;
+    const std::string& junction = connection.incoming->record.junction_id;
     add(report, connection,
-        fmt::format("incoming road {} of connection {} is itself a connecting road of the "
-                    "junction; name the road outside of it",
-                    connection.incoming->record.id, id_of(connection)));
+        fmt::format("incoming road {} of connection {} is itself a connecting road of {}; name the "
+                    "road outside of it",
+                    connection.incoming->record.id, id_of(connection),
+                    junction == connection.junction.id ? "the junction" : "junction " + junction));
   });
 }
 
@@ -113,28 +114,72 @@ void double_connections(const Source& source, const validation::ValidateOptions&
   });
 }
 
-/// Whether the connecting road meets the incoming one with its other end.
-bool meets_at_other_end(const Connection& connection) {
-  if (connection.incoming == nullptr || connection.connecting == nullptr) return false;
-  if (connection.record.direct) return false;
+/// Where the connecting road is linked to instead of to the incoming one; empty if it is right, or
+/// linked nowhere at all.
+std::string wrong_link(const Connection& connection) {
+  if (connection.incoming == nullptr || connection.connecting == nullptr) return {};
+  if (connection.record.direct) return {};
   const RoadRecord& via = connection.connecting->record;
   const auto& named = connection.at_end() ? via.successor : via.predecessor;
   const auto& other = connection.at_end() ? via.predecessor : via.successor;
-  return !leads_to_road(named, *connection.incoming) && leads_to_road(other, *connection.incoming);
+  if (leads_to_road(named, *connection.incoming)) return {};
+  if (leads_to_road(other, *connection.incoming)) {
+    return fmt::format("it is linked to it at its {}; correct contactPoint",
+                       connection.at_end() ? "start" : "end");
+  }
+  if (!named || named->to_junction) return {};
+  return fmt::format(
+      "it is linked to road {} there; correct the link, contactPoint or incomingRoad",
+      named->element_id);
 }
 
 template <bool at_end>
 void wrong_contact_points(const Source& source, const validation::ValidateOptions&,
                           validation::Report& report) {
   for_each_connection(source, [&](const Connection& connection) {
-    if (connection.at_end() != at_end || !meets_at_other_end(connection)) return;
+    if (connection.at_end() != at_end) return;
+    const std::string wrong = wrong_link(connection);
+    if (wrong.empty()) return;
     add(report, connection,
-        fmt::format("connection {} says that road {} meets road {} at its {}, but it is linked to "
-                    "it at its {}; correct contactPoint",
+        fmt::format("connection {} says that road {} meets road {} at its {}, but {}",
                     id_of(connection), connection.connecting->record.id,
-                    connection.incoming->record.id, at_end ? "end" : "start",
-                    at_end ? "start" : "end"));
+                    connection.incoming->record.id, at_end ? "end" : "start", wrong));
   });
+}
+
+/// Whether a lane link leads from a lane that comes out of the junction, or to one that runs back:
+/// the way of traffic from the incoming road into the connecting one is all that it stands for.
+void outgoing_lane_links(const Source& source, const validation::ValidateOptions&,
+                         validation::Report& report) {
+  for_each_lane_link(source, [&](const LaneLink& link) {
+    if (link.kind != LaneLink::Kind::in_junction || !is_drivable(link.from.lane->type)) return;
+    if (link.from.drives_towards() && link.to.drives_away()) return;
+    validation::Finding& finding =
+        add_at(report, source, *link.to.road, link.node,
+               fmt::format("connection {} links lane {} of road {} to lane {} of road {}, but {} "
+                           "runs the other way; remove the laneLink",
+                           link.node.attribute("id").value(), link.from.lane->id,
+                           link.from.road->record.id, link.to.lane->id, link.to.road->record.id,
+                           link.from.drives_towards() ? "the latter" : "the former"));
+    finding.element = fmt::format("junction {}", link.node.parent().attribute("id").value());
+    finding.in_map = link.to.road->place_at(link.to.s_m());
+  });
+}
+
+void incomplete_priorities(const Source& source, const validation::ValidateOptions&,
+                           validation::Report& report) {
+  for (const JunctionRecord& junction : source.document.junctions) {
+    for (const auto priority : junction.node.children("priority")) {
+      const bool has_high = *priority.attribute("high").value() != '\0';
+      const bool has_low = *priority.attribute("low").value() != '\0';
+      if (has_high && has_low) continue;
+      report
+          .add(fmt::format("junction {}", junction.id), std::nullopt,
+               fmt::format("a <priority> names no road with {} priority; name one of each",
+                           has_high ? "low" : "high"))
+          .line = source.xml.line_of(priority);
+    }
+  }
 }
 
 void foreign_connecting_roads(const Source& source, const validation::ValidateOptions&,
@@ -225,7 +270,7 @@ void unknown_lanes(const Source& source, const validation::ValidateOptions&,
   });
 }
 
-constexpr std::array<SourceRule, 12> kJunctionRules = {{
+constexpr std::array<SourceRule, 14> kJunctionRules = {{
     {{"junction.no-lane-links",
       {},
       validation::Severity::warning,
@@ -239,11 +284,19 @@ constexpr std::array<SourceRule, 12> kJunctionRules = {{
     {{"junction.connecting-comes-in",
       "asam.net:xodr:1.4.0:junctions.connection.connect_road_no_incoming_road",
       validation::Severity::error,
-      "the incoming road of a connection is a connecting road of the same junction"},
+      "the incoming road of a connection is a connecting road of a junction"},
      connecting_roads_that_come_in},
     {{"junction.double-connection", "asam.net:xodr:1.8.0:junctions.connection.one_link_to_incoming",
       validation::Severity::warning, "two connections lead from one road to one connecting road"},
      double_connections},
+    {{"junction.outgoing-lane-link",
+      "asam.net:xodr:1.8.0:junctions.connection.one_link_to_incoming",
+      validation::Severity::warning,
+      "a lane link of a connection leads from or to a lane that runs the other way"},
+     outgoing_lane_links},
+    {{"junction.priority-pair", "asam.net:xodr:1.8.0:junctions.priority.high_and_low_attr",
+      validation::Severity::warning, "a priority does not name both roads"},
+     incomplete_priorities},
     {{"junction.contact-start", "asam.net:xodr:1.7.0:junctions.connection.start_along_linkage",
       validation::Severity::error,
       "a connecting road does not begin at the road that a connection says"},

@@ -8,6 +8,7 @@
 
 #include "roadbed/map/opendrive/rules/cubic.h"
 #include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
@@ -147,16 +148,27 @@ void level_inside(const Source& source, const validation::ValidateOptions&,
         for (const int distance : side_ids(section, sign)) {
           const LaneRecord& lane = *section.find(sign * distance);
           if (level && !lane.level) {
-            add_at(report, source, road, lane.node,
-                   "is not level although a lane further in is; level all lanes from there to the "
-                   "road's edge")
-                .element = lane_element(road, section, lane.id);
+            validation::Finding& finding =
+                add_at(report, source, road, lane.node,
+                       "is not level although a lane further in is; level all lanes from there to "
+                       "the road's edge");
+            finding.element = lane_element(road, section, lane.id);
+            if (!source.is_since(7)) {  // before, nothing was said of lanes further out
+              finding.severity = validation::Severity::info;
+              finding.asam_rule.clear();
+            }
           }
           level = level || lane.level;
         }
       }
     }
   }
+}
+
+/// Whether a station is in the set, up to rounding.
+bool holds(const std::set<double>& stations_m, double s_m) {
+  const auto found = stations_m.lower_bound(s_m - kRoundingM);
+  return found != stations_m.end() && *found <= s_m + kRoundingM;
 }
 
 void mixed_access(const Source& source, const validation::ValidateOptions&,
@@ -168,9 +180,9 @@ void mixed_access(const Source& source, const validation::ValidateOptions&,
         for (const auto access : lane.node.children("access")) {
           const double s_m = source.number(access, "sOffset");
           const std::string_view rule = access.attribute("rule").value();
-          if (rule == "allow") allow.insert(s_m);
-          if (rule == "deny") deny.insert(s_m);
-          if (!allow.contains(s_m) || !deny.contains(s_m)) continue;
+          if (std::isnan(s_m) || (rule != "allow" && rule != "deny")) continue;
+          (rule == "allow" ? allow : deny).insert(s_m);
+          if (!holds(rule == "allow" ? deny : allow, s_m)) continue;
           add_at(report, source, road, access,
                  fmt::format("allows and denies access at sOffset {} m; keep one kind", s_m))
               .element = lane_element(road, section, lane.id);

@@ -5,20 +5,12 @@
 #include <map>
 #include <set>
 
-#include "roadbed/map/opendrive/rules/cubic.h"
-#include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/rules/lane_links.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
 
 using End = ContactPoint;
-
-const char* link_name(End end) { return end == End::start ? "predecessor" : "successor"; }
-const char* end_name(End end) { return end == End::start ? "start" : "end"; }
-
-const std::optional<RoadLink>& link_of(const RoadSource& road, End end) {
-  return end == End::start ? road.record.predecessor : road.record.successor;
-}
 
 /// <predecessor> or <successor> of a road that names another road which is there.
 struct LinkedEnd {
@@ -30,7 +22,7 @@ struct LinkedEnd {
 };
 
 std::optional<LinkedEnd> link_at(const Source& source, const RoadSource& road, End at) {
-  const std::optional<RoadLink>& link = link_of(road, at);
+  const std::optional<RoadLink>& link = road_link(road, at);
   if (!link || link->to_junction) return {};
   const RoadSource* to = source.find_road(link->element_id);
   if (to == nullptr) return {};
@@ -50,7 +42,7 @@ void one_sided_roads(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
   for_each_road_link(source, [&](const LinkedEnd& link) {
     if (!link.contact) return;
-    const std::optional<RoadLink>& back = link_of(*link.to, *link.contact);
+    const std::optional<RoadLink>& back = road_link(*link.to, *link.contact);
     const std::string id = back ? back->element_id : std::string();
     const bool to_junction = back && back->to_junction;
     if (back &&
@@ -125,34 +117,25 @@ void ambiguous_links(const Source& source, const validation::ValidateOptions&,
   }
 }
 
-const LaneSection* section_at(const RoadSource& road, End end) {
-  if (road.record.sections.empty()) return nullptr;
-  return end == End::start ? &road.record.sections.front() : &road.record.sections.back();
-}
-
-const std::vector<int>& targets(const LaneRecord& lane, End end) {
-  return end == End::start ? lane.predecessors : lane.successors;
-}
-
 bool holds(const std::vector<int>& ids, int id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
 /// One side of a seam between lane sections.
-struct SeamSide {
+struct Seam {
   const RoadSource* road;
   const LaneSection* section;
   End end;
 };
 
 /// Links over a seam that the other side does not return.
-void find_one_sided(const Source& source, const SeamSide& here, const SeamSide& there,
+void find_one_sided(const Source& source, const Seam& here, const Seam& there,
                     validation::Report& report) {
   for (const LaneRecord& lane : here.section->listed()) {
     if (lane.id == 0) continue;
-    for (const int target : targets(lane, here.end)) {
+    for (const int target : linked_lanes(lane, here.end)) {
       const LaneRecord* other = there.section->find(target);
-      if (other != nullptr && holds(targets(*other, there.end), lane.id)) continue;
+      if (other != nullptr && holds(linked_lanes(*other, there.end), lane.id)) continue;
       add_at(report, source, *here.road, lane.node,
              fmt::format("its {} is lane {} of road {}, {}; make both name each other",
                          link_name(here.end), target, there.road->record.id,
@@ -178,8 +161,8 @@ void one_sided_lanes(const Source& source, const validation::ValidateOptions&,
     if (!link.contact || !link.from->record.junction_id.empty() ||
         !link.to->record.junction_id.empty())
       return;
-    const LaneSection* here = section_at(*link.from, link.at);
-    const LaneSection* there = section_at(*link.to, *link.contact);
+    const LaneSection* here = end_section(*link.from, link.at);
+    const LaneSection* there = end_section(*link.to, *link.contact);
     if (here == nullptr || there == nullptr) return;
     find_one_sided(source, {link.from, here, link.at}, {link.to, there, *link.contact}, report);
   });
@@ -189,42 +172,14 @@ void linked_lanes_without_road(const Source& source, const validation::ValidateO
                                validation::Report& report) {
   for (const RoadSource& road : source.roads) {
     for (const End end : {End::start, End::end}) {
-      const LaneSection* section = section_at(road, end);
-      if (section == nullptr || link_of(road, end)) continue;
+      const LaneSection* section = end_section(road, end);
+      if (section == nullptr || road_link(road, end)) continue;
       for (const LaneRecord& lane : section->listed()) {
-        if (lane.id == 0 || targets(lane, end).empty()) continue;
+        if (lane.id == 0 || linked_lanes(lane, end).empty()) continue;
         add_at(report, source, road, lane.node,
                fmt::format("has a {} although its road has none; link the road or remove it",
                            link_name(end)))
             .element = lane_element(road, *section, lane.id);
-      }
-    }
-  }
-}
-
-double start_width_m(const LaneRecord& lane) {
-  return lane.width.listed.empty() ? 1.0 : lane.width.listed.front().record.a;
-}
-
-void appearing_lanes(const Source& source, const validation::ValidateOptions&,
-                     validation::Report& report) {
-  constexpr double kNone = 1e-3;  // [m]
-  for (const RoadSource& road : source.roads) {
-    for (std::size_t i = 1; i < road.record.sections.size(); ++i) {
-      std::map<int, std::vector<const LaneRecord*>> followers;
-      for (const LaneRecord& lane : road.record.sections[i].listed()) {
-        for (const int before : lane.predecessors) followers[before].push_back(&lane);
-      }
-      for (const auto& [before, lanes] : followers) {
-        if (lanes.size() < 2) continue;
-        for (const LaneRecord* lane : lanes) {
-          if (start_width_m(*lane) >= kNone) continue;
-          add_at(report, source, road, lane->node,
-                 fmt::format("appears beside the lane that goes on from lane {}, but is linked to "
-                             "it too; remove its predecessor",
-                             before))
-              .element = lane_element(road, road.record.sections[i], lane->id);
-        }
       }
     }
   }
@@ -243,11 +198,11 @@ bool any_drives(const LaneSection& section) {
 void roads_linked_without_lanes(const Source& source, const validation::ValidateOptions&,
                                 validation::Report& report) {
   for_each_road_link(source, [&](const LinkedEnd& link) {
-    const LaneSection* here = section_at(*link.from, link.at);
+    const LaneSection* here = end_section(*link.from, link.at);
     if (here == nullptr || !link.contact || !any_drives(*here)) return;
-    const LaneSection* there = section_at(*link.to, *link.contact);
+    const LaneSection* there = end_section(*link.to, *link.contact);
     const bool linked = std::ranges::any_of(here->listed(), [&](const LaneRecord& lane) {
-      return drives(lane) && !targets(lane, link.at).empty();
+      return drives(lane) && !linked_lanes(lane, link.at).empty();
     });
     if (linked || there == nullptr || !any_drives(*there)) return;
     add_at(report, source, *link.from, link.node,
@@ -257,7 +212,7 @@ void roads_linked_without_lanes(const Source& source, const validation::Validate
   });
 }
 
-constexpr std::array<SourceRule, 8> kLinkageRules = {{
+constexpr std::array<SourceRule, 7> kLinkageRules = {{
     {{"link.road-one-sided", "asam.net:xodr:1.9.0:road.linkage.both_sides_consistency",
       validation::Severity::warning, "a road's link is not returned by the other road"},
      one_sided_roads},
@@ -279,10 +234,6 @@ constexpr std::array<SourceRule, 8> kLinkageRules = {{
     {{"link.lane-without-road", "asam.net:xodr:1.4.0:road.lane.link.no_link",
       validation::Severity::info, "a lane is linked over an end of its road that is not linked"},
      linked_lanes_without_road},
-    {{"link.appearing-lane", "asam.net:xodr:1.4.0:road.lane.link.new_lane_appear",
-      validation::Severity::warning,
-      "a lane that begins with no width is linked to the lane beside it"},
-     appearing_lanes},
     {{"link.roads-without-lanes",
       {},
       validation::Severity::warning,

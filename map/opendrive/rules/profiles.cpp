@@ -3,34 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
 
 #include "roadbed/map/opendrive/rules/cubic.h"
-#include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/rules/lane_links.h"
+#include "roadbed/map/opendrive/rules/records.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
 
-using Cubics = std::vector<CubicElement>;
-
-Cubics elevation(const RoadSource& road) { return whole(road.record.elevation.listed); }
-Cubics superelevation(const RoadSource& road) { return whole(road.record.superelevation.listed); }
-Cubics lane_offset(const RoadSource& road) { return whole(road.record.lane_offset.listed); }
-
-/// Calls `check(record, length, next)` for every record; `next` is null for the last one.
-template <typename Check>
-void for_each_record(const Cubics& records, double end_s_m, const Check& check) {
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const CubicElement* next = i + 1 < records.size() ? &records[i + 1] : nullptr;
-    const double length_m = (next ? next->record.s_m : end_s_m) - records[i].record.s_m;
-    if (length_m >= 0.0) check(records[i], length_m, next);
-  }
+Cubics elevation(const RoadSource& road) {
+  return holding(road.record.elevation.listed, road.record.length_m);
 }
 
-validation::Finding& add(validation::Report& report, const Source& source, const RoadSource& road,
-                         const CubicElement& record, double s_m, std::string message) {
-  validation::Finding& finding = add_at(report, source, road, record.node, std::move(message));
-  finding.in_map = road.place_at(s_m);
-  return finding;
+Cubics superelevation(const RoadSource& road) {
+  return holding(road.record.superelevation.listed, road.record.length_m);
+}
+
+Cubics lane_offset(const RoadSource& road) {
+  return holding(road.record.lane_offset.listed, road.record.length_m);
 }
 
 struct Quantity {
@@ -43,9 +36,9 @@ void add_step(validation::Report& report, const Source& source, const RoadSource
               double max_step, const Quantity& what) {
   const double step = after.record.a - value_at(before.record, length_m);
   if (std::abs(step) <= max_step) return;
-  add(report, source, road, after, after.record.s_m,
-      fmt::format("{} steps by {:.3f} {} at s {:.3f} m; make the records meet", what.name, step,
-                  what.unit, after.record.s_m));
+  add_record(report, source, road, after, after.record.s_m,
+             fmt::format("{} steps by {:.3f} {} at s {:.3f} m; make the records meet", what.name,
+                         step, what.unit, after.record.s_m));
 }
 
 void find_steps(const Source& source, const RoadSource& road, const Cubics& records,
@@ -72,13 +65,55 @@ void superelevation_steps(const Source& source, const validation::ValidateOption
   }
 }
 
-/// Whether a lane section begins there: its lanes may be numbered from another line on, and whether
-/// their borders go on is asked of the lanes.
-bool begins_section(const RoadSource& road, double s_m) {
+/// The section that begins there; null for the first one, or if there is none.
+const LaneSection* section_from(const RoadSource& road, double s_m) {
   constexpr double kSame_m = 0.01;
-  return std::any_of(
-      road.record.sections.begin(), road.record.sections.end(),
+  const auto& sections = road.record.sections;
+  if (sections.empty()) return nullptr;
+  const auto found = std::find_if(
+      sections.begin() + 1, sections.end(),
       [&](const LaneSection& section) { return std::abs(section.s_m - s_m) < kSame_m; });
+  return found == sections.end() ? nullptr : &*found;
+}
+
+/// How far the inner border of a lane is from the lane offset, to the left; none if a width between
+/// them is missing.
+std::optional<double> inner_m(LaneEnd at) {
+  const int sign = at.lane->id > 0 ? 1 : -1, last = std::abs(at.lane->id);
+  double sum_m = 0.0;
+  for (int i = 1; i < last; ++i) {
+    at.lane = at.section->find(sign * i);
+    const std::optional<double> width = at.lane ? at.width_m() : std::nullopt;
+    if (!width) return {};
+    sum_m += sign * *width;
+  }
+  return sum_m;
+}
+
+/// By how much the inner border of the innermost lane of a side that goes on from one section to
+/// the next moves against the lane offset; none if no lane goes on.
+std::optional<double> move_m(const RoadSource& road, const LaneSection& after, int sign) {
+  const LaneSection& before = *std::prev(&after);
+  for (int id = sign; const LaneRecord* lane = before.find(id); id += sign) {
+    if (lane->successors.empty()) continue;
+    const LaneRecord* next = after.find(lane->successors.front());
+    if (next == nullptr || next->id == 0) continue;
+    const auto from = inner_m({&road, &before, lane, ContactPoint::end});
+    const auto to = inner_m({&road, &after, next, ContactPoint::start});
+    if (from && to) return *to - *from;
+  }
+  return {};
+}
+
+/// Whether the lanes make up for a step of the lane offset where a section begins, as they do where
+/// they are numbered from another line on.
+bool is_made_up_for(const RoadSource& road, const LaneSection& after, double step_m,
+                    double most_m) {
+  const auto left = move_m(road, after, 1), right = move_m(road, after, -1);
+  const auto fits = [&](const std::optional<double>& move) {
+    return !move || std::abs(step_m + *move) <= most_m;
+  };
+  return fits(left) && fits(right);
 }
 
 void lane_offset_steps(const Source& source, const validation::ValidateOptions& options,
@@ -86,7 +121,13 @@ void lane_offset_steps(const Source& source, const validation::ValidateOptions& 
   for (const RoadSource& road : source.roads) {
     for_each_record(lane_offset(road), road.record.length_m,
                     [&](const CubicElement& before, double length_m, const CubicElement* after) {
-                      if (after == nullptr || begins_section(road, after->record.s_m)) return;
+                      if (after == nullptr) return;
+                      const double step_m = after->record.a - value_at(before.record, length_m);
+                      if (std::abs(step_m) <= options.max_step_m) return;
+                      const LaneSection* section = section_from(road, after->record.s_m);
+                      if (section && is_made_up_for(road, *section, step_m, options.max_step_m)) {
+                        return;
+                      }
                       add_step(report, source, road, before, length_m, *after, options.max_step_m,
                                {"lane offset", "m"});
                     });
@@ -101,7 +142,8 @@ void slope_jumps(const Source& source, const validation::ValidateOptions& option
                       if (after == nullptr) return;
                       const double jump = after->record.b - slope_at(before.record, length_m);
                       if (std::abs(jump) <= options.max_slope_jump) return;
-                      add(report, source, road, *after, after->record.s_m,
+                      add_record(
+                          report, source, road, *after, after->record.s_m,
                           fmt::format("the road's slope jumps by {:.1f} % at s {:.3f} m; round the "
                                       "elevation off",
                                       100.0 * jump, after->record.s_m));
@@ -116,7 +158,8 @@ void steep_roads(const Source& source, const validation::ValidateOptions& option
                     [&](const CubicElement& record, double length_m, const CubicElement*) {
                       const LeastValue steepest = greatest_slope(record.record, length_m);
                       if (steepest.value <= options.max_slope || length_m == 0.0) return;
-                      add(report, source, road, record, record.record.s_m + steepest.ds_m,
+                      add_record(
+                          report, source, road, record, record.record.s_m + steepest.ds_m,
                           fmt::format("the road's slope reaches {:.0f} % at s {:.2f} m, more than "
                                       "a car climbs; correct the elevation",
                                       100.0 * steepest.value, record.record.s_m + steepest.ds_m));
@@ -130,7 +173,8 @@ void steep_crossfalls(const Source& source, const validation::ValidateOptions&,
   for (const RoadSource& road : source.roads) {
     for (const CubicElement& record : superelevation(road)) {
       if (std::abs(record.record.a) <= kSteepest) continue;
-      add(report, source, road, record, record.record.s_m,
+      add_record(
+          report, source, road, record, record.record.s_m,
           fmt::format("superelevation is {:.2f} rad at s {:.2f} m; check whether it is meant in "
                       "degrees",
                       record.record.a, record.record.s_m));
@@ -147,179 +191,15 @@ void elevation_outliers(const Source& source, const validation::ValidateOptions&
   for (const RoadSource& road : source.roads) {
     for (const CubicElement& record : elevation(road)) {
       if (is_on_earth(record.record.a)) continue;
-      add(report, source, road, record, record.record.s_m,
-          fmt::format("elevation is {:.1f} m at s {:.2f} m, where no road is; correct it",
-                      record.record.a, record.record.s_m));
+      add_record(report, source, road, record, record.record.s_m,
+                 fmt::format("elevation is {:.1f} m at s {:.2f} m, where no road is; correct it",
+                             record.record.a, record.record.s_m));
       break;
     }
   }
 }
 
-/// Calls `check(road, section, lane)` for every lane that has a width.
-template <typename Check>
-void for_each_lane(const Source& source, const Check& check) {
-  for (const RoadSource& road : source.roads) {
-    for (const LaneSection& section : road.record.sections) {
-      for (const LaneRecord& lane : section.listed()) {
-        if (lane.id != 0) check(road, section, lane);
-      }
-    }
-  }
-}
-
-Cubics widths(const LaneRecord& lane) { return whole(lane.width.listed); }
-
-void width_steps(const Source& source, const validation::ValidateOptions& options,
-                 validation::Report& report) {
-  for_each_lane(
-      source, [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
-        for_each_record(
-            widths(lane), road.end_s_m(section),
-            [&](const CubicElement& before, double length_m, const CubicElement* after) {
-              if (after == nullptr) return;
-              const double step = after->record.a - value_at(before.record, length_m);
-              if (std::abs(step) <= options.max_step_m) return;
-              add(report, source, road, *after, after->record.s_m,
-                  fmt::format("width steps by {:.3f} m at s {:.3f} m; make the records meet", step,
-                              after->record.s_m))
-                  .element = lane_element(road, section, lane.id);
-            });
-      });
-}
-
-void negative_widths(const Source& source, const validation::ValidateOptions&,
-                     validation::Report& report) {
-  constexpr double kNone = 1e-3;  // [m]
-  for_each_lane(source, [&](const RoadSource& road, const LaneSection& section,
-                            const LaneRecord& lane) {
-    for_each_record(widths(lane), road.end_s_m(section),
-                    [&](const CubicElement& record, double length_m, const CubicElement*) {
-                      const LeastValue least = least_value(record.record, length_m);
-                      if (least.value >= -kNone) return;
-                      const double s_m = record.record.s_m + least.ds_m;
-                      add(report, source, road, record, s_m,
-                          fmt::format("width is {:.3f} m at s {:.2f} m; correct the record so that "
-                                      "it stays at least 0",
-                                      least.value, s_m))
-                          .element = lane_element(road, section, lane.id);
-                    });
-  });
-}
-
-void widths_without_start(const Source& source, const validation::ValidateOptions&,
-                          validation::Report& report) {
-  for_each_lane(
-      source, [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
-        const auto first = lane.width.listed.empty() ? pugi::xml_node() : lane.width.listed[0].node;
-        const bool begins = first && !(source.number(first, "sOffset") > 1e-3);
-        if (begins || !lane.border.listed.empty()) return;
-        add_at(report, source, road, lane.node,
-               first ? "its first width does not begin at sOffset 0; say the width from there on"
-                     : "has neither width nor border; add one")
-            .element = lane_element(road, section, lane.id);
-      });
-}
-
-void widths_beyond_sections(const Source& source, const validation::ValidateOptions& options,
-                            validation::Report& report) {
-  for_each_lane(source, [&](const RoadSource& road, const LaneSection& section,
-                            const LaneRecord& lane) {
-    for (const CubicElement& record : widths(lane)) {
-      if (!(record.record.s_m > road.end_s_m(section) + options.max_gap_m)) continue;
-      add_at(report, source, road, record.node,
-             fmt::format("a width begins at s {:.3f} m, beyond the section's end at {:.3f} m, and "
-                         "never holds; remove it or correct sOffset",
-                         record.record.s_m, road.end_s_m(section)))
-          .element = lane_element(road, section, lane.id);
-    }
-  });
-}
-
-void widths_with_borders(const Source& source, const validation::ValidateOptions&,
-                         validation::Report& report) {
-  for_each_lane(source,
-                [&](const RoadSource& road, const LaneSection& section, const LaneRecord& lane) {
-                  if (lane.width.listed.empty() || lane.border.listed.empty()) return;
-                  add_at(report, source, road, lane.node,
-                         "has both width and border; keep the widths, which hold by the standard")
-                      .element = lane_element(road, section, lane.id);
-                });
-}
-
-void borders_with_offset(const Source& source, const validation::ValidateOptions&,
-                         validation::Report& report) {
-  for (const RoadSource& road : source.roads) {
-    const Cubics offsets = lane_offset(road);
-    bool moved = false;
-    for (const CubicElement& offset : offsets) {
-      const auto& r = offset.record;
-      moved = moved || r.a != 0.0 || r.b != 0.0 || r.c != 0.0 || r.d != 0.0;
-    }
-    if (!moved) continue;
-    for (const LaneSection& section : road.record.sections) {
-      for (const LaneRecord& lane : section.listed()) {
-        if (lane.border.listed.empty()) continue;
-        add_at(report, source, road, lane.node,
-               "has a border although its road has a lane offset; describe the lane by widths")
-            .element = lane_element(road, section, lane.id);
-      }
-    }
-  }
-}
-
-struct Ordered {
-  const char *parent, *name, *s_attribute, *asam_rule;
-};
-
-void find_disorder(const Source& source, const RoadSource& road, pugi::xml_node parent,
-                   const Ordered& kind, validation::Report& report) {
-  double last_m = -1e300;
-  for (const auto node : parent.children(kind.name)) {
-    const double s_m = source.number(node, kind.s_attribute);
-    if (s_m < last_m) {
-      add_at(report, source, road, node,
-             fmt::format("<{}> at {} m stands behind one at {} m; list them in ascending order",
-                         kind.name, s_m, last_m))
-          .asam_rule = fmt::format("asam.net:xodr:1.4.0:{}", kind.asam_rule);
-    } else if (s_m >= last_m) {
-      last_m = s_m;
-    }
-  }
-}
-
-void unordered_records(const Source& source, const validation::ValidateOptions&,
-                       validation::Report& report) {
-  static constexpr Ordered kOfRoad[] = {
-      {"elevationProfile", "elevation", "s", "road.elevation.elem_asc_order"},
-      {"lateralProfile", "superelevation", "s", "road.superelevation.elem_asc_order"},
-      {"lanes", "laneOffset", "s", "road.lanes.lane_offset.elem_asc_order"},
-  };
-  static constexpr Ordered kOfLane[] = {
-      {"lane", "width", "sOffset", "road.lane.width.elem_asc_order"},
-      {"lane", "border", "sOffset", "road.lane.border.elem_asc_order"},
-      {"lane", "speed", "sOffset", "road.lane.speed.elem_asc_order"},
-      {"lane", "roadMark", "sOffset", "road.lane.road_mark.elem_asc_order"},
-  };
-  for (const RoadSource& road : source.roads) {
-    find_disorder(source, road, road.record.node, {"road", "type", "s", "road.type.elem_asc_order"},
-                  report);
-    for (const Ordered& kind : kOfRoad) {
-      find_disorder(source, road, road.record.node.child(kind.parent), kind, report);
-    }
-    for (const LaneSection& section : road.record.sections) {
-      for (const LaneRecord& lane : section.listed()) {
-        for (const Ordered& kind : kOfLane) find_disorder(source, road, lane.node, kind, report);
-      }
-    }
-  }
-}
-
-constexpr std::array<SourceRule, 14> kProfileRules = {{
-    {{"profile.order", "asam.net:xodr:1.4.0:road.elevation.elem_asc_order",
-      validation::Severity::warning,
-      "records of elevation, superelevation, lane offset, width, border, speed, road mark or type "
-      "are not in ascending order"},
-     unordered_records},
+constexpr std::array<SourceRule, 7> kProfileRules = {{
     {{"elevation.step",
       {},
       validation::Severity::warning,
@@ -350,30 +230,9 @@ constexpr std::array<SourceRule, 14> kProfileRules = {{
     {{"lane-offset.step",
       {},
       validation::Severity::warning,
-      "the lane offset of a road steps by more than --max-step inside a lane section"},
+      "the lane offset of a road steps by more than --max-step, which its lanes do not make up "
+      "for"},
      lane_offset_steps},
-    {{"width.step",
-      {},
-      validation::Severity::warning,
-      "a lane's width steps by more than --max-step inside its section"},
-     width_steps},
-    {{"width.negative", "asam.net:xodr:1.4.0:road.lane.width.lane_width_validity",
-      validation::Severity::error, "a lane's width is negative"},
-     negative_widths},
-    {{"width.missing", "asam.net:xodr:1.7.0:road.lane.width.width_defined_whole_section",
-      validation::Severity::warning, "a lane has no width at the start of its section"},
-     widths_without_start},
-    {{"width.beyond-section",
-      {},
-      validation::Severity::info,
-      "a width begins beyond the end of its section"},
-     widths_beyond_sections},
-    {{"width.with-border", "asam.net:xodr:1.4.0:road.lane.border.exclusive_width_border",
-      validation::Severity::warning, "a lane has both widths and borders"},
-     widths_with_borders},
-    {{"width.border-with-offset", "asam.net:xodr:1.4.0:road.lane.border.exclusive_offset_border",
-      validation::Severity::warning, "a lane has borders although its road has a lane offset"},
-     borders_with_offset},
 }};
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/opendrive/rules/cubic.h"
 #include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
@@ -24,7 +25,16 @@ bool goes_on(const geometry::CubicRecord& before, const geometry::CubicRecord& r
     const double old = value_at(before, record.s_m - before.s_m + ds_m);
     if (!(std::abs(value_at(record, ds_m) - old) <= kNothing)) return false;
   }
-  return record.s_m > before.s_m && length_m > 0.0;
+  return true;
+}
+
+/// Whether the record could be left out: where it holds it goes on as the one before it, or it says
+/// the same again at one station.
+bool is_redundant(const geometry::CubicRecord& before, const geometry::CubicRecord& record,
+                  double length_m) {
+  if (length_m > 0.0) return goes_on(before, record, length_m);
+  constexpr double kAny_m = 1.0;
+  return record.s_m - before.s_m <= kRoundingM && goes_on(before, record, kAny_m);
 }
 
 /// A profile, called what, and where its last record ends.
@@ -40,7 +50,7 @@ void find_redundant(const Source& source, const RoadSource& road, const Records&
   for (std::size_t i = 1; i < records.size(); ++i) {
     const geometry::CubicRecord& record = records[i].record;
     const double end_m = i + 1 < records.size() ? records[i + 1].record.s_m : where.to_s_m;
-    if (!goes_on(records[i - 1].record, record, end_m - record.s_m)) continue;
+    if (!is_redundant(records[i - 1].record, record, end_m - record.s_m)) continue;
     validation::Finding& finding =
         add_at(report, source, road, records[i].node,
                fmt::format("<{}> at s {:.3f} m only says how the one before it goes on; remove it",

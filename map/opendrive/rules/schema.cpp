@@ -87,6 +87,7 @@ const std::vector<Choice>& choices() {
       {"junction", "type", {"default", "common", "direct", "virtual", "crossing"}},
       {"paramPoly3", "pRange", {"arcLength", "normalized"}},
       {"lane", "level", {"true", "false", "1", "0"}},
+      {"lane", "direction", {"standard", "reversed", "both"}},
       {"lane",
        "type",
        {"none",       "driving",        "stop",  "shoulder",      "biking", "sidewalk", "border",

@@ -6,41 +6,21 @@
 #include <cmath>
 #include <cstring>
 
-#include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/opendrive/rules/furniture.h"
 
 namespace roadbed::map::opendrive::rules {
 namespace {
-
-std::string name_of(pugi::xml_node node) {
-  return fmt::format("{} {}", node.name(), node.attribute("id").value());
-}
-
-/// Calls `check(road, node)` for every signal, or every object.
-template <typename Check>
-void for_each(const Source& source, const char* parent, const char* name, const Check& check) {
-  for (const RoadSource& road : source.roads) {
-    for (const auto node : road.record.node.child(parent).children(name)) check(road, node);
-  }
-}
-
-validation::Finding& add(validation::Report& report, const Source& source, const RoadSource& road,
-                         pugi::xml_node node, std::string message) {
-  validation::Finding& finding = add_at(report, source, road, node, std::move(message));
-  finding.element = name_of(node);
-  const double s_m = source.number(node, "s");
-  if (!std::isnan(s_m)) finding.in_map = road.place_at(s_m);
-  return finding;
-}
 
 /// Files round lengths; a thing at the very end of its road is on it.
 constexpr double kAtEnd_m = 0.01;
 
 void find_stations_off(const Source& source, const char* parent, const char* name,
                        validation::Report& report) {
-  for_each(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
+  for_each_thing(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
     const double s_m = source.number(node, "s");
     if (!(s_m < -kAtEnd_m || s_m > road.record.length_m + kAtEnd_m)) return;
-    add(report, source, road, node,
+    add_thing(
+        report, source, road, node,
         fmt::format("is at s {:.2f} m of road {}, which is {:.2f} m long; correct s or the road",
                     s_m, road.record.id, road.record.length_m));
   });
@@ -84,7 +64,7 @@ template <typename Check>
 void for_each_validity(const Source& source, const Check& check) {
   for (const auto& [parent, name] :
        {std::pair{"signals", "signal"}, {"signals", "signalReference"}, {"objects", "object"}}) {
-    for_each(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
+    for_each_thing(source, parent, name, [&](const RoadSource& road, pugi::xml_node node) {
       for (const auto validity : node.children("validity")) check(road, node, validity);
     });
   }
@@ -97,7 +77,8 @@ void unknown_validity(const Source& source, const validation::ValidateOptions&,
     const LaneSection* section = section_at(road, source.number(node, "s"));
     const LaneRange range = range_of(validity);
     if (section == nullptr || names_a_lane(*section, range)) return;
-    add(report, source, road, node,
+    add_thing(
+        report, source, road, node,
         fmt::format("holds for lanes {} to {} of road {}, none of which is there; correct validity",
                     range.from, range.to, road.record.id));
   });
@@ -109,7 +90,7 @@ void reversed_validity(const Source& source, const validation::ValidateOptions&,
                                 pugi::xml_node validity) {
     const LaneRange range = range_of(validity);
     if (range.from <= range.to) return;
-    validation::Finding& finding = add(
+    validation::Finding& finding = add_thing(
         report, source, road, node,
         fmt::format("holds for lanes {} to {}; write the smaller one first", range.from, range.to));
     const bool object = std::strcmp(node.name(), "object") == 0;
@@ -134,7 +115,7 @@ void validity_against_orientation(const Source& source, const validation::Valida
         const int sign = sign_of(road, node);
         const LaneRange range = range_of(validity);
         if (sign == 0 || (range.from * sign >= 0 && range.to * sign >= 0)) return;
-        validation::Finding& finding = add(
+        validation::Finding& finding = add_thing(
             report, source, road, node,
             fmt::format("faces traffic of orientation {} but holds for lanes {} to {}, which drive "
                         "the other way; correct one of them",
@@ -164,23 +145,25 @@ bool is_old_country(std::string_view name) {
 
 void unknown_countries(const Source& source, const validation::ValidateOptions&,
                        validation::Report& report) {
-  for_each(source, "signals", "signal", [&](const RoadSource& road, pugi::xml_node node) {
+  for_each_thing(source, "signals", "signal", [&](const RoadSource& road, pugi::xml_node node) {
     const std::string_view code = node.attribute("country").value();
     if (is_country(code) || is_old_country(code)) return;
-    add(report, source, road, node,
-        code.empty() ? std::string("does not say whose catalogue its type is from; add a country")
-                     : fmt::format("country=\"{}\" is no country code (two capitals, as DE); "
-                                   "correct it",
-                                   code))
+    add_thing(report, source, road, node,
+              code.empty()
+                  ? std::string("does not say whose catalogue its type is from; add a country")
+                  : fmt::format("country=\"{}\" is no country code (two capitals, as DE); "
+                                "correct it",
+                                code))
         .severity = code.empty() ? validation::Severity::info : validation::Severity::warning;
   });
 }
 
 void signals_without_type(const Source& source, const validation::ValidateOptions&,
                           validation::Report& report) {
-  for_each(source, "signals", "signal", [&](const RoadSource& road, pugi::xml_node node) {
+  for_each_thing(source, "signals", "signal", [&](const RoadSource& road, pugi::xml_node node) {
     if (*node.attribute("type").value() != '\0') return;
-    add(report, source, road, node, "has no type, so that nobody knows what it shows; add one");
+    add_thing(report, source, road, node,
+              "has no type, so that nobody knows what it shows; add one");
   });
 }
 
@@ -188,7 +171,7 @@ void empty_controllers(const Source& source, const validation::ValidateOptions&,
                        validation::Report& report) {
   for (const auto controller : source.xml.root().children("controller")) {
     if (controller.child("control")) continue;
-    report.add(name_of(controller), std::nullopt, "controls no signal; add some or remove it")
+    report.add(thing_name(controller), std::nullopt, "controls no signal; add some or remove it")
         .line = source.xml.line_of(controller);
   }
 }

@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "roadbed/map/opendrive/values.h"
+
 namespace roadbed::map::opendrive::rules {
 namespace {
 
@@ -83,6 +85,13 @@ const RoadSource* Source::find_road(std::string_view id) const {
   return found == road_by_id.end() ? nullptr : found->second;
 }
 
+bool Source::is_since(int minor) const {
+  const auto header = xml.root().child("header");
+  const auto major = xml.optional_integer(header, "revMajor");
+  const auto found = xml.optional_integer(header, "revMinor");
+  return !major || !found || *major != 1 || *found >= minor;
+}
+
 double Source::number(pugi::xml_node node, const char* attribute) const {
   return xml.optional_number(node, attribute).value_or(std::numeric_limits<double>::quiet_NaN());
 }
@@ -93,6 +102,7 @@ std::vector<CubicElement> whole(const std::vector<CubicElement>& listed) {
     const auto& [s_m, a, b, c, d] = element.record;
     if (!std::isnan(s_m + a + b + c + d)) kept.push_back(element);
   }
+  sort_by_station(kept);
   return kept;
 }
 
@@ -157,8 +167,10 @@ std::vector<validation::Finding> check(const XmlDocument& xml, const Document& d
 std::vector<SourceRule> source_rules() {
   std::vector<SourceRule> all;
   for (const auto rules :
-       {schema_rules(), header_rules(), id_rules(), curve_rules(), profile_rules(), lane_rules(),
-        linkage_rules(), junction_rules(), redundancy_rules(), signal_rules()}) {
+       {schema_rules(), header_rules(), id_rules(), curve_rules(), record_rules(), profile_rules(),
+        width_rules(), lane_rules(), linkage_rules(), lane_linkage_rules(), junction_rules(),
+        redundancy_rules(), signal_rules(), signal_board_rules(), object_rules(),
+        object_type_rules(), cross_section_rules()}) {
     all.insert(all.end(), rules.begin(), rules.end());
   }
   return all;

@@ -54,11 +54,13 @@ struct Source {
   std::vector<SchemaFault> schema_faults;
 
   const RoadSource* find_road(std::string_view id) const;
+  /// Whether the file is of revision 1.`minor` of the standard or a later one, or of none.
+  bool is_since(int minor) const;
   /// Of an attribute, NaN if it is missing or broken.
   double number(pugi::xml_node node, const char* attribute) const;
 };
 
-/// Records of a profile whose numbers are whole.
+/// Records of a profile whose numbers are whole, in the order in which they hold.
 std::vector<CubicElement> whole(const std::vector<CubicElement>& listed);
 
 struct SourceRule {
@@ -70,16 +72,23 @@ struct SourceRule {
 /// What is missing, broken or unknown, by a table of the standard's elements.
 std::vector<SchemaFault> find_schema_faults(const XmlDocument& xml);
 
-std::span<const SourceRule> schema_rules();      ///< elements, attributes, values
-std::span<const SourceRule> header_rules();      ///< revision, CRS
-std::span<const SourceRule> id_rules();          ///< unique ids, references
-std::span<const SourceRule> curve_rules();       ///< the reference line
-std::span<const SourceRule> profile_rules();     ///< elevation, superelevation, lane offset, width
-std::span<const SourceRule> lane_rules();        ///< sections and lanes
-std::span<const SourceRule> linkage_rules();     ///< links of roads and lanes
-std::span<const SourceRule> junction_rules();    ///< connections
-std::span<const SourceRule> redundancy_rules();  ///< what is said twice
-std::span<const SourceRule> signal_rules();      ///< signals, controllers, objects, speeds
+std::span<const SourceRule> schema_rules();         ///< elements, attributes, values
+std::span<const SourceRule> header_rules();         ///< revision, CRS
+std::span<const SourceRule> id_rules();             ///< unique ids, references
+std::span<const SourceRule> curve_rules();          ///< the reference line
+std::span<const SourceRule> record_rules();         ///< where records of profiles begin
+std::span<const SourceRule> profile_rules();        ///< elevation, superelevation, lane offset
+std::span<const SourceRule> width_rules();          ///< widths and borders of lanes
+std::span<const SourceRule> lane_rules();           ///< sections and lanes
+std::span<const SourceRule> linkage_rules();        ///< links of roads and lanes
+std::span<const SourceRule> lane_linkage_rules();   ///< what linked lanes owe each other
+std::span<const SourceRule> junction_rules();       ///< connections
+std::span<const SourceRule> redundancy_rules();     ///< what is said twice
+std::span<const SourceRule> signal_rules();         ///< signals, controllers, objects, speeds
+std::span<const SourceRule> signal_board_rules();   ///< boards of several signs
+std::span<const SourceRule> object_rules();         ///< outlines, skeletons, markings of objects
+std::span<const SourceRule> object_type_rules();    ///< what objects of a type may have
+std::span<const SourceRule> cross_section_rules();  ///< strips of a road's surface
 
 /// All of the above.
 std::vector<SourceRule> source_rules();
