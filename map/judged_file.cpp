@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <iterator>
 #include <utility>
 
 #include "roadbed/map/commonroad/read.h"
 #include "roadbed/map/commonroad/rules/rules.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/xml.h"
+#include "roadbed/map/lanelet2/autoware/rules.h"
 #include "roadbed/map/lanelet2/read.h"
 #include "roadbed/map/lanelet2/rules/source.h"
 #include "roadbed/map/opendrive/read.h"
 #include "roadbed/map/opendrive/rules/source.h"
+#include "roadbed/map/suppressions.h"
 
 namespace roadbed::map {
 namespace {
@@ -97,6 +100,7 @@ JudgedFile judge_open_drive(std::string bytes, const std::string& name,
   opendrive::Document document = opendrive::read_document(*xml);
   judged.findings = opendrive::rules::check(*xml, document, options);
   judged.lines = opendrive::rules::element_lines(*xml, document);
+  judged.suppressions = suppressions_of(*xml);
   read_into(judged, [&] {
     RoadMapParts parts = opendrive::read(*std::move(xml), std::move(document), {});
     opendrive::rules::mark_told(parts.remarks, judged.findings);
@@ -115,11 +119,13 @@ JudgedFile judge_lanelet2(std::string bytes, const std::string& name,
       made(judged, unread, [&] { return lanelet2::read_document(std::move(bytes), name); });
   if (!document) return judged;
   auto built = made(judged, refused, [&] { return lanelet2::build_lanes(*document); });
-  for (validation::Finding& finding :
-       lanelet2::rules::check(*document, built ? *built : lanelet2::BuiltLanes(), options)) {
-    judged.findings.push_back(std::move(finding));
+  const lanelet2::BuiltLanes no_lanes;
+  for (const auto& check : {lanelet2::rules::check, lanelet2::autoware::check}) {
+    auto findings = check(*document, built ? *built : no_lanes, options);
+    std::move(findings.begin(), findings.end(), std::back_inserter(judged.findings));
   }
   judged.lines = lanelet2::rules::element_lines(*document);
+  judged.suppressions = suppressions_of(*document, judged.findings);
   if (!built) return judged;
   read_into(judged, [&] { return lanelet2::read(*std::move(document), *std::move(built)); });
   return judged;
@@ -161,7 +167,11 @@ std::vector<validation::RuleInfo> open_drive_rules() {
 }
 
 std::vector<validation::RuleInfo> lanelet2_rules() {
-  return infos_of(lanelet2::rules::source_rules());
+  std::vector<validation::RuleInfo> infos = infos_of(lanelet2::rules::source_rules());
+  for (const validation::RuleInfo& info : infos_of(lanelet2::autoware::rules())) {
+    infos.push_back(info);
+  }
+  return infos;
 }
 
 std::vector<validation::RuleInfo> common_road_rules() {

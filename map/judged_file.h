@@ -15,8 +15,9 @@ namespace roadbed::map {
 struct JudgedFile {
   std::vector<validation::Finding> findings;  ///< places are in the source's coordinates
   validation::ElementLines lines;
-  std::optional<RoadMap> road_map;  ///< none if the file cannot be read as a map
-  std::string refusal;              ///< then: the reader's one line about it
+  validation::Suppressions suppressions;  ///< what the file itself says not to look at
+  std::optional<RoadMap> road_map;        ///< none if the file cannot be read as a map
+  std::string refusal;                    ///< then: the reader's one line about it
 };
 
 JudgedFile judge_open_drive(std::string bytes, const std::string& name,

@@ -1,14 +1,22 @@
 #include "roadbed/map/validate_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <set>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
+#include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/suppressions.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map {
@@ -58,6 +66,77 @@ JudgedFile judge(std::string bytes, const std::string& name,
   return judged;
 }
 
+/// The text that a compiled map was made from, as it is judged.
+struct JudgedSource {
+  std::optional<JudgedFile> judged;
+  std::string note;  ///< why there is none
+};
+
+JudgedSource judge_source(const std::filesystem::path& file,
+                          const validation::ValidateOptions& options) {
+  constexpr std::string_view kLeftOut = "no line numbers, and no rules about its text";
+  const std::optional<MapSource> source = source_of_compiled_map(file);
+  if (!source) {
+    return {{},
+            fmt::format("{} does not say what it was made from: {}", input_name(file), kLeftOut)};
+  }
+  const std::filesystem::path named = source->path;
+  bool is_there = false;
+  for (const std::filesystem::path& path :
+       {named, file.parent_path() / named, file.parent_path() / named.filename()}) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) continue;
+    is_there = true;
+    if (std::filesystem::file_size(path, error) != source->bytes || error) continue;
+    std::string bytes = read_file(path);
+    if (source_hash(bytes) != source->hash) continue;
+    return {judge(std::move(bytes), input_name(path), options), {}};
+  }
+  return {{},
+          fmt::format("{}, from which {} was made, {}: {}", one_line(named.string()),
+                      input_name(file), is_there ? "has changed" : "is not there", kLeftOut)};
+}
+
+/// What a judged text and the map that it makes, or that was compiled from it, show.
+Validation findings_of_both(JudgedFile judged, const validation::ValidateOptions& options) {
+  Validation validation{.road_map = std::move(judged.road_map),
+                        .refusal = std::move(judged.refusal),
+                        .findings = std::move(judged.findings),
+                        .lines = std::move(judged.lines)};
+  if (validation.road_map) {
+    for (validation::Finding& finding : validation.findings) {
+      if (finding.in_map) finding.in_map = validation.road_map->to_map(*finding.in_map);
+    }
+    Findings of_map = validation::validate(*validation.road_map, options);
+    drop_told(of_map, validation.findings);
+    add_lines(of_map, validation.lines);
+    append(validation.findings, std::move(of_map));
+  }
+  options.choice.apply(validation.findings);
+  validation.suppressed = take_suppressed(validation.findings, judged.suppressions);
+  sort_by_rule(validation.findings);
+  return validation;
+}
+
+/// A compiled map with the findings about its source's text. The reader's remarks are those of the
+/// text, which leaves out what rules say.
+Validation validate_compiled(const std::filesystem::path& file,
+                             const validation::ValidateOptions& options) {
+  RoadMap road_map = open_compiled_map(file);
+  JudgedSource source = judge_source(file, options);
+  if (!source.judged || !source.judged->road_map) {
+    JudgedFile alone;
+    alone.road_map = std::move(road_map);
+    Validation validation = findings_of_both(std::move(alone), options);
+    validation.note = source.note;
+    return validation;
+  }
+  RoadMapParts parts = road_map.parts();
+  parts.remarks = source.judged->road_map->parts().remarks;
+  source.judged->road_map.emplace(std::move(parts));
+  return findings_of_both(*std::move(source.judged), options);
+}
+
 }  // namespace
 
 std::vector<validation::RuleInfo> rule_catalogue() {
@@ -76,24 +155,12 @@ std::vector<validation::RuleInfo> rule_catalogue() {
 
 Validation validate_bytes(std::string bytes, const std::string& name,
                           const validation::ValidateOptions& options) {
-  JudgedFile judged = judge(std::move(bytes), name, options);
-  Validation validation{std::move(judged.road_map), std::move(judged.refusal),
-                        std::move(judged.findings), std::move(judged.lines)};
-  if (validation.road_map) {
-    for (validation::Finding& finding : validation.findings) {
-      if (finding.in_map) finding.in_map = validation.road_map->to_map(*finding.in_map);
-    }
-    Findings of_map = validation::validate(*validation.road_map, options);
-    drop_told(of_map, validation.findings);
-    add_lines(of_map, validation.lines);
-    append(validation.findings, std::move(of_map));
-  }
-  sort_by_rule(validation.findings);
-  return validation;
+  return findings_of_both(judge(std::move(bytes), name, options), options);
 }
 
 Validation validate_file(const std::filesystem::path& file,
                          const validation::ValidateOptions& options) {
+  if (is_compiled_map(stored_start(file, 16))) return validate_compiled(file, options);
   return validate_bytes(read_file(file), input_name(file), options);
 }
 

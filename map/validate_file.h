@@ -19,7 +19,10 @@ struct Validation {
   std::string refusal;              ///< then: the reader's one line about it
   std::vector<validation::Finding>
       findings;                    ///< places are in the map's frame, else in the source's
-  validation::ElementLines lines;  ///< empty of a compiled map
+  validation::ElementLines lines;  ///< empty of a compiled map without its source
+  std::vector<validation::Finding> suppressed;  ///< those that the map itself says not to tell
+
+  std::string note;  ///< what was not looked at, in one line; empty if all was
 
   /// Where a finding is, in the file's own coordinates.
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const {
@@ -28,7 +31,8 @@ struct Validation {
 };
 
 /// Every fault of a map file: of its text, of the map that it makes, and what its reader says. A
-/// file that names a known format but cannot be read is a finding, not an exception.
+/// file that names a known format but cannot be read is a finding, not an exception. A compiled map
+/// is judged with the text of its source, where that lies unchanged where it was.
 /// @throws InputError if the file is missing or of no known format.
 Validation validate_file(const std::filesystem::path& file,
                          const validation::ValidateOptions& options = {});

@@ -1,6 +1,7 @@
 #include "roadbed/map/compiled/compiled_map.h"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <functional>
 #include <memory>
@@ -19,7 +20,8 @@ namespace {
 
 using File = std::shared_ptr<const ChunkedFile>;
 
-constexpr std::string_view kNames = "names", kTotals = "totals", kRouting = "appendix";
+constexpr std::string_view kNames = "names", kTotals = "totals", kRouting = "appendix",
+                           kSource = "source";
 
 // Where the records of a list begin; one more than there are records.
 std::string places(std::string_view list) { return fmt::format("{}.at", list); }
@@ -62,6 +64,20 @@ void add_list(std::string_view name, const Fields& fields, const List& list,
   outputs.push_back(
       {places(name), places_array->bytes().size(),
        [places_array](ChunkedFileWriter& file) { file.append(places_array->bytes()); }});
+}
+
+template <typename Io, typename Source>
+void source_fields(Io& io, Source& source) {
+  io(source.path);
+  io(source.bytes);
+  io(source.hash);
+}
+
+std::string bytes_of(const MapSource& source) {
+  std::string bytes;
+  ByteWriter writer(bytes);
+  source_fields(writer, source);
+  return bytes;
 }
 
 void write_outputs(const std::vector<Output>& outputs, ByteSink& sink) {
@@ -225,12 +241,18 @@ std::string write_compiled_map(const RoadMap& road_map) {
 }
 
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing) {
+  return write_compiled_map(road_map, routing, std::nullopt);
+}
+
+std::string write_compiled_map(const RoadMap& road_map, std::string_view routing,
+                               const std::optional<MapSource>& source) {
   StringSink sink;
-  write_compiled_map(road_map, routing, sink);
+  write_compiled_map(road_map, routing, sink, source);
   return sink.take();
 }
 
-void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink) {
+void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink,
+                        const std::optional<MapSource>& source) {
   std::string head;
   ByteWriter head_writer(head);
   fields::head(head_writer, road_map.content());
@@ -246,7 +268,28 @@ void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteS
   };
   fields::lists(add, road_map.content());
   if (!routing.empty()) outputs.push_back(output_of(std::string(kRouting), routing));
+  const std::string source_bytes = source ? bytes_of(*source) : std::string();
+  if (source) outputs.push_back(output_of(std::string(kSource), source_bytes));
   write_outputs(outputs, sink);
+}
+
+std::uint64_t source_hash(std::string_view content) {
+  return XXH3_64bits(content.data(), content.size());
+}
+
+std::optional<MapSource> source_of_compiled_map(const std::filesystem::path& path) {
+  const File file = ChunkedFile::open(path);
+  if (!file->has(kSource)) return {};
+  const FlatArray<char> section(file, std::string(kSource));
+  try {
+    ByteReader reader(section.bytes(), {});
+    MapSource source;
+    source_fields(reader, source);
+    reader.check(reader.at_end());
+    return source;
+  } catch (const ByteReader::Damaged&) {
+    file->refuse(std::string(kSource), "its content is damaged");
+  }
 }
 
 bool is_compiled_map(std::string_view bytes) {

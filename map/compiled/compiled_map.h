@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,8 +18,27 @@ namespace roadbed::map::inline compiled {
 std::string write_compiled_map(const RoadMap& road_map);
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing);
 
+/// The file that a map was compiled from, so that `validate` can look at its text again.
+struct MapSource {
+  std::string path;         ///< as it was named, with slashes
+  std::uint64_t bytes = 0;  ///< of the file as it is stored
+  std::uint64_t hash = 0;   ///< XXH3 of what it holds, unpacked
+};
+
+/// XXH3 of the content of a map file.
+std::uint64_t source_hash(std::string_view content);
+
+/// A compiled map that names its source.
+std::string write_compiled_map(const RoadMap& road_map, std::string_view routing,
+                               const std::optional<MapSource>& source);
+
 /// The same into a sink, piece by piece: the file never stands in memory.
-void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink);
+void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink,
+                        const std::optional<MapSource>& source = {});
+
+/// What a compiled map says of its source; none if it says nothing.
+/// @throws InputError if the file is no compiled map, or damaged there.
+std::optional<MapSource> source_of_compiled_map(const std::filesystem::path& file);
 
 /// Whether the bytes begin as a compiled map does.
 bool is_compiled_map(std::string_view bytes);

@@ -31,6 +31,10 @@ Finding& Report::add(std::string element, std::optional<Eigen::Vector2d> in_map,
   return findings_->emplace_back(std::move(finding));
 }
 
+std::string Report::autoware_issue(int number) const {
+  return fmt::format("{}-{:03}", rule_->autoware_rule, number);
+}
+
 void Report::finish() {
   if (count_ <= kMost) return;
   uncounted_.element = "map";

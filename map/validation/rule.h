@@ -9,21 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/validation/finding.h"
+#include "roadbed/map/validation/rule_choice.h"
+
 namespace roadbed::map::validation {
-
-enum class Severity { info, warning, error };
-std::string_view to_string(Severity severity);
-
-/// One fault of a map: what, where, and what to do.
-struct Finding {
-  std::string rule;       ///< "geometry.gap"
-  std::string asam_rule;  ///< "asam.net:xodr:1.7.0:…", empty where there is none
-  Severity severity = Severity::warning;
-  std::string element;  ///< "road 12", "lane 12/0/-1"
-  long line = 0;        ///< in the source file, 0 if unknown
-  std::optional<Eigen::Vector2d> in_map;
-  std::string message;  ///< with what to do
-};
 
 /// Above these a rule speaks up.
 struct ValidateOptions {
@@ -39,18 +28,17 @@ struct ValidateOptions {
   double max_signal_distance_m = 50.0;         ///< from the nearest lane
   double max_object_distance_m = 100.0;        ///< from the nearest lane
   double min_overlap_m = 5.0;                  ///< along lanes that should not overlap
-};
-
-/// What a rule is for. Ids are stable: they are what users filter by.
-struct RuleInfo {
-  std::string_view id;         ///< "geometry.gap"
-  std::string_view asam_rule;  ///< "asam.net:xodr:…", empty where ASAM has none
-  Severity severity;           ///< the usual one; a finding may be graver or milder
-  std::string_view meaning;    ///< what is wrong where the rule finds something, in one line
+  double min_tagged_speed_kmph = 10.0;         ///< Autoware's range of speed_limit tags
+  double max_tagged_speed_kmph = 50.0;
+  RuleChoice choice = {};  ///< which rules, and how grave
 };
 
 /// Line of each element that findings name: "road 12", "lane 12/0/-1", "lanelet 4".
 using ElementLines = std::map<std::string, long, std::less<>>;
+
+/// Patterns of the rules that the map itself says not to look at an element with; those of "map"
+/// count for all elements.
+using Suppressions = std::map<std::string, std::vector<std::string>, std::less<>>;
 
 /// Takes the findings of one rule; a file can be made to have more than memory holds, so those
 /// past the first thousand are only counted, which a last finding says.
@@ -64,6 +52,9 @@ class Report {
   /// @returns the finding, for what is particular about it; valid until the next one is added.
   Finding& add(std::string element, std::optional<Eigen::Vector2d> in_map, std::string message);
 
+  /// Autoware's name of the rule's issue with that number: "Lane.BorderSharing-001".
+  std::string autoware_issue(int number) const;
+
   /// To be called when the rule is through: says how many findings were only counted.
   void finish();
 
@@ -76,12 +67,14 @@ class Report {
   Finding uncounted_;  ///< stands for those past the most
 };
 
-/// What a list of rules finds: each has an `info`, and a `check` of what they all look at.
+/// What those of a list of rules find that are asked for: each has an `info`, and a `check` of what
+/// they all look at.
 template <typename Rules, typename Source>
 std::vector<Finding> findings_of(const Rules& rules, const Source& source,
                                  const ValidateOptions& options) {
   std::vector<Finding> findings;
   for (const auto& rule : rules) {
+    if (!options.choice.asks_for(rule.info)) continue;
     Report report(rule.info, findings);
     rule.check(source, options, report);
     report.finish();

@@ -1,4 +1,4 @@
-// Any map file in, findings or InputError out.
+// Any map file in, findings or InputError out; by the rules that are usual, and by Autoware's.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -7,10 +7,15 @@
 #include "roadbed/map/validate_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using roadbed::map::validation::Profile;
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  try {
-    roadbed::map::validate_bytes(bytes, "fuzz");
-  } catch (const roadbed::map::InputError&) {
+  for (const Profile profile : {Profile::planning, Profile::autoware}) {
+    roadbed::map::validation::ValidateOptions options;
+    options.choice.profile = profile;
+    try {
+      roadbed::map::validate_bytes(bytes, "fuzz", options);
+    } catch (const roadbed::map::InputError&) {
+    }
   }
   return 0;
 }

@@ -56,6 +56,7 @@ LANES_ROUTES: Commands = [
     ("info", ["info", "in.rbm"]),
     ("validate", ["validate", "IN"]),
 ]
+AUTOWARE: Commands = [("validate autoware", ["validate", "IN", "--profile", "autoware"])]
 AREA: Commands = [
     ("info", ["info", "IN"]),
     ("import", ["import", "IN", "-o", "in.rbm", "--force"]),
@@ -130,12 +131,18 @@ CASES = [
     Case("attributes of a road", inputs.attributes_of_a_road, 1000, map_commands("50,-1.7")[:3]),
     Case("nested elements", inputs.nested_elements, 1000, map_commands("50,-1.7")[:3]),
     Case("long name", inputs.long_name, 10000, map_commands("50,-1.7")),
-    Case("lanelets", inputs.lanelets_in_a_row, 100, map_commands("50,1.5", "reach", ".osm")),
-    Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm")),
-    Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5")),
+    Case(
+        "lanelets",
+        inputs.lanelets_in_a_row,
+        100,
+        map_commands("50,1.5", "reach", ".osm") + AUTOWARE,
+    ),
+    Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm") + AUTOWARE),
+    Case("crossing lanelets", inputs.crossing_lanelets, 10, AUTOWARE),
+    Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5") + AUTOWARE),
     Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5")),
     Case("tags of a way", inputs.tags_of_a_way, 1000, map_commands("50,1.5")[:3]),
-    Case("regulations", inputs.regulations, 100, map_commands("50,1.5")),
+    Case("regulations", inputs.regulations, 100, map_commands("50,1.5") + AUTOWARE),
     Case("CommonRoad lanelets", inputs.cr_lanelets_in_a_row, 100, map_commands("50,1.5", ".xml")),
     Case("same CommonRoad lanelets", inputs.cr_same_lanelets, 10, map_commands("50,1.5")),
     Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3]),

@@ -301,6 +301,29 @@ def regulations(folder: Path, n: int) -> Path:
     return osm(folder, CORNERS + SIDES + elements + lanelet(21, 11, 12, members))
 
 
+def crossing_lanelets(folder: Path, n: int) -> Path:
+    """All lie on each other, share no border, and have the right of way by one element."""
+    content = ""
+    for i in range(n):
+        a, y = 10 * i + 1, i / n
+        content += osm_node(a, 0, 3 + y) + osm_node(a + 1, 100, 3 + y) + osm_node(a + 2, 0, y)
+        content += osm_node(a + 3, 100, y)
+        content += osm_way(a + 4, [a, a + 1]) + osm_way(a + 5, [a + 2, a + 3])
+    member = '<member type="relation" ref="5" role="regulatory_element"/>'
+    lanelets = "".join(lanelet(10 * i + 7, 10 * i + 5, 10 * i + 6, member) for i in range(n))
+    members = "".join(
+        f'<member type="relation" ref="{10 * i + 7}" role="{role}"/>'
+        for i in range(n)
+        for role in ("right_of_way", "yield")
+    )
+    turning = lanelets.replace("</relation>", '<tag k="turn_direction" v="left"/></relation>')
+    element = (
+        f'<relation id="5">{members}<tag k="type" v="regulatory_element"/>'
+        '<tag k="subtype" v="right_of_way"/></relation>'
+    )
+    return osm(folder, content + turning + element)
+
+
 # CommonRoad
 
 

@@ -1,5 +1,4 @@
 #include "roadbed/tools/commands/finding_reports.h"
-#include "roadbed/tools/files/json.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/validation/rule.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -23,6 +23,7 @@ std::string document_text(const Json& json) { return map::json_text(json, 2) + "
 Json finding_json(const Validation& validation, const Finding& finding) {
   Json json = {{"rule", finding.rule}};
   json["asam_rule"] = finding.asam_rule.empty() ? Json() : Json(finding.asam_rule);
+  json["autoware_issue"] = finding.autoware_issue.empty() ? Json() : Json(finding.autoware_issue);
   json["severity"] = to_string(finding.severity);
   json["element"] = finding.element;
   json["line"] = finding.line > 0 ? Json(finding.line) : Json();
@@ -43,33 +44,48 @@ std::string place_text(const Validation& validation, const Finding& finding) {
   return text;
 }
 
-long findings_counted(const Validation& validation, map::validation::Severity severity) {
-  return std::count_if(validation.findings.begin(), validation.findings.end(),
-                       [&](const Finding& finding) { return finding.severity == severity; });
-}
-
 std::string line_of(const Validation& validation, const Finding& finding) {
   return fmt::format("{}{}: {}: {}", finding.element, place_text(validation, finding),
                      to_string(finding.severity), finding.message);
 }
 
+/// A finding, and whether the baseline has it.
+struct Told {
+  const Finding* finding;
+  bool is_known;
+};
+
 /// Findings by rule, in order of rule.
-std::map<std::string, std::vector<const Finding*>> by_rule(const Validation& validation) {
-  std::map<std::string, std::vector<const Finding*>> groups;
-  for (const map::validation::RuleInfo& rule : map::rule_catalogue()) groups[std::string(rule.id)];
-  for (const Finding& finding : validation.findings) groups[finding.rule].push_back(&finding);
+std::map<std::string, std::vector<Told>> by_rule(const FindingReport& report) {
+  std::map<std::string, std::vector<Told>> groups;
+  for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
+    if (report.choice.asks_for(rule)) groups[std::string(rule.id)];
+  }
+  const std::vector<Finding>& findings = report.validation.findings;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    groups[findings[i].rule].push_back({&findings[i], report.is_known(i)});
+  }
   return groups;
 }
 
-bool is_fault(const Finding* finding) {
-  return finding->severity != map::validation::Severity::info;
+bool is_fault(const Told& told) {
+  return !told.is_known && told.finding->severity != map::validation::Severity::info;
+}
+
+/// With Autoware's name of the issue, where it has one.
+std::string test_line(const Validation& validation, const Told& told) {
+  const std::string issue = told.finding->autoware_issue.empty()
+                                ? std::string()
+                                : fmt::format(" [{}]", told.finding->autoware_issue);
+  return fmt::format("{}{}{}\n", told.is_known ? "known: " : "", line_of(validation, *told.finding),
+                     issue);
 }
 
 std::string test_case(const Validation& validation, const std::string& file,
-                      const std::string& rule, const std::vector<const Finding*>& findings) {
+                      const std::string& rule, const std::vector<Told>& findings) {
   std::string faults, notes;
-  for (const Finding* finding : findings) {
-    (is_fault(finding) ? faults : notes) += line_of(validation, *finding) + "\n";
+  for (const Told& told : findings) {
+    (is_fault(told) ? faults : notes) += test_line(validation, told);
   }
   std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")", map::html_text(file),
                                  map::html_text(rule));
@@ -102,7 +118,8 @@ Json sarif_rule(const map::validation::RuleInfo& rule) {
   Json json = {{"id", rule.id},
                {"shortDescription", {{"text", rule.meaning}}},
                {"defaultConfiguration", {{"level", sarif_level(rule.severity)}}}};
-  if (!rule.asam_rule.empty()) json["properties"] = {{"asam_rule", rule.asam_rule}};
+  if (!rule.asam_rule.empty()) json["properties"]["asam_rule"] = rule.asam_rule;
+  if (!rule.autoware_rule.empty()) json["properties"]["autoware_rule"] = rule.autoware_rule;
   return json;
 }
 
@@ -137,6 +154,9 @@ Json sarif_result(const Validation& validation, const Finding& finding, const st
     const Eigen::Vector2d in_source = validation.to_source(*finding.in_map);
     result["properties"] = {{"x_m", in_source.x()}, {"y_m", in_source.y()}};
   }
+  if (!finding.autoware_issue.empty()) {
+    result["properties"]["autoware_issue"] = finding.autoware_issue;
+  }
   return result;
 }
 
@@ -154,29 +174,31 @@ const char* colour(map::validation::Severity severity) {
 
 }  // namespace
 
-std::string findings_text(const Validation& validation, const std::string& file) {
-  std::string text;
-  for (const Finding& finding : validation.findings) {
-    text +=
-        fmt::format("{}{}: {}: {}: {} [{}]\n", file, place_text(validation, finding),
-                    to_string(finding.severity), finding.element, finding.message, finding.rule);
+std::string findings_json(const FindingReport& report) {
+  const Validation& validation = report.validation;
+  Json list = Json::array(), suppressed = Json::array();
+  for (std::size_t i = 0; i < validation.findings.size(); ++i) {
+    list.push_back(finding_json(validation, validation.findings[i]));
+    if (report.baseline) list.back()["known"] = report.is_known(i);
   }
-  return text + fmt::format("{} errors, {} warnings, {} notes\n",
-                            findings_counted(validation, map::validation::Severity::error),
-                            findings_counted(validation, map::validation::Severity::warning),
-                            findings_counted(validation, map::validation::Severity::info));
+  for (const Finding& finding : validation.suppressed) {
+    suppressed.push_back(finding_json(validation, finding));
+  }
+  Json document = {{"findings", std::move(list)}, {"suppressed", std::move(suppressed)}};
+  if (report.baseline) {
+    document["gone"] = Json::array();
+    for (const KnownFinding& gone : report.baseline->gone) {
+      document["gone"].push_back(
+          {{"rule", gone.rule},
+           {"autoware_issue", gone.autoware_issue.empty() ? Json() : Json(gone.autoware_issue)},
+           {"element", gone.element}});
+    }
+  }
+  return document_text(versioned("findings", document));
 }
 
-std::string findings_json(const Validation& validation) {
-  Json list = Json::array();
-  for (const Finding& finding : validation.findings) {
-    list.push_back(finding_json(validation, finding));
-  }
-  return document_text(versioned("findings", {{"findings", std::move(list)}}));
-}
-
-std::string findings_junit(const Validation& validation, const std::string& file) {
-  const auto groups = by_rule(validation);
+std::string findings_junit(const FindingReport& report, const std::string& file) {
+  const auto groups = by_rule(report);
   const auto failures = std::count_if(groups.begin(), groups.end(), [](const auto& group) {
     return std::any_of(group.second.begin(), group.second.end(), is_fault);
   });
@@ -184,20 +206,29 @@ std::string findings_junit(const Validation& validation, const std::string& file
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
       "  <testsuite name=\"roadbed validate {}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n",
       map::html_text(file), groups.size(), failures);
-  for (const auto& [rule, findings] : groups) text += test_case(validation, file, rule, findings);
+  for (const auto& [rule, findings] : groups) {
+    text += test_case(report.validation, file, rule, findings);
+  }
   return text + "  </testsuite>\n</testsuites>\n";
 }
 
-std::string findings_sarif(const Validation& validation, const std::string& file) {
+std::string findings_sarif(const FindingReport& report, const std::string& file) {
   Json rules = Json::array();
   std::map<std::string, std::size_t> index;
   for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
     index.emplace(rule.id, rules.size());
     rules.push_back(sarif_rule(rule));
   }
+  const Validation& validation = report.validation;
   Json results = Json::array();
-  for (const Finding& finding : validation.findings) {
+  for (std::size_t i = 0; i < validation.findings.size(); ++i) {
+    results.push_back(sarif_result(validation, validation.findings[i], file, index));
+    if (!report.baseline) continue;
+    results.back()["baselineState"] = report.is_known(i) ? "unchanged" : "new";
+  }
+  for (const Finding& finding : validation.suppressed) {
     results.push_back(sarif_result(validation, finding, file, index));
+    results.back()["suppressions"] = Json::array({{{"kind", "inSource"}}});
   }
   Json run = {{"tool", {{"driver", {{"name", "roadbed"}, {"rules", std::move(rules)}}}}},
               {"columnKind", "utf16CodeUnits"},
@@ -207,16 +238,20 @@ std::string findings_sarif(const Validation& validation, const std::string& file
                         {"runs", Json::array({std::move(run)})}});
 }
 
-std::string findings_geojson(const Validation& validation) {
+std::string findings_geojson(const FindingReport& report) {
+  const Validation& validation = report.validation;
   Json features = Json::array();
-  for (const Finding& finding : validation.findings) {
+  for (std::size_t i = 0; i < validation.findings.size(); ++i) {
+    const Finding& finding = validation.findings[i];
     if (!finding.in_map) continue;
     const Eigen::Vector2d in_source = validation.to_source(*finding.in_map);
+    Json properties = finding_json(validation, finding);
+    if (report.baseline) properties["known"] = report.is_known(i);
     features.push_back(
         {{"type", "Feature"},
          {"geometry",
           {{"type", "Point"}, {"coordinates", Json::array({in_source.x(), in_source.y()})}}},
-         {"properties", finding_json(validation, finding)}});
+         {"properties", std::move(properties)}});
   }
   Json json = {{"type", "FeatureCollection"}};
   if (validation.road_map && !validation.road_map->crs().empty()) {
@@ -226,7 +261,8 @@ std::string findings_geojson(const Validation& validation) {
   return document_text(json);
 }
 
-std::string findings_svg(const Validation& validation) {
+std::string findings_svg(const FindingReport& report) {
+  const Validation& validation = report.validation;
   if (!validation.road_map) throw std::invalid_argument("findings_svg: there is no map");
   map::SvgOptions options;
   for (const Finding& finding : validation.findings) {
@@ -239,11 +275,16 @@ std::string findings_svg(const Validation& validation) {
 }
 
 std::string rules_table() {
-  std::string table = "| rule | severity | ASAM rule | finds |\n|---|---|---|---|\n";
+  constexpr std::string_view kAsamPrefix = "asam.net:xodr:";
+  std::string table = "| rule | severity | ASAM or Autoware rule | finds |\n|---|---|---|---|\n";
   for (const map::validation::RuleInfo& rule : map::rule_catalogue()) {
-    const std::string asam =
-        rule.asam_rule.empty() ? "" : fmt::format("`{}`", rule.asam_rule.substr(14));
-    table += fmt::format("| `{}` | {} | {} | {} |\n", rule.id, to_string(rule.severity), asam,
+    std::string other;
+    if (!rule.asam_rule.empty()) {
+      other = fmt::format("`{}`", rule.asam_rule.substr(kAsamPrefix.size()));
+    } else if (!rule.autoware_rule.empty()) {
+      other = fmt::format("`{}`", rule.autoware_rule);
+    }
+    table += fmt::format("| `{}` | {} | {} | {} |\n", rule.id, to_string(rule.severity), other,
                          rule.meaning);
   }
   return table;

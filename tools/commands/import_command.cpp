@@ -8,7 +8,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/files/json_text.h"
@@ -92,8 +95,7 @@ class ImportCommand : public Command {
     refuse_other_formats();
     map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
-    const map::RoadMap road_map =
-        with_crs(map::load_map(input_, {.max_error_m = max_error_m_}), crs_);
+    const map::RoadMap road_map = with_crs(load(common.is_alone), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
     write(road_map, network);
     if (json_) print_json(streams.out, road_map);
@@ -102,6 +104,23 @@ class ImportCommand : public Command {
   }
 
  private:
+  // Remembers what the map is made from, where it can be found again; not in a batch, whose outputs
+  // are the same wherever the input lies.
+  map::RoadMap load(bool is_alone) {
+    const map::LoadOptions options{.max_error_m = max_error_m_};
+    if (map::is_compiled_map(map::stored_start(input_, 16))) return map::load_map(input_, options);
+    std::string bytes = map::read_file(input_);
+    if (is_alone && !map::is_stream(input_)) source_ = source_of(bytes);
+    return map::parse_map(std::move(bytes), map::input_name(input_), options);
+  }
+
+  std::optional<map::MapSource> source_of(std::string_view bytes) const {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(input_, error);
+    if (error) return {};
+    return map::MapSource{input_.generic_string(), size, map::source_hash(bytes)};
+  }
+
   // Nobody wants a compiled map under the name of another format.
   void refuse_other_formats() const {
     const std::string suffix = output_.extension().string();
@@ -116,10 +135,10 @@ class ImportCommand : public Command {
 
   void write(const map::RoadMap& road_map, const std::string& network) const {
     if (map::is_standard_stream(output_)) {
-      return map::write_to_standard_output(map::write_compiled_map(road_map, network));
+      return map::write_to_standard_output(map::write_compiled_map(road_map, network, source_));
     }
     map::OutputFile output(output_, force_);
-    map::write_compiled_map(road_map, network, output);
+    map::write_compiled_map(road_map, network, output, source_);
     output.commit();
   }
 
@@ -154,6 +173,7 @@ class ImportCommand : public Command {
   }
 
   std::filesystem::path input_, output_;
+  std::optional<map::MapSource> source_;
   std::string crs_;
   double max_error_m_ = 1e-3;
   bool json_ = false, force_ = false;

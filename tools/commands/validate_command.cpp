@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,12 +14,51 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/finding_baseline.h"
 #include "roadbed/tools/commands/finding_reports.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
 
 using map::Validation;
+using map::validation::Profile;
+using map::validation::RuleChoice;
+using map::validation::Severity;
+
+/// What is wrong with a pattern of rules; nothing if it fits one.
+std::string pattern_fault(const std::string& pattern) {
+  const auto catalogue = map::rule_catalogue();
+  const bool fits_one = std::ranges::any_of(
+      catalogue, [&](const auto& rule) { return map::validation::fits(pattern, rule); });
+  if (fits_one) return {};
+  return fmt::format("no rule is called \"{}\"; see: roadbed validate --rules",
+                     map::one_line(pattern));
+}
+
+/// "geometry.gap=info" as what it says, or what is wrong with it.
+struct NamedSeverity {
+  std::string pattern;
+  std::optional<Severity> severity;  ///< none: off
+  std::string fault;
+};
+
+NamedSeverity severity_of(const std::string& text) {
+  const std::size_t sign = text.rfind('=');
+  if (sign == std::string::npos) return {{}, {}, "RULE=error, warning, info or off is needed"};
+  NamedSeverity named{text.substr(0, sign), {}, pattern_fault(text.substr(0, sign))};
+  const std::string severity = text.substr(sign + 1);
+  if (severity == "error") {
+    named.severity = Severity::error;
+  } else if (severity == "warning") {
+    named.severity = Severity::warning;
+  } else if (severity == "info") {
+    named.severity = Severity::info;
+  } else if (severity != "off") {
+    named.fault =
+        fmt::format("\"{}\" is none of error, warning, info and off", map::one_line(severity));
+  }
+  return named;
+}
 
 class ValidateCommand : public Command {
  public:
@@ -28,7 +68,10 @@ class ValidateCommand : public Command {
     arguments.flag("--rules", list_rules_,
                    "List all rules with their meaning, and do nothing else");
     arguments.flag("-j,--json", json_, "Print one JSON document");
+    arguments.flag("--all", all_, "Print every finding, not the first five of each rule");
     declare_outputs(arguments);
+    declare_choice(arguments);
+    declare_baseline(arguments);
     arguments.add("--fail-on", fail_on_, "Least severity that makes the exit status 1")
         .one_of({"error", "warning", "info"})
         .with_default();
@@ -39,23 +82,43 @@ class ValidateCommand : public Command {
     arguments.says_no_if("a finding is as severe as --fail-on says");
     arguments.example(
         "  roadbed validate town.xodr --fail-on warning\n"
-        "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force");
+        "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force\n"
+        "  roadbed validate data/crossing.osm --profile autoware --severity 'autoware.*=warning'\n"
+        "  roadbed validate town.xodr --disable 'link.*' --write-baseline known.json --force\n"
+        "  roadbed validate town.xodr --baseline known.json --fail-on info");
   }
 
-  Exit run(const Streams& streams, const CommonOptions&) override {
+  Exit run(const Streams& streams, const CommonOptions& common) override {
     if (list_rules_) {
       streams.out << rules_table();
       return Exit::ok;
     }
-    for (const std::filesystem::path* file : {&junit_, &sarif_, &geojson_, &svg_}) {
+    for (const std::filesystem::path* file :
+         {&junit_, &sarif_, &geojson_, &svg_, &written_baseline_}) {
       if (!file->empty()) map::check_writable(*file, force_);
     }
+    options_.choice = chosen_rules();
+    if (!speed_range_kmph_.empty()) {
+      options_.min_tagged_speed_kmph = speed_range_kmph_[0];
+      options_.max_tagged_speed_kmph = speed_range_kmph_[1];
+    }
+    std::vector<KnownFinding> baseline;
+    if (!baseline_.empty()) baseline = read_baseline(baseline_);
     const Validation validation = map::validate_file(input_, options_);
     if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
+    if (!validation.note.empty() && !common.quiet) {
+      fmt::print(streams.err, "note: {}\n", validation.note);
+    }
+    FindingReport report(validation);
+    report.is_complete = all_;
+    report.choice = options_.choice;
+    if (!baseline_.empty()) {
+      report.baseline = compare_with_baseline(validation.findings, std::move(baseline));
+    }
     const std::string name = map::one_line(input_.filename().string());
-    streams.out << (json_ ? findings_json(validation) : findings_text(validation, name));
-    write_files(streams, validation);
-    return fails(validation) ? Exit::no : Exit::ok;
+    streams.out << (json_ ? findings_json(report) : findings_text(report, name));
+    write_files(streams, report);
+    return fails(report) ? Exit::no : Exit::ok;
   }
 
  private:
@@ -67,6 +130,36 @@ class ValidateCommand : public Command {
         .writes(".geojson");
     arguments.add("--svg", svg_, "Draw the map with its findings").writes(".svg");
     arguments.flag("-f,--force", force_, "Replace outputs that exist");
+  }
+
+  void declare_choice(Arguments& arguments) {
+    arguments
+        .add("--profile", profile_,
+             "Only rules for a use: planning (all but Autoware's, the default), asam, autoware, "
+             "commonroad")
+        .one_of({"planning", "asam", "autoware", "commonroad"});
+    arguments
+        .add("--only", only_,
+             "Only rules whose id, ASAM or Autoware name fits, as 'geometry.*'; may be given again")
+        .checked(pattern_fault);
+    arguments.add("--disable", disabled_, "Not these rules; may be given again")
+        .checked(pattern_fault);
+    arguments
+        .add("--severity", severities_,
+             "RULE=error, warning, info or off: how grave findings of a rule are; may be given "
+             "again, the last that fits counts")
+        .checked([](const std::string& text) { return severity_of(text).fault; });
+  }
+
+  void declare_baseline(Arguments& arguments) {
+    arguments
+        .add("--baseline", baseline_,
+             "Findings that are known (written by --write-baseline or --json): they count neither "
+             "for the exit status nor in the text, which says what is new and what is gone")
+        .reads()
+        .ending(".json");
+    arguments.add("--write-baseline", written_baseline_, "Write all findings as a baseline")
+        .writes(".json");
   }
 
   void declare_limits(Arguments& arguments) {
@@ -90,37 +183,65 @@ class ValidateCommand : public Command {
           "Greatest distance of an object from the next lane [m]");
     limit("--min-overlap", options_.min_overlap_m,
           "Length over which lanes of two roads may lie on top of each other [m]");
+    arguments
+        .add(
+            "--speed-range", speed_range_kmph_,
+            "Least and greatest speed limit that Autoware's rule allows, 10,50 if not given [km/h]")
+        .values(2)
+        .separated_by(',');
   }
 
-  void write_files(const Streams& streams, const Validation& validation) const {
+  RuleChoice chosen_rules() const {
+    RuleChoice choice;
+    if (profile_ == "planning") choice.profile = Profile::planning;
+    if (profile_ == "asam") choice.profile = Profile::asam;
+    if (profile_ == "autoware") choice.profile = Profile::autoware;
+    if (profile_ == "commonroad") choice.profile = Profile::commonroad;
+    choice.only = only_;
+    choice.disabled = disabled_;
+    for (const std::string& text : severities_) {
+      const NamedSeverity named = severity_of(text);
+      choice.severities.emplace_back(named.pattern, named.severity);
+    }
+    return choice;
+  }
+
+  void write_files(const Streams& streams, const FindingReport& report) const {
     const std::string name = map::one_line(input_.filename().string());
     const std::string source = input_.generic_string();
-    if (!junit_.empty()) map::write_output(junit_, findings_junit(validation, name), force_);
-    if (!sarif_.empty()) map::write_output(sarif_, findings_sarif(validation, source), force_);
-    if (!geojson_.empty()) map::write_output(geojson_, findings_geojson(validation), force_);
+    const auto write = [&](const std::filesystem::path& file, const auto& content) {
+      if (!file.empty()) map::write_output(file, content(), force_);
+    };
+    write(junit_, [&] { return findings_junit(report, name); });
+    write(sarif_, [&] { return findings_sarif(report, source); });
+    write(geojson_, [&] { return findings_geojson(report); });
+    write(written_baseline_, [&] { return findings_json(report.validation); });
     if (svg_.empty()) return;
-    if (validation.road_map) {
-      map::write_output(svg_, findings_svg(validation), force_);
+    if (report.validation.road_map) {
+      map::write_output(svg_, findings_svg(report), force_);
     } else {
       fmt::print(streams.err, "roadbed: {} is not written, since there is no map to draw\n",
                  svg_.string());
     }
   }
 
-  bool fails(const Validation& validation) const {
-    const map::validation::Severity least = fail_on_ == "error" ? map::validation::Severity::error
-                                            : fail_on_ == "warning"
-                                                ? map::validation::Severity::warning
-                                                : map::validation::Severity::info;
-    return std::any_of(
-        validation.findings.begin(), validation.findings.end(),
-        [&](const map::validation::Finding& finding) { return finding.severity >= least; });
+  bool fails(const FindingReport& report) const {
+    const Severity least = fail_on_ == "error"     ? Severity::error
+                           : fail_on_ == "warning" ? Severity::warning
+                                                   : Severity::info;
+    const auto& findings = report.validation.findings;
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+      if (!report.is_known(i) && findings[i].severity >= least) return true;
+    }
+    return false;
   }
 
-  std::filesystem::path input_, junit_, sarif_, geojson_, svg_;
+  std::filesystem::path input_, junit_, sarif_, geojson_, svg_, baseline_, written_baseline_;
   map::validation::ValidateOptions options_;
-  std::string fail_on_ = "error";
-  bool json_ = false, list_rules_ = false, force_ = false;
+  std::string fail_on_ = "error", profile_;
+  std::vector<double> speed_range_kmph_;
+  std::vector<std::string> only_, disabled_, severities_;
+  bool json_ = false, list_rules_ = false, force_ = false, all_ = false;
 };
 
 }  // namespace

@@ -149,8 +149,9 @@ void bind_findings(nb::module_& module) {
                 object_of(nlohmann::ordered_json::parse(findings_json(validation)))["findings"]);
           },
           nb::sig("def findings(self) -> list[dict[str, typing.Any]]"),
-          "A dict for each: rule, asam_rule, severity (error, warning, info), element, line, x_m, "
-          "y_m and message, as in `roadbed validate --json`.")
+          "A dict for each: rule, asam_rule, autoware_issue, severity (error, warning, info), "
+          "element, "
+          "line, x_m, y_m and message, as in `roadbed validate --json`.")
       .def_prop_ro(
           "refusal", [](const map::Validation& validation) { return validation.refusal; },
           "Why the file cannot be read as a map; empty if it can.")

@@ -111,6 +111,7 @@ COLUMNS: dict[str, list[Column]] = {
             {
                 "rule": _TEXT,
                 "asam_rule": _TEXT,
+                "autoware_issue": _TEXT,
                 "severity": _TEXT,
                 "element": _TEXT,
                 "line": _WHOLE,
