@@ -84,7 +84,8 @@ class ValidateCommand : public Command {
         "  roadbed validate town.xodr --fail-on warning\n"
         "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force\n"
         "  roadbed validate data/crossing.osm --profile autoware --severity 'autoware.*=warning'\n"
-        "  roadbed validate town.xodr --disable 'link.*' --write-baseline known.json --force\n"
+        "  roadbed validate town.xodr --disable 'link.*' --severity geometry.kink=info\n"
+        "  roadbed validate town.xodr --write-baseline known.json --force\n"
         "  roadbed validate town.xodr --baseline known.json --fail-on info");
   }
 
