@@ -31,6 +31,7 @@ std::string pattern_fault(const std::string& pattern) {
   const bool fits_one = std::ranges::any_of(
       catalogue, [&](const auto& rule) { return map::validation::fits(pattern, rule); });
   if (fits_one) return {};
+  if (std::filesystem::exists(pattern)) return "MAP has to be named before it";
   return fmt::format("no rule is called \"{}\"; see: roadbed validate --rules",
                      map::one_line(pattern));
 }

@@ -78,5 +78,50 @@ TEST(AutowareMaps, HaveTheIssuesThatAutowaresTestsExpect) {
   EXPECT_EQ(lines, 121u);
 }
 
+TEST(AutowareMaps, OfAutowareItselfHaveTheIssuesThatAReaderAgreesWith) {
+  // Maps that are older than most requirements. Each issue was looked up in the file: speed limits
+  // of 60 and 70 km/h, turns without an area, lights whose bulbs name other lights, borders that
+  // lie on each other as two ways, … All other rules have nothing to say.
+  const std::map<std::string, std::set<std::string>> agreed = {
+      {"2km_test.osm",
+       {"Lane.CenterlineGeometry-001", "Lane.LaneChangeAttribute-001",
+        "Lane.SpeedLimitValidity-002"}},
+      {"intersection.osm",
+       {"Crosswalk.MissingRegulatoryElements-001", "Intersection.IntersectionAreaSegmentType-001",
+        "Intersection.IntersectionAreaTagging-001", "Intersection.IntersectionAreaTagging-004",
+        "Intersection.RightOfWayWithTrafficLights-001",
+        "Intersection.RightOfWayWithTrafficLights-004",
+        "Intersection.RightOfWayWithTrafficLights-005",
+        "Intersection.RightOfWayWithTrafficLights-006",
+        "Intersection.RightOfWayWithoutTrafficLights-005", "Lane.BorderSharing-001",
+        "Lane.BorderSharing-002", "Lane.LaneChangeAttribute-001", "Lane.RoadShoulder-003",
+        "Lane.SpeedLimitValidity-002", "StopLine.MissingRegulatoryElements-001",
+        "TrafficLight.LightBulbTagging-003", "TrafficLight.RegulatoryElementDetails-005",
+        "TrafficLight.RegulatoryElementDetails-007"}},
+      {"road_shoulder.osm",
+       {"Intersection.IntersectionAreaTagging-004", "Intersection.TurnSignalDistanceOverlap-001",
+        "Lane.BorderSharing-002", "Lane.LaneChangeAttribute-001", "Lane.LaneletGeometry-001",
+        "Lane.RoadShoulder-003", "Lane.SpeedLimitValidity-002"}},
+      {"vm_03_left_hand.osm",
+       {"Area.BufferZoneValidity-001", "Crosswalk.MissingRegulatoryElements-001",
+        "Intersection.IntersectionAreaSegmentType-001", "Intersection.IntersectionAreaTagging-001",
+        "Intersection.IntersectionAreaTagging-004", "Intersection.RightOfWayWithTrafficLights-001",
+        "Intersection.RightOfWayWithTrafficLights-004", "Intersection.TurnDirectionTagging-001",
+        "Lane.LaneChangeAttribute-001", "Lane.RoadShoulder-003", "Lane.SpeedLimitValidity-002",
+        "StopLine.MissingRegulatoryElements-001", "TrafficLight.LightBulbTagging-003",
+        "TrafficLight.RegulatoryElementDetails-005", "TrafficLight.RegulatoryElementDetails-007"}},
+  };
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  for (const auto& [name, expected] : agreed) {
+    SCOPED_TRACE(name);
+    std::set<std::string> found;
+    for (const auto& [issue, times] :
+         issues_in(folder / "lanelet2/autowarefoundation+autoware_core" / name)) {
+      found.insert(issue);
+    }
+    EXPECT_EQ(found, expected);
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::map::validation
