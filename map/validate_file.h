@@ -20,9 +20,9 @@ struct Validation {
   std::vector<validation::Finding>
       findings;                    ///< places are in the map's frame, else in the source's
   validation::ElementLines lines;  ///< empty of a compiled map without its source
-  std::vector<validation::Finding> suppressed;  ///< those that the map itself says not to tell
+  std::vector<validation::Finding> suppressed = {};  ///< those that the map itself says not to tell
 
-  std::string note;  ///< what was not looked at, in one line; empty if all was
+  std::string note = {};  ///< what was not looked at, in one line; empty if all was
 
   /// Where a finding is, in the file's own coordinates.
   Eigen::Vector2d to_source(const Eigen::Vector2d& in_map) const {

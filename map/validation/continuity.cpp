@@ -163,6 +163,8 @@ void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& repo
   for_each_drivable_link(road_map, [&](const Lane& from, const Lane& to) {
     const double kink_rad = kink_between(from, to);
     if (std::abs(kink_rad) <= options.max_kink_rad || runs_against(from, to)) return;
+    // Backwards at once goes only who is folded, which has a finding of its own.
+    if (std::abs(kink_rad) > kReversed && (is_folded(from) || is_folded(to))) return;
     // A line drawn by few points has corners; where two of them meet is one more.
     if (std::abs(kink_rad) <= std::max(corner_rad(from, true), corner_rad(to, false))) return;
     Finding& finding = report.add(
