@@ -36,6 +36,15 @@ class NamingWriter {
     writer_(std::uint64_t{items.size()});
     for (const T& item : items) each(*this, item);
   }
+  // In which order lanes or roads are named says nothing.
+  template <typename Each>
+  void list(const std::vector<LaneId>& lanes, const Each&) {
+    names(lanes, [&](LaneId id) { return map_.lane(id).name; });
+  }
+  template <typename Each>
+  void list(const std::vector<RoadId>& roads, const Each&) {
+    names(roads, [&](RoadId id) { return map_.road(id).source_id; });
+  }
   template <typename T, typename Each>
   void optional(const std::optional<T>& value, const Each& each) {
     writer_(value.has_value());
@@ -57,6 +66,14 @@ class NamingWriter {
   std::string take() { return std::move(bytes_); }
 
  private:
+  template <typename T, typename NameOf>
+  void names(const std::vector<T>& items, const NameOf& name_of) {
+    std::multiset<std::string> sorted;
+    for (const T& item : items) sorted.insert(name_of(item));
+    writer_(std::uint64_t{sorted.size()});
+    for (const std::string& name : sorted) writer_(name);
+  }
+
   const RoadMap& map_;
   std::string bytes_;
   ByteWriter writer_{bytes_};

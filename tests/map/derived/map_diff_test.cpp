@@ -127,5 +127,18 @@ TEST(MapDiff, DoesNotCareAboutTheOriginOfCoordinates) {
   EXPECT_TRUE(changes(parts(), after).empty());
 }
 
+TEST(MapDiff, MindsNoOrderInWhichLanesAreNamed) {
+  RoadMapParts before = parts(), after = parts();
+  Regulation regulation;
+  regulation.source_id = "7";
+  regulation.lanes = {LaneId{0}, LaneId{1}};
+  before.regulations = {regulation};
+  std::reverse(regulation.lanes.begin(), regulation.lanes.end());
+  after.regulations = {regulation};
+  EXPECT_TRUE(changes(before, after).empty());
+  after.regulations[0].lanes.pop_back();
+  EXPECT_EQ(changes(before, after).size(), 1U);
+}
+
 }  // namespace
 }  // namespace roadbed::map
