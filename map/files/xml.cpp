@@ -85,9 +85,10 @@ XmlDocument::XmlDocument(std::string bytes, std::string name)
       text_(std::make_unique<std::string>(without_controls(std::move(bytes)))),
       line_starts_(*text_) {
   check_size(*text_, name_);
-  // Text is kept in its element: a node less for each.
+  // Text is kept in its element: a node less for each. Comments and the like are kept for who
+  // writes the document again.
   const pugi::xml_parse_result result = document_.load_buffer_inplace(
-      text_->data(), text_->size(), pugi::parse_default | pugi::parse_embed_pcdata);
+      text_->data(), text_->size(), pugi::parse_full | pugi::parse_embed_pcdata);
   if (!result) {
     throw InputError(
         {.file = name_,
