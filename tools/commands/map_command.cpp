@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/derived/map_diff.h"
@@ -13,6 +14,7 @@
 #include "roadbed/map/page/diff_page.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/map_parts.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
@@ -111,20 +113,44 @@ class DiffCommand : public Command {
 
 class MapCommand : public Command {
  public:
+  MapCommand() {
+    add("diff", std::make_unique<DiffCommand>("map diff"));
+    add("clip", make_map_clip_command());
+    add("merge", make_map_merge_command());
+    add("transform", make_map_transform_command());
+    add("tile", make_map_tile_command());
+  }
+
   void declare(Arguments& arguments) override {
-    arguments.description("Compare maps");
-    arguments.example("  roadbed map diff old.xodr new.xodr");
-    diff_arguments_ = arguments.part("diff");
-    diff_.declare(*diff_arguments_);
+    arguments.description("Compare and edit maps");
+    arguments.example(
+        "  roadbed map diff old.xodr new.xodr\n"
+        "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr");
+    for (Part& part : parts_) {
+      part.arguments = arguments.part(part.name);
+      part.command->declare(*part.arguments);
+    }
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
-    return diff_arguments_->given() ? diff_.run(streams, common) : Exit::usage;
+    for (const Part& part : parts_) {
+      if (part.arguments->given()) return part.command->run(streams, common);
+    }
+    return Exit::usage;
   }
 
  private:
-  DiffCommand diff_{"map diff"};
-  std::optional<Arguments> diff_arguments_;
+  struct Part {
+    std::string name;
+    std::unique_ptr<Command> command;
+    std::optional<Arguments> arguments;
+  };
+
+  void add(const std::string& name, std::unique_ptr<Command> command) {
+    parts_.push_back({name, std::move(command), {}});
+  }
+
+  std::vector<Part> parts_;
 };
 
 }  // namespace

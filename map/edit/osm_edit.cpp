@@ -1,0 +1,263 @@
+#include "roadbed/map/edit/osm_edit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/files/xml_scanner.h"
+
+namespace roadbed::map::inline edit {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+// Behind the `>` that ends the tag which begins there.
+std::size_t tag_end(std::string_view text, std::size_t at) {
+  char quote = '\0';
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quote != '\0') {
+      if (c == quote) quote = '\0';
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '>') {
+      return at + 1;
+    }
+  }
+  return text.size();
+}
+
+std::string_view name_at(std::string_view text, std::size_t at) {
+  const std::size_t end = text.find_first_of(" \t\r\n/>", at + 1);
+  return text.substr(at + 1, end - at - 1);
+}
+
+// Where the value of an attribute stands in a start tag; empty if it has none of that name.
+std::pair<std::size_t, std::size_t> value_range(std::string_view tag, std::string_view name) {
+  for (std::size_t at = tag.find(name); at != tag.npos; at = tag.find(name, at + 1)) {
+    std::size_t behind = at + name.size();
+    if (at == 0 || kBlanks.find(tag[at - 1]) == kBlanks.npos) continue;
+    behind = tag.find_first_not_of(kBlanks, behind);
+    if (behind == tag.npos || tag[behind] != '=') continue;
+    const std::size_t open = tag.find_first_of("'\"", behind);
+    if (open == tag.npos) break;
+    const std::size_t close = tag.find(tag[open], open + 1);
+    if (close != tag.npos) return {open + 1, close};
+  }
+  return {0, 0};
+}
+
+std::string value_of(std::string_view tag, std::string_view name) {
+  const auto [from, to] = value_range(tag, name);
+  return decode_xml(tag.substr(from, to - from));
+}
+
+}  // namespace
+
+std::string_view element_text(std::string_view text, std::size_t at) {
+  std::size_t end = tag_end(text, at);
+  if (end >= 2 && text[end - 2] == '/') return text.substr(at, end - at);
+  const std::string close = fmt::format("</{}", name_at(text, at));
+  end = text.find(close, end);
+  return end == text.npos ? text.substr(at) : text.substr(at, tag_end(text, end) - at);
+}
+
+OsmElement::OsmElement(std::string_view text) : name_(name_at(text, 0)) {
+  std::size_t at = tag_end(text, 0);
+  const bool empty = text[at - 2] == '/';
+  start_ = text.substr(0, at - (empty ? 2 : 1));
+  while (!start_.empty() && kBlanks.find(start_.back()) != kBlanks.npos) start_.pop_back();
+  if (const std::size_t quote = start_.find_first_of("'\""); quote != start_.npos) {
+    quote_ = start_[quote];
+  }
+  if (empty) return;
+  for (;;) {
+    const std::size_t child = text.find('<', at);
+    if (child == text.npos) break;
+    const std::string blanks(text.substr(at, child - at));
+    if (text[child + 1] == '/') {
+      before_end_ = blanks;
+      break;
+    }
+    if (children_.empty()) before_child_ = blanks;
+    const bool is_comment = text.substr(child, 4) == "<!--";
+    const std::string_view whole = is_comment
+                                       ? text.substr(child, text.find("-->", child) + 3 - child)
+                                       : element_text(text, child);
+    const std::string name(is_comment ? std::string_view("!--") : name_at(text, child));
+    children_.push_back({name, name == "tag" ? value_of(whole, "k") : "", std::string(whole)});
+    at = child + whole.size();
+  }
+}
+
+std::string OsmElement::attribute(std::string_view name, std::string_view value) const {
+  std::string text = xml_text(value);
+  for (std::size_t at = text.find('\''); at != text.npos; at = text.find('\'', at + 1)) {
+    text.replace(at, 1, "&apos;");
+  }
+  return fmt::format(" {}={}{}{}", name, quote_, text, quote_);
+}
+
+void OsmElement::set_attribute(std::string_view name, std::string_view value) {
+  const auto [from, to] = value_range(start_, name);
+  if (from == 0) {
+    start_ += attribute(name, value);
+  } else {
+    start_.replace(from, to - from, xml_text(value));
+  }
+}
+
+void OsmElement::put_first(std::vector<Child> children, std::string_view in_place_of) {
+  std::erase_if(children_, [&](const Child& child) { return child.name == in_place_of; });
+  children_.insert(children_.begin(), std::make_move_iterator(children.begin()),
+                   std::make_move_iterator(children.end()));
+}
+
+void OsmElement::set_nodes(const std::vector<std::int64_t>& ids) {
+  std::vector<Child> children;
+  for (const std::int64_t id : ids) {
+    children.push_back({"nd", "", fmt::format("<nd{} />", attribute("ref", std::to_string(id)))});
+  }
+  put_first(std::move(children), "nd");
+}
+
+void OsmElement::set_members(const std::vector<lanelet2::Member>& members) {
+  using lanelet2::MemberKind;
+  std::vector<Child> children;
+  for (const lanelet2::Member& member : members) {
+    const char* kind = member.kind == MemberKind::node  ? "node"
+                       : member.kind == MemberKind::way ? "way"
+                                                        : "relation";
+    children.push_back(
+        {"member", "",
+         fmt::format("<member{}{}{} />", attribute("type", kind),
+                     attribute("ref", std::to_string(member.id)), attribute("role", member.role))});
+  }
+  put_first(std::move(children), "member");
+}
+
+void OsmElement::remove_tag(std::string_view key) {
+  std::erase_if(children_, [&](const Child& c) { return c.name == "tag" && c.key == key; });
+}
+
+void OsmElement::set_tag(std::string_view key, std::string_view value) {
+  remove_tag(key);
+  children_.push_back({"tag", std::string(key),
+                       fmt::format("<tag{}{} />", attribute("k", key), attribute("v", value))});
+}
+
+std::string OsmElement::said() const {
+  std::string said;
+  for (const Child& child : children_) {
+    const bool counts = child.name != "nd" && child.name != "member" && child.key != kClipKey;
+    if (counts) said += child.text;
+  }
+  return said;
+}
+
+std::string OsmElement::text() const {
+  if (children_.empty()) return start_ + " />";
+  std::string text = start_ + ">";
+  for (const Child& child : children_) text += before_child_ + child.text;
+  return text + before_end_ + "</" + name_ + ">";
+}
+
+void OsmEdit::add(lanelet2::MemberKind kind, const std::string& text) {
+  std::string& list = kind == lanelet2::MemberKind::node  ? nodes_
+                      : kind == lanelet2::MemberKind::way ? ways_
+                                                          : relations_;
+  list += "\n  " + text;
+}
+
+std::string OsmEdit::file() const {
+  const std::string_view text = document_.text;
+  // New elements stand behind the last one of their kind, or of the kind before.
+  const auto last = [](const auto& elements, std::size_t before) {
+    return elements.empty() ? before : std::max(before, elements.back().at);
+  };
+  const std::size_t root = text.find("<osm");
+  const std::size_t node = last(document_.nodes, root), way = last(document_.ways, node),
+                    relation = last(document_.relations, way);
+  std::map<std::size_t, std::string> added;
+  const auto behind = [&](std::size_t at) {
+    return at == root ? tag_end(text, root) : at + element_text(text, at).size();
+  };
+  added[behind(node)] += nodes_;
+  added[behind(way)] += ways_;
+  added[behind(relation)] += relations_;
+
+  std::string file;
+  file.reserve(text.size() + nodes_.size() + ways_.size() + relations_.size());
+  std::size_t cursor = 0;
+  auto next_added = added.begin();
+  const auto copy_to = [&](std::size_t to) {
+    for (; next_added != added.end() && next_added->first <= to; ++next_added) {
+      file += text.substr(cursor, next_added->first - cursor);
+      cursor = next_added->first;
+      file += next_added->second;
+    }
+    file += text.substr(cursor, to - cursor);
+    cursor = to;
+  };
+  for (const auto& [at, replacement] : replaced_) {
+    copy_to(at);
+    if (replacement.empty()) {  // the blanks before it go, too
+      file.erase(file.find_last_not_of(kBlanks) + 1);
+    }
+    file += replacement;
+    cursor = at + element_text(text, at).size();
+  }
+  copy_to(text.size());
+  return file;
+}
+
+std::string with_root_attribute(std::string file, std::string_view name, std::string_view value) {
+  const std::size_t at = file.find("<osm"), end = tag_end(file, at);
+  OsmElement root(file.substr(at, end - at - 1) + "/>");
+  root.set_attribute(name, value);
+  const std::string tag = root.text();
+  return file.replace(at, end - at, tag.substr(0, tag.size() - 3) + ">");
+}
+
+std::string text_of(std::span<const lanelet2::Member> members) {
+  std::string text;
+  for (const lanelet2::Member& member : members) {
+    text += fmt::format("{}{}{}/{}", text.empty() ? "" : " ", "nwr"[static_cast<int>(member.kind)],
+                        member.id, member.role);
+  }
+  return text;
+}
+
+std::optional<std::vector<lanelet2::Member>> members_in(std::string_view text) {
+  std::vector<lanelet2::Member> members;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    const std::size_t kind = std::string_view("nwr").find(word.front()), slash = word.find('/');
+    if (kind == std::string_view::npos || slash == std::string_view::npos) return {};
+    const auto id = lanelet2::id_in(word.substr(1, slash - 1));
+    if (!id) return {};
+    members.push_back({static_cast<lanelet2::MemberKind>(kind), *id, word.substr(slash + 1)});
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+  }
+  return members;
+}
+
+std::string_view tag_value(lanelet2::Tags tags, std::string_view key) {
+  const auto found =
+      std::find_if(tags.begin(), tags.end(), [&](const auto& tag) { return tag.first == key; });
+  return found == tags.end() ? std::string_view() : found->second;
+}
+
+std::int64_t free_id(const lanelet2::Document& document) {
+  std::int64_t most = 0;
+  const auto look_at = [&](const auto& elements) {
+    for (const auto& element : elements) most = std::max(most, element.id);
+  };
+  look_at(document.nodes);
+  look_at(document.ways);
+  look_at(document.relations);
+  return most + 1;
+}
+
+}  // namespace roadbed::map::edit

@@ -1,0 +1,329 @@
+#include "roadbed/map/edit/road_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/xml_edit.h"
+
+namespace roadbed::map::inline edit {
+namespace {
+
+constexpr double kSameRecordM = 1e-9;  // stations this near are one
+
+using Rebase = std::function<void(pugi::xml_node record, double by_m)>;
+
+void keep_as_it_is(pugi::xml_node, double) {}
+
+// a + b·s + c·s² + d·s³ about another s.
+void rebase_cubic(pugi::xml_node record, double by_m) {
+  const double a = number(record, "a"), b = number(record, "b"), c = number(record, "c"),
+               d = number(record, "d");
+  set_number(record, "a", a + by_m * (b + by_m * (c + by_m * d)));
+  set_number(record, "b", b + by_m * (2.0 * c + by_m * 3.0 * d));
+  set_number(record, "c", c + 3.0 * d * by_m);
+}
+
+// Stations that a list of records keeps.
+struct Cut {
+  double from_m, to_m;
+  bool at_start, at_end;  ///< whether it is cut there
+};
+
+// Records that hold from their station on until the next: those that begin inside stay, and the one
+// that holds at the start begins there. A cubic before the first record is that of the first.
+void cut_records(const std::vector<pugi::xml_node>& records, const char* station, const Cut& cut,
+                 bool extends, const Rebase& rebase) {
+  if (records.empty()) return;
+  double holding_m = -HUGE_VAL, first_m = HUGE_VAL;
+  for (const pugi::xml_node record : records) {
+    const double s_m = number(record, station);
+    first_m = std::min(first_m, s_m);
+    if (s_m <= cut.from_m) holding_m = std::max(holding_m, s_m);
+  }
+  if (extends && holding_m < first_m) holding_m = first_m;
+  for (const pugi::xml_node record : records) {
+    const double s_m = number(record, station);
+    if (cut.at_start && s_m == holding_m) {
+      rebase(record, cut.from_m - s_m);
+      set_number(record, station, std::max(0.0, extends ? 0.0 : s_m - cut.from_m));
+    } else if ((cut.at_start && s_m < holding_m) ||
+               (cut.at_end && s_m >= cut.to_m - kSameRecordM)) {
+      record.parent().remove_child(record);
+    } else if (cut.at_start) {
+      set_number(record, station, s_m - cut.from_m);
+    }
+  }
+}
+
+void cut_cubics(const std::vector<pugi::xml_node>& records, const char* station, const Cut& cut) {
+  cut_records(records, station, cut, true, rebase_cubic);
+}
+
+void cut_crossfall(pugi::xml_node lateral, const Cut& cut) {
+  std::set<std::string> sides;
+  for (const auto record : lateral.children("crossfall")) {
+    sides.insert(record.attribute("side").value());
+  }
+  for (const std::string& side : sides) {
+    std::vector<pugi::xml_node> records = children(lateral, "crossfall");
+    std::erase_if(records, [&](auto record) { return record.attribute("side").value() != side; });
+    cut_cubics(records, "s", cut);
+  }
+}
+
+// Whatever in a lane begins at an offset from its section's start.
+void cut_lane(pugi::xml_node lane, const Cut& cut) {
+  std::set<std::string> names;
+  for (const auto child : lane.children()) {
+    if (child.attribute("sOffset")) names.insert(child.name());
+  }
+  for (const std::string& name : names) {
+    const auto records = children(lane, name.c_str());
+    if (name == "width" || name == "border") {
+      cut_cubics(records, "sOffset", cut);
+    } else {
+      cut_records(records, "sOffset", cut, false, keep_as_it_is);
+    }
+  }
+}
+
+void for_each_lane(pugi::xml_node section, const std::function<void(pugi::xml_node)>& f) {
+  for (const char* side : {"left", "center", "right"}) {
+    for (const auto lane : section.child(side).children("lane")) f(lane);
+  }
+}
+
+// @param between_sections  the cut is where two sections meet: nothing else knows these links.
+void take_lane_links(pugi::xml_node section, const char* which, bool between_sections) {
+  for_each_lane(section, [&](pugi::xml_node lane) {
+    for (const auto link : children(lane.child("link"), which)) {
+      if (between_sections) clip_memory(lane).append_copy(link);
+      link.parent().remove_child(link);
+    }
+  });
+}
+
+// Returns how many sections before the first one that stays are gone.
+int cut_sections(pugi::xml_node lanes, double length_m, const Cut& cut) {
+  std::vector<pugi::xml_node> sections = children(lanes, "laneSection");
+  std::stable_sort(sections.begin(), sections.end(),
+                   [](auto a, auto b) { return number(a, "s") < number(b, "s"); });
+  std::vector<pugi::xml_node> kept;
+  bool starts_between = false, ends_between = false;
+  int gone = 0;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const double begin_m = number(sections[i], "s");
+    const double end_m = i + 1 < sections.size() ? number(sections[i + 1], "s") : length_m;
+    const bool before =
+        cut.at_start && end_m <= cut.from_m + kSameRecordM && i + 1 < sections.size();
+    const bool behind = cut.at_end && begin_m >= cut.to_m - kSameRecordM && !kept.empty();
+    if (before || behind) {
+      gone += before ? 1 : 0;
+      lanes.remove_child(sections[i]);
+      continue;
+    }
+    kept.push_back(sections[i]);
+    if (kept.size() == 1) starts_between = begin_m >= cut.from_m;
+    ends_between = end_m <= cut.to_m;
+    const Cut of_section{cut.from_m - begin_m, cut.to_m - begin_m,
+                         cut.at_start && begin_m < cut.from_m, cut.at_end && end_m > cut.to_m};
+    for_each_lane(sections[i], [&](pugi::xml_node lane) { cut_lane(lane, of_section); });
+    if (cut.at_start) set_number(sections[i], "s", std::max(0.0, begin_m - cut.from_m));
+  }
+  if (kept.empty()) return gone;
+  if (cut.at_start) take_lane_links(kept.front(), "predecessor", starts_between);
+  if (cut.at_end) take_lane_links(kept.back(), "successor", ends_between);
+  return gone;
+}
+
+void cut_profiles(pugi::xml_node road, const Cut& cut) {
+  cut_records(children(road, "type"), "s", cut, false, keep_as_it_is);
+  cut_cubics(children(road.child("elevationProfile"), "elevation"), "s", cut);
+  const pugi::xml_node lateral = road.child("lateralProfile");
+  cut_cubics(children(lateral, "superelevation"), "s", cut);
+  cut_crossfall(lateral, cut);
+  cut_cubics(children(road.child("lanes"), "laneOffset"), "s", cut);
+}
+
+bool is_inside(double s_m, const Cut& cut) {
+  return !(cut.at_start && s_m < cut.from_m) && !(cut.at_end && s_m > cut.to_m);
+}
+
+// What stands at a station.
+void cut_places(pugi::xml_node parent, const char* name, const Cut& cut) {
+  for (const auto place : children(parent, name)) {
+    const double s_m = number(place, "s");
+    if (!is_inside(s_m, cut)) {
+      parent.remove_child(place);
+    } else if (cut.at_start) {
+      set_number(place, "s", s_m - cut.from_m);
+    }
+  }
+}
+
+// Values that run from Start to End over a length, as of a repeated object.
+void shorten_between(pugi::xml_node node, double from_share, double to_share) {
+  for (const auto start : node.attributes()) {
+    const std::string_view name = start.name();
+    if (!name.ends_with("Start")) continue;
+    const std::string end_name = std::string(name.substr(0, name.size() - 5)) + "End";
+    if (!node.attribute(end_name.c_str())) continue;
+    const double at_start = start.as_double(), at_end = number(node, end_name.c_str());
+    set_number(node, start.name(), std::lerp(at_start, at_end, from_share));
+    set_number(node, end_name.c_str(), std::lerp(at_start, at_end, to_share));
+  }
+}
+
+// What runs over a length: the part inside stays. Copies at a distance stay where they are.
+// Returns whether anything does.
+bool cut_length(pugi::xml_node node, const Cut& cut) {
+  const double s_m = number(node, "s"), length_m = number(node, "length"),
+               step_m = number(node, "distance");
+  double from_m = cut.at_start ? std::max(s_m, cut.from_m) : s_m;
+  const double to_m = cut.at_end ? std::min(s_m + length_m, cut.to_m) : s_m + length_m;
+  if (step_m > 0.0) from_m = s_m + step_m * std::ceil((from_m - s_m) / step_m - 1e-9);
+  if (from_m > to_m || (from_m == to_m && length_m > 0.0 && step_m == 0.0)) return false;
+  if (length_m > 0.0 && (from_m > s_m || to_m < s_m + length_m)) {
+    shorten_between(node, (from_m - s_m) / length_m, (to_m - s_m) / length_m);
+    set_number(node, "length", to_m - from_m);
+  }
+  if (cut.at_start) set_number(node, "s", from_m - cut.from_m);
+  return true;
+}
+
+void cut_lengths(pugi::xml_node parent, const char* name, const Cut& cut) {
+  for (const auto node : children(parent, name)) {
+    if (!cut_length(node, cut)) parent.remove_child(node);
+  }
+}
+
+// An outline by stations of the road has to lie inside whole.
+bool has_corner_outside(pugi::xml_node object, const Cut& cut) {
+  return object.find_node([&](pugi::xml_node node) {
+    return std::string_view(node.name()) == "cornerRoad" && !is_inside(number(node, "s"), cut);
+  });
+}
+
+void shift_corners(pugi::xml_node object, double by_m) {
+  const auto shift = [&](pugi::xml_node outline) {
+    for (const auto corner : outline.children("cornerRoad")) {
+      set_number(corner, "s", number(corner, "s") + by_m);
+    }
+  };
+  for (const auto outline : object.children("outline")) shift(outline);
+  for (const auto outline : object.child("outlines").children("outline")) shift(outline);
+}
+
+void cut_object(pugi::xml_node object, const Cut& cut) {
+  const bool repeated = object.child("repeat");
+  if (repeated) cut_lengths(object, "repeat", cut);
+  const bool stays = repeated ? bool(object.child("repeat")) : is_inside(number(object, "s"), cut);
+  if (!stays || has_corner_outside(object, cut)) {
+    object.parent().remove_child(object);
+    return;
+  }
+  if (!cut.at_start) return;
+  set_number(object, "s", std::max(0.0, number(object, "s") - cut.from_m));
+  shift_corners(object, -cut.from_m);
+}
+
+void cut_furniture(pugi::xml_node road, const Cut& cut) {
+  const pugi::xml_node signals = road.child("signals"), objects = road.child("objects");
+  cut_places(signals, "signal", cut);
+  cut_places(signals, "signalReference", cut);
+  for (const auto object : children(objects, "object")) cut_object(object, cut);
+  cut_places(objects, "objectReference", cut);
+  cut_lengths(objects, "bridge", cut);
+  cut_lengths(objects, "tunnel", cut);
+}
+
+// The geometry that is cut, as it is in the whole road: under `<from>` or `<to>`.
+void remember_geometry(pugi::xml_node road, const RoadCut& whole, const char* end, double s_m) {
+  pugi::xml_node memory = clip_memory(road);
+  const pugi::xml_node plan_view = road.child("planView"), across = geometry_across(plan_view, s_m);
+  // One that was cut before is remembered already, by its end that was cut then.
+  pugi::xml_node known;
+  if (across && across == plan_view.child("geometry")) known = memory.child("from");
+  if (across && !known && across == plan_view.last_child()) known = memory.child("to");
+  pugi::xml_node kept = memory.append_child("kept");
+  if (across) {
+    pugi::xml_node copy = kept.append_copy(known ? known.child("geometry") : across);
+    if (!known && whole.from_m > 0.0) set_number(copy, "s", number(copy, "s") + whole.from_m);
+  }
+  while (memory.remove_child(end)) continue;
+  if (across) {
+    kept.set_name(end);
+  } else {
+    memory.remove_child(kept);
+  }
+}
+
+}  // namespace
+
+RoadCut road_cut(pugi::xml_node road) {
+  const double length_m = number(road, "length");
+  const RoadCut whole{road.attribute("id").value(), 0.0, length_m, length_m, 0};
+  const pugi::xml_node cut = find_clip_memory(road).child("cut");
+  if (!cut) return whole;
+  const RoadCut part{cut.attribute("road").value(), number(cut, "from"), number(cut, "to"),
+                     number(cut, "length"), cut.attribute("section").as_int()};
+  // Whoever wrote it, it has to fit the road.
+  const bool fits = part.from_m >= 0.0 && part.from_m < part.to_m && part.to_m <= part.length_m &&
+                    std::abs(part.to_m - part.from_m - length_m) < 1e-3;
+  return fits ? part : whole;
+}
+
+pugi::xml_node find_clip_memory(pugi::xml_node parent) {
+  return parent.find_child_by_attribute("userData", "code", "roadbed.clip");
+}
+
+pugi::xml_node clip_memory(pugi::xml_node parent) {
+  if (const pugi::xml_node found = find_clip_memory(parent)) return found;
+  pugi::xml_node made = parent.append_child("userData");
+  set_text(made, "code", "roadbed.clip");
+  return made;
+}
+
+void remember_cut(pugi::xml_node road, const RoadCut& whole) {
+  pugi::xml_node memory = clip_memory(road);
+  pugi::xml_node cut = memory.child("cut");
+  if (!cut) cut = memory.prepend_child("cut");
+  set_text(cut, "road", whole.road);
+  set_number(cut, "from", whole.from_m);
+  set_number(cut, "to", whole.to_m);
+  set_number(cut, "length", whole.length_m);
+  set_number(cut, "section", whole.section);
+}
+
+bool can_be_cut(pugi::xml_node road) {
+  if (road.child("lateralProfile").child("shape")) return false;
+  for (const auto section : road.child("lanes").children("laneSection")) {
+    const std::string_view single = section.attribute("singleSide").value();
+    if (single == "true" || single == "1") return false;
+  }
+  return true;
+}
+
+void cut_road(pugi::xml_node road, double from_m, double to_m) {
+  const double length_m = number(road, "length");
+  const Cut cut{from_m, to_m, from_m > 0.0, to_m < length_m};
+  if (!cut.at_start && !cut.at_end) return;
+  RoadCut whole = road_cut(road);
+  if (cut.at_start) remember_geometry(road, whole, "from", from_m);
+  if (cut.at_end) remember_geometry(road, whole, "to", to_m);
+  cut_plan_view(road.child("planView"), from_m, cut.at_end ? to_m : HUGE_VAL);
+  cut_profiles(road, cut);
+  whole.section += cut_sections(road.child("lanes"), length_m, cut);
+  cut_furniture(road, cut);
+  set_number(road, "length", to_m - from_m);
+  if (cut.at_end) whole.to_m = whole.from_m + to_m;
+  if (cut.at_start) whole.from_m += from_m;
+  remember_cut(road, whole);
+}
+
+}  // namespace roadbed::map::edit

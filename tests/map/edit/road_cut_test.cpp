@@ -1,0 +1,138 @@
+#include "roadbed/map/edit/road_cut.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "roadbed/map/derived/map_diff.h"
+#include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/road_join.h"
+#include "roadbed/map/edit/xml_edit.h"
+#include "roadbed/map/files/xml.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/made_open_drive.h"
+
+namespace roadbed::map {
+namespace {
+
+XmlDocument curved_road() { return {tests::curved_road_xml(), "curved.xodr"}; }
+
+pugi::xml_node road_of(const XmlDocument& xml) { return xml.root().child("road"); }
+
+double length_of(const XmlDocument& xml) { return number(road_of(xml), "length"); }
+
+RoadMap map_of(const XmlDocument& xml) { return parse_map(text_of(xml, "  "), "cut.xodr"); }
+
+// Reference line: line, spiral, arc, spiral, poly3 and paramPoly3, cut anywhere.
+TEST(RoadCut, IsWhereTheWholeRoadIs) {
+  const XmlDocument whole = curved_road();
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> station(0.0, length_of(whole));
+  for (int i = 0; i < 60; ++i) {
+    const double a = station(random), b = station(random);
+    const double from_m = std::min(a, b), to_m = std::max(a, b);
+    const XmlDocument cut = curved_road();
+    cut_road(road_of(cut), from_m, to_m);
+    EXPECT_NEAR(length_of(cut), to_m - from_m, 1e-9);
+    for (const double fraction : {0.0, 0.21, 0.5, 0.83, 1.0}) {
+      const double s_m = fraction * (to_m - from_m);
+      const auto here = reference_pose(road_of(cut), s_m);
+      const auto there = reference_pose(road_of(whole), from_m + s_m);
+      EXPECT_NEAR((here.position() - there.position()).norm(), 0.0, 1e-7) << from_m << " " << to_m;
+      EXPECT_NEAR(std::remainder(here.heading_rad - there.heading_rad, 2.0 * M_PI), 0.0, 1e-7);
+    }
+  }
+}
+
+// Widths, lane offset, elevation and superelevation: borders of the cut road lie on those of the
+// whole one, which are sampled to within a centimetre.
+TEST(RoadCut, KeepsItsBordersWhereTheyWere) {
+  const RoadMap whole = map_of(curved_road());
+  const double length_m = length_of(curved_road());
+  for (const auto& [from, to] : {std::pair{0.0, 0.4}, {0.13, 0.77}, {0.5, 1.0}}) {
+    const XmlDocument xml = curved_road();
+    cut_road(road_of(xml), from * length_m, to * length_m);
+    const RoadMap cut = map_of(xml);
+    for (const Lane& lane : cut.lanes()) {
+      const auto on_border = [&](const Eigen::Vector2d& point, double z_m, LaneLine Lane::*line) {
+        double nearest_m = HUGE_VAL, height_m = HUGE_VAL;
+        for (const Lane& other : whole.lanes()) {
+          if (other.origin.source_id != lane.origin.source_id) continue;
+          const auto place = (other.*line).in_map.project(whole.to_map(cut.to_source(point)));
+          if (std::abs(place.d_m) >= nearest_m) continue;
+          nearest_m = std::abs(place.d_m);
+          const auto& stations = (other.*line).in_map.stations_m();
+          for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
+            if (stations[i] > place.s_m || place.s_m > stations[i + 1]) continue;
+            const double at = (place.s_m - stations[i]) / (stations[i + 1] - stations[i]);
+            height_m = std::lerp((other.*line).z_m[i], (other.*line).z_m[i + 1], at);
+          }
+        }
+        EXPECT_NEAR(nearest_m, 0.0, 0.02) << lane.name;
+        EXPECT_NEAR(height_m, z_m, 0.02) << lane.name;
+      };
+      for (std::size_t i = 0; i < lane.left.z_m.size(); ++i) {
+        on_border(lane.left.in_map.points()[i], lane.left.z_m[i], &Lane::left);
+      }
+      for (std::size_t i = 0; i < lane.right.z_m.size(); ++i) {
+        on_border(lane.right.in_map.points()[i], lane.right.z_m[i], &Lane::right);
+      }
+    }
+  }
+}
+
+TEST(RoadCut, SaysWhichPartItIs) {
+  const XmlDocument xml = curved_road();
+  const double length_m = length_of(xml);
+  cut_road(road_of(xml), 10.0, 60.0);
+  cut_road(road_of(xml), 5.0, 20.0);  // of the part
+  const RoadCut cut = road_cut(road_of(xml));
+  EXPECT_EQ(cut.from_m, 15.0);
+  EXPECT_EQ(cut.to_m, 30.0);
+  EXPECT_EQ(cut.length_m, length_m);
+  EXPECT_FALSE(cut.has_start());
+  EXPECT_FALSE(cut.has_end());
+}
+
+TEST(RoadCut, LeavesAWholeRoadAsItIs) {
+  const XmlDocument xml = curved_road();
+  const std::string before = text_of(xml, "  ");
+  cut_road(road_of(xml), 0.0, length_of(xml));
+  EXPECT_EQ(text_of(xml, "  "), before);
+}
+
+// Cut anywhere, on stations of whole 2⁻²⁰ m as a clip does, parts give the whole back, bit by bit.
+TEST(RoadJoin, GivesTheWholeRoadBack) {
+  const RoadMap whole = map_of(curved_road());
+  std::mt19937 random(12);
+  std::uniform_int_distribution<int> station(1, static_cast<int>(length_of(curved_road())) - 1);
+  for (int i = 0; i < 40; ++i) {
+    const double at_m = station(random) + 0.40625, overlap_m = i % 2 == 0 ? 0.0 : 0.25;
+    const XmlDocument first = curved_road(), second = curved_road();
+    cut_road(road_of(first), 0.0, at_m);
+    cut_road(road_of(second), at_m - overlap_m, length_of(second));
+    ASSERT_TRUE(goes_on(road_of(first), road_of(second)));
+    join_roads(road_of(first), road_of(second));
+    EXPECT_TRUE(road_cut(road_of(first)).is_whole());
+    const auto changes = diff(whole, map_of(first), {.tolerance_m = 0.0});
+    EXPECT_TRUE(changes.empty()) << at_m << ": " << changes.front().theme << " "
+                                 << changes.front().element;
+  }
+}
+
+TEST(RoadJoin, IsNotForRoadsElsewhere) {
+  const XmlDocument first = curved_road(), second = curved_road();
+  cut_road(road_of(first), 0.0, 20.0);
+  cut_road(road_of(second), 30.0, length_of(second));
+  EXPECT_FALSE(goes_on(road_of(first), road_of(second))) << "a gap";
+  const XmlDocument moved = curved_road();
+  cut_road(road_of(moved), 20.0, length_of(moved));
+  auto geometry = road_of(moved).child("planView").child("geometry");
+  set_number(geometry, "x", number(geometry, "x") + 1.0);
+  EXPECT_FALSE(goes_on(road_of(first), road_of(moved))) << "another place";
+}
+
+}  // namespace
+}  // namespace roadbed::map

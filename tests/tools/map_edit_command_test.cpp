@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/files/json.h"
+
+namespace roadbed::tests {
+namespace {
+
+const std::string kTown = data_folder() / "town.xodr";
+
+tools::Json document_of(const ProgramRun& run) {
+  return tools::Json::parse(run.out, nullptr, false);
+}
+
+TEST(MapClipCommand, OfNothingIsAnAnswerWithAReason) {
+  const TemporaryFolder folder;
+  const std::string part = folder / "part.xodr";
+  const ProgramRun run =
+      run_roadbed({"map", "clip", kTown, "--bbox=5000,5000,6000,6000", "-o", part, "--json"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "roadbed: nothing is left: no road of the map reaches into the region\n");
+  EXPECT_EQ(document_of(run)["written"], false);
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(MapClipCommand, NeedsJustOneRegion) {
+  const TemporaryFolder folder;
+  const std::string part = folder / "part.xodr";
+  EXPECT_EQ(run_roadbed({"map", "clip", kTown, "-o", part}).status, 2);
+  EXPECT_EQ(run_roadbed({"map", "clip", kTown, "--bbox=1,1,0,0", "-o", part}).status, 2);
+  EXPECT_EQ(run_roadbed({"map", "clip", kTown, "--within", "lane:1", "-o", part}).status, 2);
+}
+
+// A lane and what is near it; the same as polygon in longitude and latitude.
+TEST(MapClipCommand, TakesTheSurroundingsOfALaneAndPolygons) {
+  const TemporaryFolder folder;
+  const std::string near = folder / "near.xodr", inside = folder / "inside.xodr";
+  EXPECT_EQ(run_roadbed({"map", "clip", kTown, "--within", "lane:1/0/-1,60m", "-o", near}).status,
+            0);
+  EXPECT_EQ(run_roadbed({"locate", near, "--at", "60,0"}).status, 0);
+  // Around the place of x, y = 150, 198 m in the town's own system.
+  const std::string polygon = folder.write(
+      "polygon.geojson",
+      R"({"type":"Polygon","coordinates":[[[9.001,48.501],[9.003,48.501],[9.003,48.503],)"
+      R"([9.001,48.503],[9.001,48.501]]]})");
+  const ProgramRun run = run_roadbed({"map", "clip", kTown, "--polygon", polygon, "-o", inside});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const ProgramRun info = run_roadbed({"info", inside, "--json"});
+  const auto bounds = document_of(info)["bounds"];
+  EXPECT_GT(bounds["min_x_m"].get<double>(), 40.0);
+  EXPECT_LT(bounds["max_x_m"].get<double>(), 250.0);
+}
+
+TEST(MapTileCommand, GivesTilesThatMergeToTheWhole) {
+  const TemporaryFolder folder;
+  const std::string tiles = folder / "tiles", whole = folder / "whole.xodr";
+  const ProgramRun run = run_roadbed({"map", "tile", kTown, "200", "-o", tiles});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto index = tools::Json::parse(bytes_of(folder / "tiles/tiles.json"));
+  std::vector<std::string> words{"map", "merge", "-o", whole};
+  for (const auto& tile : index["tiles"]) {
+    words.push_back(folder / ("tiles/" + tile["file"].get<std::string>()));
+  }
+  EXPECT_GT(words.size(), 8u);
+  ASSERT_EQ(run_roadbed(words).status, 0);
+  const ProgramRun diff = run_roadbed({"map", "diff", kTown, whole});
+  EXPECT_EQ(diff.out, "0 changes\n");
+}
+
+TEST(MapMergeCommand, WritesDownWhatGotAnotherId) {
+  const TemporaryFolder folder;
+  const std::string moved = folder / "moved.xodr", both = folder / "both.xodr",
+                    ids = folder / "ids.csv";
+  ASSERT_EQ(run_roadbed({"map", "transform", kTown, "--shift=5000,0", "-o", moved}).status, 0);
+  const ProgramRun run = run_roadbed({"map", "merge", kTown, moved, "-o", both, "--renamed", ids});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string rows = bytes_of(ids);
+  EXPECT_EQ(rows.substr(0, rows.find('\n')), "file,kind,from,to");
+  EXPECT_NE(rows.find(",road,1,"), std::string::npos) << rows;
+  const auto lanes = [](const std::string& map) {
+    return document_of(run_roadbed({"info", map, "--json"}))["lanes"].get<int>();
+  };
+  EXPECT_EQ(lanes(both), 2 * lanes(kTown));
+}
+
+TEST(MapMergeCommand, RefusesOtherSystems) {
+  const TemporaryFolder folder;
+  const std::string utm = folder / "utm.xodr", both = folder / "both.xodr";
+  ASSERT_EQ(run_roadbed({"map", "transform", kTown, "--to", "EPSG:32632", "-o", utm}).status, 0);
+  const ProgramRun run = run_roadbed({"map", "merge", kTown, utm, "-o", both});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("--same-system"), std::string::npos) << run.err;
+}
+
+TEST(MapTransformCommand, AlignsToPairs) {
+  const TemporaryFolder folder;
+  const std::string moved = folder / "moved.xodr";
+  const std::string pairs = folder.write("pairs.csv",
+                                         "from_x_m,from_y_m,to_x_m,to_y_m\n0,0,10,20\n"
+                                         "100,0,10,120\n0,50,-40,20\n");
+  const ProgramRun run =
+      run_roadbed({"map", "transform", kTown, "--align", pairs, "-o", moved, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("turned by 1.570796327 rad and shifted by 10.0000,20.0000 m"),
+            std::string::npos)
+      << run.out;
+}
+
+}  // namespace
+}  // namespace roadbed::tests
