@@ -64,6 +64,7 @@ Attributes file_attributes(pugi::xml_node root) {
   const pugi::xml_node extra =
       location.child("geoTransformation").child("additionalTransformation");
   for (const pugi::xml_node part : extra.children()) {
+    if (part.type() != pugi::node_element) continue;
     attributes.emplace_back(part.name(), text_of(part));
   }
   return attributes;

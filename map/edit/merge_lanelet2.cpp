@@ -147,15 +147,17 @@ class LaneletMerger {
   using Place = std::pair<std::size_t, std::size_t>;  // file, index
 
   bool is_same_node(const Place& a, const Place& b) const {
-    const auto said = [&](const Place& place) {
+    const auto text = [&](const Place& place) {
       const Document& file = files_[place.first];
-      return OsmElement(element_text(file.text, file.nodes[place.second].at)).text();
+      return element_text(file.text, file.nodes[place.second].at);
     };
+    if (text(a) == text(b)) return true;
     const lanelet2::NodePlace &one = files_[a.first].places[a.second],
                               &other = files_[b.first].places[b.second];
     const bool together =
         one.latitude_deg == other.latitude_deg && one.longitude_deg == other.longitude_deg;
-    return said(a) == said(b) || (together && !one.is_local() && !other.is_local());
+    const bool by_degrees = together && !one.is_local() && !other.is_local();
+    return by_degrees || OsmElement(text(a)).text() == OsmElement(text(b)).text();
   }
 
   std::string said(std::size_t f, std::size_t at) const {
@@ -294,10 +296,12 @@ class LaneletMerger {
   void put_way(const WayPart& part, Id id) {
     const Document& file = files_[part.file];
     const Way& way = file.ways[part.way];
-    OsmElement element(element_text(file.text, way.at));
-    element.set_attribute("id", std::to_string(id));
     std::vector<Id> before;
     for (const std::uint32_t node : way.nodes) before.push_back(file.nodes[node].id);
+    const bool was_cut = !tag_value(way.tags, kClipKey).empty();
+    if (part.file == 0 && id == way.id && before == part.nodes && !was_cut) return;
+    OsmElement element(element_text(file.text, way.at));
+    element.set_attribute("id", std::to_string(id));
     if (before != part.nodes) element.set_nodes(part.nodes);
     if (part.is_whole()) {
       element.remove_tag(kClipKey);
@@ -348,9 +352,12 @@ class LaneletMerger {
         return member.kind != MemberKind::way || way == whole_ways_.end() || way->second;
       });
       open_lanelets_ += is_whole ? 0 : 1;
+      const bool was_cut = !tag_value(relation.tags, kClipKey).empty();
+      const bool same_members = key == text_of(relation.members);
+      if (f == 0 && id == relation.id && same_members && is_whole && !was_cut) continue;
       OsmElement element(element_text(files_[f].text, relation.at));
       element.set_attribute("id", std::to_string(id));
-      if (key != text_of(relation.members)) element.set_members(members);
+      if (!same_members) element.set_members(members);
       if (is_whole) {
         element.remove_tag(kClipKey);
       } else {

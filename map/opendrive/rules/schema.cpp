@@ -163,7 +163,8 @@ class Checker : public pugi::xml_tree_walker {
       add(SchemaFault::Kind::missing_element, node,
           fmt::format("has no <{}>, which it must have; add one", child));
     }
-    if (element.name == "geometry" && !node.first_child()) {
+    const auto is_element = [](pugi::xml_node one) { return one.type() == pugi::node_element; };
+    if (element.name == "geometry" && !node.find_child(is_element)) {
       add(SchemaFault::Kind::missing_element, node,
           "has no curve; add a line, arc, spiral, poly3 or paramPoly3");
     }
