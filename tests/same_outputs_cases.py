@@ -14,7 +14,8 @@ from same_outputs_places import PAIRS, on_map, through_cloud
 COMMANDS = ("import", "info", "validate", "export", "map", "locate", "route", "reach", "reference",
             "plan", "control", "simulate", "occupancy", "audit", "figures", "report", "batch",
             "jobs")
-PARTS = ("map diff", "control design", "occupancy build", "occupancy info", "report compare",
+PARTS = ("map diff", "map clip", "map merge", "map transform", "map tile", "control design",
+         "occupancy build", "occupancy info", "report compare",
          *(f"jobs {kind}" for kind in ("import", "validate", "route", "simulate", "audit")))
 FORMATS = ("geojson", "gpkg", "fgb", "svg", "csv", "osm", "xml")
 MAPS = (".xodr", ".osm", ".xml", ".geojson")

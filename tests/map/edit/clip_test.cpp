@@ -136,5 +136,33 @@ TEST(ClipLanelet2, CutsBordersWhereTheEdgeCrossesThem) {
   EXPECT_GE(on_edge, 2u);
 }
 
+// Lanelets are cut across: rows stay pairs, and lie on the lanelets that they are of.
+TEST(ClipCommonRoad, LeavesPartsOfTheLanelets) {
+  const std::string bytes = read_file(tests::data_folder() / "junction.xml");
+  const RoadMap whole = parse_map(bytes, "junction.xml");
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < whole.lanes().size(); i += 3) {
+    const Lane& lane = whole.lanes()[i];
+    const Vector2d at = whole.to_source(lane.centre.in_map.at(0.43 * lane.length_m()));
+    const Edited part =
+        clip(bytes, "junction.xml", box(at.x(), at.y(), at.x() + 500, at.y() + 500));
+    const RoadMap road_map = parse_map(part.bytes, "part.xml");
+    for (const ImportDiagnostic& remark : road_map.import_diagnostics()) {
+      EXPECT_FALSE(remark.rule == "import.link") << remark.element << ": " << remark.message;
+    }
+    for (const Lane& one : road_map.lanes()) {
+      const auto of = whole.find_lane(one.name);
+      if (!of) continue;  // a further part
+      EXPECT_EQ(one.left.in_map.points().size(), one.right.in_map.points().size());
+      cut += one.length_m() < whole.lane(*of).length_m() - 1e-6 ? 1 : 0;
+      for (const Vector2d& point : one.left.in_map.points()) {
+        const Vector2d there = whole.to_map(road_map.to_source(point));
+        EXPECT_NEAR(whole.lane(*of).left.in_map.project(there).d_m, 0.0, 1e-9) << one.name;
+      }
+    }
+  }
+  EXPECT_GT(cut, 0u);
+}
+
 }  // namespace
 }  // namespace roadbed::map

@@ -86,9 +86,8 @@ TEST(Transform, BringsBordersWhereProjDoes) {
 }
 
 TEST(Transform, NeedsAKnownSystemForAnother) {
-  EXPECT_THROW(
-      transform(tests::curved_road_xml(), "a.xodr", {.motion = {}, .to = "EPSG:32632", .crs = {}}),
-      InputError);
+  const TransformOptions unknown{.motion = {}, .to = "EPSG:32632", .crs = ""};
+  EXPECT_THROW(transform(tests::curved_road_xml(), "a.xodr", unknown), InputError);
 }
 
 TEST(Align, FindsTheMotionOfPairs) {
