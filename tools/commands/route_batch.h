@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadbed/planning/route/route.h"
+#include "roadbed/planning/route/route_options.h"
 
 namespace roadbed::tools::inline commands {
 
