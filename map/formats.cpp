@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "roadbed/map/argoverse/read.h"
 #include "roadbed/map/commonroad/read.h"
 #include "roadbed/map/commonroad/write.h"
 #include "roadbed/map/compiled/compiled_map.h"
@@ -83,6 +84,10 @@ constexpr std::array<Format, 10> kFormats = {{
          },
      .judge = judge_open_drive,
      .rules = open_drive_rules},
+    {.name = "Argoverse 2",
+     .sniff = [](const FileContent& content) { return argoverse::is_argoverse(content.bytes); },
+     .read = [](std::string bytes, const std::string& name,
+                const LoadOptions&) { return RoadMap(argoverse::read(bytes, name)); }},
     {.name = "GeoJSON",
      .sniff = [](const FileContent& content) { return geojson::is_geojson(content.bytes); },
      .read = [](std::string bytes, const std::string& name,

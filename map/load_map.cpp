@@ -19,7 +19,8 @@ namespace {
     throw InputError(
         {.file = name,
          .found = "neither XML nor a compiled map nor JSON",
-         .needed = "an OpenDRIVE, Lanelet2, CommonRoad or GeoJSON file, or a compiled map",
+         .needed =
+             "an OpenDRIVE, Lanelet2, CommonRoad, Argoverse 2 or GeoJSON file, or a compiled map",
          .remedy = "check whether it is the right file"});
   }
   const XmlDocument xml(std::move(bytes), name);

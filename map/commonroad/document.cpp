@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "roadbed/map/elements/lane_lines.h"
 #include "roadbed/map/files/visible_text.h"
 
 namespace roadbed::map::commonroad {
@@ -53,12 +54,9 @@ bool is_answered(pugi::xml_node lanelet, pugi::xml_node link, pugi::xml_node oth
 }
 
 Eigen::Vector2d find_origin(const XmlDocument& xml) {
-  constexpr double far_m = 20'000.0, grid_m = 1'000.0;
   const pugi::xml_node first = xml.root().child("lanelet").child("leftBound").child("point");
   if (!first) return {0.0, 0.0};
-  const Eigen::Vector2d at = read_point(xml, first, {0.0, 0.0}).head<2>();
-  if (at.cwiseAbs().maxCoeff() <= far_m) return {0.0, 0.0};
-  return {grid_m * std::round(at.x() / grid_m), grid_m * std::round(at.y() / grid_m)};
+  return origin_near(read_point(xml, first, {0.0, 0.0}).head<2>());
 }
 
 Eigen::Vector3d read_point(const XmlDocument& xml, pugi::xml_node point,

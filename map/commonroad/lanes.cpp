@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "roadbed/map/commonroad/values.h"
+#include "roadbed/map/elements/lane_lines.h"
 
 namespace roadbed::map::commonroad {
 namespace {
@@ -51,28 +51,12 @@ void pair_points(Points& left, Points& right) {
   right = with_points_at(right, right_fractions, all);
 }
 
-LaneLine lane_line(const Points& points, const std::vector<double>& station_m) {
-  std::vector<Eigen::Vector2d> in_map;
-  std::vector<double> z_m;
-  in_map.reserve(points.size());
-  z_m.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) {
-    in_map.emplace_back(point.head<2>());
-    z_m.push_back(point.z());
-  }
-  return {geometry::Polyline(std::move(in_map)), std::move(z_m), station_m};
-}
-
 /// Borders of equally many points become the lane's lines; the centreline is halfway.
 void set_lines(const Points& left, const Points& right, Lane& lane) {
   Points centre;
   centre.reserve(left.size());
   for (std::size_t i = 0; i < left.size(); ++i) centre.push_back(0.5 * (left[i] + right[i]));
-  lane.centre = lane_line(centre, {});
-  lane.centre.station_m = lane.centre.in_map.stations_m();
-  lane.left = lane_line(left, lane.centre.station_m);
-  lane.right = lane_line(right, lane.centre.station_m);
-  lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
+  elements::set_lines(left, centre, right, lane);
 }
 
 /// Users that the children of that name name; unknown words name nobody.
@@ -184,10 +168,7 @@ class LaneBuilder {
   }
 
   void check_sides(pugi::xml_node lanelet, const Lane& lane) {
-    const auto& left = lane.left.in_map.points();
-    geometry::Ring ring = lane.right.in_map.points();
-    ring.insert(ring.end(), left.rbegin(), left.rend());
-    if (geometry::signed_area_m2(ring) >= 0.0) return;
+    if (!has_swapped_borders(lane)) return;
     fault("import.swapped-borders", lanelet,
           "its left border lies to the right of its right one; swap them or turn both round");
   }

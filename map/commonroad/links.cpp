@@ -3,100 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
+
+#include "roadbed/map/elements/side.h"
 
 namespace roadbed::map::commonroad {
 namespace {
 
-using Line = std::vector<Eigen::Vector2d>;
-
 constexpr double kJoinedM = 1.0;  ///< lane ends or borders further apart are not joined
-
-enum class Side { left, right };
-
-Side opposite(Side side) { return side == Side::left ? Side::right : Side::left; }
-
-const LaneLine& border(const Lane& lane, Side side) {
-  return side == Side::left ? lane.left : lane.right;
-}
-
-const std::vector<BorderMark>& marks(const Lane& lane, Side side) {
-  return side == Side::left ? lane.left_marks : lane.right_marks;
-}
-
-std::optional<Neighbour>& neighbour(LaneLinks& links, Side side) {
-  return side == Side::left ? links.left : links.right;
-}
 
 double end_gap_m(const Lane& from, const Lane& to) {
   const auto gap = [](const LaneLine& a, const LaneLine& b) {
     return (a.in_map.points().back() - b.in_map.points().front()).norm();
   };
   return std::max(gap(from.left, to.left), gap(from.right, to.right));
-}
-
-double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const double squared = (b - a).squaredNorm();
-  const double fraction =
-      squared > 0.0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return (point - a - fraction * (b - a)).norm();
-}
-
-/// Distance of each point of a line to another line that runs beside it in the same direction; the
-/// nearest place moves only forward, so that it costs O(points of both).
-std::vector<double> distances_m(const Line& line, const Line& other) {
-  std::vector<double> found;
-  std::size_t at = 0;
-  for (const Eigen::Vector2d& point : line) {
-    double least = distance_to_segment(point, other[at], other[at + 1]);
-    while (at + 2 < other.size()) {
-      const double next = distance_to_segment(point, other[at + 1], other[at + 2]);
-      if (next > least) break;
-      least = next;
-      ++at;
-    }
-    found.push_back(least);
-  }
-  return found;
-}
-
-/// Stretches of the lane where its border runs along the neighbour's facing one.
-std::vector<StationRange> joined_ranges(const Lane& lane, Side side, const Lane& other,
-                                        bool same_direction) {
-  const LaneLine& mine = border(lane, side);
-  Line facing = border(other, same_direction ? opposite(side) : side).in_map.points();
-  if (!same_direction) std::reverse(facing.begin(), facing.end());
-  const std::vector<double> distance_m = distances_m(mine.in_map.points(), facing);
-  std::vector<StationRange> ranges;
-  for (std::size_t i = 0; i + 1 < distance_m.size(); ++i) {
-    if (std::max(distance_m[i], distance_m[i + 1]) > kJoinedM) continue;
-    const double from_s_m = mine.station_m[i], to_s_m = mine.station_m[i + 1];
-    if (!ranges.empty() && ranges.back().to_s_m == from_s_m) {
-      ranges.back().to_s_m = to_s_m;
-    } else if (to_s_m > from_s_m) {
-      ranges.push_back({from_s_m, to_s_m});
-    }
-  }
-  return ranges;
-}
-
-/// Whether a driver may cross the marking; of a double line the one nearer to him counts.
-bool may_cross(MarkType type, bool from_right) {
-  switch (type) {
-    case MarkType::none:
-    case MarkType::broken:
-    case MarkType::broken_broken:
-    case MarkType::botts_dots:
-      return true;
-    case MarkType::solid_broken:
-      return from_right;
-    case MarkType::broken_solid:
-      return !from_right;
-    default:
-      return false;
-  }
 }
 
 class Linker {
@@ -198,7 +118,7 @@ class Linker {
     if (!found || *found == lane.id) return;
     const Lane& other = built_.lanes[found->index];
     const bool same = is_same_direction(adjacent);
-    std::vector<StationRange> joined = joined_ranges(lane, side, other, same);
+    std::vector<StationRange> joined = joined_ranges(lane, side, other, same, kJoinedM);
     if (joined.empty()) {
       fault("import.link-geometry", lane,
             fmt::format("its {} {} runs nowhere along that border in the {} direction; lanes "
@@ -208,21 +128,6 @@ class Linker {
     }
     if (!may_change(lane, side, other, same)) joined.clear();
     neighbour(links_[lane.id.index], side) = Neighbour{other.id, same, std::move(joined)};
-  }
-
-  // The lane's own marking counts, else the neighbour's; without any, lanes of one direction may
-  // be changed.
-  static bool may_change(const Lane& lane, Side side, const Lane& other, bool same_direction) {
-    const bool from_right = side == Side::left;
-    if (const auto& own = marks(lane, side); !own.empty()) {
-      return may_cross(own.front().type, from_right);
-    }
-    const auto& theirs = marks(other, same_direction ? opposite(side) : side);
-    // Seen by an oncoming neighbour, the two lines of a double one are the other way round.
-    if (!theirs.empty()) {
-      return may_cross(theirs.front().type, same_direction ? from_right : !from_right);
-    }
-    return same_direction;
   }
 
   const Document& document_;

@@ -18,8 +18,15 @@ using Json = nlohmann::json;
 class DocumentBuilder final : public nlohmann::json_sax<Json> {
  public:
   DocumentBuilder(std::size_t document_bytes, const std::string& file, const JsonRules& rules)
+      : DocumentBuilder(document_bytes, file, rules, 0, nullptr) {}
+
+  /// @param take  takes the parts that stand at most `level` objects deep; null: none.
+  DocumentBuilder(std::size_t document_bytes, const std::string& file, const JsonRules& rules,
+                  std::size_t level, const TakeJsonPart* take)
       : file_(file),
         rules_(rules),
+        level_(level),
+        take_(take),
         most_(geometry::most_bytes_read(document_bytes)),
         left_(most_) {}
 
@@ -44,6 +51,10 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
 
   bool key(string_t& key) override {
     spend(kMember + key.size());
+    if (take_ != nullptr && lists_ == 0 && open_.size() <= level_) {
+      keys_.resize(open_.size() - 1);
+      keys_.push_back({key, left_});
+    }
     const auto [member, is_new] =
         open_.back()->get_ref<Json::object_t&>().try_emplace(std::move(key), nullptr);
     if (!is_new && rules_.keys_stand_once) {
@@ -97,8 +108,18 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
   }
 
   bool add(Json value) {
-    put(std::move(value));
+    hand_over(*put(std::move(value)));
     return true;
+  }
+
+  // A value that is whole.
+  void hand_over(Json& value) {
+    if (take_ == nullptr || lists_ > 0 || open_.size() > level_) return;
+    const std::size_t keys = open_.size();
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < keys; ++i) names.push_back(keys_[i].name);
+    (*take_)(names, std::exchange(value, nullptr));
+    if (keys > 0) left_ = keys_[keys - 1].left;
   }
 
   bool open(Json value) {
@@ -109,21 +130,33 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
                         .remedy = "flatten them"});
     }
     spend(kList);
+    if (value.is_array()) ++lists_;
     open_.push_back(put(std::move(value)));
     return true;
   }
 
   bool close() {
+    Json& closed = *open_.back();
     open_.pop_back();
+    if (closed.is_array()) --lists_;
+    hand_over(closed);
     return true;
   }
 
   const std::string& file_;
   const JsonRules& rules_;
+  std::size_t level_;
+  const TakeJsonPart* take_;
   std::size_t most_, left_;
   Json root_;
   std::vector<Json*> open_;  // a list does not grow while a part of it is open
   Json* member_ = nullptr;   // whose value comes next
+  std::size_t lists_ = 0;    // that are open
+  struct Key {
+    std::string name;
+    std::size_t left;  // bytes, before its value
+  };
+  std::vector<Key> keys_;  // that lead to the part that is read
 };
 
 }  // namespace
@@ -132,6 +165,27 @@ nlohmann::json parse_json(std::string_view bytes, const std::string& file, const
   DocumentBuilder builder(bytes.size(), file, rules);
   Json::sax_parse(bytes, &builder);
   return builder.take();
+}
+
+void parse_json_parts(std::string_view bytes, const std::string& file, const JsonRules& rules,
+                      std::size_t level, const TakeJsonPart& take) {
+  DocumentBuilder builder(bytes.size(), file, rules, level, &take);
+  Json::sax_parse(bytes, &builder);
+}
+
+void refuse_json(const std::exception& error, const std::string& file) {
+  const auto* at = dynamic_cast<const Json::parse_error*>(&error);
+  if (at == nullptr) {
+    throw InputError({.file = file,
+                      .found = "a number beyond those of a computer",
+                      .needed = "numbers below 1e308",
+                      .remedy = "correct it"});
+  }
+  throw InputError({.file = file,
+                    .place = fmt::format("byte {}", at->byte),
+                    .found = "not JSON",
+                    .needed = "a whole JSON document",
+                    .remedy = "check whether the file was cut off"});
 }
 
 }  // namespace roadbed::map::files

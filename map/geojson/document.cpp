@@ -47,12 +47,8 @@ class Parser {
  private:
   [[noreturn]] void refuse(const std::string& found, const std::string& needed,
                            const std::string& remedy) const {
-    throw InputError({.file = name_,
-                      .place = place_,
-                      .element = element_,
-                      .found = found,
-                      .needed = needed,
-                      .remedy = remedy});
+    throw InputError(
+        {.file = name_, .element = element_, .found = found, .needed = needed, .remedy = remedy});
   }
 
   Json parse_json(const std::string& bytes) {
@@ -60,11 +56,8 @@ class Parser {
     constexpr std::size_t deepest = 32;
     try {
       return files::parse_json(bytes, name_, {.keys_stand_once = false, .most_levels = deepest});
-    } catch (const Json::parse_error& error) {
-      place_ = fmt::format("byte {}", error.byte);
-      refuse("not JSON", "a whole JSON document", "check whether the file was cut off");
-    } catch (const Json::exception&) {
-      refuse("a number beyond those of a computer", "numbers below 1e308", "correct it");
+    } catch (const Json::exception& error) {
+      refuse_json(error, name_);
     }
   }
 
@@ -184,7 +177,7 @@ class Parser {
   }
 
   const std::string& name_;
-  std::string place_, element_;
+  std::string element_;
   std::size_t features_ = 0;
   Document document_;
 };

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/elements/lane_lines.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/transverse_mercator.h"
 #include "roadbed/map/geojson/document.h"
@@ -48,12 +48,6 @@ const Eigen::Vector2d* first_position(const Document& document) {
     }
   }
   return nullptr;
-}
-
-Eigen::Vector2d origin_near(const Eigen::Vector2d& in_source) {
-  constexpr double far_m = 20'000.0, grid_m = 1'000.0;
-  if (in_source.cwiseAbs().maxCoeff() <= far_m) return {0.0, 0.0};
-  return {grid_m * std::round(in_source.x() / grid_m), grid_m * std::round(in_source.y() / grid_m)};
 }
 
 std::string ring_name(std::size_t ring) {

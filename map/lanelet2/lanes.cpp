@@ -4,24 +4,13 @@
 
 #include <algorithm>
 
+#include "roadbed/map/elements/lane_lines.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/centreline.h"
 #include "roadbed/map/lanelet2/traffic_rules.h"
 
 namespace roadbed::map::lanelet2 {
 namespace {
-
-LaneLine lane_line(const Line3& points, std::vector<double> station_m) {
-  std::vector<Eigen::Vector2d> plan;
-  std::vector<double> z_m;
-  plan.reserve(points.size());
-  z_m.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) {
-    plan.emplace_back(point.head<2>());
-    z_m.push_back(point.z());
-  }
-  return {geometry::Polyline(std::move(plan)), std::move(z_m), std::move(station_m)};
-}
 
 class LaneBuilder {
  public:

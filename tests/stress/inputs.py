@@ -459,6 +459,76 @@ def properties_of_a_feature(folder: Path, n: int) -> Path:
     return geojson(folder, [polygon([square(0, 0)], {f"k{i}": 1 for i in range(n)})])
 
 
+# Argoverse 2
+
+
+def argoverse(folder: Path, segments, **more) -> Path:
+    lists = {"lane_segments": {str(s["id"]): s for s in segments}, **more}
+    return written(folder / "in.json", json.dumps(lists))
+
+
+def segment(i: int, left, right, **more):
+    def line(points):
+        return [{"x": x, "y": y, "z": 0.0} for x, y in points]
+
+    return {
+        "id": i,
+        "is_intersection": False,
+        "lane_type": "VEHICLE",
+        "left_lane_boundary": line(left),
+        "right_lane_boundary": line(right),
+        "left_lane_mark_type": "DASHED_WHITE",
+        "right_lane_mark_type": "SOLID_WHITE",
+        "successors": [],
+        "predecessors": [],
+        "left_neighbor_id": None,
+        "right_neighbor_id": None,
+        **more,
+    }
+
+
+def straight_segment(i: int, x: float, to: float, y: float = 0.0, **more):
+    return segment(i, [(x, y + 3), (to, y + 3)], [(x, y), (to, y)], **more)
+
+
+def av_segments_in_a_row(folder: Path, n: int) -> Path:
+    return argoverse(
+        folder,
+        (
+            straight_segment(i, i * 100, i * 100 + 100, successors=[i + 1], predecessors=[i - 1])
+            for i in range(n)
+        ),
+    )
+
+
+def av_same_segments(folder: Path, n: int) -> Path:
+    """All inside one intersection, and all neighbours of the first."""
+    return argoverse(
+        folder,
+        (
+            straight_segment(i, 0, 100, is_intersection=True, left_neighbor_id=0)
+            for i in range(n)
+        ),
+    )
+
+
+def av_points_of_a_border(folder: Path, n: int) -> Path:
+    line = [(i * 0.1, 0.01 * (i % 3)) for i in range(n)]
+    return argoverse(folder, [segment(1, [(x, y + 3) for x, y in line], line)])
+
+
+def av_successors_of_a_segment(folder: Path, n: int) -> Path:
+    first = straight_segment(0, 0, 100, successors=list(range(1, n)))
+    return argoverse(folder, [first] + [straight_segment(i, 100, 200, y=i * 4) for i in range(1, n)])
+
+
+def av_long_intersections(folder: Path, n: int) -> Path:
+    """Kilometres of intersection in a few bytes."""
+    return argoverse(
+        folder, (straight_segment(i, 0, 1e6, y=i * 4, is_intersection=True) for i in range(n))
+    )
+
+
 # JSON
 
 

@@ -91,5 +91,44 @@ TEST(ParseJson, RefusesMoreValuesThanADocumentOfItsSizeHolds) {
   EXPECT_EQ(refusal(numbers + "1]"), "");
 }
 
+/// The document, put together from its parts.
+Json from_parts(const std::string& text, std::size_t level) {
+  Json whole;
+  const auto take = [&](std::span<const std::string> keys, Json part) {
+    Json* at = &whole;
+    for (const std::string& key : keys) {
+      if (at->is_null()) *at = Json::object();
+      at = &(*at)[key];
+    }
+    if (at->is_null() || !part.is_object()) *at = std::move(part);
+  };
+  parse_json_parts(text, "a.json", {}, level, take);
+  return whole;
+}
+
+TEST(ParseJsonParts, MakeTheDocument) {
+  std::mt19937 random(20261125);
+  for (int i = 0; i < 2000; ++i) {
+    const Json written = random_json(random, 5);
+    for (const std::size_t level : {0, 1, 2, 3}) {
+      EXPECT_EQ(from_parts(written.dump(), level), written) << written.dump();
+    }
+  }
+}
+
+TEST(ParseJsonParts, AreHandedOverOneByOneInTheFilesOrder) {
+  std::vector<std::string> seen;
+  const auto take = [&](std::span<const std::string> keys, const Json& part) {
+    std::string line;
+    for (const std::string& key : keys) line += key + "/";
+    seen.push_back(line + part.dump());
+  };
+  parse_json_parts(R"({"b":{"y":{"n":[1]},"x":2},"a":[{"q":{"r":3}}],"c":4})", "a.json", {}, 2,
+                   take);
+  EXPECT_THAT(
+      seen, testing::ElementsAre(R"(b/y/{"n":[1]})", "b/x/2", R"(b/{"x":null,"y":null})",
+                                 R"(a/[{"q":{"r":3}}])", "c/4", R"({"a":null,"b":null,"c":null})"));
+}
+
 }  // namespace
 }  // namespace roadbed::map
