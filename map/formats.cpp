@@ -71,7 +71,7 @@ std::string page_bytes(const RoadMap& road_map, const SaveOptions& options) {
   return write_map_page(road_map, page);
 }
 
-constexpr std::array<Format, 10> kFormats = {{
+constexpr std::array<Format, 11> kFormats = {{
     {.name = "compiled map",
      .sniff = [](const FileContent& content) { return is_compiled_map(content.bytes); },
      .read = [](std::string bytes, const std::string& name,

@@ -64,6 +64,10 @@ AREA: Commands = [
     ("export .svg", ["export", "IN", "-o", "out.svg", "--force"]),
     ("export .csv", ["export", "IN", "-o", "out.csv", "--force"]),
 ]
+MAP: Commands = [
+    ("map stats", ["map", "stats", "in.rbm"]),
+    ("map query", ["map", "query", "in.rbm", "width > 1 and slope < 50", "--format", "csv"]),
+]
 SCENARIO: Commands = [("simulate", ["simulate", "IN", "-o", "out", "--force"])]
 TOWN = ["--occupancy", str(DATA / "town.bt"), "--unknown", "free", "--certificate", "out.json"]
 AUDIT: Commands = [
@@ -112,7 +116,7 @@ BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
 
 CASES = [
     Case("roads apart", inputs.roads_apart, 100, ALL),
-    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm")),
+    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + MAP),
     Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson")),
     Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7")),
     Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0")),
@@ -155,7 +159,7 @@ CASES = [
     Case("shifted squares", inputs.shifted_squares, 10, AREA),
     Case("holes", inputs.holes, 100, AREA),
     Case("properties of a feature", inputs.properties_of_a_feature, 1000, AREA[:3]),
-    Case("Argoverse lanes", inputs.av_segments_in_a_row, 100, map_commands("50,1.5", ".osm")),
+    Case("Argoverse lanes", inputs.av_segments_in_a_row, 100, map_commands("50,1.5", ".osm") + MAP),
     Case("same Argoverse lanes", inputs.av_same_segments, 10, map_commands("50,1.5")),
     Case("points of an Argoverse lane", inputs.av_points_of_a_border, 1000, map_commands("5,1.5")),
     Case("successors of a lane", inputs.av_successors_of_a_segment, 100, map_commands("50,1.5")),

@@ -69,6 +69,8 @@ class ExitStatus : public testing::Test {
         {"map merge", {none, none, "-o", fresh(".xodr")}},
         {"map transform", {none, "--turn", "1", "-o", fresh(".xodr")}},
         {"map tile", {none, "100", "-o", fresh("")}},
+        {"map stats", {none}},
+        {"map query", {none, "type = driving"}},
         {"locate", {none, "--at", "0,0"}},
         {"route", with({none}, places)},
         {"reach", {none, "--from", "lane:1/3/1@6", "--within", "5s"}},

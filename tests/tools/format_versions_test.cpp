@@ -152,6 +152,7 @@ TEST(FormatVersions, OfEveryDocumentThatACommandPrintsStandFirst) {
       {"map_clip", {"map", "clip", town, "--bbox=0,0,200,300", "-o", folder / "part.xodr"}},
       {"map_merge", {"map", "merge", town, town, "-o", folder / "merged.xodr"}},
       {"map_transform", {"map", "transform", town, "--turn=1", "-o", folder / "turned.xodr"}},
+      {"map_stats", {"map", "stats", town}},
       {"locate", {"locate", town, "--at", "150,198"}},
       {"route", {"route", town, "--from", from, "--to", to}},
       {"route", {"route", town, "--from", from, "--to", to, "--avoid", "road:7"}},

@@ -15,6 +15,8 @@ std::unique_ptr<Command> make_export_command();
 std::unique_ptr<Command> make_convert_command();
 std::unique_ptr<Command> make_diff_command();
 std::unique_ptr<Command> make_map_command();
+std::unique_ptr<Command> make_map_stats_command();
+std::unique_ptr<Command> make_map_query_command();
 std::unique_ptr<Command> make_locate_command();
 std::unique_ptr<Command> make_route_command();
 std::unique_ptr<Command> make_reach_command();

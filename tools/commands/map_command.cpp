@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -119,12 +120,16 @@ class MapCommand : public Command {
     add("merge", make_map_merge_command());
     add("transform", make_map_transform_command());
     add("tile", make_map_tile_command());
+    add("stats", make_map_stats_command());
+    add("query", make_map_query_command());
   }
 
   void declare(Arguments& arguments) override {
-    arguments.description("Compare and edit maps");
+    arguments.description("Work on maps: compare, count, ask, edit");
     arguments.example(
         "  roadbed map diff old.xodr new.xodr\n"
+        "  roadbed map stats town.xodr\n"
+        "  roadbed map query town.xodr 'type = driving and speed > 40'\n"
         "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr");
     for (Part& part : parts_) {
       part.arguments = arguments.part(part.name);
