@@ -68,6 +68,7 @@ MAP: Commands = [
     ("map stats", ["map", "stats", "in.rbm"]),
     ("map query", ["map", "query", "in.rbm", "width > 1 and slope < 50", "--format", "csv"]),
 ]
+FIX: Commands = [("map fix", ["map", "fix", "IN", "-o", "mended.xml", "--force"])]
 SCENARIO: Commands = [("simulate", ["simulate", "IN", "-o", "out", "--force"])]
 TOWN = ["--occupancy", str(DATA / "town.bt"), "--unknown", "free", "--certificate", "out.json"]
 AUDIT: Commands = [
@@ -116,7 +117,7 @@ BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
 
 CASES = [
     Case("roads apart", inputs.roads_apart, 100, ALL),
-    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + MAP),
+    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + MAP + FIX),
     Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson")),
     Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7")),
     Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0")),
@@ -139,7 +140,7 @@ CASES = [
         "lanelets",
         inputs.lanelets_in_a_row,
         100,
-        map_commands("50,1.5", "reach", ".osm") + AUTOWARE,
+        map_commands("50,1.5", "reach", ".osm") + AUTOWARE + FIX,
     ),
     Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm") + AUTOWARE),
     Case("crossing lanelets", inputs.crossing_lanelets, 10, AUTOWARE),
@@ -147,7 +148,12 @@ CASES = [
     Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5")),
     Case("tags of a way", inputs.tags_of_a_way, 1000, map_commands("50,1.5")[:3]),
     Case("regulations", inputs.regulations, 100, map_commands("50,1.5") + AUTOWARE),
-    Case("CommonRoad lanelets", inputs.cr_lanelets_in_a_row, 100, map_commands("50,1.5", ".xml")),
+    Case(
+        "CommonRoad lanelets",
+        inputs.cr_lanelets_in_a_row,
+        100,
+        map_commands("50,1.5", ".xml") + FIX,
+    ),
     Case("same CommonRoad lanelets", inputs.cr_same_lanelets, 10, map_commands("50,1.5")),
     Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3]),
     Case("circle", inputs.circle, 100, AREA),

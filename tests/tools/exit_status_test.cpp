@@ -71,6 +71,7 @@ class ExitStatus : public testing::Test {
         {"map tile", {none, "100", "-o", fresh("")}},
         {"map stats", {none}},
         {"map query", {none, "type = driving"}},
+        {"map fix", {none, "-o", fresh(".xodr")}},
         {"locate", {none, "--at", "0,0"}},
         {"route", with({none}, places)},
         {"reach", {none, "--from", "lane:1/3/1@6", "--within", "5s"}},

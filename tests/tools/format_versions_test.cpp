@@ -153,6 +153,7 @@ TEST(FormatVersions, OfEveryDocumentThatACommandPrintsStandFirst) {
       {"map_merge", {"map", "merge", town, town, "-o", folder / "merged.xodr"}},
       {"map_transform", {"map", "transform", town, "--turn=1", "-o", folder / "turned.xodr"}},
       {"map_stats", {"map", "stats", town}},
+      {"map_fix", {"map", "fix", town}},
       {"locate", {"locate", town, "--at", "150,198"}},
       {"route", {"route", town, "--from", from, "--to", to}},
       {"route", {"route", town, "--from", from, "--to", to, "--avoid", "road:7"}},

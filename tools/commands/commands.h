@@ -17,6 +17,7 @@ std::unique_ptr<Command> make_diff_command();
 std::unique_ptr<Command> make_map_command();
 std::unique_ptr<Command> make_map_stats_command();
 std::unique_ptr<Command> make_map_query_command();
+std::unique_ptr<Command> make_map_fix_command();
 std::unique_ptr<Command> make_locate_command();
 std::unique_ptr<Command> make_route_command();
 std::unique_ptr<Command> make_reach_command();

@@ -122,15 +122,17 @@ class MapCommand : public Command {
     add("tile", make_map_tile_command());
     add("stats", make_map_stats_command());
     add("query", make_map_query_command());
+    add("fix", make_map_fix_command());
   }
 
   void declare(Arguments& arguments) override {
-    arguments.description("Work on maps: compare, count, ask, edit");
+    arguments.description("Work on maps: compare, count, ask, edit, mend");
     arguments.example(
         "  roadbed map diff old.xodr new.xodr\n"
         "  roadbed map stats town.xodr\n"
         "  roadbed map query town.xodr 'type = driving and speed > 40'\n"
-        "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr");
+        "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr\n"
+        "  roadbed map fix town.xodr -o mended.xodr");
     for (Part& part : parts_) {
       part.arguments = arguments.part(part.name);
       part.command->declare(*part.arguments);
