@@ -16,6 +16,7 @@
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/lane_table/read.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_network.h"
@@ -69,7 +70,8 @@ class ImportCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Read a digital road map and write it as a compiled map");
     arguments
-        .add("IN", input_, "Map file: OpenDRIVE, Lanelet2, CommonRoad, GeoJSON, or a compiled one")
+        .add("IN", input_,
+             "Map file: OpenDRIVE, Lanelet2, CommonRoad, Argoverse 2, GeoJSON, or a compiled one")
         .required()
         .reads()
         .ending(kMapEndings);
@@ -80,6 +82,11 @@ class ImportCommand : public Command {
                   "CRS of the map's coordinates (PROJ string, EPSG:CODE, or \"unknown\"), "
                   "where the file gives none or a wrong one; nothing is reprojected");
     arguments
+        .add("--columns", columns_,
+             "What the columns of a GeoJSON or GeoPackage of lanes of your own mean: a JSON file, "
+             "see map/lane_table/README.md")
+        .reads();
+    arguments
         .add("--max-error", max_error_m_,
              "Largest distance between a sampled border and the true curve [m]")
         .within(1e-6, 1.0)
@@ -88,7 +95,9 @@ class ImportCommand : public Command {
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.require(
         [this] { return standard_output_fault(output_, false, "", json_ ? "--json" : ""); });
-    arguments.example("  roadbed import town.xodr -o town.rbm");
+    arguments.example(
+        "  roadbed import town.xodr -o town.rbm\n"
+        "  roadbed import lanes.geojson --columns lanes_columns.json -o lanes.rbm");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -107,6 +116,7 @@ class ImportCommand : public Command {
   // Remembers what the map is made from, where it can be found again; not in a batch, whose outputs
   // are the same wherever the input lies.
   map::RoadMap load(bool is_alone) {
+    if (!columns_.empty()) return load_lane_table();
     const map::LoadOptions options{.max_error_m = max_error_m_};
     if (map::is_compiled_map(map::stored_start(input_, 16))) return map::load_map(input_, options);
     std::string bytes = map::read_file(input_);
@@ -119,6 +129,13 @@ class ImportCommand : public Command {
     const std::uintmax_t size = std::filesystem::file_size(input_, error);
     if (error) return {};
     return map::MapSource{input_.generic_string(), size, map::source_hash(bytes)};
+  }
+
+  map::RoadMap load_lane_table() const {
+    const auto mapping =
+        map::lane_table::read_mapping(map::read_file(columns_), map::input_name(columns_));
+    return map::RoadMap(
+        map::lane_table::read(map::read_file(input_), map::input_name(input_), mapping));
   }
 
   // Nobody wants a compiled map under the name of another format.
@@ -172,7 +189,7 @@ class ImportCommand : public Command {
     }
   }
 
-  std::filesystem::path input_, output_;
+  std::filesystem::path input_, output_, columns_;
   std::optional<map::MapSource> source_;
   std::string crs_;
   double max_error_m_ = 1e-3;

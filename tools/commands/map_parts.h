@@ -11,5 +11,8 @@ std::unique_ptr<Command> make_map_clip_command();
 std::unique_ptr<Command> make_map_merge_command();
 std::unique_ptr<Command> make_map_transform_command();
 std::unique_ptr<Command> make_map_tile_command();
+std::unique_ptr<Command> make_map_stats_command();
+std::unique_ptr<Command> make_map_query_command();
+std::unique_ptr<Command> make_map_fix_command();
 
 }  // namespace roadbed::tools::commands
