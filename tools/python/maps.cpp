@@ -229,7 +229,7 @@ std::vector<std::string> save(const Map& map, const std::filesystem::path& file,
   }
   const bool is_own = !choice.anchor && !choice.crs && !map.road_map->crs().empty();
   map::save_map(*map.road_map, file,
-                {choice.layers, system_of(map, choice.crs, choice.anchor), is_own, &notes});
+                {choice.layers, system_of(map, choice.crs, choice.anchor), is_own, &notes, {}});
   return notes;
 }
 
