@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kChord_m = 1.0;
+constexpr double kSameStation_m = 1e-6;  // between nearer ones a slope would be rounding
 
 std::vector<double> all_stations_m(const Lane& lane) {
   std::vector<double> stations_m;
@@ -19,7 +20,10 @@ std::vector<double> all_stations_m(const Lane& lane) {
     stations_m.insert(stations_m.end(), line->station_m.begin(), line->station_m.end());
   }
   std::sort(stations_m.begin(), stations_m.end());
-  stations_m.erase(std::unique(stations_m.begin(), stations_m.end()), stations_m.end());
+  const double end_m = stations_m.back();
+  const auto coincide = [](double a, double b) { return b - a < kSameStation_m; };
+  stations_m.erase(std::unique(stations_m.begin(), stations_m.end(), coincide), stations_m.end());
+  stations_m.back() = end_m;
   return stations_m;
 }
 

@@ -59,7 +59,8 @@ RepairedFile expect_better(const std::string& bytes, const RepairOptions& option
   }
   EXPECT_LT(after, before);
   const RoadMap was = parse_map(bytes, "a map"), is = parse_map(file.bytes, "a map");
-  EXPECT_EQ(was.lanes().size(), is.lanes().size());
+  // One that was no lane for its crossing borders may be one again; none is lost.
+  EXPECT_LE(was.lanes().size(), is.lanes().size());
   for (const Lane& lane : was.lanes()) {
     const auto found = is.find_lane(lane.name);
     EXPECT_TRUE(found) << lane.name;
