@@ -21,6 +21,7 @@
 #include "roadbed/map/lanelet2/read.h"
 #include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/opendrive/read.h"
+#include "roadbed/map/opendrive/write/write.h"
 
 namespace roadbed::map {
 namespace {
@@ -62,6 +63,13 @@ std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) 
   return std::move(file.bytes);
 }
 
+std::string open_drive_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
+  opendrive::OpenDriveFile file = opendrive::write_open_drive(road_map, {options.crs, offset});
+  if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  return std::move(file.bytes);
+}
+
 constexpr std::array<Format, 9> kFormats = {{
     {.name = "compiled map",
      .sniff = [](const FileContent& content) { return is_compiled_map(content.bytes); },
@@ -74,7 +82,10 @@ constexpr std::array<Format, 9> kFormats = {{
            return RoadMap(opendrive::read(XmlDocument(std::move(bytes), name), options));
          },
      .judge = judge_open_drive,
-     .rules = open_drive_rules},
+     .rules = open_drive_rules,
+     .suffix = ".xodr",
+     .write = open_drive_bytes,
+     .what = "roads with their reference lines, lanes and junctions (OpenDRIVE)"},
     {.name = "GeoJSON",
      .sniff = [](const FileContent& content) { return geojson::is_geojson(content.bytes); },
      .read = [](std::string bytes, const std::string& name,
