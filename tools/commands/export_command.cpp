@@ -4,18 +4,23 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/projection.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/opendrive/write/write.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -64,6 +69,7 @@ class ExportCommand : public Command {
         "  roadbed export town.xodr -o town.svg\n"
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
+        "  roadbed export crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 
@@ -79,7 +85,15 @@ class ExportCommand : public Command {
     arguments.add("--crs", crs_,
                   "Coordinate system of the map, in place of what it says itself: EPSG:25832, a "
                   "PROJ string, or \"unknown\"");
+    arguments
+        .add("--opendrive", open_drive_,
+             "Version of an OpenDRIVE output, 1.8 if none is given; an OpenDRIVE file itself is "
+             "written as it stands, unless its version or its system is to change")
+        .one_of({"1.4", "1.8"});
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    arguments.flag("-j,--json", json_,
+                   "Print one JSON document: what was written, how near it is to the map, what is "
+                   "not in it");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -87,15 +101,10 @@ class ExportCommand : public Command {
     check_layers(format, layers_);
     map::check_writable(output_, force_);
     const map::RoadMap road_map = map::load_map(input_);
-    std::vector<std::string> notes;
-    const std::string bytes =
-        format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes});
-    map::write_output(output_, bytes, force_);
-    if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
-                 road_map.lanes().size(), bytes.size());
-      for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
-    }
+    const Written written = write(format, road_map);
+    map::write_output(output_, written.bytes, force_);
+    if (json_) print_json(streams.out, format, road_map, written);
+    if (!common.quiet) print_text(streams.err, road_map, written);
     return Exit::ok;
   }
 
@@ -103,7 +112,7 @@ class ExportCommand : public Command {
   std::string suffix() const { return suffix_of_output(output_, format_); }
 
   std::string stream_or_anchor_fault() const {
-    const std::string fault = standard_output_fault(output_, true, format_, "");
+    const std::string fault = standard_output_fault(output_, true, format_, json_ ? "--json" : "");
     if (!fault.empty()) return fault;
     if (anchor_deg_.empty()) return {};
     if (std::abs(anchor_deg_[0]) <= 90.0 && std::abs(anchor_deg_[1]) <= 180.0) return {};
@@ -111,6 +120,71 @@ class ExportCommand : public Command {
   }
 
  private:
+  /// What an output holds, and what there is to say of it.
+  struct Written {
+    std::string bytes;
+    std::vector<std::string> notes = {};
+    std::vector<std::pair<std::string, std::size_t>> lost = {};
+    std::optional<double> largest_error_m = {}, largest_height_error_m = {};
+  };
+
+  Written write(const map::Format& format, const map::RoadMap& road_map) const {
+    if (format.name == "OpenDRIVE") return write_open_drive(format, road_map);
+    Written written;
+    written.bytes = format.write(
+        road_map, {layers_, system_of(road_map), is_own_system(road_map), &written.notes});
+    return written;
+  }
+
+  Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
+    const bool is_own = map::format_of(input_) == &format;
+    if (is_own && !asks_for_another(road_map)) {
+      return {map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes};
+    }
+    const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
+    map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
+        road_map, {system_of(road_map), offset, open_drive_ == "1.4" ? 4 : 8});
+    if (is_own) {
+      file.notes.emplace_back("the document is made anew, as its version or its system changes");
+    }
+    return {std::move(file.bytes), std::move(file.notes), std::move(file.lost),
+            file.largest_error_m, file.largest_height_error_m};
+  }
+
+  bool asks_for_another(const map::RoadMap& road_map) const {
+    const bool version = !open_drive_.empty() && !road_map.format().ends_with(" " + open_drive_);
+    return version || !crs_.empty() || !anchor_deg_.empty();
+  }
+
+  void print_text(std::ostream& err, const map::RoadMap& road_map, const Written& written) const {
+    fmt::print(err, "{}: {} lanes, {} bytes\n", output_name(output_), road_map.lanes().size(),
+               written.bytes.size());
+    if (written.largest_error_m) {
+      fmt::print(err, "borders within {:.4f} m of the map's, their heights within {:.3f} m\n",
+                 *written.largest_error_m, *written.largest_height_error_m);
+    }
+    for (const auto& [what, count] : written.lost) fmt::print(err, "lost: {} {}\n", count, what);
+    for (const std::string& note : written.notes) fmt::print(err, "note: {}\n", note);
+  }
+
+  void print_json(std::ostream& out, const map::Format& format, const map::RoadMap& road_map,
+                  const Written& written) const {
+    Json document{{"output", output_name(output_)},
+                  {"format", format.name},
+                  {"lanes", road_map.lanes().size()},
+                  {"bytes", written.bytes.size()}};
+    if (written.largest_error_m) {
+      document["largest_error_m"] = *written.largest_error_m;
+      document["largest_height_error_m"] = *written.largest_height_error_m;
+    }
+    document["lost"] = Json::array();
+    for (const auto& [what, count] : written.lost) {
+      document["lost"].push_back({{"what", what}, {"count", count}});
+    }
+    document["notes"] = written.notes;
+    out << map::json_text(versioned("export", document), 2) << '\n';
+  }
+
   std::string system_of(const map::RoadMap& road_map) const {
     const std::string own = crs_.empty() ? road_map.crs() : crs_ == "unknown" ? "" : crs_;
     if (anchor_deg_.empty()) return own;
@@ -128,8 +202,8 @@ class ExportCommand : public Command {
   std::filesystem::path input_, output_;
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
-  std::string crs_, format_;
-  bool force_ = false;
+  std::string crs_, format_, open_drive_;
+  bool force_ = false, json_ = false;
 };
 
 /// What `export` does, and for a compiled map what `import` does.
@@ -166,8 +240,9 @@ class ConvertCommand : public ExportCommand {
   std::string fault() {
     if (output_.empty()) output_ = positional_output_;
     if (output_.empty()) return "B or -o is required: the output";
-    if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
-      return "--layer and --anchor are for outputs other than .rbm";
+    const bool is_plain = layers_.empty() && anchor_deg_.empty() && open_drive_.empty() && !json_;
+    if (is_compiled() && !is_plain) {
+      return "--layer, --anchor, --opendrive and --json are for outputs other than .rbm";
     }
     return stream_or_anchor_fault();
   }
