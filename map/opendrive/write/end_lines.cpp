@@ -11,7 +11,7 @@ namespace roadbed::map::opendrive {
 namespace {
 
 constexpr double kShort_m = 0.15;     // ends of borders that say nothing of a direction
-constexpr double kSkew_rad = 0.6;     // from square, of a line through the ends
+constexpr double kSkew_rad = 0.12;    // from square, of a line through the ends
 constexpr double kDirection_m = 3.0;  // of a lane's direction at its end
 constexpr double kOffLine_m = 0.15;   // of an end from that line
 constexpr double kMostCut_m = 8.0;    // off a road for a square end
@@ -63,25 +63,25 @@ struct EndPoints {
 
 class EndLineFinder {
  public:
-  EndLineFinder(const RoadMap& road_map, const RoadPlan& plan, const std::vector<bool>& folds)
+  EndLineFinder(const RoadMap& road_map, const RoadPlan& plan)
       : road_map_(road_map), plan_(plan), roles_(find_end_roles(road_map, plan)) {
     const std::size_t count = 2 * plan.roads.size();
     together_.resize(count);
-    square_.resize(count);
     hubs_.resize(count);
     for (std::uint32_t end = 0; end < count; ++end) {
       own_.push_back(points_at(plan.roads[end / 2], end % 2 == 1));
       EndPoints& group = together_[roles_.groups[end]];
       group.add(own_[end], group.along.dot(own_[end].along) < 0.0);
       if (roles_.roles[end] == EndRole::hub) hubs_[roles_.groups[end]] = end;
-      if (folds[end / 2]) square_[roles_.groups[end]] = true;
     }
   }
 
   std::vector<std::array<EndLine, 2>> find() {
     std::vector<std::array<EndLine, 2>> lines(plan_.roads.size());
     for (std::uint32_t end = 0; end < own_.size(); ++end) {
-      EndLine line = line_of(roles_.groups[end]);
+      // A road of the map has its own straight ends.
+      EndLine line =
+          plan_.roads[end / 2].source ? own_[end].through() : line_of(roles_.groups[end]);
       if (unit(line.heading_rad).dot(own_[end].along) < 0.0) line.heading_rad += std::numbers::pi;
       lines[end / 2][end % 2] = line;
     }
@@ -112,7 +112,7 @@ class EndLineFinder {
     const EndPoints& all = together_[group];
     const EndLine line = all.through();
     const auto [behind_m, before_m] = all.before_m(line);
-    const bool in_line = !square_[group] && std::max(-behind_m, before_m) <= kOffLine_m;
+    const bool in_line = std::max(-behind_m, before_m) <= kOffLine_m;
     if (in_line && std::abs(line.heading_rad - all.heading_rad()) <= kSkew_rad) return line;
     if (!hubs_[group]) return {all.middle(), all.heading_rad()};
     return square_at(*hubs_[group], all.heading_rad());
@@ -138,15 +138,13 @@ class EndLineFinder {
   const RoadPlan& plan_;
   EndRoles roles_;
   std::vector<EndPoints> own_, together_;           // by end, by group
-  std::vector<bool> square_;                        // by group
   std::vector<std::optional<std::uint32_t>> hubs_;  // by group
 };
 
 }  // namespace
 
-std::vector<std::array<EndLine, 2>> end_lines(const RoadMap& road_map, const RoadPlan& plan,
-                                              const std::vector<bool>& folds) {
-  return EndLineFinder(road_map, plan, folds).find();
+std::vector<std::array<EndLine, 2>> end_lines(const RoadMap& road_map, const RoadPlan& plan) {
+  return EndLineFinder(road_map, plan).find();
 }
 
 }  // namespace roadbed::map::opendrive

@@ -13,18 +13,12 @@ namespace roadbed::map::opendrive {
 struct EndLine {
   Eigen::Vector2d in_map{0, 0};
   double heading_rad = 0.0;
-
-  bool operator==(const EndLine& other) const {
-    return in_map == other.in_map && heading_rad == other.heading_rad;
-  }
 };
 
 /// Lines across both ends of every road. Roads that join each other have one line there: the one
 /// through all ends of their lanes' borders if these are in line and not too askew; else one that
 /// is square to the lanes, of roads that lead into a junction where all their borders still go on,
 /// so that what is cut off is the beginning of every road behind it.
-/// @param folds  roads that ask for square ends, in order of the plan.
-std::vector<std::array<EndLine, 2>> end_lines(const RoadMap& road_map, const RoadPlan& plan,
-                                              const std::vector<bool>& folds);
+std::vector<std::array<EndLine, 2>> end_lines(const RoadMap& road_map, const RoadPlan& plan);
 
 }  // namespace roadbed::map::opendrive

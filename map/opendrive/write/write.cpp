@@ -65,20 +65,11 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), words, std::forward<Values>(values)...);
   }
 
-  // Where a road folds, it and those that join it get square ends.
   void shape_roads() {
     const auto borders = reference_borders(road_map_, plan_);
-    std::vector<bool> folds(plan_.roads.size());
-    auto ends = end_lines(road_map_, plan_, folds);
+    const auto ends = end_lines(road_map_, plan_);
     for (std::size_t i = 0; i < plan_.roads.size(); ++i) {
       shapes_.push_back(shape_road(road_map_, plan_.roads[i], borders[i], ends[i]));
-      folds[i] = shapes_[i].folds;
-    }
-    if (std::find(folds.begin(), folds.end(), true) == folds.end()) return;
-    const auto squarer = end_lines(road_map_, plan_, folds);
-    for (std::size_t i = 0; i < plan_.roads.size(); ++i) {
-      if (squarer[i] == ends[i]) continue;
-      shapes_[i] = shape_road(road_map_, plan_.roads[i], borders[i], squarer[i]);
     }
   }
 
