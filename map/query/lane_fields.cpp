@@ -26,20 +26,37 @@ FieldValue name(const AskedLane& lane, const std::optional<Neighbour>& neighbour
   return neighbour ? text(lane.map().lane(neighbour->lane).name) : FieldValue();
 }
 
+std::vector<std::string_view> truths() { return {"true", "false"}; }
+
+std::vector<std::string_view> type_words() {
+  std::vector<std::string_view> words;
+  for (int type = 0; type <= static_cast<int>(LaneType::other); ++type) {
+    words.push_back(to_string(static_cast<LaneType>(type)));
+  }
+  return words;
+}
+
+constexpr std::array<std::pair<Participant, std::string_view>, 10> kParticipants = {
+    {{Participant::pedestrian, "pedestrian"},
+     {Participant::bicycle, "bicycle"},
+     {Participant::motorcycle, "motorcycle"},
+     {Participant::car, "car"},
+     {Participant::taxi, "taxi"},
+     {Participant::bus, "bus"},
+     {Participant::truck, "truck"},
+     {Participant::emergency, "emergency"},
+     {Participant::tram, "tram"},
+     {Participant::train, "train"}}};
+
+std::vector<std::string_view> participant_words() {
+  std::vector<std::string_view> words;
+  for (const auto& [kind, word] : kParticipants) words.push_back(word);
+  return words;
+}
+
 FieldValue participants(const AskedLane& lane) {
-  static constexpr std::array<std::pair<Participant, const char*>, 10> words = {
-      {{Participant::pedestrian, "pedestrian"},
-       {Participant::bicycle, "bicycle"},
-       {Participant::motorcycle, "motorcycle"},
-       {Participant::car, "car"},
-       {Participant::taxi, "taxi"},
-       {Participant::bus, "bus"},
-       {Participant::truck, "truck"},
-       {Participant::emergency, "emergency"},
-       {Participant::tram, "tram"},
-       {Participant::train, "train"}}};
   Texts found;
-  for (const auto& [kind, word] : words) {
+  for (const auto& [kind, word] : kParticipants) {
     if (lane.lane().participants.has(kind)) found.emplace_back(word);
   }
   if (found.empty()) return {};
@@ -71,11 +88,12 @@ constexpr std::array<LaneField, 21> kFields = {{
      [](L lane) { return FieldValue(static_cast<double>(lane.lane().origin.section)); }},
     {"junction", false, "id of its junction", junction},
     {"type", false, "driving, biking, bus, sidewalk, …",
-     [](L lane) { return text(std::string(to_string(lane.lane().type))); }},
+     [](L lane) { return text(std::string(to_string(lane.lane().type))); }, type_words},
     {"drivable", false, "true where a car may plan to drive along it",
-     [](L lane) { return truth(is_drivable(lane.lane().type)); }},
-    {"one_way", false, "true or false", [](L lane) { return truth(lane.lane().one_way); }},
-    {"participants", false, "who may use it: car, bus, bicycle, …", participants},
+     [](L lane) { return truth(is_drivable(lane.lane().type)); }, truths},
+    {"one_way", false, "true or false", [](L lane) { return truth(lane.lane().one_way); }, truths},
+    {"participants", false, "who may use it: car, bus, bicycle, …", participants,
+     participant_words},
     {"speed", true, "speed limit, of several the least [km/h]", speed},
     {"length", true, "of the centreline [m]",
      [](L lane) { return FieldValue(lane.lane().length_m()); }},

@@ -37,6 +37,8 @@ struct LaneField {
   bool is_number = false;
   std::string_view what;  ///< for a help: "speed limit, of several the least [km/h]"
   FieldValue (*value)(const AskedLane& lane) = nullptr;
+  /// The only words that it says; null of one that may say any.
+  std::vector<std::string_view> (*words)() = nullptr;
 };
 
 /// All fields but `tag.KEY`, which is what the source says under a key.

@@ -1,6 +1,7 @@
 #include "roadbed/map/query/lane_question.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -201,7 +202,16 @@ class Parser {
     if (found.field != nullptr && found.field->is_number && found.relation == "~") {
       refuse(token.at, fmt::format("{} is a number, which has no parts", found.field->name));
     }
+    if (!is_nothing && found.relation != "~") need_known_word(found, token);
     found.values.push_back(token.text);
+  }
+
+  static void need_known_word(const Part& part, const Token& token) {
+    if (part.field == nullptr || part.field->words == nullptr) return;
+    const std::vector<std::string_view> words = part.field->words();
+    if (std::ranges::find(words, token.text) != words.end()) return;
+    refuse(token.at, fmt::format("\"{}\" is nothing that {} says; that is one of {}",
+                                 one_line(token.text), part.field->name, fmt::join(words, ", ")));
   }
 
   std::vector<Token> tokens_;

@@ -109,12 +109,18 @@ TEST(LaneQuestion, SaysWhereItGoesWrong) {
   EXPECT_THAT(question_fault("speed > none"), HasSubstr("\"none\" is no number"));
   EXPECT_THAT(question_fault("type < 3"), HasSubstr("type is a text"));
   EXPECT_THAT(question_fault("speed ~ 3"), HasSubstr("speed is a number"));
+  EXPECT_THAT(
+      question_fault("type = drving"),
+      HasSubstr("at character 8: \"drving\" is nothing that type says; that is one of none, "
+                "driving, "));
+  EXPECT_THAT(question_fault("participants in (car, horse)"), HasSubstr("\"horse\" is nothing"));
+  EXPECT_EQ(question_fault("type ~ amp and one_way != none and tag.type = drving"), "");
   EXPECT_THAT(question_fault("type driving"), HasSubstr("needs = !="));
   EXPECT_THAT(question_fault("type ="), HasSubstr("needs a value, found \"the end\""));
-  EXPECT_THAT(question_fault("(type = a"), HasSubstr("needs \")\", found \"the end\""));
-  EXPECT_THAT(question_fault("type = a b"), HasSubstr("\"b\" is too much"));
+  EXPECT_THAT(question_fault("(lane = a"), HasSubstr("needs \")\", found \"the end\""));
+  EXPECT_THAT(question_fault("lane = a b"), HasSubstr("\"b\" is too much"));
   EXPECT_THAT(question_fault("type = 'a"), HasSubstr("a quote that is not closed"));
-  EXPECT_THAT(question_fault("type in (a,)"), HasSubstr("needs a value, found \")\""));
+  EXPECT_THAT(question_fault("lane in (a,)"), HasSubstr("needs a value, found \")\""));
   EXPECT_THAT(question_fault(""), HasSubstr("is no field"));
   EXPECT_THAT(question_fault(std::string(100'000, '(')), HasSubstr("nested too deeply"));
   std::string nots;
