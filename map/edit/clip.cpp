@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "roadbed/map/edit/dispatch.h"
+#include "roadbed/map/edit/refuse_format.h"
 #include "roadbed/map/load_map.h"
 
 namespace roadbed::map::inline edit {
@@ -19,7 +19,7 @@ Edited clip(std::string bytes, const std::string& name, const Region& region,
   if (map.format.name == "CommonRoad") {
     return clip_common_road(std::move(map.bytes), name, region, options);
   }
-  refuse_format(map.format, name);
+  refuse_format(map.format, name, "OpenDRIVE, Lanelet2 or CommonRoad");
 }
 
 }  // namespace roadbed::map::edit

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "roadbed/map/edit/dispatch.h"
+#include "roadbed/map/edit/refuse_format.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 
@@ -28,7 +28,7 @@ Merged merge(std::vector<MergeInput> inputs, const MergeOptions& options) {
   }
   if (format->name == "OpenDRIVE") return merge_open_drive(std::move(inputs), options);
   if (format->name == "Lanelet2") return merge_lanelet2(std::move(inputs), options);
-  refuse_format(*format, inputs.front().name);
+  refuse_format(*format, inputs.front().name, "OpenDRIVE or Lanelet2");
 }
 
 }  // namespace roadbed::map::edit

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "roadbed/geometry/primitives/cross.h"
-#include "roadbed/map/edit/dispatch.h"
+#include "roadbed/map/edit/refuse_format.h"
 #include "roadbed/map/load_map.h"
 
 namespace roadbed::map::inline edit {
@@ -48,7 +48,7 @@ Edited transform(std::string bytes, const std::string& name, const TransformOpti
     return transform_open_drive(std::move(map.bytes), name, options);
   }
   if (map.format.name == "Lanelet2") return transform_lanelet2(std::move(map.bytes), name, options);
-  refuse_format(map.format, name);
+  refuse_format(map.format, name, "OpenDRIVE or Lanelet2");
 }
 
 }  // namespace roadbed::map::edit

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/edit_output.h"
-#include "roadbed/tools/commands/map_parts.h"
 #include "roadbed/tools/commands/region_option.h"
 
 namespace roadbed::tools::inline commands {

@@ -15,7 +15,6 @@
 #include "roadbed/map/page/diff_page.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/commands/map_parts.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {

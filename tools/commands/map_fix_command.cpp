@@ -10,7 +10,7 @@
 #include "roadbed/map/repair/repair.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
-#include "roadbed/tools/commands/map_parts.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {

@@ -12,8 +12,8 @@
 #include "roadbed/map/files/csv_field.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/edit_output.h"
-#include "roadbed/tools/commands/map_parts.h"
 
 namespace roadbed::tools::inline commands {
 namespace {

@@ -15,7 +15,7 @@
 #include "roadbed/map/query/lane_question.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/output_format.h"
-#include "roadbed/tools/commands/map_parts.h"
+#include "roadbed/tools/commands/commands.h"
 
 namespace roadbed::tools::inline commands {
 namespace {

@@ -12,7 +12,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/query/lane_question.h"
 #include "roadbed/map/query/map_stats.h"
-#include "roadbed/tools/commands/map_parts.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {

@@ -16,7 +16,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_folder.h"
-#include "roadbed/tools/commands/map_parts.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {

@@ -13,8 +13,8 @@
 
 #include "roadbed/map/edit/transform.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/edit_output.h"
-#include "roadbed/tools/commands/map_parts.h"
 #include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tools::inline commands {
