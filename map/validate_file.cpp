@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
@@ -21,6 +23,8 @@
 
 namespace roadbed::map {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Findings = std::vector<validation::Finding>;
 
@@ -66,35 +70,45 @@ JudgedFile judge(std::string bytes, const std::string& name,
   return judged;
 }
 
-/// The text that a compiled map was made from, as it is judged.
-struct JudgedSource {
-  std::optional<JudgedFile> judged;
-  std::string note;  ///< why there is none
-};
-
-JudgedSource judge_source(const std::filesystem::path& file,
-                          const validation::ValidateOptions& options) {
-  constexpr std::string_view kLeftOut = "no line numbers, and no rules about its text";
-  const std::optional<MapSource> source = source_of_compiled_map(file);
-  if (!source) {
-    return {{},
-            fmt::format("{} does not say what it was made from: {}", input_name(file), kLeftOut)};
-  }
-  const std::filesystem::path named = source->path;
-  bool is_there = false;
-  for (const std::filesystem::path& path :
-       {named, file.parent_path() / named, file.parent_path() / named.filename()}) {
+/// Files of formats with rules of their own that bear the map's name, beside it or in the working
+/// folder.
+std::vector<fs::path> files_of_its_name(const fs::path& compiled, std::uint64_t most_bytes) {
+  const std::string begin = compiled.stem().string() + ".";
+  std::set<fs::path> found;
+  for (const fs::path& folder : {compiled.parent_path(), fs::path()}) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) continue;
-    is_there = true;
-    if (std::filesystem::file_size(path, error) != source->bytes || error) continue;
-    std::string bytes = read_file(path);
-    if (source_hash(bytes) != source->hash) continue;
-    return {judge(std::move(bytes), input_name(path), options), {}};
+    for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+         !error && entry != end; entry.increment(error)) {
+      const fs::path file = folder / entry->path().filename();
+      if (!file.filename().string().starts_with(begin)) continue;
+      if (!entry->is_regular_file(error) || entry->file_size(error) > most_bytes) continue;
+      const Format* format = format_of(file);
+      if (format != nullptr && format->judge != nullptr) found.insert(file);
+    }
   }
-  return {{},
-          fmt::format("{}, from which {} was made, {}: {}", one_line(named.string()),
-                      input_name(file), is_there ? "has changed" : "is not there", kLeftOut)};
+  return {found.begin(), found.end()};
+}
+
+/// The text that a compiled map was made from, as it is judged; none if it is not found.
+/// @param named  where the user says that it is; may be empty.
+/// @throws InputError if it is not there.
+std::optional<JudgedFile> judge_source(const fs::path& compiled, const fs::path& named,
+                                       const validation::ValidateOptions& options) {
+  const std::optional<MapSource> source = source_of_compiled_map(compiled);
+  if (!source && named.empty()) return {};
+  const std::vector<fs::path> places =
+      named.empty() ? files_of_its_name(compiled, source->bytes) : std::vector{named};
+  for (const fs::path& place : places) {
+    std::string bytes = read_file(place);
+    if (source_of_content(bytes) == source) {
+      return judge(std::move(bytes), input_name(place), options);
+    }
+  }
+  if (named.empty()) return {};
+  throw InputError({.file = input_name(named),
+                    .found = fmt::format("not what {} was made from", input_name(compiled)),
+                    .needed = "that file, unchanged",
+                    .remedy = "import it again"});
 }
 
 /// What a judged text and the map that it makes, or that was compiled from it, show.
@@ -120,21 +134,24 @@ Validation findings_of_both(JudgedFile judged, const validation::ValidateOptions
 
 /// A compiled map with the findings about its source's text. The reader's remarks are those of the
 /// text, which leaves out what rules say.
-Validation validate_compiled(const std::filesystem::path& file,
+Validation validate_compiled(const fs::path& file, const fs::path& named,
                              const validation::ValidateOptions& options) {
   RoadMap road_map = open_compiled_map(file);
-  JudgedSource source = judge_source(file, options);
-  if (!source.judged || !source.judged->road_map) {
+  std::optional<JudgedFile> source = judge_source(file, named, options);
+  if (!source || !source->road_map) {
     JudgedFile alone;
     alone.road_map = std::move(road_map);
     Validation validation = findings_of_both(std::move(alone), options);
-    validation.note = source.note;
+    validation.note = fmt::format(
+        "what {} was made from is not beside it: no line numbers, and no rules about its text; "
+        "name it with --source",
+        input_name(file));
     return validation;
   }
   RoadMapParts parts = road_map.parts();
-  parts.remarks = source.judged->road_map->parts().remarks;
-  source.judged->road_map.emplace(std::move(parts));
-  return findings_of_both(*std::move(source.judged), options);
+  parts.remarks = source->road_map->parts().remarks;
+  source->road_map.emplace(std::move(parts));
+  return findings_of_both(*std::move(source), options);
 }
 
 }  // namespace
@@ -159,8 +176,15 @@ Validation validate_bytes(std::string bytes, const std::string& name,
 }
 
 Validation validate_file(const std::filesystem::path& file,
-                         const validation::ValidateOptions& options) {
-  if (is_compiled_map(stored_start(file, 16))) return validate_compiled(file, options);
+                         const validation::ValidateOptions& options,
+                         const std::filesystem::path& source) {
+  if (is_compiled_map(stored_start(file, 16))) return validate_compiled(file, source, options);
+  if (!source.empty()) {
+    throw InputError({.file = input_name(file),
+                      .found = "no compiled map",
+                      .needed = "one, as only those have a source",
+                      .remedy = "leave out --source"});
+  }
   return validate_bytes(read_file(file), input_name(file), options);
 }
 

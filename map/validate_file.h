@@ -32,10 +32,14 @@ struct Validation {
 
 /// Every fault of a map file: of its text, of the map that it makes, and what its reader says. A
 /// file that names a known format but cannot be read is a finding, not an exception. A compiled map
-/// is judged with the text of its source, where that lies unchanged where it was.
-/// @throws InputError if the file is missing or of no known format.
+/// is judged with the text of its source.
+/// @param source  of a compiled map; empty: looked for beside it and in the working folder, under
+/// its
+///                name with another ending.
+/// @throws InputError if the file is missing or of no known format, or `source` is not its source.
 Validation validate_file(const std::filesystem::path& file,
-                         const validation::ValidateOptions& options = {});
+                         const validation::ValidateOptions& options = {},
+                         const std::filesystem::path& source = {});
 
 /// The same from bytes; `name` stands for the file in messages.
 Validation validate_bytes(std::string bytes, const std::string& name,

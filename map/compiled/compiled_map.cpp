@@ -68,7 +68,6 @@ void add_list(std::string_view name, const Fields& fields, const List& list,
 
 template <typename Io, typename Source>
 void source_fields(Io& io, Source& source) {
-  io(source.path);
   io(source.bytes);
   io(source.hash);
 }
@@ -273,8 +272,8 @@ void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteS
   write_outputs(outputs, sink);
 }
 
-std::uint64_t source_hash(std::string_view content) {
-  return XXH3_64bits(content.data(), content.size());
+MapSource source_of_content(std::string_view content) {
+  return {content.size(), XXH3_64bits(content.data(), content.size())};
 }
 
 std::optional<MapSource> source_of_compiled_map(const std::filesystem::path& path) {

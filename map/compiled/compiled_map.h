@@ -18,15 +18,17 @@ namespace roadbed::map::inline compiled {
 std::string write_compiled_map(const RoadMap& road_map);
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing);
 
-/// The file that a map was compiled from, so that `validate` can look at its text again.
+/// What the file held, unpacked, that a map was compiled from: `validate` knows by it the file
+/// whose text it looks at again. It does not say where the file was.
 struct MapSource {
-  std::string path;         ///< as it was named, with slashes
-  std::uint64_t bytes = 0;  ///< of the file as it is stored
-  std::uint64_t hash = 0;   ///< XXH3 of what it holds, unpacked
+  std::uint64_t bytes = 0;
+  std::uint64_t hash = 0;  ///< XXH3
+
+  bool operator==(const MapSource&) const = default;
 };
 
-/// XXH3 of the content of a map file.
-std::uint64_t source_hash(std::string_view content);
+/// Of the content of a map file.
+MapSource source_of_content(std::string_view content);
 
 /// A compiled map that names its source.
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing,

@@ -228,27 +228,46 @@ TEST(ValidateCompiledMap, SaysWhatItsSourceWouldAndOnWhichLine) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "compiled");
   const std::string source = folder.write("gap.xodr", bytes_of(gap_file()));
-  const std::string compiled = folder / "compiled/gap.rbm";
-  ASSERT_EQ(run_roadbed({"import", source, "-o", compiled}).status, 0);
+  const std::string beside = folder / "gap.rbm", elsewhere = folder / "compiled/gap.rbm";
+  ASSERT_EQ(run_roadbed({"import", source, "-o", beside}).status, 0);
+  ASSERT_EQ(run_roadbed({"import", source, "-o", elsewhere}).status, 0);
   const ProgramRun of_source = run_roadbed({"validate", source, "--json"});
-  const ProgramRun of_compiled = run_roadbed({"validate", compiled, "--json"});
-  EXPECT_EQ(of_compiled.out, of_source.out);
-  EXPECT_EQ(of_compiled.err, "");
+  for (const std::vector<std::string>& of_compiled :
+       {std::vector<std::string>{"validate", beside, "--json"},
+        {"validate", elsewhere, "--source", source, "--json"}}) {
+    const ProgramRun run = run_roadbed(of_compiled);
+    EXPECT_EQ(run.out, of_source.out);
+    EXPECT_EQ(run.err, "");
+  }
 
-  folder.write("gap.xodr", bytes_of(gap_file()) + "<!-- changed -->");
-  const ProgramRun changed = run_roadbed({"validate", compiled, "--json"});
-  EXPECT_NE(changed.err.find("has changed"), std::string::npos) << changed.err;
-  std::filesystem::remove(source);
-  const ProgramRun alone = run_roadbed({"validate", compiled, "--json"});
-  EXPECT_NE(alone.err.find("is not there"), std::string::npos) << alone.err;
+  const ProgramRun alone = run_roadbed({"validate", elsewhere, "--json"});
+  EXPECT_NE(alone.err.find("gap.rbm was made from is not beside it"), std::string::npos)
+      << alone.err;
   EXPECT_TRUE(rules_of(json::parse(alone.out)).contains("geometry.gap"));
 }
 
-TEST(ValidateCompiledMap, IsTheSameWhereverItIsMadeFromHere) {
+TEST(ValidateCompiledMap, IsNotJudgedByTheTextOfAnotherFile) {
   const TemporaryFolder folder;
   const std::string source = folder.write("gap.xodr", bytes_of(gap_file()));
-  ASSERT_EQ(run_roadbed({"import", source, "-o", folder / "one.rbm"}).status, 0);
-  ASSERT_EQ(run_roadbed({"import", source, "-o", folder / "two.rbm"}).status, 0);
+  const std::string compiled = folder / "gap.rbm";
+  ASSERT_EQ(run_roadbed({"import", source, "-o", compiled}).status, 0);
+  folder.write("gap.xodr", bytes_of(gap_file()) + "<!-- changed -->");
+  EXPECT_NE(run_roadbed({"validate", compiled}).err.find("is not beside it"), std::string::npos);
+  const ProgramRun named = run_roadbed({"validate", compiled, "--source", source});
+  EXPECT_EQ(named.status, 3);
+  EXPECT_NE(named.err.find("gap.xodr: not what "), std::string::npos) << named.err;
+  const ProgramRun of_text = run_roadbed({"validate", source, "--source", source});
+  EXPECT_EQ(of_text.status, 3);
+  EXPECT_NE(of_text.err.find("leave out --source"), std::string::npos) << of_text.err;
+}
+
+TEST(ValidateCompiledMap, IsTheSameWhateverItsSourceIsCalledAndWhereverItLies) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "elsewhere");
+  const std::string one = folder.write("one.xodr", bytes_of(gap_file()));
+  const std::string two = folder.write("elsewhere/two.xodr", bytes_of(gap_file()));
+  ASSERT_EQ(run_roadbed({"import", one, "-o", folder / "one.rbm"}).status, 0);
+  ASSERT_EQ(run_roadbed({"import", two, "-o", folder / "two.rbm"}).status, 0);
   EXPECT_EQ(bytes_of(folder / "one.rbm"), bytes_of(folder / "two.rbm"));
 }
 

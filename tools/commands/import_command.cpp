@@ -9,8 +9,6 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "roadbed/map/compiled/compiled_map.h"
@@ -104,7 +102,7 @@ class ImportCommand : public Command {
     refuse_other_formats();
     map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
-    const map::RoadMap road_map = with_crs(load(common.is_alone), crs_);
+    const map::RoadMap road_map = with_crs(load(), crs_);
     const std::string network = planning::write_route_network(planning::route_network_of(road_map));
     write(road_map, network);
     if (json_) print_json(streams.out, road_map);
@@ -113,22 +111,13 @@ class ImportCommand : public Command {
   }
 
  private:
-  // Remembers what the map is made from, where it can be found again; not in a batch, whose outputs
-  // are the same wherever the input lies.
-  map::RoadMap load(bool is_alone) {
+  map::RoadMap load() {
     if (!columns_.empty()) return load_lane_table();
     const map::LoadOptions options{.max_error_m = max_error_m_};
     if (map::is_compiled_map(map::stored_start(input_, 16))) return map::load_map(input_, options);
     std::string bytes = map::read_file(input_);
-    if (is_alone && !map::is_stream(input_)) source_ = source_of(bytes);
+    source_ = map::source_of_content(bytes);
     return map::parse_map(std::move(bytes), map::input_name(input_), options);
-  }
-
-  std::optional<map::MapSource> source_of(std::string_view bytes) const {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(input_, error);
-    if (error) return {};
-    return map::MapSource{input_.generic_string(), size, map::source_hash(bytes)};
   }
 
   map::RoadMap load_lane_table() const {

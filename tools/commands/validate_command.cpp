@@ -66,6 +66,11 @@ class ValidateCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description("Report what makes a map unfit for planning");
     arguments.add("MAP", input_, "Any readable map").reads().ending(kMapEndings);
+    arguments
+        .add("--source", source_,
+             "What a compiled MAP was made from, where that is not beside it: for line numbers and "
+             "rules about its text")
+        .reads();
     arguments.flag("--rules", list_rules_,
                    "List all rules with their meaning, and do nothing else");
     arguments.flag("-j,--json", json_, "Print one JSON document");
@@ -83,6 +88,7 @@ class ValidateCommand : public Command {
     arguments.says_no_if("a finding is as severe as --fail-on says");
     arguments.example(
         "  roadbed validate town.xodr --fail-on warning\n"
+        "  roadbed validate town.rbm --source town.xodr\n"
         "  roadbed validate town.xodr --sarif findings.sarif --svg findings.svg --force\n"
         "  roadbed validate data/crossing.osm --profile autoware --severity 'autoware.*=warning'\n"
         "  roadbed validate town.xodr --disable 'link.*' --severity geometry.kink=info\n"
@@ -106,7 +112,7 @@ class ValidateCommand : public Command {
     }
     std::vector<KnownFinding> baseline;
     if (!baseline_.empty()) baseline = read_baseline(baseline_);
-    const Validation validation = map::validate_file(input_, options_);
+    const Validation validation = map::validate_file(input_, options_, source_);
     if (!validation.refusal.empty()) fmt::print(streams.err, "roadbed: {}\n", validation.refusal);
     if (!validation.note.empty() && !common.quiet) {
       fmt::print(streams.err, "note: {}\n", validation.note);
@@ -238,7 +244,8 @@ class ValidateCommand : public Command {
     return false;
   }
 
-  std::filesystem::path input_, junit_, sarif_, geojson_, svg_, baseline_, written_baseline_;
+  std::filesystem::path input_, source_, junit_, sarif_, geojson_, svg_, baseline_,
+      written_baseline_;
   map::validation::ValidateOptions options_;
   std::string fail_on_ = "error", profile_;
   std::vector<double> speed_range_kmph_;

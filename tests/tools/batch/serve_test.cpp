@@ -52,11 +52,10 @@ TEST(Serve, AnswersARouteJobWithTheDocumentOfTheCommand) {
   EXPECT_EQ(results[0]["result"], json::parse(alone.out));
 }
 
-// From standard input, where the command, too, cannot say what the map was made from.
 TEST(Serve, WritesTheFilesOfAnImportAsTheCommandAloneDoes) {
   const TemporaryFolder folder, other;
   const std::string alone = (other / "town.rbm").string();
-  ASSERT_EQ(run_roadbed_reading(kTownMap, {"import", "-", "-o", alone}).status, 0);
+  ASSERT_EQ(run_roadbed({"import", kTownMap, "-o", alone}).status, 0);
   const json job = {{"job", "import"}, {"inputs", {kTownMap}}};
   const json result = served(job.dump(), folder.path()).at(0);
   const auto hash = result["hash"].get<std::string>();
