@@ -22,6 +22,7 @@
 #include "roadbed/map/lanelet2/read.h"
 #include "roadbed/map/lanelet2/write.h"
 #include "roadbed/map/opendrive/read.h"
+#include "roadbed/map/opendrive/write/write.h"
 
 namespace roadbed::map {
 namespace {
@@ -63,6 +64,13 @@ std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) 
   return std::move(file.bytes);
 }
 
+std::string open_drive_bytes(const RoadMap& road_map, const SaveOptions& options) {
+  const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
+  opendrive::OpenDriveFile file = opendrive::write_open_drive(road_map, {options.crs, offset});
+  if (options.notes != nullptr) *options.notes = std::move(file.notes);
+  return std::move(file.bytes);
+}
+
 std::string page_bytes(const RoadMap& road_map, const SaveOptions& options) {
   MapPageOptions page = options.page;
   page.crs = options.crs;
@@ -83,7 +91,10 @@ constexpr std::array<Format, 11> kFormats = {{
            return RoadMap(opendrive::read(XmlDocument(std::move(bytes), name), options));
          },
      .judge = judge_open_drive,
-     .rules = open_drive_rules},
+     .rules = open_drive_rules,
+     .suffix = ".xodr",
+     .write = open_drive_bytes,
+     .what = "roads with their reference lines, lanes and junctions (OpenDRIVE)"},
     {.name = "Argoverse 2",
      .sniff = [](const FileContent& content) { return argoverse::is_argoverse(content.bytes); },
      .read = [](std::string bytes, const std::string& name,

@@ -1,0 +1,149 @@
+#include "roadbed/map/opendrive/write/beside_line.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/map/opendrive/write/clothoid.h"
+
+namespace roadbed::map::opendrive {
+namespace {
+
+constexpr double kChord_m = 5e-4;    // how far a straight chord may be from its points' line
+constexpr double kLongest_m = 10.0;  // of a chord: over more, the road may bend both ways
+
+class BorderPlacer {
+ public:
+  BorderPlacer(const geometry::PlanView& plan_view, BesideFaults& faults)
+      : plan_view_(plan_view), faults_(faults) {}
+
+  // From the border's own start on, and before it, as far as the road goes.
+  BesideLine place(const RoadBorder& border, double from_m, double to_m) {
+    const Line3& points = border.points;
+    const RoadPosition start = foot(points[border.own_from].head<2>(), from_m);
+    const BesidePoint first{start.s_m, start.t_m, points[border.own_from].z()};
+    BesideLine before{first}, line{first};
+    for (std::size_t i = border.own_from; i > 0 && before.back().s_m > from_m; --i) {
+      add(points[i], points[i - 1], -1.0, before);
+    }
+    for (std::size_t i = border.own_from + 1;
+         i < points.size() && (i <= border.own_to || line.back().s_m < to_m); ++i) {
+      add(points[i - 1], points[i], 1.0, line);
+    }
+    std::reverse(before.begin(), before.end());
+    line.insert(line.begin(), before.begin(), before.end() - 1);
+    judge(line, border, from_m, to_m);
+    return cut(line, from_m, to_m);
+  }
+
+ private:
+  void add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double sense, BesideLine& line) {
+    const double ahead_m = sense * (to - from).head<2>().norm();
+    const RoadPosition at = foot(to.head<2>(), line.back().s_m + ahead_m);
+    add_between(from, to, line.back(), at, 0, line);
+    line.push_back({at.s_m, at.t_m, to.z()});
+  }
+
+  RoadPosition foot(const Eigen::Vector2d& at, double hint_m) {
+    const RoadPosition position = position_beside(plan_view_, at, hint_m);
+    faults_.least_bend = std::min(faults_.least_bend, position.bend);
+    return position;
+  }
+
+  void add_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const BesidePoint from,
+                   const RoadPosition& to, int depth, BesideLine& line) {
+    const double length_m = std::abs(to.s_m - from.s_m);
+    if (depth > 9 || length_m < 0.05) return;
+    const Eigen::Vector3d middle = 0.5 * (a + b);
+    const RoadPosition at = foot(middle.head<2>(), 0.5 * (from.s_m + to.s_m));
+    const double share = (at.s_m - from.s_m) / (to.s_m - from.s_m);
+    const double off_m = at.t_m - from.t_m - share * (to.t_m - from.t_m);
+    if (std::abs(off_m) < kChord_m && length_m < kLongest_m) return;
+    add_between(a, middle, from, at, depth + 1, line);
+    const BesidePoint here{at.s_m, at.t_m, middle.z()};
+    line.push_back(here);
+    add_between(middle, b, here, to, depth + 1, line);
+  }
+
+  static BesideLine cut(const BesideLine& line, double from_m, double to_m) {
+    BesideLine kept;
+    const auto between = [](const BesidePoint& a, const BesidePoint& b, double s_m) {
+      const double share = (s_m - a.s_m) / (b.s_m - a.s_m);
+      return BesidePoint{s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
+    };
+    constexpr double least_m = 1e-4;
+    const BesidePoint* before = nullptr;
+    for (const BesidePoint& point : line) {
+      if (before != nullptr && point.s_m <= before->s_m) continue;  // runs back
+      if (kept.empty() && point.s_m >= from_m) {
+        kept.push_back(before == nullptr || point.s_m - from_m < 1e-9
+                           ? BesidePoint{from_m, point.t_m, point.z_m}
+                           : between(*before, point, from_m));
+      }
+      if (!kept.empty() && point.s_m > kept.back().s_m + least_m && point.s_m < to_m - least_m) {
+        kept.push_back(point);
+      }
+      if (before != nullptr && point.s_m >= to_m) {
+        if (kept.empty()) kept.push_back(between(*before, point, from_m));
+        kept.push_back(between(*before, point, to_m));
+        return kept;
+      }
+      before = &point;
+    }
+    const BesidePoint last = line.empty() ? BesidePoint{0, 0, 0} : line.back();
+    if (kept.empty()) kept.push_back({from_m, last.t_m, last.z_m});
+    kept.push_back({to_m, last.t_m, last.z_m});
+    return kept;
+  }
+
+  void judge(const BesideLine& line, const RoadBorder& border, double from_m, double to_m) {
+    constexpr double steepest = 3.0;
+    double sideways_m = 0.0, farthest_m = line.front().s_m;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const BesidePoint &a = line[i - 1], &b = line[i];
+      const bool inside = std::max(a.s_m, b.s_m) > from_m && std::min(a.s_m, b.s_m) < to_m;
+      if (!inside) continue;
+      const double along_m = std::max(0.0, b.s_m - a.s_m);
+      sideways_m = std::max(0.0, sideways_m + std::abs(b.t_m - a.t_m) - steepest * along_m);
+      faults_.sideways_m = std::max(faults_.sideways_m, sideways_m);
+      farthest_m = std::max(farthest_m, a.s_m);
+      faults_.back_m = std::max(faults_.back_m, std::min(farthest_m, to_m) - b.s_m);
+    }
+    farthest_m = std::max(farthest_m, line.back().s_m);
+    // What reaches beyond the road is lost where it does not go on.
+    const bool begins = border.own_from == 0, ends = border.own_to + 1 == border.points.size();
+    faults_.missing_m =
+        std::max({faults_.missing_m, line.front().s_m - from_m, to_m - farthest_m,
+                  begins ? from_m - line.front().s_m : 0.0, ends ? line.back().s_m - to_m : 0.0});
+  }
+
+  const geometry::PlanView& plan_view_;
+  BesideFaults& faults_;
+};
+
+}  // namespace
+
+RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::Vector2d& in_map,
+                             double s_m) {
+  const double end_m = plan_view.end_s_m();
+  RoadPosition position;
+  for (int step = 0; step < 30; ++step) {
+    const double on_m = std::clamp(s_m, 0.0, end_m);
+    const geometry::PlanPoint point = plan_view.at(on_m);
+    const Eigen::Vector2d along = unit(point.pose.heading_rad);
+    const Eigen::Vector2d off = in_map - point.pose.position() - (s_m - on_m) * along;
+    position = {s_m, geometry::cross(along, off), 1.0};
+    if (on_m == s_m) position.bend -= point.curvature_per_m * position.t_m;
+    const double ahead_m = along.dot(off) / std::max(0.05, position.bend);
+    if (std::abs(ahead_m) < 1e-10) break;
+    s_m += std::clamp(ahead_m, -5.0, 5.0);
+  }
+  return position;
+}
+
+BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
+                       double to_m, BesideFaults& faults) {
+  return BorderPlacer(plan_view, faults).place(border, from_m, to_m);
+}
+
+}  // namespace roadbed::map::opendrive

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadbed/geometry/curves/plan_view.h"
+#include "roadbed/map/opendrive/write/road_lines.h"
+
+namespace roadbed::map::opendrive {
+
+/// The place (s, t) of a point beside a road: its foot is searched from `s_m` on. Beyond the ends
+/// the road goes straight on.
+struct RoadPosition {
+  double s_m = 0.0, t_m = 0.0;
+  double bend = 1.0;  ///< 1 − κ t: positive as long as cross-sections do not cross
+};
+RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::Vector2d& in_map,
+                             double s_m);
+
+/// A point of a border beside the reference line.
+struct BesidePoint {
+  double s_m, t_m, z_m;
+};
+using BesideLine = std::vector<BesidePoint>;
+
+/// What is wrong with borders beside a reference line: nothing where every cross-section crosses
+/// each of them once, at more than 18°, and no other cross-section before that.
+struct BesideFaults {
+  double least_bend = 1.0;  ///< of a point of a border
+  double back_m = 0.0;      ///< how far one runs back along s
+  double missing_m = 0.0;   ///< how much of one there is not, or lies beyond the road's end
+  double sideways_m = 0.0;  ///< how far one goes more across the road than along it
+  double crossing_m = 0.0;  ///< how far one is on the wrong side of the next
+};
+
+/// A border over [from, to] of the road, by growing s, as densely as its chords are straight in
+/// (s, t) within half a millimetre. Where it runs back its points are left out, where it does not
+/// reach it goes straight on.
+/// @param faults  grow by those of the border.
+BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
+                       double to_m, BesideFaults& faults);
+
+}  // namespace roadbed::map::opendrive

@@ -1,0 +1,141 @@
+#include "roadbed/map/opendrive/write/road_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace roadbed::map::opendrive {
+namespace {
+
+constexpr double kBeyond_m = 8.0;     // of the lanes before and behind
+constexpr int kMostHops = 8;          // over lanes on the way there
+constexpr double kSamePoint_m = 0.3;  // to where a border goes on
+
+Line3 border_of(const Lane& lane, bool forward, bool on_left) {
+  const LaneLine& line = on_left == forward ? lane.left : lane.right;
+  const auto& points = line.in_map.points();
+  Line3 border;
+  border.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t place = forward ? i : points.size() - 1 - i;
+    border.emplace_back(points[place].x(), points[place].y(), line.z_m[place]);
+  }
+  return border;
+}
+
+// The lane that one leads to, or comes from, along the road.
+const std::vector<LaneId>& linked(const RoadMap& road_map, const PlannedLane& lane, bool ahead) {
+  const LaneLinks& links = road_map.graph().of(lane.lane);
+  return lane.forward == ahead ? links.successors : links.predecessors;
+}
+
+// Some metres of the border that goes on from an end of one, over several lanes if need be.
+Line3 beyond(const RoadMap& road_map, PlannedLane lane, bool on_left, bool ahead,
+             Eigen::Vector3d end) {
+  Line3 line;
+  double length_m = 0.0;
+  for (int hop = 0; hop < kMostHops && length_m < kBeyond_m; ++hop) {
+    Line3 next;
+    for (const LaneId id : linked(road_map, lane, ahead)) {
+      next = border_of(road_map.lane(id), lane.forward, on_left);
+      if (!ahead) std::reverse(next.begin(), next.end());
+      lane.lane = id;
+      if ((next.front() - end).head<2>().norm() <= kSamePoint_m) break;
+      next.clear();
+    }
+    if (next.empty()) break;
+    for (std::size_t i = 1; i < next.size() && length_m < kBeyond_m; ++i) {
+      length_m += (next[i] - next[i - 1]).head<2>().norm();
+      line.push_back(next[i]);
+    }
+    end = next.back();
+  }
+  return line;
+}
+
+std::optional<std::uint32_t> end_at(const RoadPlan& plan, LaneId id, bool exit) {
+  const auto& place = plan.places[id.index];
+  if (!place) return {};
+  const PlannedRoad& road = plan.roads[place->road];
+  const bool at_end = road.sections[place->section].lanes[place->lane].forward == exit;
+  if (place->section != (at_end ? road.sections.size() - 1 : 0)) return {};
+  return 2 * place->road + (at_end ? 1 : 0);
+}
+
+}  // namespace
+
+RoadBorder border_along(const RoadMap& road_map, const PlannedSection& section, std::size_t place) {
+  const bool on_left = place < section.lanes.size();
+  const PlannedLane& lane = section.lanes[on_left ? place : place - 1];
+  const PlannedLane& other = section.lanes[place == 0 ? 0 : place - 1];
+  const Line3 own = border_of(road_map.lane(lane.lane), lane.forward, on_left);
+  const auto going_on = [&](bool ahead) {
+    const Eigen::Vector3d& end = ahead ? own.back() : own.front();
+    Line3 next = beyond(road_map, lane, on_left, ahead, end);
+    return next.empty() ? beyond(road_map, other, on_left && place == 0, ahead, end) : next;
+  };
+  RoadBorder border{going_on(false), 0, 0};
+  std::reverse(border.points.begin(), border.points.end());
+  border.own_from = border.points.size();
+  border.points.insert(border.points.end(), own.begin(), own.end());
+  border.own_to = border.points.size() - 1;
+  const Line3 behind = going_on(true);
+  border.points.insert(border.points.end(), behind.begin(), behind.end());
+  return border;
+}
+
+RoadBorder reference_along(const RoadMap& road_map, const PlannedRoad& road, std::size_t border) {
+  if (!road.source) return border_along(road_map, road.sections.front(), border);
+  const Road& source = road_map.road(*road.source);
+  double low_m = 1e300, high_m = -1e300;
+  for (const PlannedSection& section : road.sections) {
+    const LaneOrigin& origin = road_map.lane(section.lanes.front().lane).origin;
+    low_m = std::min({low_m, origin.road_from_s_m, origin.road_to_s_m});
+    high_m = std::max({high_m, origin.road_from_s_m, origin.road_to_s_m});
+  }
+  const auto& s_m = source.reference_road_s_m;
+  const auto& points = source.reference_in_map.points();
+  Line3 line;
+  const auto add = [&](std::size_t i, double share) {
+    const Eigen::Vector2d at = points[i - 1] + share * (points[i] - points[i - 1]);
+    line.emplace_back(at.x(), at.y(), 0.0);
+  };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double step_m = s_m[i] - s_m[i - 1];
+    if (step_m <= 0.0 || s_m[i] <= low_m || s_m[i - 1] >= high_m) continue;
+    if (line.empty()) add(i, std::max(0.0, (low_m - s_m[i - 1]) / step_m));
+    add(i, std::min(1.0, (high_m - s_m[i - 1]) / step_m));
+  }
+  const std::size_t last = line.size() - 1;
+  return {std::move(line), 0, last};
+}
+
+std::optional<std::uint32_t> exit_end(const RoadPlan& plan, LaneId lane) {
+  return end_at(plan, lane, true);
+}
+std::optional<std::uint32_t> entry_end(const RoadPlan& plan, LaneId lane) {
+  return end_at(plan, lane, false);
+}
+
+std::vector<std::uint32_t> joined_ends(const RoadMap& road_map, const RoadPlan& plan) {
+  std::vector<std::uint32_t> group(2 * plan.roads.size());
+  std::iota(group.begin(), group.end(), 0U);
+  const auto find = [&](std::uint32_t end) {
+    while (group[end] != end) end = group[end] = group[group[end]];
+    return end;
+  };
+  for (const Lane& lane : road_map.lanes()) {
+    const auto from = exit_end(plan, lane.id);
+    if (!from) continue;
+    for (const LaneId next : road_map.graph().of(lane.id).successors) {
+      const auto to = entry_end(plan, next);
+      if (!to) continue;
+      const std::uint32_t a = find(*from), b = find(*to);
+      group[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::uint32_t end = 0; end < group.size(); ++end) group[end] = find(end);
+  return group;
+}
+
+}  // namespace roadbed::map::opendrive

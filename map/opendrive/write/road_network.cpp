@@ -1,0 +1,339 @@
+#include "roadbed/map/opendrive/write/road_network.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "roadbed/map/opendrive/write/end_roles.h"
+
+namespace roadbed::map::opendrive {
+namespace {
+
+constexpr double kCut_m = 20.0;    // length of a connecting road that is cut off
+constexpr double kLong_m = 100.0;  // of a road between two junctions
+constexpr double kCopied_m = 5.0;  // length of connecting roads that overlap
+
+/// Gives out ids: whole numbers, none twice.
+class IdGiver {
+ public:
+  std::string give(const std::string& wanted) {
+    long long number = 0;
+    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+    const bool is_number = error == std::errc() && end == wanted.data() + wanted.size() &&
+                           !wanted.empty() && number >= 0 && wanted == std::to_string(number);
+    if (is_number && taken_.insert(wanted).second) return wanted;
+    while (!taken_.insert(std::to_string(next_)).second) ++next_;
+    return std::to_string(next_++);
+  }
+
+ private:
+  std::set<std::string> taken_;
+  long long next_ = 1;
+};
+
+class NetworkBuilder {
+ public:
+  NetworkBuilder(const RoadMap& road_map, const RoadPlan& plan,
+                 const std::vector<RoadShape>& shapes)
+      : road_map_(road_map),
+        plan_(plan),
+        shapes_(shapes),
+        ends_(find_end_roles(road_map, plan)),
+        clusters_(2 * plan.roads.size() + crossings()) {
+    std::iota(clusters_.begin(), clusters_.end(), 0U);
+    network_.parts_of.resize(plan.roads.size());
+    network_.lost_links = ends_.lost_links;
+    for (const auto& [ends, lanes] : ends_.joints) meeting_[ends.second].push_back(ends.first);
+  }
+
+  RoadNetwork build() {
+    for (std::uint32_t road = 0; road < plan_.roads.size(); ++road) add_parts(road);
+    number_junctions();
+    for (const auto& [ends, lanes] : ends_.joints) add_joint(ends.first, ends.second, lanes);
+    for (const auto& [before, after] : cuts_) add_cut(before, after);
+    name_parts();
+    return std::move(network_);
+  }
+
+ private:
+  std::size_t crossings() const {
+    std::size_t count = 0;
+    for (const PlannedRoad& road : plan_.roads) {
+      if (road.crossing) count = std::max<std::size_t>(count, *road.crossing + 1);
+    }
+    return count;
+  }
+
+  // Groups of ends that lie in one junction: numbers of groups, then crossings of the map.
+  std::uint32_t cluster(std::uint32_t of) {
+    while (clusters_[of] != of) of = clusters_[of] = clusters_[clusters_[of]];
+    return of;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = cluster(a);
+    b = cluster(b);
+    clusters_[std::max(a, b)] = std::min(a, b);
+  }
+
+  EndRole role(std::uint32_t end) const { return ends_.roles[end]; }
+  bool is_spoke(std::uint32_t end) const { return role(end) == EndRole::spoke; }
+  bool has_spoke(std::uint32_t road) const { return is_spoke(2 * road) || is_spoke(2 * road + 1); }
+
+  std::uint32_t add_part(std::uint32_t road, double from_m, double to_m,
+                         std::optional<std::uint32_t> in_cluster) {
+    RoadPart part;
+    part.road = road;
+    part.from_m = from_m;
+    part.to_m = to_m;
+    network_.parts.push_back(std::move(part));
+    cluster_of_.push_back(in_cluster);
+    return static_cast<std::uint32_t>(network_.parts.size() - 1);
+  }
+
+  // A road with a spoke may stay whole if its other end leads into a junction as well, or to a road
+  // that is no connecting road.
+  bool stays_whole(std::uint32_t road) const {
+    const std::uint32_t start = 2 * road, end = start + 1;
+    if (is_spoke(start) && is_spoke(end)) {
+      return shapes_[road].length_m <= kLong_m || plan_.roads[road].crossing.has_value();
+    }
+    const std::uint32_t other = is_spoke(start) ? end : start;
+    return role(other) == EndRole::plain && !has_spoke(ends_.partner[other] / 2) &&
+           shapes_[road].length_m <= kLong_m;
+  }
+
+  // A road that the map has inside a crossing, though it is the only one at both its ends.
+  bool is_lone_crossing(std::uint32_t road) const {
+    const PlannedRoad& planned = plan_.roads[road];
+    if (!planned.crossing || planned.has_both_ways()) return false;
+    return std::all_of(&kBothEnds[0], &kBothEnds[2], [&](std::uint32_t at) {
+      const std::uint32_t end = 2 * road + at;
+      if (role(end) != EndRole::plain) return false;
+      const std::uint32_t other = ends_.partner[end] / 2;
+      return !has_spoke(other) && !plan_.roads[other].crossing;
+    });
+  }
+
+  void add_parts(std::uint32_t road) {
+    const std::uint32_t start = 2 * road, end = start + 1;
+    const double length_m = shapes_[road].length_m;
+    auto& parts = network_.parts_of[road];
+    if (has_spoke(road) && stays_whole(road)) {
+      parts.push_back(add_part(road, 0.0, length_m, whole_cluster(road)));
+      return;
+    }
+    if (is_lone_crossing(road)) {
+      parts.push_back(add_part(road, 0.0, length_m, crossing_cluster(road)));
+      return;
+    }
+    const double share = is_cut(start) && is_cut(end) ? 1.0 / 3.0 : 0.5;
+    const auto cut_m = [&](std::uint32_t at) {
+      if (!is_cut(at)) return 0.0;
+      return std::min(share * length_m, role(at) == EndRole::mesh_entry ? kCopied_m : kCut_m);
+    };
+    const double from_m = cut_m(start), to_m = length_m - cut_m(end);
+    if (is_spoke(start)) parts.push_back(add_part(road, 0.0, from_m, ends_.groups[start]));
+    parts.push_back(add_part(road, from_m, to_m, std::nullopt));
+    const std::uint32_t middle = parts.back();
+    if (is_spoke(end)) parts.push_back(add_part(road, to_m, length_m, ends_.groups[end]));
+    for (std::size_t i = 1; i < parts.size(); ++i) cuts_.emplace_back(parts[i - 1], parts[i]);
+    if (role(start) == EndRole::mesh_entry) add_copies(start, 0.0, from_m, middle);
+    if (role(end) == EndRole::mesh_entry) add_copies(end, to_m, length_m, middle);
+  }
+
+  bool is_cut(std::uint32_t end) const { return is_spoke(end) || role(end) == EndRole::mesh_entry; }
+
+  // A connecting road for each end that leads to this one.
+  void add_copies(std::uint32_t end, double from_m, double to_m, std::uint32_t middle) {
+    for (const std::uint32_t from : meeting_[end]) {
+      const std::uint32_t copy = add_part(end / 2, from_m, to_m, ends_.groups[end]);
+      copies_[{from, end}] = copy;
+      if (end % 2 == 0) {
+        cuts_.emplace_back(copy, middle);
+      } else {
+        cuts_.emplace_back(middle, copy);
+      }
+    }
+  }
+
+  std::uint32_t whole_cluster(std::uint32_t road) {
+    const std::uint32_t start = 2 * road, end = start + 1;
+    const std::uint32_t group = ends_.groups[is_spoke(start) ? start : end];
+    if (is_spoke(start) && is_spoke(end)) unite(ends_.groups[start], ends_.groups[end]);
+    if (plan_.roads[road].crossing) unite(group, crossing_cluster(road));
+    return group;
+  }
+
+  std::uint32_t crossing_cluster(std::uint32_t road) const {
+    return static_cast<std::uint32_t>(2 * plan_.roads.size()) + *plan_.roads[road].crossing;
+  }
+
+  void number_junctions() {
+    std::map<std::uint32_t, std::uint32_t> numbers;
+    std::map<std::uint32_t, const Junction*> sources;
+    for (std::uint32_t i = 0; i < network_.parts.size(); ++i) {
+      if (!cluster_of_[i]) continue;
+      const std::uint32_t key = cluster(*cluster_of_[i]);
+      const auto next = static_cast<std::uint32_t>(numbers.size());
+      const std::uint32_t number = numbers.emplace(key, next).first->second;
+      network_.parts[i].junction = number;
+      const auto& crossing = plan_.roads[network_.parts[i].road].crossing;
+      if (crossing && *crossing < road_map_.junctions().size()) {
+        sources.emplace(number, &road_map_.junctions()[*crossing]);
+      }
+    }
+    network_.junctions.resize(numbers.size());
+    IdGiver ids;
+    for (const auto& [number, source] : sources) {
+      network_.junctions[number].id = ids.give(source->source_id);
+      network_.junctions[number].name = source->name;
+    }
+    for (WrittenJunction& junction : network_.junctions) {
+      if (junction.id.empty()) junction.id = ids.give("");
+    }
+  }
+
+  std::uint32_t part_at(std::uint32_t end) const {
+    const auto& parts = network_.parts_of[end / 2];
+    return end % 2 == 0 ? parts.front() : parts.back();
+  }
+
+  const PlannedSection& section_at(std::uint32_t part, bool at_end) const {
+    const auto& sections = plan_.roads[network_.parts[part].road].sections;
+    return at_end ? sections.back() : sections.front();
+  }
+
+  void add_joint(std::uint32_t from, std::uint32_t to, const LanePairs& lanes) {
+    const auto copy = copies_.find({from, to});
+    const std::uint32_t a = part_at(from), b = copy != copies_.end() ? copy->second : part_at(to);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+    for (const auto& [leaving, entering] : lanes) {
+      places.emplace_back(plan_.places[leaving.index]->lane, plan_.places[entering.index]->lane);
+    }
+    join({a, from % 2 == 1, &section_at(a, from % 2 == 1)},
+         {b, to % 2 == 1, &section_at(b, to % 2 == 1)}, places);
+  }
+
+  // Two parts of one road, the second behind the first.
+  void add_cut(std::uint32_t before, std::uint32_t after) {
+    const std::uint32_t road = network_.parts[before].road;
+    const std::size_t index = section_before(shapes_[road], network_.parts[before].to_m);
+    const PlannedSection& section = plan_.roads[road].sections[index];
+    for (const bool along : {true, false}) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+      for (std::uint32_t i = 0; i < section.lanes.size(); ++i) {
+        if (section.lanes[i].forward == along) places.emplace_back(i, i);
+      }
+      const PartEnd first{before, true, &section}, second{after, false, &section};
+      if (!places.empty()) join(along ? first : second, along ? second : first, places);
+    }
+  }
+
+  struct PartEnd {
+    std::uint32_t part;
+    bool at_end;
+    const PlannedSection* section;
+  };
+  using Places = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+  // Lanes leave the first end and enter the second.
+  void join(const PartEnd& from, const PartEnd& to, Places places) {
+    std::erase_if(places, [&](const auto& pair) {
+      const bool lost = !has_width(from, pair.first) || !has_width(to, pair.second);
+      network_.lost_links += lost ? 1 : 0;
+      return lost;
+    });
+    if (places.empty()) return;
+    RoadPart &a = network_.parts[from.part], &b = network_.parts[to.part];
+    for (const auto& [leaving, entering] : places) {
+      a.lane_links[from.at_end].emplace_back(leaving, lane_id(*to.section, entering));
+      b.lane_links[to.at_end].emplace_back(entering, lane_id(*from.section, leaving));
+    }
+    const bool into = b.junction && !a.junction, out = a.junction && !b.junction;
+    a.links[from.at_end] =
+        into ? PartLink{true, *b.junction, false} : PartLink{false, to.part, to.at_end};
+    b.links[to.at_end] =
+        out ? PartLink{true, *a.junction, false} : PartLink{false, from.part, from.at_end};
+    if (!into) return;
+    WrittenConnection connection{from.part, to.part, to.at_end, {}};
+    for (const auto& [leaving, entering] : places) {
+      connection.lanes.emplace_back(lane_id(*from.section, leaving),
+                                    lane_id(*to.section, entering));
+    }
+    network_.junctions[*b.junction].connections.push_back(std::move(connection));
+  }
+
+  // A lane that ends in a point leads nowhere.
+  bool has_width(const PartEnd& end, std::uint32_t lane) const {
+    const RoadPart& part = network_.parts[end.part];
+    const auto section =
+        static_cast<std::size_t>(end.section - plan_.roads[part.road].sections.data());
+    return shapes_[part.road].sections[section].has_width(lane,
+                                                          end.at_end ? part.to_m : part.from_m);
+  }
+
+  void name_parts() {
+    IdGiver ids;
+    for (std::size_t road = 0; road < plan_.roads.size(); ++road) {
+      if (!plan_.roads[road].source) continue;
+      const auto& parts = network_.parts_of[road];
+      const auto main = std::find_if(parts.begin(), parts.end(), [&](std::uint32_t part) {
+        return !network_.parts[part].junction || parts.size() == 1;
+      });
+      if (main == parts.end()) continue;
+      network_.parts[*main].id = ids.give(road_map_.road(*plan_.roads[road].source).source_id);
+    }
+    for (RoadPart& part : network_.parts) {
+      if (part.id.empty()) part.id = ids.give("");
+    }
+  }
+
+  static constexpr std::uint32_t kBothEnds[2] = {0, 1};
+
+  const RoadMap& road_map_;
+  const RoadPlan& plan_;
+  const std::vector<RoadShape>& shapes_;
+  EndRoles ends_;
+  std::vector<std::uint32_t> clusters_;
+  std::vector<std::optional<std::uint32_t>> cluster_of_;  // by part
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> cuts_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> meeting_;  // ends that lead to an end
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies_;
+  RoadNetwork network_;
+};
+
+}  // namespace
+
+int lane_id(const PlannedSection& section, std::size_t place) {
+  const int from_left = static_cast<int>(section.left_lanes) - static_cast<int>(place);
+  return from_left > 0 ? from_left : from_left - 1;
+}
+
+RoadPlan plan_network_roads(const RoadMap& road_map, std::vector<Company> company) {
+  for (int round = 0;; ++round) {
+    RoadPlan plan = plan_roads(road_map, company);
+    const EndRoles ends = find_end_roles(road_map, plan);
+    bool changed = false;
+    for (std::size_t road = 0; road < plan.roads.size(); ++road) {
+      if (!ends.is_apart[road]) continue;
+      for (const PlannedSection& section : plan.roads[road].sections) {
+        for (const PlannedLane& lane : section.lanes) {
+          Company& of_lane = company[lane.lane.index];
+          of_lane = std::max(of_lane, Company::of_its_direction);
+        }
+      }
+      changed = true;
+    }
+    if (!changed || round == 8) return plan;
+  }
+}
+
+RoadNetwork join_roads(const RoadMap& road_map, const RoadPlan& plan,
+                       const std::vector<RoadShape>& shapes) {
+  return NetworkBuilder(road_map, plan, shapes).build();
+}
+
+}  // namespace roadbed::map::opendrive

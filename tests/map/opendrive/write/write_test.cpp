@@ -1,0 +1,225 @@
+#include "roadbed/map/opendrive/write/write.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/map/validate_file.h"
+#include "roadbed/tests/support/made_lanelet2.h"
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::map {
+namespace {
+
+opendrive::OpenDriveFile file_of(const RoadMap& road_map, int minor = 8) {
+  return opendrive::write_open_drive(road_map, {road_map.crs(), {}, minor});
+}
+
+double farthest_m(const geometry::Polyline& line, const RoadMap& from, const RoadMap& to,
+                  const std::vector<const geometry::Polyline*>& others) {
+  double worst_m = 0.0;
+  for (const Eigen::Vector2d& point : line.points()) {
+    const Eigen::Vector2d at = to.to_map(from.to_source(point));
+    double least_m = 1e9;
+    for (const geometry::Polyline* other : others) {
+      least_m = std::min(least_m, std::abs(other->project(at).d_m));
+    }
+    worst_m = std::max(worst_m, least_m);
+  }
+  return worst_m;
+}
+
+// The largest distance of a border of `a` to the nearest one of `b`.
+double borders_apart_m(const RoadMap& a, const RoadMap& b) {
+  std::vector<const geometry::Polyline*> others;
+  for (const Lane& lane : b.lanes()) {
+    others.push_back(&lane.left.in_map);
+    others.push_back(&lane.right.in_map);
+  }
+  double worst_m = 0.0;
+  for (const Lane& lane : a.lanes()) {
+    if (!is_drivable(lane.type)) continue;
+    for (const LaneLine* line : {&lane.left, &lane.right}) {
+      worst_m = std::max(worst_m, farthest_m(line->in_map, a, b, others));
+    }
+  }
+  return worst_m;
+}
+
+std::set<LaneId> lanes_at(const RoadMap& from, const RoadMap& to, const Lane& lane, double s_m) {
+  const geometry::Pose2 pose = lane.pose_at(s_m);
+  std::set<LaneId> found;
+  for (const LaneMatch& match : to.locate(to.to_map(from.to_source(pose.position())), 0.01, true)) {
+    if (std::cos(match.heading_rad - pose.heading_rad) > 0.9) found.insert(match.place.lane);
+  }
+  return found;
+}
+
+// Whether any of some lanes leads to any of others, over short ones in between.
+bool leads(const RoadMap& road_map, std::set<LaneId> lanes, const std::set<LaneId>& others) {
+  for (int step = 0; step < 5; ++step) {
+    std::set<LaneId> next;
+    for (const LaneId id : lanes) {
+      if (others.contains(id)) return true;
+      const auto& successors = road_map.graph().of(id).successors;
+      next.insert(successors.begin(), successors.end());
+    }
+    lanes = std::move(next);
+  }
+  return false;
+}
+
+// How many links of drivable lanes have no counterpart.
+int lost_links(const RoadMap& before, const RoadMap& after) {
+  int lost = 0;
+  for (const Lane& lane : before.lanes()) {
+    if (!is_drivable(lane.type)) continue;
+    for (const LaneId id : before.graph().of(lane.id).successors) {
+      const Lane& next = before.lane(id);
+      if (!is_drivable(next.type)) continue;
+      const auto from = lanes_at(before, after, lane, 0.7 * lane.length_m());
+      const auto to = lanes_at(before, after, next, 0.3 * next.length_m());
+      lost += leads(after, from, to) ? 0 : 1;
+    }
+  }
+  return lost;
+}
+
+double drivable_length_m(const RoadMap& road_map) {
+  double sum_m = 0.0;
+  for (const Lane& lane : road_map.lanes()) sum_m += is_drivable(lane.type) ? lane.length_m() : 0.0;
+  return sum_m;
+}
+
+void expect_comes_back(const RoadMap& before, int minor) {
+  const opendrive::OpenDriveFile file = file_of(before, minor);
+  EXPECT_LE(file.largest_error_m, 0.01);
+  const RoadMap after = parse_map(file.bytes, "written.xodr");
+  EXPECT_LE(borders_apart_m(after, before), 0.01);
+  EXPECT_LE(borders_apart_m(before, after), 0.01);
+  EXPECT_EQ(lost_links(before, after), 0);
+  EXPECT_NEAR(drivable_length_m(after), drivable_length_m(before),
+              0.01 * drivable_length_m(before));
+}
+
+TEST(WriteOpenDrive, ATownComesBack) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  for (const int minor : {4, 8}) expect_comes_back(town, minor);
+}
+
+TEST(WriteOpenDrive, ALanelet2CrossingComesBack) {
+  expect_comes_back(load_map(tests::data_folder() / "crossing.osm"), 8);
+}
+
+// Errors that `validate` finds in what is written.
+std::vector<std::string> errors_in(const opendrive::OpenDriveFile& file) {
+  const tests::TemporaryFolder folder;
+  std::vector<std::string> errors;
+  for (const auto& finding : validate_file(folder.write("a.xodr", file.bytes)).findings) {
+    if (finding.severity != validation::Severity::error) continue;
+    errors.push_back(finding.rule + " " + finding.element + " " + finding.message);
+  }
+  return errors;
+}
+
+// Two lanes along a bend of 60 m, cut four times, 12 m apart, every border somewhere else.
+std::string staggered_lanes(std::mt19937& random) {
+  constexpr int kBorders = 3, kCuts = 5;
+  std::uniform_real_distribution<double> off(-2.5, 2.5);
+  tests::MadeLanelet2 made;
+  const auto node = [&](double s_m, int border) {
+    const double radius_m = 60.0 + 3.5 * border, angle = s_m / 60.0;
+    return made.node({1000.0 + radius_m * std::sin(angle), 2000.0 + radius_m * std::cos(angle)});
+  };
+  std::int64_t ways[kBorders][kCuts - 1];
+  for (int border = 0; border < kBorders; ++border) {
+    double from_m = 0.0;
+    std::int64_t joint = node(from_m, border);
+    for (int cut = 1; cut < kCuts; ++cut) {
+      const double to_m = 12.0 * cut + (cut + 1 < kCuts ? off(random) : 0.0);
+      std::vector<std::int64_t> nodes{joint};
+      for (double share = 0.1; share < 0.95; share += 0.1) {
+        nodes.push_back(node(from_m + share * (to_m - from_m), border));
+      }
+      nodes.push_back(joint = node(to_m, border));
+      from_m = to_m;
+      ways[border][cut - 1] = made.way(nodes, {{"type", "line_thin"}, {"subtype", "dashed"}});
+    }
+  }
+  // Clockwise: the outer border is the left one.
+  for (int cut = 0; cut + 1 < kCuts; ++cut) {
+    for (int lane = 0; lane + 1 < kBorders; ++lane) {
+      made.lanelet(ways[lane + 1][cut], ways[lane][cut],
+                   {{"type", "lanelet"}, {"subtype", "road"}, {"one_way", "yes"}});
+    }
+  }
+  return made.text();
+}
+
+TEST(WriteOpenDrive, LanesWhoseBordersEndAtDifferentPlacesComeBack) {
+  std::mt19937 random(20261125);
+  for (int run = 0; run < 20; ++run) {
+    SCOPED_TRACE(run);
+    const RoadMap before = parse_map(staggered_lanes(random), "staggered.osm");
+    ASSERT_EQ(before.lanes().size(), 8u);
+    expect_comes_back(before, 8);
+    EXPECT_EQ(errors_in(file_of(before)), std::vector<std::string>{});
+  }
+}
+
+TEST(WriteOpenDrive, RealMapsAreWrittenWithoutErrors) {
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  const std::filesystem::path autoware = folder / "lanelet2/autowarefoundation+autoware_core";
+  for (const std::filesystem::path& file :
+       {autoware / "2km_test.osm", autoware / "intersection.osm", autoware / "road_shoulder.osm",
+        autoware / "vm_03_left_hand.osm", folder / "opendrive/esmini+esmini/soderleden.xodr",
+        folder / "commonroad/CommonRoad+commonroad-reachable-set/DEU_Guetersloh-20_1_T-1.xml"}) {
+    SCOPED_TRACE(file);
+    if (!std::filesystem::exists(file)) continue;
+    const opendrive::OpenDriveFile written = file_of(load_map(file));
+    EXPECT_EQ(errors_in(written), std::vector<std::string>{});
+    EXPECT_LE(written.largest_error_m, 0.15);
+    for (const auto& [what, count] : written.lost) EXPECT_EQ(what.find("lanes that no"), what.npos);
+  }
+}
+
+TEST(WriteOpenDrive, NamesALaneThatNoRoadCanHold) {
+  tests::MadeLanelet2 made;
+  const auto crossing = made.line({{0, 3}, {10, -3}}), straight = made.line({{0, 0}, {10, 0}});
+  made.lanelet(crossing, straight);
+  made.lanelet(made.line({{0, 20}, {10, 20}}), made.line({{0, 17}, {10, 17}}));
+  const RoadMap before = parse_map(made.text(), "made.osm");
+  ASSERT_EQ(before.lanes().size(), 2u);
+  const opendrive::OpenDriveFile file = file_of(before);
+  ASSERT_EQ(file.notes.size(), 1u);
+  EXPECT_TRUE(file.notes[0].starts_with("left out is lane " + before.lanes()[0].name));
+  EXPECT_EQ(parse_map(file.bytes, "written.xodr").lanes().size(), 1u);
+  EXPECT_EQ(errors_in(file), std::vector<std::string>{});
+}
+
+TEST(WriteOpenDrive, WritesTheSameBytesForTheSameMap) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  EXPECT_EQ(file_of(town).bytes, file_of(town).bytes);
+}
+
+TEST(WriteOpenDrive, KeepsCoordinatesAndTheirSystem) {
+  const RoadMap before = load_map(tests::data_folder() / "town.xodr");
+  const RoadMap after = parse_map(file_of(before).bytes, "written.xodr");
+  EXPECT_EQ(after.crs(), before.crs());
+  EXPECT_EQ(after.format(), "OpenDRIVE 1.8");
+}
+
+TEST(WriteOpenDrive, KnowsVersionsFrom4To8Only) {
+  const RoadMap town = load_map(tests::data_folder() / "town.xodr");
+  EXPECT_THROW(static_cast<void>(file_of(town, 3)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(file_of(town, 9)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace roadbed::map
