@@ -55,7 +55,7 @@ TEST(ExportCommand, LeavesNothingBehindWhenItCannotDoIt) {
   const ProgramRun suffix =
       run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "a.txt"});
   EXPECT_EQ(suffix.status, 3);
-  EXPECT_NE(suffix.err.find(".geojson, .gpkg, .fgb, .svg, .html, .csv"), std::string::npos)
+  EXPECT_NE(suffix.err.find(".xodr, .geojson, .gpkg, .fgb, .svg, .html, .csv"), std::string::npos)
       << suffix.err;
   EXPECT_EQ(run_roadbed({"export", bad, "-o", folder / "a.svg"}).status, 3);
   EXPECT_EQ(run_roadbed({"export", golden("two_roads.xodr"), "-o", folder / "no/a.svg"}).status, 3);
@@ -114,10 +114,34 @@ TEST(ExportCommand, RefusesMoreLayersThanTheFormatHolds) {
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
+TEST(ExportCommand, GivesAnOpenDriveFileBackAsItStands) {
+  const TemporaryFolder folder;
+  const std::string town = data_folder() / "town.xodr";
+  ASSERT_EQ(run_roadbed({"export", town, "-o", folder / "a.xodr"}).status, 0);
+  EXPECT_TRUE(bytes_of(folder / "a.xodr") == bytes_of(town));
+  ASSERT_EQ(run_roadbed({"export", town, "-o", folder / "b.xodr", "--opendrive", "1.4"}).status, 0);
+  EXPECT_NE(bytes_of(folder / "b.xodr").find("revMajor=\"1\" revMinor=\"4\""), std::string::npos);
+  EXPECT_EQ(run_roadbed({"validate", folder / "b.xodr"}).status, 0);
+}
+
+TEST(ExportCommand, SaysHowNearOpenDriveIsAndWhatIsLost) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_roadbed(
+      {"export", data_folder() / "crossing.osm", "-o", folder / "a.xodr", "--json", "--quiet"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json document = nlohmann::json::parse(run.out);
+  EXPECT_EQ(document.at("format"), "OpenDRIVE");
+  EXPECT_EQ(document.at("bytes"), bytes_of(folder / "a.xodr").size());
+  EXPECT_LE(document.at("largest_error_m").get<double>(), 0.01);
+  EXPECT_FALSE(document.at("lost").empty());
+  for (const auto& loss : document.at("lost")) EXPECT_GT(loss.at("count").get<int>(), 0) << loss;
+}
+
 TEST(ConvertCommand, WritesWhatImportAndExportWriteForEveryFormat) {
   const TemporaryFolder folder;
   const std::string town = data_folder() / "town.xodr";
-  for (const char* ending : {".rbm", ".geojson", ".gpkg", ".fgb", ".svg", ".csv", ".osm", ".xml"}) {
+  for (const char* ending :
+       {".rbm", ".geojson", ".gpkg", ".fgb", ".svg", ".csv", ".osm", ".xml", ".xodr"}) {
     SCOPED_TRACE(ending);
     const std::string one = folder / (std::string("one") + ending);
     const std::string two = folder / (std::string("two") + ending);

@@ -4,21 +4,25 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/opendrive/write/write.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/validate_file.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/page_overlays.h"
+#include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -68,6 +72,7 @@ class ExportCommand : public Command {
         "  roadbed export town.xodr -o town.html --route route.json\n"
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
+        "  roadbed export crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 
@@ -83,7 +88,15 @@ class ExportCommand : public Command {
     arguments.add("--crs", crs_,
                   "Coordinate system of the map, in place of what it says itself: EPSG:25832, a "
                   "PROJ string, or \"unknown\"");
+    arguments
+        .add("--opendrive", open_drive_,
+             "Version of an OpenDRIVE output, 1.8 if none is given; an OpenDRIVE file itself is "
+             "written as it stands, unless its version or its system is to change")
+        .one_of({"1.4", "1.8"});
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
+    arguments.flag("-j,--json", json_,
+                   "Print one JSON document: what was written, how near it is to the map, what is "
+                   "not in it");
     overlays_.declare(arguments);
   }
 
@@ -95,15 +108,10 @@ class ExportCommand : public Command {
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
-    std::vector<std::string> notes;
-    const std::string bytes = format.write(
-        road_map, {layers_, system_of(road_map), is_own_system(road_map), &notes, std::move(page)});
-    map::write_output(output_, bytes, force_);
-    if (!common.quiet) {
-      fmt::print(streams.err, "{}: {} lanes, {} bytes\n", output_name(output_),
-                 road_map.lanes().size(), bytes.size());
-      for (const std::string& note : notes) fmt::print(streams.err, "note: {}\n", note);
-    }
+    const Written written = write(format, road_map, std::move(page));
+    map::write_output(output_, written.bytes, force_);
+    if (json_) print_json(streams.out, format, road_map, written);
+    if (!common.quiet) print_text(streams.err, road_map, written);
     return Exit::ok;
   }
 
@@ -111,7 +119,7 @@ class ExportCommand : public Command {
   std::string suffix() const { return suffix_of_output(output_, format_); }
 
   std::string output_fault() const {
-    std::string fault = standard_output_fault(output_, true, format_, "");
+    std::string fault = standard_output_fault(output_, true, format_, json_ ? "--json" : "");
     if (fault.empty()) fault = anchor_fault();
     return fault.empty() ? overlay_fault() : fault;
   }
@@ -137,6 +145,72 @@ class ExportCommand : public Command {
     return std::move(*validation.road_map);
   }
 
+  /// What an output holds, and what there is to say of it.
+  struct Written {
+    std::string bytes;
+    std::vector<std::string> notes = {};
+    std::vector<std::pair<std::string, std::size_t>> lost = {};
+    std::optional<double> largest_error_m = {}, largest_height_error_m = {};
+  };
+
+  Written write(const map::Format& format, const map::RoadMap& road_map,
+                map::MapPageOptions page) const {
+    if (format.name == "OpenDRIVE") return write_open_drive(format, road_map);
+    Written written;
+    written.bytes = format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map),
+                                            &written.notes, std::move(page)});
+    return written;
+  }
+
+  Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
+    const bool is_own = map::format_of(input_) == &format;
+    if (is_own && !asks_for_another(road_map)) {
+      return {map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes};
+    }
+    const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
+    map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
+        road_map, {system_of(road_map), offset, open_drive_ == "1.4" ? 4 : 8});
+    if (is_own) {
+      file.notes.emplace_back("the document is made anew, as its version or its system changes");
+    }
+    return {std::move(file.bytes), std::move(file.notes), std::move(file.lost),
+            file.largest_error_m, file.largest_height_error_m};
+  }
+
+  bool asks_for_another(const map::RoadMap& road_map) const {
+    const bool version = !open_drive_.empty() && !road_map.format().ends_with(" " + open_drive_);
+    return version || !crs_.empty() || !anchor_deg_.empty();
+  }
+
+  void print_text(std::ostream& err, const map::RoadMap& road_map, const Written& written) const {
+    fmt::print(err, "{}: {} lanes, {} bytes\n", output_name(output_), road_map.lanes().size(),
+               written.bytes.size());
+    if (written.largest_error_m) {
+      fmt::print(err, "borders within {:.4f} m of the map's, their heights within {:.3f} m\n",
+                 *written.largest_error_m, *written.largest_height_error_m);
+    }
+    for (const auto& [what, count] : written.lost) fmt::print(err, "lost: {} {}\n", count, what);
+    for (const std::string& note : written.notes) fmt::print(err, "note: {}\n", note);
+  }
+
+  void print_json(std::ostream& out, const map::Format& format, const map::RoadMap& road_map,
+                  const Written& written) const {
+    Json document{{"output", output_name(output_)},
+                  {"format", format.name},
+                  {"lanes", road_map.lanes().size()},
+                  {"bytes", written.bytes.size()}};
+    if (written.largest_error_m) {
+      document["largest_error_m"] = *written.largest_error_m;
+      document["largest_height_error_m"] = *written.largest_height_error_m;
+    }
+    document["lost"] = Json::array();
+    for (const auto& [what, count] : written.lost) {
+      document["lost"].push_back({{"what", what}, {"count", count}});
+    }
+    document["notes"] = written.notes;
+    out << map::json_text(versioned("export", document), 2) << '\n';
+  }
+
   std::string system_of(const map::RoadMap& road_map) const {
     const std::string own = crs_.empty() ? road_map.crs() : crs_ == "unknown" ? "" : crs_;
     if (anchor_deg_.empty()) return own;
@@ -154,9 +228,9 @@ class ExportCommand : public Command {
   std::filesystem::path input_, output_;
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
-  std::string crs_, format_;
+  std::string crs_, format_, open_drive_;
   PageOverlays overlays_;
-  bool force_ = false;
+  bool force_ = false, json_ = false;
 };
 
 /// What `export` does, and for a compiled map what `import` does.
@@ -193,8 +267,9 @@ class ConvertCommand : public ExportCommand {
   std::string fault() {
     if (output_.empty()) output_ = positional_output_;
     if (output_.empty()) return "B or -o is required: the output";
-    if (is_compiled() && !(layers_.empty() && anchor_deg_.empty())) {
-      return "--layer and --anchor are for outputs other than .rbm";
+    const bool is_plain = layers_.empty() && anchor_deg_.empty() && open_drive_.empty() && !json_;
+    if (is_compiled() && !is_plain) {
+      return "--layer, --anchor, --opendrive and --json are for outputs other than .rbm";
     }
     return output_fault();
   }
