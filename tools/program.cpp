@@ -46,6 +46,7 @@ constexpr Entry kCommands[] = {
     {"plan", make_plan_command},
     {"control", make_control_command},
     {"simulate", make_simulate_command},
+    {"pilot", make_pilot_command},
     {"occupancy", make_occupancy_command},
     {"audit", make_audit_command},
     {"figures", make_figures_command},

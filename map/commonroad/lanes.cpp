@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "roadbed/map/commonroad/values.h"
 #include "roadbed/map/elements/lane_lines.h"
 
@@ -11,53 +9,6 @@ namespace roadbed::map::commonroad {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-
-/// Per point how far along the line it is, from 0 to 1.
-std::vector<double> fractions(const Points& line) {
-  std::vector<double> along{0.0};
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    along.push_back(along.back() + (line[i] - line[i - 1]).head<2>().norm());
-  }
-  if (along.back() > 0.0) {
-    for (double& fraction : along) fraction /= along.back();
-  }
-  along.back() = 1.0;
-  return along;
-}
-
-/// The line with a point at each of `wanted`, which holds all of its own fractions.
-Points with_points_at(const Points& line, const std::vector<double>& own,
-                      const std::vector<double>& wanted) {
-  Points result;
-  std::size_t i = 0;
-  for (const double fraction : wanted) {
-    while (i + 2 < line.size() && own[i + 1] <= fraction) ++i;
-    const double step = own[i + 1] - own[i];
-    const double part = step > 0.0 ? std::clamp((fraction - own[i]) / step, 0.0, 1.0) : 1.0;
-    result.push_back(line[i] + part * (line[i + 1] - line[i]));
-  }
-  return result;
-}
-
-/// Gives two borders of different numbers of points the same number: each gets a point where the
-/// other has one, by the fraction of its length.
-void pair_points(Points& left, Points& right) {
-  const std::vector<double> left_fractions = fractions(left), right_fractions = fractions(right);
-  std::vector<double> all;
-  std::merge(left_fractions.begin(), left_fractions.end(), right_fractions.begin(),
-             right_fractions.end(), std::back_inserter(all));
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  left = with_points_at(left, left_fractions, all);
-  right = with_points_at(right, right_fractions, all);
-}
-
-/// Borders of equally many points become the lane's lines; the centreline is halfway.
-void set_lines(const Points& left, const Points& right, Lane& lane) {
-  Points centre;
-  centre.reserve(left.size());
-  for (std::size_t i = 0; i < left.size(); ++i) centre.push_back(0.5 * (left[i] + right[i]));
-  elements::set_lines(left, centre, right, lane);
-}
 
 /// Users that the children of that name name; unknown words name nobody.
 Participants named_users(pugi::xml_node lanelet, const char* child) {
@@ -155,7 +106,7 @@ class LaneBuilder {
     lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
     lane.origin.source_id = id;
     lane.name = id;
-    set_lines(left, right, lane);
+    set_lines(left, points_halfway(left, right), right, lane);
     if (!(lane.length_m() > 0.0)) {
       fault("import.empty-lanelet", lanelet, "it has no length and is left out");
       return;

@@ -24,16 +24,28 @@ std::vector<double> fractions(const Points& line) {
   return along;
 }
 
-/// Adds half of the line's points at the wanted fractions, which hold all of its own.
-void add_half(const Points& line, const std::vector<double>& own, const std::vector<double>& wanted,
-              Points& sum) {
+/// The fractions of two lines, each once.
+std::vector<double> merged(const std::vector<double>& one, const std::vector<double>& other) {
+  std::vector<double> all;
+  all.reserve(one.size() + other.size());
+  std::merge(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(all));
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// The line with a point at each of `wanted`, which holds all of its own fractions.
+Points with_points_at(const Points& line, const std::vector<double>& own,
+                      const std::vector<double>& wanted) {
+  Points result;
+  result.reserve(wanted.size());
   std::size_t i = 0;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    while (i + 2 < line.size() && own[i + 1] <= wanted[k]) ++i;
+  for (const double fraction : wanted) {
+    while (i + 2 < line.size() && own[i + 1] <= fraction) ++i;
     const double step = own[i + 1] - own[i];
-    const double part = step > 0.0 ? std::clamp((wanted[k] - own[i]) / step, 0.0, 1.0) : 1.0;
-    sum[k] += 0.5 * (line[i] + part * (line[i + 1] - line[i]));
+    const double part = step > 0.0 ? std::clamp((fraction - own[i]) / step, 0.0, 1.0) : 1.0;
+    result.emplace_back(line[i] + part * (line[i + 1] - line[i]));
   }
+  return result;
 }
 
 /// The station of each of `own`, which are among `all`.
@@ -63,16 +75,28 @@ LaneLine lane_line(const Points& in_map, std::vector<double> station_m) {
   return {geometry::Polyline(std::move(plan)), std::move(z_m), std::move(station_m)};
 }
 
+Points points_halfway(const Points& left_in_map, const Points& right_in_map) {
+  Points centre;
+  centre.reserve(left_in_map.size());
+  for (std::size_t i = 0; i < left_in_map.size(); ++i) {
+    centre.emplace_back(0.5 * (left_in_map[i] + right_in_map[i]));
+  }
+  return centre;
+}
+
+void pair_points(Points& left_in_map, Points& right_in_map) {
+  const std::vector<double> left = fractions(left_in_map), right = fractions(right_in_map);
+  const std::vector<double> all = merged(left, right);
+  left_in_map = with_points_at(left_in_map, left, all);
+  right_in_map = with_points_at(right_in_map, right, all);
+}
+
 void set_borders(const Points& left_in_map, const Points& right_in_map, Lane& lane) {
   const std::vector<double> left = fractions(left_in_map), right = fractions(right_in_map);
-  std::vector<double> all;
-  all.reserve(left.size() + right.size());
-  std::merge(left.begin(), left.end(), right.begin(), right.end(), std::back_inserter(all));
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  Points centre(all.size(), Eigen::Vector3d::Zero());
-  add_half(left_in_map, left, all, centre);
-  add_half(right_in_map, right, all, centre);
-  lane.centre = lane_line(centre, {});
+  const std::vector<double> all = merged(left, right);
+  lane.centre = lane_line(points_halfway(with_points_at(left_in_map, left, all),
+                                         with_points_at(right_in_map, right, all)),
+                          {});
   lane.centre.station_m = lane.centre.in_map.stations_m();
   lane.left = lane_line(left_in_map, stations_at(left, all, lane.centre.station_m));
   lane.right = lane_line(right_in_map, stations_at(right, all, lane.centre.station_m));

@@ -22,7 +22,16 @@ LaneLine lane_line(const std::vector<Eigen::Vector3d>& in_map, std::vector<doubl
 void set_borders(const std::vector<Eigen::Vector3d>& left_in_map,
                  const std::vector<Eigen::Vector3d>& right_in_map, Lane& lane);
 
-/// The same of three lines of equally many points each: those of one index are opposite each other.
+/// Gives two borders of different numbers of points the same number: each gets a point where the
+/// other has one, by the fraction of its length in plan.
+void pair_points(std::vector<Eigen::Vector3d>& left_in_map,
+                 std::vector<Eigen::Vector3d>& right_in_map);
+
+/// The centreline of borders of equally many points.
+std::vector<Eigen::Vector3d> points_halfway(const std::vector<Eigen::Vector3d>& left_in_map,
+                                            const std::vector<Eigen::Vector3d>& right_in_map);
+
+/// The same as set_borders() of three lines of equally many points each: those of one index are opposite each other.
 void set_lines(const std::vector<Eigen::Vector3d>& left_in_map,
                const std::vector<Eigen::Vector3d>& centre_in_map,
                const std::vector<Eigen::Vector3d>& right_in_map, Lane& lane);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/index/road_map_index.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
 #include "roadbed/planning/route/match_place.h"
@@ -17,7 +16,6 @@ namespace {
 
 constexpr std::size_t kMostTried = 8;                   // routes that no path leads onto
 constexpr double kRaster_m = 0.25, kMostParts = 200.0;  // at which a body is looked at
-constexpr double kAlongLane_rad = 0.35;                 // of a vehicle that drives along a lane
 
 /// What a body takes of a lane: stations, and offsets of its sides.
 struct TakenPart {
@@ -58,22 +56,6 @@ TakenPart part_taken(const map::Lane& lane, const geometry::Rectangle& body) {
 
 bool is_on(const Route& route, map::LaneId lane) {
   return std::ranges::any_of(route.legs, [&](const RouteLeg& leg) { return leg.lane == lane; });
-}
-
-/// Lanes that the vehicle stands on and along.
-std::vector<RoutePlace> starts_of(const DetourQuestion& q) {
-  const geometry::Pose2& pose = q.measured.map_from_vehicle;
-  std::vector<RoutePlace> starts;
-  for (const PlaceCandidate& found :
-       match_place(q.task.road_map, pose.position(), pose.heading_rad)) {
-    const bool may =
-        found.verdict == MatchVerdict::chosen || found.verdict == MatchVerdict::possible;
-    const double turn_rad = geometry::wrap_angle(found.heading_rad - pose.heading_rad);
-    if (!may || found.distance_m > 0.0 || std::abs(turn_rad) > kAlongLane_rad) continue;
-    const bool against = found.sense == Sense::against;
-    starts.push_back({found.place, against ? Sense::against : Sense::along});
-  }
-  return starts;
 }
 
 RoutePlace goal_of(const Route& route) {
@@ -129,7 +111,8 @@ std::optional<Found> cheapest_route(const DetourQuestion& q, const RouteOptions&
   Router router(q.task.road_map, options);
   std::optional<Found> best;
   reason = "the vehicle stands along no lane";
-  const std::vector<RoutePlace> starts = starts_of(q);
+  const std::vector<RoutePlace> starts =
+      places_under(q.task.road_map, q.measured.map_from_vehicle);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     RouteAnswer answer = router.find(starts[i], goal_of(q.task.route));
     if (i == 0) reason = std::move(answer.reason);

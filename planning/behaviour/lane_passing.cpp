@@ -40,17 +40,6 @@ const PassingLane* lane_at(const std::vector<PassingLane>& lanes, double s_m) {
   return found == lanes.end() ? nullptr : &*found;
 }
 
-/// 1: one drives on the right.
-double side_to_pass_on(const map::RoadMap& road_map) {
-  int left = 0, right = 0;
-  for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
-    const map::LaneLinks& links = road_map.graph().of(LaneId{i});
-    left += links.left && !links.left->same_direction ? 1 : 0;
-    right += links.right && !links.right->same_direction ? 1 : 0;
-  }
-  return right > left ? -1.0 : 1.0;
-}
-
 double station_of(const map::Lane& lane, double lane_s_m, const ReferenceLine& line) {
   return line.project(lane.pose_at(lane_s_m).position()).s_m;
 }
@@ -116,6 +105,16 @@ void join(PassingLane next, std::vector<PassingLane>& lanes) {
 }
 
 }  // namespace
+
+double side_to_pass_on(const map::RoadMap& road_map) {
+  int left = 0, right = 0;
+  for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
+    const map::LaneLinks& links = road_map.graph().of(LaneId{i});
+    left += links.left && !links.left->same_direction ? 1 : 0;
+    right += links.right && !links.right->same_direction ? 1 : 0;
+  }
+  return right > left ? -1.0 : 1.0;
+}
 
 std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
                                        const ReferenceLine& line) {

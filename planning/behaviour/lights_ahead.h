@@ -43,8 +43,8 @@ inline std::optional<std::string> why_light_stops(std::span<const LightAhead> li
     const LightColour colour = colour_at(ahead.light, t_s);
     const bool is_near = ahead.line_m > 0.0 && ahead.line_m <= kLightAhead_m;
     if (!is_near || colour == LightColour::green) continue;
-    return fmt::format("{} is {}, {:.1f} m ahead", ahead.place.name,
-                       colour == LightColour::red ? "red" : "yellow", ahead.line_m);
+    return fmt::format("{} is {}, {:.1f} m ahead", ahead.place.name, to_string(colour),
+                       ahead.line_m);
   }
   return std::nullopt;
 }

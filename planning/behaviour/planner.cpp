@@ -63,6 +63,7 @@ class Planner::Impl {
     PlannerCommand command =
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     command.hypotheses = hypotheses_.take_outcomes();
+    command.drive = last_plan_;
     if (!task_.goal) look_at_blocked_road(view, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;

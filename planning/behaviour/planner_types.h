@@ -11,6 +11,7 @@
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/speed/speed_question.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -31,6 +32,8 @@ struct PlannerCommand {
   std::optional<DriveLead> lead;
   bool saturated = false;                          ///< the cruise control asked for all it may
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
+  /// What is foreseen to be driven along the path, from its state now; not empty.
+  std::vector<SpeedState> drive = {};
   bool is_news = false;                            ///< the reason is worth an event
   /// To be put into the task before the next decision, by a planner of its own.
   std::optional<Detour> detour = {};

@@ -69,10 +69,6 @@ std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& ot
   return std::nullopt;
 }
 
-std::string_view colour_name(LightColour colour) {
-  return colour == LightColour::yellow ? "yellow" : "red";
-}
-
 }  // namespace
 
 RightOfWay::RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
@@ -160,7 +156,7 @@ std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const Vi
   if (place.kind == StopKind::light) {
     const LightColour colour = colour_at(task_.lights[*place.light], view.t_s);
     if (colour == LightColour::green) return std::nullopt;
-    return fmt::format("{} is {}, {:.1f} m ahead", place.name, colour_name(colour), left);
+    return fmt::format("{} is {}, {:.1f} m ahead", place.name, to_string(colour), left);
   }
   if (place.kind == StopKind::stop_sign && &place == &task_.stop_points[next_]) {
     has_stopped_ = has_stopped_ || (view.speed_mps < kAtRest_mps && left < kAtLine_m);

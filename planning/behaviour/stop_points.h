@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
@@ -12,6 +13,25 @@
 namespace roadbed::planning::inline behaviour {
 
 enum class LightColour { green, yellow, red };
+inline std::string_view to_string(LightColour colour) {
+  switch (colour) {
+    case LightColour::green:
+      return "green";
+    case LightColour::yellow:
+      return "yellow";
+    case LightColour::red:
+      return "red";
+  }
+  return "";
+}
+
+/// None for any other word.
+inline std::optional<LightColour> light_colour(std::string_view word) {
+  for (const LightColour colour : {LightColour::green, LightColour::yellow, LightColour::red}) {
+    if (word == to_string(colour)) return colour;
+  }
+  return std::nullopt;
+}
 
 struct LightPhase {
   LightColour colour = LightColour::red;

@@ -5,27 +5,15 @@
 #include <limits>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/planning/obstacles/foreseen_motion.h"
 
 namespace roadbed::planning::inline obstacles {
 namespace {
 
 constexpr double kSeenPast_s = 0.3;
-constexpr double kForeseen_s = 12.0, kForeseenStep_s = 0.2;
-constexpr int kSubsteps = 4;
-constexpr double kTurnsFor_s = 2.0;  // nobody turns for ever
-// Nor speeds up or brakes for ever; who brakes may well come to rest.
-constexpr double kSpeedsUpFor_s = 1.0, kBrakesFor_s = 2.0;
 constexpr double kMostSpeedUp_mps2 = 2.5, kMostBraking_mps2 = 6.0;
 constexpr double kRecordedNoise_mps = 0.05;  // slower is noise of a recording
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
-
-/// What was seen of somebody until now.
-struct Seen {
-  double t_s;
-  geometry::Pose2 pose;
-  double speed_mps = 0.0, acceleration_mps2 = 0.0;
-  double curvature_per_m = 0.0;  ///< of its path
-};
 
 /// Speed between two times, less than 0 for who backs up.
 double mean_speed_mps(const geometry::TrajectoryPoint& before,
@@ -37,9 +25,9 @@ double mean_speed_mps(const geometry::TrajectoryPoint& before,
 }
 
 /// Speed, its change and the bend over the last moments, pose of now.
-Seen seen_at(const geometry::Trajectory& motion, double from_s, double now_s) {
+SeenMotion seen_at(const geometry::Trajectory& motion, double from_s, double now_s) {
   const geometry::TrajectoryPoint now = motion.at(now_s);
-  Seen seen{.t_s = now_s, .pose = now.pose()};
+  SeenMotion seen{.t_s = now_s, .pose = now.pose()};
   const double before_s = std::max(from_s, now_s - kSeenPast_s);
   if (now_s - before_s < 0.5 * kSeenPast_s) {  // just appeared: what it is said to do
     seen.speed_mps = now.speed_mps;
@@ -60,37 +48,6 @@ Seen seen_at(const geometry::Trajectory& motion, double from_s, double now_s) {
   seen.acceleration_mps2 = std::clamp(change / kSeenPast_s, -kMostBraking_mps2, kMostSpeedUp_mps2);
   seen.speed_mps = std::max(0.0, seen.speed_mps + 0.5 * change);  // the mean is that of before
   return seen;
-}
-
-/// Speed some time later.
-double later_speed_mps(const Seen& seen, double after_s) {
-  const double for_s = seen.acceleration_mps2 > 0.0 ? kSpeedsUpFor_s : kBrakesFor_s;
-  const double speed = seen.speed_mps + seen.acceleration_mps2 * std::min(after_s, for_s);
-  return seen.speed_mps > 0.0 ? std::max(0.0, speed) : seen.speed_mps;
-}
-
-geometry::Trajectory foreseen_motion(const Seen& seen) {
-  std::vector<geometry::TrajectoryPoint> points;
-  geometry::Pose2 pose = seen.pose;
-  const double step_s = kForeseenStep_s / kSubsteps;
-  const auto steps = static_cast<int>(std::lround(kForeseen_s / step_s));
-  for (int k = 0; k <= steps; ++k) {
-    const double after_s = step_s * k;
-    if (k % kSubsteps == 0) {
-      points.push_back({.t_s = seen.t_s + after_s,
-                        .x_m = pose.x_m,
-                        .y_m = pose.y_m,
-                        .heading_rad = pose.heading_rad,
-                        .speed_mps = later_speed_mps(seen, after_s)});
-      if (seen.speed_mps == 0.0) break;  // one point: it stands
-    }
-    const double way_m = step_s * later_speed_mps(seen, after_s + 0.5 * step_s);
-    const double turn = after_s < kTurnsFor_s - 1e-9 ? way_m * seen.curvature_per_m : 0.0;
-    const double heading = pose.heading_rad + 0.5 * turn;
-    pose = {pose.x_m + way_m * std::cos(heading), pose.y_m + way_m * std::sin(heading),
-            pose.heading_rad + turn};
-  }
-  return geometry::Trajectory(std::move(points));
 }
 
 }  // namespace

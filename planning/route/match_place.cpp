@@ -89,4 +89,20 @@ std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eige
   return candidates;
 }
 
+std::vector<RoutePlace> places_under(const map::RoadMap& road_map,
+                                     const geometry::Pose2& map_from_vehicle) {
+  constexpr double kAlong_rad = 0.35;
+  std::vector<RoutePlace> places;
+  for (const PlaceCandidate& found :
+       match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad)) {
+    const bool may =
+        found.verdict == MatchVerdict::chosen || found.verdict == MatchVerdict::possible;
+    const double turn_rad = geometry::wrap_angle(found.heading_rad - map_from_vehicle.heading_rad);
+    if (!may || found.distance_m > 0.0 || std::abs(turn_rad) > kAlong_rad) continue;
+    const bool against = found.sense == Sense::against;
+    places.push_back({found.place, against ? Sense::against : Sense::along});
+  }
+  return places;
+}
+
 }  // namespace roadbed::planning::route

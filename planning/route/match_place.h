@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/route/route_place.h"
 
@@ -45,5 +46,10 @@ struct MatchOptions {
 std::vector<PlaceCandidate> match_place(const map::RoadMap& road_map, const Eigen::Vector2d& in_map,
                                         std::optional<double> heading_rad,
                                         const MatchOptions& options = {});
+
+/// Where a vehicle that stands on lanes of the map may set off: on each lane under it that it heads
+/// along, within 20 degrees, the one with the least misfit first.
+std::vector<RoutePlace> places_under(const map::RoadMap& road_map,
+                                     const geometry::Pose2& map_from_vehicle);
 
 }  // namespace roadbed::planning::route

@@ -51,8 +51,8 @@ roadbed_add_module(map FOLDERS "^map(/|$)(([^o]|op).*)?$" USES geometry
           ${CMAKE_DL_LIBS})
 roadbed_add_module(occupancy FOLDERS "^map/occupancy/" USES map
   PRIVATE fmt::fmt octomap octomath lzf ${CMAKE_DL_LIBS})
-roadbed_add_module(planning FOLDERS "^planning(/|$)" USES occupancy PRIVATE fmt::fmt)
 roadbed_add_module(control FOLDERS "^control$" USES geometry PRIVATE fmt::fmt)
+roadbed_add_module(planning FOLDERS "^planning(/|$)" USES occupancy control PRIVATE fmt::fmt)
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/roadbedConfig.cmake.in
   ${PROJECT_BINARY_DIR}/install/roadbedConfig.cmake INSTALL_DESTINATION ${package_folder})

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <memory>
 #include <utility>
 
-#include "roadbed/control/cruise_control.h"
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/control/single_track.h"
 #include "roadbed/control/stanley.h"
 #include "roadbed/planning/behaviour/planner.h"
+#include "roadbed/planning/pilot/cruise_speed.h"
+#include "roadbed/planning/pilot/path_tracking.h"
 #include "roadbed/tools/simulation/goal_misses.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
@@ -26,15 +26,6 @@ namespace {
 constexpr double kControlStep_s = 0.01;
 constexpr int kControlStepsPerCycle = 10;
 static_assert(kControlStep_s * kControlStepsPerCycle == geometry::kLongitudinal.cycle_s);
-constexpr double kMostLateral_mps2 = 3.9;  // that the wheels are turned for
-
-/// Steering angle that keeps v² tan(δ)/L within a lateral acceleration.
-double most_steering_rad(double speed_mps, double lateral_mps2,
-                         const geometry::VehicleShape& vehicle) {
-  const double squared = std::max(1e-3, speed_mps * speed_mps);
-  return std::min(vehicle.max_steering_rad,
-                  std::atan(vehicle.wheelbase_m * lateral_mps2 / squared));
-}
 
 /// A route as far as a length along it.
 planning::Route first_part(planning::Route route, double length_m) {
@@ -54,55 +45,22 @@ planning::Route first_part(planning::Route route, double length_m) {
 }
 
 /// The cruise control behind the sensors of the lead.
-class MeasuredCruise : public planning::SpeedController {
+class MeasuredCruise : public planning::CruiseSpeed {
  public:
   MeasuredCruise(Sensors& sensors, const planning::VehicleState& truth,
                  const planning::DrivingOptions& driving)
-      : sensors_(sensors),
-        truth_(truth),
-        cruise_({.headway_s = driving.headway_s,
-                 .standstill_gap_m = driving.standstill_gap_m,
-                 .max_command_mps2 = planning::kMostCommand_mps2}) {}
-
-  std::optional<planning::Lead> observe(const planning::VehicleState& measured,
-                                        const std::optional<planning::Lead>& truth,
-                                        double t_s) override {
-    const double speed = measured.speed_mps;
-    if (truth && !sensors_.sees(t_s)) {
-      cruise_.observe_blind(speed);
-    } else {
-      std::optional<control::LeadMeasurement> seen;
-      if (truth) seen = sensors_.measure(*truth, truth_.speed_mps);
-      cruise_.observe(speed, measured.acceleration_mps2, seen);
-    }
-    const std::optional<control::LeadMeasurement> known = cruise_.lead();
-    if (cruise_.restarted() || !known) lead_speeds_mps_.clear();
-    if (!known || !truth) return std::nullopt;
-    const double lead_mps = speed + known->relative_speed_mps;
-    lead_speeds_mps_.push_back(lead_mps);
-    if (lead_speeds_mps_.size() > kLeadCycles + 1) lead_speeds_mps_.pop_front();
-    return planning::Lead{.obstacle = truth->obstacle,
-                          .gap_m = known->gap_m,
-                          .speed_mps = lead_mps,
-                          .acceleration_mps2 = (lead_mps - lead_speeds_mps_.front()) /
-                                               (kLeadCycles * geometry::kLongitudinal.cycle_s)};
-  }
-
-  double acceleration_mps2(const planning::VehicleState& measured,
-                           const planning::SpeedTarget& set) override {
-    return cruise_.command(measured.speed_mps, measured.acceleration_mps2,
-                           {set.speed_mps, set.acceleration_mps2});
-  }
-
-  void sent(double acceleration_mps2) override { cruise_.sent(acceleration_mps2); }
+      : CruiseSpeed(driving), sensors_(sensors), truth_(truth) {}
 
  private:
-  static constexpr std::size_t kLeadCycles = 4;  // over which the lead's acceleration is taken
+  bool sees(double t_s) override { return sensors_.sees(t_s); }
+
+  control::LeadMeasurement measure(const planning::Lead& lead,
+                                   const planning::VehicleState&) override {
+    return sensors_.measure(lead, truth_.speed_mps);
+  }
 
   Sensors& sensors_;
   const planning::VehicleState& truth_;
-  control::CruiseControl cruise_;
-  std::deque<double> lead_speeds_mps_;  ///< of the last cycles
 };
 
 class ClosedLoop {
@@ -164,8 +122,8 @@ class ClosedLoop {
     const planning::ReferencePoint on_line =
         world_.line.at(world_.line.project(world_.start.position(), 0.0).s_m);
     const double most =
-        most_steering_rad(scenario_.start_speed_mps,
-                          scenario_.options.max_lateral_acceleration_mps2, scenario_.vehicle);
+        planning::most_steering_rad(scenario_.start_speed_mps, scenario_.vehicle,
+                                    scenario_.options.max_lateral_acceleration_mps2);
     return std::clamp(std::atan(scenario_.vehicle.wheelbase_m * on_line.curvature_per_m), -most,
                       most);
   }
@@ -277,11 +235,8 @@ class ClosedLoop {
 
   control::TrackingError tracking_error_of(const geometry::Pose2& pose) {
     if (follower_) return follower_->error_of(pose);
-    const double wheelbase_m = scenario_.vehicle.wheelbase_m;
-    const Eigen::Vector2d front = pose * Eigen::Vector2d(wheelbase_m, 0.0);
-    front_s_m_ = replanner().path().nearest_front_s_m(front, wheelbase_m, front_s_m_);
-    return control::tracking_error(pose, wheelbase_m,
-                                   replanner().path().front_pose_at(front_s_m_, wheelbase_m));
+    return planning::tracking_error(replanner().path(), pose, scenario_.vehicle.wheelbase_m,
+                                    front_s_m_);
   }
 
   double acceleration_after_step() {
@@ -299,9 +254,7 @@ class ClosedLoop {
       command_.acceleration_mps2 =
           follower_->acceleration_mps2(t_s(), measured.map_from_vehicle, speed_mps);
     }
-    const double most = most_steering_rad(speed_mps, kMostLateral_mps2, scenario_.vehicle);
-    const double wanted =
-        std::clamp(control::stanley_steering_rad(error, speed_mps, scenario_.vehicle), -most, most);
+    const double wanted = planning::tracking_steering_rad(error, speed_mps, scenario_.vehicle);
     truth_.acceleration_mps2 = acceleration_after_step();
     const control::SingleTrackState moved =
         control::step({.pose = truth_.map_from_vehicle,

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/planning/obstacles/lanes_ahead.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/route/match_place.h"
 #include "roadbed/planning/route/router.h"
-#include "roadbed/tools/simulation/obstacle_motion.h"
+
 
 namespace roadbed::tools::inline simulation {
 namespace {
@@ -57,7 +58,7 @@ LanePlace straight_ahead(const map::RoadMap& road_map, const LanePlace& from, do
   LanePlace at = from;
   for (int i = 0; i < kMostLanes; ++i) {
     const double left_m = road_map.lane(at.lane).length_m() - at.s_m;
-    const std::optional<map::LaneId> next = straightest(road_map, at.lane);
+    const std::optional<map::LaneId> next = planning::straightest(road_map, at.lane);
     if (left_m >= length_m || !next) {
       at.s_m += std::min(left_m, length_m);
       break;

@@ -19,6 +19,8 @@ Json chosen_json(const std::optional<planning::Candidate>& chosen) {
   return {{"d_e_m", chosen->end_d_m}, {"l_e_m", chosen->end_l_m}, {"cost", chosen->cost}};
 }
 
+}  // namespace
+
 Json lead_json(const std::optional<planning::DriveLead>& lead) {
   if (!lead) return {};
   return {{"id", lead->id}, {"gap_m", lead->gap_m}, {"speed_mps", lead->speed_mps}};
@@ -35,8 +37,6 @@ Json hypotheses_json(const std::vector<planning::HypothesisOutcome>& hypotheses)
   }
   return list;
 }
-
-}  // namespace
 
 Json cycle_json(const DriveCycle& cycle, const DriveSample& row) {
   return {{"t_s", cycle.t_s},

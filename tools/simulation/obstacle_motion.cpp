@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "roadbed/geometry/primitives/angle.h"
 
@@ -13,35 +12,6 @@ using geometry::Pose2;
 using geometry::TrajectoryPoint;
 
 constexpr double kStep_s = 0.1;
-constexpr std::size_t kMostLanes = 10'000;  // lanes may run in a circle and be very short
-
-double turn_of(const map::Lane& lane) {
-  const double start = lane.pose_at(0.0).heading_rad;
-  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
-}
-
-// Lanes that join do so but for rounding, in real files within centimetres: a point that is not
-// ahead of the last one would turn whoever drives along by up to 180°.
-bool repeats_joint(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& next) {
-  constexpr double kJoint_m = 0.1, kLeastStep_m = 0.01;
-  if (points.empty()) return false;
-  const Eigen::Vector2d step = next - points.back();
-  if (points.size() < 2 || step.norm() > kJoint_m) return step.norm() < kLeastStep_m;
-  const Eigen::Vector2d along = points.back() - points[points.size() - 2];
-  return step.dot(along.normalized()) < kLeastStep_m;
-}
-
-void append(std::vector<Eigen::Vector2d>& points, const geometry::Polyline& line, double from_m) {
-  bool at_joint = true;
-  const auto add = [&](const Eigen::Vector2d& point) {
-    at_joint = at_joint && repeats_joint(points, point);
-    if (!at_joint) points.push_back(point);
-  };
-  add(line.at(from_m));
-  for (std::size_t i = 0; i < line.points().size(); ++i) {
-    if (line.stations_m()[i] > from_m) add(line.points()[i]);
-  }
-}
 
 /// Drives on straight to `next`, where the speed changes at once: a row just before it still has
 /// the speed of the way there, as between rows speeds are linear.
@@ -61,31 +31,6 @@ void drive_on(std::vector<TrajectoryPoint>& points, const TrajectoryPoint& next)
 }
 
 }  // namespace
-
-std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from) {
-  std::optional<map::LaneId> best;
-  for (const map::LaneId next : road_map.graph().of(from).successors) {
-    if (!map::is_drivable(road_map.lane(next).type)) continue;
-    if (!best || turn_of(road_map.lane(next)) < turn_of(road_map.lane(*best))) best = next;
-  }
-  return best;
-}
-
-geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlace& from,
-                               double length_m) {
-  std::vector<Eigen::Vector2d> points;
-  std::optional<map::LaneId> lane = from.lane;
-  double from_m = from.s_m, covered_m = 0.0;
-  for (std::size_t i = 0; lane && covered_m < length_m && i < kMostLanes; ++i) {
-    const geometry::Polyline& centre = road_map.lane(*lane).centre.in_map;
-    append(points, centre, from_m);
-    covered_m += std::max(0.0, centre.length_m() - from_m);
-    from_m = 0.0;
-    lane = straightest(road_map, *lane);
-  }
-  if (points.size() < 2) points.push_back(points.front());
-  return geometry::Polyline(std::move(points));
-}
 
 double wanted_speed_mps(const std::vector<TimedSpeed>& speeds, double t_s) {
   const auto after = std::find_if(speeds.begin(), speeds.end(),

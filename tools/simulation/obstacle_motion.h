@@ -1,26 +1,16 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
-#include "roadbed/geometry/primitives/polyline.h"
-#include "roadbed/map/model/road_map.h"
+#include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline simulation {
 
 /// Pose of a centre at a distance along its way, in the map.
 using Way = std::function<geometry::Pose2(double distance_m)>;
-
-/// Of the drivable lanes that follow on a lane, the one that turns least (of equal ones the first).
-std::optional<map::LaneId> straightest(const map::RoadMap& road_map, map::LaneId from);
-
-/// Centres of the lanes from a place on, at least `length_m` long unless the lanes end before;
-/// where lanes part, along the one that turns least (of equal ones the first).
-geometry::Polyline straight_on(const map::RoadMap& road_map, const map::LanePlace& from,
-                               double length_m);
 
 /// Speed at a time, linear between the given ones and constant beyond.
 double wanted_speed_mps(const std::vector<TimedSpeed>& speeds, double t_s);

@@ -18,7 +18,7 @@
 namespace roadbed::tools::inline simulation {
 namespace {
 
-constexpr double kSeenOver_s = 0.1;  // a speed is that of the last cycle
+constexpr double kSeenOver_s = 0.1;  // a speed is that of the last cycle, if there is one
 constexpr double kSceneStep_m = 1.0;
 constexpr std::size_t kLeastColumns = 5, kMostColumns = 8;
 constexpr std::size_t kMostRows = 100'000;
@@ -28,16 +28,17 @@ constexpr const char* kWhatIsNeeded =
 
 SeenObstacle seen(const planning::Obstacle& obstacle, const World& world, double t_s) {
   const geometry::Pose2 now = obstacle.pose_at(t_s);
-  const geometry::Pose2 before = obstacle.pose_at(t_s - kSeenOver_s);
+  const double before_s = t_s - kSeenOver_s;
+  const bool was_there = before_s >= 0.0 && obstacle.is_there(before_s);
+  const geometry::Pose2 before = obstacle.pose_at(before_s);
   const Eigen::Vector2d place = world.road_map.to_source(now.position());
   return {.id = obstacle.id,
           .kind = obstacle.kind,
           .length_m = obstacle.length_m,
           .width_m = obstacle.width_m,
           .pose = {place.x(), place.y(), now.heading_rad},
-          .speed_mps = obstacle.is_there(t_s - kSeenOver_s)
-                           ? (now.position() - before.position()).norm() / kSeenOver_s
-                           : 0.0};
+          .speed_mps = was_there ? (now.position() - before.position()).norm() / kSeenOver_s
+                                 : obstacle.motion.at(t_s).speed_mps};
 }
 
 Json shape_json(const geometry::VehicleShape& shape) {
@@ -205,6 +206,14 @@ Json observation_json(const Observation& seen, bool with_scene) {
                          {"width_m", obstacle.width_m}});
   }
   json["obstacles"] = std::move(obstacles);
+  Json lights = Json::array();
+  for (const planning::LightCycle& light : seen.world.lights) {
+    for (const std::string& signal : light.signals) {
+      lights.push_back({{"signal", signal},
+                        {"colour", planning::to_string(planning::colour_at(light, seen.t_s))}});
+    }
+  }
+  json["lights"] = std::move(lights);
   if (with_scene) json["scene"] = scene_json(seen);
   return json;
 }
@@ -215,7 +224,8 @@ OutsidePlan parse_outside_plan(std::string_view bytes, const std::string& name) 
   if (!document.is_object() || !document.contains("trajectory")) {
     root.refuse("is no answer", kWhatIsNeeded, "see tools/simulation/README.md");
   }
-  root.require_object({"trajectory", "reason"});
+  root.require_object({"trajectory", "reason", "t_s", "command", "behaviour", "at_goal", "lead",
+                       "hypotheses", "tracks", "error"});
   OutsidePlan plan{.trajectory = trajectory_in(root.at("trajectory"))};
   if (const auto reason = root.find("reason")) plan.reason = map::one_line(reason->text());
   return plan;

@@ -153,16 +153,7 @@ std::vector<planning::TimeSpan> time_spans(const JsonNode& list) {
 
 planning::LightPhase light_phase(const JsonNode& node) {
   node.require_object({"colour", "duration_s"});
-  const JsonNode colour = node.at("colour");
-  const std::map<std::string, planning::LightColour> colours{
-      {"green", planning::LightColour::green},
-      {"yellow", planning::LightColour::yellow},
-      {"red", planning::LightColour::red}};
-  const auto known = colours.find(colour.text());
-  if (known == colours.end()) {
-    colour.refuse(fmt::format("is \"{}\"", colour.text()), "green, yellow or red", "choose one");
-  }
-  return {known->second, node.at("duration_s").number(kDuration)};
+  return {light_colour_in(node.at("colour")), node.at("duration_s").number(kDuration)};
 }
 
 std::vector<planning::LightCycle> lights(const JsonNode& list) {
@@ -277,6 +268,13 @@ bool is_random(const ScenarioNoise& noise) {
 }
 
 }  // namespace
+
+planning::LightColour light_colour_in(const JsonNode& node) {
+  const std::string word = node.text();
+  const std::optional<planning::LightColour> colour = planning::light_colour(word);
+  if (!colour) node.refuse(fmt::format("is \"{}\"", word), "green, yellow or red", "choose one");
+  return *colour;
+}
 
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file) {
   const nlohmann::json document = parse_json_strictly(bytes, map::input_name(file));

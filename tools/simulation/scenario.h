@@ -137,6 +137,10 @@ std::optional<std::uint64_t> parse_seed(std::string_view text);
 /// @throws InputError naming its place.
 std::uint64_t seed_in(const JsonNode& node);
 
+/// What a light shows: "green", "yellow" or "red".
+/// @throws InputError naming its place.
+planning::LightColour light_colour_in(const JsonNode& node);
+
 /// Reads noise: one JSON object with the keys of a scenario's `noise`.
 /// @throws InputError naming the key, or the byte where the text is not JSON.
 ScenarioNoise read_noise_json(const std::filesystem::path& file);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSpeedTime_s = 1.0, kPlaceTime_s = 2.0;
 constexpr double kHardestBraking_mps2 = 8.0, kBrakingPastEnd_mps2 = 3.0;
+constexpr double kSetsOffWithin_s = 1.0;
 constexpr double kStanding_mps = 0.05, kRolling_mps = 0.3, kHolding_mps2 = 1.0;
 constexpr double kLeastStep_m = 1e-3;
 
@@ -70,7 +71,9 @@ double TrajectoryFollower::acceleration_mps2(double t_s, const geometry::Pose2& 
                                trajectory_.at(ahead_s - 0.5 * over_s).speed_mps) /
                               over_s;
   const geometry::TrajectoryPoint wanted = trajectory_.at(t_s);
-  if (wanted.speed_mps < kStanding_mps && speed_mps < kRolling_mps) return -kHolding_mps2;
+  const bool stays = wanted.speed_mps < kStanding_mps &&
+                     trajectory_.at(t_s + kSetsOffWithin_s).speed_mps < kStanding_mps;
+  if (stays && speed_mps < kRolling_mps) return -kHolding_mps2;
   const Eigen::Vector2d direction(std::cos(pose.heading_rad), std::sin(pose.heading_rad));
   const double behind_m = (wanted.pose().position() - pose.position()).dot(direction);
   const double command = planned_mps2 + (wanted.speed_mps - speed_mps) / kSpeedTime_s +

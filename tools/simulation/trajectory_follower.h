@@ -15,7 +15,8 @@ namespace roadbed::tools::inline simulation {
 ///     u = a(t + T_L) + (v(t) − v) / 1 s + Δs / (2 s)²,   Δs: how far the trajectory is ahead
 ///
 /// with the trajectory's acceleration a one actuator's lag T_L ahead. Past its end it brakes to a
-/// stop at 3 m/s²; where the trajectory stands and the vehicle nearly does, it brakes at 1 m/s².
+/// stop at 3 m/s²; where the trajectory stands for a second and the vehicle nearly does, it brakes
+/// at 1 m/s².
 class TrajectoryFollower {
  public:
   /// Of a trajectory that does not move, the path leads straight on.

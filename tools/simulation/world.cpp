@@ -11,6 +11,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/route_line.h"
+#include "roadbed/planning/obstacles/lanes_ahead.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -169,7 +170,7 @@ class ObstacleMaker {
 
   LaneDriver along_lanes(const TrafficObstacle& traffic, const map::LanePlace& start) const {
     const double length_m = travelled_m(traffic.speeds, known_s()) + 1.0;
-    const geometry::Polyline way = straight_on(road_map_, start, length_m);
+    const geometry::Polyline way = planning::straight_on(road_map_, start, length_m);
     return {.obstacle = {},
             .way = [way](double distance_m) { return way.pose_at(distance_m); },
             .way_length_m = way.length_m(),

@@ -5,9 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "roadbed/map/load_map.h"
-#include "roadbed/tests/support/made_maps.h"
-#include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::tools {
 namespace {
@@ -43,31 +40,6 @@ TEST(ObstacleMotion, DrivesWithItsSpeedsAndRestsAtTheEndOfItsWay) {
   EXPECT_NEAR(motion.at(3.0).speed_mps, 7.5, 1e-9);
   EXPECT_EQ(motion.at(8.0).x_m, 30.0);
   EXPECT_EQ(motion.at(8.0).speed_mps, 0.0);
-}
-
-TEST(ObstacleMotion, GoesStraightOnFromLaneToLane) {
-  const map::RoadMap road_map = tests::three_roads_in_a_row().build();
-  const map::LaneId first = *road_map.find_lane("1/0/-1");
-  const geometry::Polyline way = straight_on(road_map, {.lane = first, .s_m = 10.0}, 100.0);
-  EXPECT_NEAR(way.at(0.0).x(), 10.0, 1e-9);
-  EXPECT_NEAR(way.at(75.0).x(), 85.0, 1e-9);
-  EXPECT_NEAR(way.at(75.0).y(), 0.0, 1e-9);
-  const geometry::Polyline all = straight_on(road_map, {.lane = first, .s_m = 10.0}, 1e6);
-  EXPECT_NEAR(all.length_m(), 140.0, 1e-9);  // the lanes end
-}
-
-TEST(ObstacleMotion, NobodyTurnsRoundWhereLanesJoin) {
-  const map::RoadMap road_map = map::load_map(tests::data_folder() / "town.xodr");
-  for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
-    const map::LaneId lane{i};
-    if (!map::is_drivable(road_map.lane(lane).type)) continue;
-    const geometry::Polyline way = straight_on(road_map, {.lane = lane, .s_m = 0.0}, 300.0);
-    for (std::size_t k = 2; k < way.points().size(); ++k) {
-      const Eigen::Vector2d before = way.points()[k - 1] - way.points()[k - 2];
-      const Eigen::Vector2d after = way.points()[k] - way.points()[k - 1];
-      ASSERT_GT(before.dot(after), 0.0) << road_map.lane(lane).name << ", point " << k;
-    }
-  }
 }
 
 TEST(ObstacleMotion, ScriptedPosesAreMetAtTheirTimes) {

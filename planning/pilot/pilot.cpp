@@ -1,0 +1,295 @@
+#include "roadbed/planning/pilot/pilot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/planning/behaviour/lane_passing.h"
+#include "roadbed/planning/behaviour/planner.h"
+#include "roadbed/planning/behaviour/route_line.h"
+#include "roadbed/planning/pilot/cruise_speed.h"
+#include "roadbed/planning/pilot/path_tracking.h"
+#include "roadbed/planning/pilot/planned_trajectory.h"
+#include "roadbed/planning/route/match_place.h"
+#include "roadbed/planning/route/router.h"
+
+namespace roadbed::planning::inline pilot {
+namespace {
+
+constexpr double kTakenAway_m = 12.0;      // from its line, farther than planning leads
+constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
+constexpr double kYellow_s = 3.0;          // how long one lasts [§ 37 StVO's guideline: 3 s at 50]
+constexpr double kForLong_s = 1e6;
+constexpr double kAtGoal_m = 1.0;
+constexpr double kLikely = 0.15;  // of motions: what is less so is not planned for
+constexpr double kSameWay_rad = 0.6, kOncoming_rad = 2.4, kTurn_rad = 0.6;
+constexpr TimeSpan kNever{std::numeric_limits<double>::infinity(),
+                          -std::numeric_limits<double>::infinity()};
+
+void refuse_unusable(const PilotView& view) {
+  const auto refuse = [](const std::string& what) {
+    throw std::invalid_argument("Pilot: " + what);
+  };
+  const auto is_finite = [](const geometry::Pose2& pose) {
+    return std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.heading_rad);
+  };
+  if (!is_finite(view.ego.map_from_vehicle) || !std::isfinite(view.ego.speed_mps) ||
+      !std::isfinite(view.ego.acceleration_mps2) || !std::isfinite(view.ego.steering_rad)) {
+    refuse("the vehicle's state is not finite");
+  }
+  for (const Detection& object : view.objects) {
+    const bool is_usable = is_finite(object.centre) && std::isfinite(object.speed_mps) &&
+                           object.length_m > 0.0 && object.width_m > 0.0;
+    if (!is_usable) refuse("an object's numbers are not usable: " + object.id);
+  }
+}
+
+/// A light whose future nobody tells: green stays, yellow becomes red, red stays.
+std::vector<LightPhase> phases_of(LightColour colour, double since_s, double t_s) {
+  if (colour != LightColour::yellow) return {{colour, kForLong_s}};
+  return {{LightColour::yellow, std::max(0.1, kYellow_s - (t_s - since_s))},
+          {LightColour::red, kForLong_s}};
+}
+
+struct Found {
+  std::optional<Route> route;
+  std::string reason;  ///< why there is none
+};
+
+/// From the lane under the vehicle that fits it best of those from which there is a route.
+Found route_from(const map::RoadMap& road_map, const geometry::Pose2& map_from_vehicle,
+                 const RoutePlace& goal) {
+  Router router(road_map);
+  Found found{.route = {}, .reason = "the vehicle stands along no lane"};
+  for (const RoutePlace& start : places_under(road_map, map_from_vehicle)) {
+    RouteAnswer answer = router.find(start, goal);
+    if (answer.route) return {std::move(answer.route), ""};
+    found.reason = std::move(answer.reason);
+  }
+  return found;
+}
+
+}  // namespace
+
+class Pilot::Impl {
+ public:
+  explicit Impl(PilotSetup setup)
+      : setup_(checked(std::move(setup))),
+        tracker_(setup_.tracker),
+        forecast_(*setup_.road_map),
+        side_to_pass_on_(side_to_pass_on(*setup_.road_map)),
+        cruise_(setup_.driving) {}
+
+  PilotAnswer step(const PilotView& view) {
+    refuse_unusable(view);
+    tracker_.observe(view.t_s, view.objects);
+    const bool has_new_light = take_lights(view);
+    keep_route(view);
+    if (!planner_) return without_route(view);
+    foresee(view);
+    if (has_new_light) restart();
+    return drive(view);
+  }
+
+  const Tracker& tracker() const { return tracker_; }
+  const std::vector<std::vector<ForecastMotion>>& forecasts() const { return forecasts_; }
+
+ private:
+  static PilotSetup checked(PilotSetup setup) {
+    if (!setup.road_map) throw std::invalid_argument("Pilot: there is no map");
+    if (setup.goal.lane.index >= setup.road_map->lanes().size()) {
+      throw std::invalid_argument("Pilot: the goal's lane is not in the map");
+    }
+    return setup;
+  }
+
+  // Lights.
+
+  struct Light {
+    LightColour colour;
+    double since_s;
+  };
+
+  /// @returns whether one is among them that has never been named.
+  bool take_lights(const PilotView& view) {
+    bool has_new = false;
+    for (const SeenLight& seen : view.lights) {
+      const auto known = std::ranges::find_if(
+          lights_, [&](const LightCycle& light) { return light.signals.front() == seen.signal; });
+      const auto at = static_cast<std::size_t>(known - lights_.begin());
+      if (known == lights_.end()) {
+        lights_.push_back({.signals = {seen.signal}, .pointer = "", .phases = {}});
+        shown_.push_back({seen.colour, view.t_s});
+        has_new = true;
+      }
+      if (shown_[at].colour != seen.colour) shown_[at] = {seen.colour, view.t_s};
+      lights_[at].offset_s = view.t_s;
+      lights_[at].phases = phases_of(seen.colour, shown_[at].since_s, view.t_s);
+    }
+    if (task_) task_->lights = lights_;
+    return has_new;
+  }
+
+  // The route.
+
+  void keep_route(const PilotView& view) {
+    if (decision_.detour) return take(*std::exchange(decision_.detour, std::nullopt));
+    const Eigen::Vector2d here = view.ego.map_from_vehicle.position();
+    const bool is_away = task_ && std::abs(task_->line.project(here).d_m) > kTakenAway_m;
+    if ((task_ && !is_away) || view.t_s < next_question_s_) return;
+    next_question_s_ = view.t_s + kAsksAgainAfter_s;
+    Found found = route_from(*setup_.road_map, view.ego.map_from_vehicle, setup_.goal);
+    why_no_route_ = std::move(found.reason);
+    if (found.route) begin(*std::move(found.route), view);
+  }
+
+  void begin(Route route, const PilotView& view) {
+    RouteLine drawn =
+        line_along(*setup_.road_map, route, setup_.vehicle, setup_.driving.desired_speed_mps);
+    planner_.reset();
+    task_ = std::make_unique<DrivingTask>(DrivingTask{.kept_map = setup_.road_map,
+                                                      .field = setup_.occupied,
+                                                      .start = view.ego.map_from_vehicle,
+                                                      .route = std::move(route),
+                                                      .line = std::move(drawn.line),
+                                                      .line_options = drawn.options,
+                                                      .obstacles = {},
+                                                      .lights = lights_});
+    restart();
+  }
+
+  void take(Detour detour) {
+    planner_.reset();
+    task_->route = std::move(detour.route);
+    task_->line = std::move(detour.line.line);
+    task_->line_options = detour.line.options;
+    task_->blockers = std::move(detour.blockers);
+    restart();
+  }
+
+  /// Where the vehicle has to wait is found anew; the plan goes on from where it is.
+  void restart() {
+    task_->stop_points = stop_points(*setup_.road_map, task_->route, task_->line, task_->lights);
+    planner_.emplace(PlannerSetup{.task = *task_,
+                                  .vehicle = setup_.vehicle,
+                                  .driving = setup_.driving,
+                                  .planner = setup_.planner});
+    front_s_m_.reset();
+  }
+
+  PilotAnswer without_route(const PilotView& view) const {
+    PilotAnswer answer{.trajectory = stopping_trajectory(view.t_s, view.ego),
+                       .acceleration_mps2 = 0.0,
+                       .steering_rad = 0.0,
+                       .decision = {}};
+    answer.acceleration_mps2 = answer.trajectory.points().front().acceleration_mps2;
+    answer.decision.behaviour = Behaviour::stop;
+    answer.decision.reason = "no route leads to the goal: " + why_no_route_;
+    return answer;
+  }
+
+  // Others.
+
+  /// As they were, are, and may be: the most likely motion of a slot first, then others that are
+  /// likely enough, each a place of its own in the list.
+  void foresee(const PilotView& view) {
+    const auto slots = tracker_.slots();
+    forecasts_.assign(slots.size(), {});
+    const geometry::Trajectory nowhere{std::vector<geometry::TrajectoryPoint>(1)};
+    task_->obstacles.assign(LaneForecast::kMostMotions * slots.size(),
+                            {.id = "", .motion = nowhere, .validity = kNever});
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (!slots[i]) continue;
+      forecasts_[i] = forecast_.motions(*slots[i], i);
+      for (std::size_t k = 0; k < forecasts_[i].size(); ++k) {
+        const ForecastMotion& may = forecasts_[i][k];
+        if (k > 0 && !is_planned_for(may, view.ego)) continue;
+        task_->obstacles[LaneForecast::kMostMotions * i + k] = {
+            .id = slots[i]->id,
+            .kind = slots[i]->kind,
+            .length_m = slots[i]->length_m,
+            .width_m = slots[i]->width_m,
+            .motion = joined(*slots[i], may.motion),
+            .validity = {slots[i]->first_s, kAlways.to_s}};
+      }
+    }
+  }
+
+  /// Whether a motion that is not the most likely one matters: not of who drives the same way and
+  /// is followed or passed as he is, nor of who comes the other way and would have to give way to
+  /// turn across.
+  bool is_planned_for(const ForecastMotion& motion, const VehicleState& ego) const {
+    if (motion.probability < kLikely) return false;
+    const std::vector<geometry::TrajectoryPoint>& points = motion.motion.points();
+    const double towards_rad = std::abs(
+        geometry::wrap_angle(points.front().heading_rad - ego.map_from_vehicle.heading_rad));
+    if (towards_rad < kSameWay_rad) return false;
+    const double turn_rad = points.back().heading_rad - points.front().heading_rad;
+    return towards_rad < kOncoming_rad || side_to_pass_on_ * turn_rad < kTurn_rad;
+  }
+
+  static geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahead) {
+    if (ahead.points().size() == 1) return ahead;  // it stands
+    std::vector<geometry::TrajectoryPoint> points;
+    for (const geometry::TrajectoryPoint& before : track.past) {
+      if (before.t_s < ahead.start_s()) points.push_back(before);
+    }
+    points.insert(points.end(), ahead.points().begin(), ahead.points().end());
+    return geometry::Trajectory(std::move(points));
+  }
+
+  // The drive.
+
+  PilotAnswer drive(const PilotView& view) {
+    decision_ =
+        planner_->decide({.t_s = view.t_s, .measured = view.ego, .speed_controller = cruise_});
+    const LateralReplanner& replanner = planner_->replanner();
+    const PlannedPath path = replanner.expected_path();
+    if (!front_s_m_) front_s_m_ = replanner.s_m() + setup_.vehicle.wheelbase_m;
+    const control::TrackingError error =
+        tracking_error(path, view.ego.map_from_vehicle, setup_.vehicle.wheelbase_m, *front_s_m_);
+    PilotAnswer answer{
+        .trajectory = planned_trajectory({path, replanner.s_m()}, view.t_s, view.ego, decision_,
+                                         setup_.vehicle),
+        .acceleration_mps2 = decision_.acceleration_mps2,
+        .steering_rad = tracking_steering_rad(error, view.ego.speed_mps, setup_.vehicle),
+        .decision = decision_};
+    const double missed_m = replanner.s_m() - task_->line.goal_s_m();
+    answer.is_at_goal = view.ego.speed_mps <= 0.0 && std::abs(missed_m) <= kAtGoal_m;
+    return answer;
+  }
+
+  PilotSetup setup_;
+  Tracker tracker_;
+  LaneForecast forecast_;
+  double side_to_pass_on_;
+  std::vector<std::vector<ForecastMotion>> forecasts_;
+  std::vector<LightCycle> lights_;  ///< of those that were named once
+  std::vector<Light> shown_;        ///< what each of them shows
+  CruiseSpeed cruise_;
+  std::unique_ptr<DrivingTask> task_;  ///< none: no route so far
+  std::optional<Planner> planner_;     ///< of the task
+  PlannerCommand decision_;            ///< the last
+  std::optional<double> front_s_m_;    ///< station of the front axle's nearest place on the path
+  double next_question_s_ = -std::numeric_limits<double>::infinity();
+  std::string why_no_route_;
+};
+
+Pilot::Pilot(PilotSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
+Pilot::~Pilot() = default;
+Pilot::Pilot(Pilot&&) noexcept = default;
+Pilot& Pilot::operator=(Pilot&&) noexcept = default;
+
+PilotAnswer Pilot::step(const PilotView& view) { return impl_->step(view); }
+const Tracker& Pilot::tracker() const { return impl_->tracker(); }
+const std::vector<std::vector<ForecastMotion>>& Pilot::forecasts() const {
+  return impl_->forecasts();
+}
+
+}  // namespace roadbed::planning::pilot

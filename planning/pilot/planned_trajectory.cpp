@@ -1,0 +1,109 @@
+#include "roadbed/planning/pilot/planned_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace roadbed::planning::inline pilot {
+namespace {
+
+constexpr double kStep_s = 0.1;
+constexpr double kComfortable_mps2 = 3.0, kHardest_mps2 = 8.0;
+constexpr double kHarder_mps2 = 0.5;  // than foreseen: brake at once
+constexpr double kStandoff_m = 1.0;
+constexpr double kWayStep_m = 0.5;
+
+/// Goes on braking at `braking_mps2` to a stop, which is the last state.
+void stop_after(std::vector<SpeedState>& drive, double braking_mps2) {
+  while (drive.back().speed_mps > 0.0) {
+    const SpeedState& last = drive.back();
+    const double speed_mps = std::max(0.0, last.speed_mps - kStep_s * braking_mps2);
+    drive.push_back({.t_s = last.t_s + kStep_s,
+                     .ahead_m = last.ahead_m + 0.5 * kStep_s * (last.speed_mps + speed_mps),
+                     .speed_mps = speed_mps,
+                     .acceleration_mps2 = speed_mps > 0.0 ? -braking_mps2 : 0.0,
+                     .command_mps2 = -braking_mps2});
+  }
+}
+
+std::vector<SpeedState> stop_from(double speed_mps, double braking_mps2) {
+  const double now_mps2 = speed_mps > 0.0 ? -braking_mps2 : 0.0;
+  std::vector<SpeedState> drive{{.speed_mps = speed_mps, .acceleration_mps2 = now_mps2}};
+  stop_after(drive, braking_mps2);
+  return drive;
+}
+
+std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerCommand& decision) {
+  const double wanted_mps2 = decision.acceleration_mps2;
+  const std::vector<SpeedState>& foreseen = decision.drive;
+  const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
+  if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) {
+    return stop_from(measured.speed_mps, -wanted_mps2);
+  }
+  std::vector<SpeedState> drive = foreseen;
+  stop_after(drive, braking_after_mps2(foreseen, decision.lead));
+  return drive;
+}
+
+/// Station after `way_m` of the path.
+double station_after(const PlannedPath& path, double s_m, double way_m) {
+  while (way_m > 0.0) {
+    const double step_m = std::min(kWayStep_m, way_m);
+    s_m += step_m / std::max(0.1, path.place_at(s_m).stretch);
+    way_m -= step_m;
+  }
+  return s_m;
+}
+
+}  // namespace
+
+double braking_after_mps2(const std::vector<SpeedState>& drive,
+                          const std::optional<DriveLead>& lead) {
+  if (!lead || drive.empty()) return kComfortable_mps2;
+  const SpeedState& end = drive.back();
+  const double lead_mps = std::max(0.0, lead->speed_mps);
+  const double left_m = lead->gap_m + lead_mps * end.t_s - end.ahead_m - kStandoff_m +
+                        lead_mps * lead_mps / (2.0 * kHardest_mps2);
+  const double needed_mps2 =
+      left_m > 0.0 ? end.speed_mps * end.speed_mps / (2.0 * left_m) : kHardest_mps2;
+  return std::clamp(needed_mps2, kComfortable_mps2, kHardest_mps2);
+}
+
+geometry::Trajectory planned_trajectory(const WayToDrive& way, double t_s,
+                                        const VehicleState& measured,
+                                        const PlannerCommand& decision,
+                                        const geometry::VehicleShape& vehicle) {
+  std::vector<geometry::TrajectoryPoint> rows;
+  double s_m = way.from_s_m, ahead_m = 0.0;
+  for (const SpeedState& state : whole_drive(measured, decision)) {
+    s_m = station_after(way.path, s_m, state.ahead_m - ahead_m);
+    ahead_m = std::max(ahead_m, state.ahead_m);
+    const PlannedPath::Place place = way.path.place_at(s_m);
+    rows.push_back({.t_s = t_s + state.t_s,
+                    .x_m = place.pose.x_m,
+                    .y_m = place.pose.y_m,
+                    .heading_rad = place.pose.heading_rad,
+                    .speed_mps = state.speed_mps,
+                    .acceleration_mps2 = state.acceleration_mps2,
+                    .steering_rad = std::atan(vehicle.wheelbase_m * place.curvature_per_m),
+                    .curvature_per_m = place.curvature_per_m});
+  }
+  return geometry::Trajectory(std::move(rows));
+}
+
+geometry::Trajectory stopping_trajectory(double t_s, const VehicleState& measured) {
+  std::vector<geometry::TrajectoryPoint> rows;
+  for (const SpeedState& state : stop_from(measured.speed_mps, kComfortable_mps2)) {
+    const geometry::Pose2 pose =
+        measured.map_from_vehicle * geometry::Pose2{state.ahead_m, 0.0, 0.0};
+    rows.push_back({.t_s = t_s + state.t_s,
+                    .x_m = pose.x_m,
+                    .y_m = pose.y_m,
+                    .heading_rad = pose.heading_rad,
+                    .speed_mps = state.speed_mps,
+                    .acceleration_mps2 = state.acceleration_mps2});
+  }
+  return geometry::Trajectory(std::move(rows));
+}
+
+}  // namespace roadbed::planning::pilot

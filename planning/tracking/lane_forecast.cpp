@@ -1,0 +1,152 @@
+#include "roadbed/planning/tracking/lane_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "roadbed/geometry/primitives/angle.h"
+
+namespace roadbed::planning::inline tracking {
+namespace {
+
+using geometry::Pose2;
+
+constexpr double kLeastDriving_mps = 0.5;
+constexpr double kReach_m = 1.5;         // from a lane that one may still drive along
+constexpr double kMostTurned_rad = 0.6;  // against it
+constexpr double kHeading_rad = 0.2, kOffset_m = 0.8, kForkTurn_rad = 0.7;  // what is usual
+constexpr double kLeastShare = 0.05;   // of the likeliest; what is less likely is left out
+constexpr double kReturns_s = 1.5;     // to the lane's middle
+constexpr double kSpareWay_m = 100.0;  // that ways are longer than asked for
+
+bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
+
+double turn_of(const map::Lane& lane) {
+  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad -
+                                       lane.pose_at(0.0).heading_rad));
+}
+
+/// Past its end a way goes on straight.
+Pose2 pose_on(const geometry::Polyline& way, double s_m) {
+  const Pose2 pose = way.pose_at(s_m);
+  const double over_m = std::max(0.0, s_m - way.length_m());
+  return over_m > 0.0 ? pose * Pose2{over_m, 0.0, 0.0} : pose;
+}
+
+/// From beside a way back to its middle, as a critically damped spring leads there.
+geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline& way, double s_m,
+                               double d_m, double turned_rad) {
+  std::vector<geometry::TrajectoryPoint> points;
+  const double aside_mps = seen.speed_mps * std::sin(turned_rad);
+  const double pull_mps = aside_mps + d_m / kReturns_s;
+  const auto steps = static_cast<int>(std::lround(kForeseen_s / kForeseenStep_s));
+  double ahead_m = 0.0;
+  for (int k = 0; k <= steps; ++k) {
+    const double after_s = kForeseenStep_s * k;
+    const double speed_mps = foreseen_speed_mps(seen, after_s);
+    const double fades = std::exp(-after_s / kReturns_s);
+    const double beside_m = (d_m + pull_mps * after_s) * fades;
+    const double sideways_mps = pull_mps * fades - beside_m / kReturns_s;
+    const double drift_rad =
+        speed_mps > kLeastDriving_mps ? std::atan2(sideways_mps, speed_mps) : 0.0;
+    const Pose2 pose = pose_on(way, s_m + ahead_m) * Pose2{0.0, beside_m, drift_rad};
+    points.push_back({.t_s = seen.t_s + after_s,
+                      .x_m = pose.x_m,
+                      .y_m = pose.y_m,
+                      .heading_rad = pose.heading_rad,
+                      .speed_mps = speed_mps});
+    ahead_m += kForeseenStep_s * foreseen_speed_mps(seen, after_s + 0.5 * kForeseenStep_s);
+  }
+  return geometry::Trajectory(std::move(points));
+}
+
+}  // namespace
+
+std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_t slot) {
+  const SeenMotion seen = track.filter.state();
+  std::vector<OnLane> on;
+  if (follows_lanes(track) && seen.speed_mps > kLeastDriving_mps) on = lanes_at(seen);
+  if (on.empty()) return {{.motion = foreseen_motion(seen)}};
+
+  struct Choice {
+    std::size_t lane, way;
+    double weight;
+  };
+  std::vector<Choice> choices;
+  const Kept& kept = ways_from(slot, on, kForeseen_s * seen.speed_mps);
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    for (std::size_t k = 0; k < kept.ways[i].size(); ++k) {
+      choices.push_back({i, k, on[i].weight * kept.ways[i][k].weight});
+    }
+  }
+  std::ranges::stable_sort(choices, std::greater{}, &Choice::weight);
+  if (choices.size() > kMostMotions) choices.resize(kMostMotions);
+  double sum = 0.0;
+  for (const Choice& choice : choices) sum += choice.weight;
+  std::vector<ForecastMotion> found;
+  for (const Choice& choice : choices) {
+    const OnLane& at = on[choice.lane];
+    const Way& way = kept.ways[choice.lane][choice.way];
+    found.push_back({along_way(seen, way.centre, at.place.s_m, at.place.d_m, at.turned_rad),
+                     choice.weight / sum, way.ahead.lanes});
+  }
+  return found;
+}
+
+std::vector<LaneForecast::OnLane> LaneForecast::lanes_at(const SeenMotion& seen) const {
+  std::vector<OnLane> on;
+  for (const map::LaneMatch& match : road_map_.locate(seen.pose.position(), kReach_m, true)) {
+    const double turned_rad = geometry::wrap_angle(seen.pose.heading_rad - match.heading_rad);
+    if (std::abs(turned_rad) > kMostTurned_rad) continue;
+    const double soon_m = match.place.d_m + seen.speed_mps * std::sin(turned_rad);
+    const double misfit = std::pow(turned_rad / kHeading_rad, 2) + std::pow(soon_m / kOffset_m, 2);
+    on.push_back({match.place, turned_rad, std::exp(-0.5 * misfit)});
+  }
+  const auto by_weight = [](const OnLane& a, const OnLane& b) { return a.weight < b.weight; };
+  const auto best = std::ranges::max_element(on, by_weight);
+  if (best == on.end()) return on;
+  const double least = kLeastShare * best->weight;
+  std::erase_if(on, [&](const OnLane& lane) { return lane.weight < least; });
+  return on;
+}
+
+const LaneForecast::Kept& LaneForecast::ways_from(std::size_t slot, const std::vector<OnLane>& on,
+                                                  double length_m) {
+  if (kept_.size() <= slot) kept_.resize(slot + 1);
+  Kept& kept = kept_[slot];
+  const auto is_same = [](map::LaneId lane, const OnLane& now) { return lane == now.place.lane; };
+  if (kept.length_m >= length_m && std::ranges::equal(kept.from, on, is_same)) return kept;
+  kept = {.length_m = length_m + kSpareWay_m, .from = {}, .ways = {}};
+  for (const OnLane& lane : on) {
+    kept.from.push_back(lane.place.lane);
+    kept.ways.push_back(new_ways(lane.place.lane, kept.length_m));
+  }
+  return kept;
+}
+
+std::vector<LaneForecast::Way> LaneForecast::new_ways(map::LaneId from, double length_m) const {
+  const double whole_m = road_map_.lane(from).centre.in_map.length_m() + length_m;
+  std::vector<Way> ways;
+  for (LanesAhead& ahead :
+       ways_ahead(road_map_, {.lane = from, .s_m = 0.0}, whole_m, kMostMotions)) {
+    geometry::Polyline centre = centre_of(road_map_, ahead);
+    const double weight = fork_weight(ahead);
+    ways.push_back({std::move(ahead), std::move(centre), weight});
+  }
+  return ways;
+}
+
+double LaneForecast::fork_weight(const LanesAhead& ahead) const {
+  double weight = 1.0;
+  for (std::size_t i = 0; i + 1 < ahead.lanes.size(); ++i) {
+    double sum = 0.0;
+    for (const map::LaneId next : road_map_.graph().of(ahead.lanes[i]).successors) {
+      const map::Lane& lane = road_map_.lane(next);
+      if (map::is_drivable(lane.type)) sum += std::exp(-turn_of(lane) / kForkTurn_rad);
+    }
+    weight *= std::exp(-turn_of(road_map_.lane(ahead.lanes[i + 1])) / kForkTurn_rad) / sum;
+  }
+  return weight;
+}
+
+}  // namespace roadbed::planning::tracking

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/trajectory.h"
+#include "roadbed/planning/tracking/motion_filter.h"
+
+namespace roadbed::planning::inline tracking {
+
+/// One object as it is measured.
+struct Detection {
+  std::string id;  ///< by which it is known from one time to the next; empty: it has none
+  std::string kind = "car";
+  double length_m = 4.5, width_m = 1.8;
+  geometry::Pose2 centre;  ///< in the map
+  double speed_mps = 0.0;  ///< along its heading
+};
+
+/// An object that has been measured once or more often.
+struct Track {
+  std::string id;  ///< its own, or "track 7"
+  std::string kind;
+  double length_m, width_m;
+  MotionFilter filter;  ///< at the tracker's time
+  double first_s, last_measured_s;
+  std::deque<geometry::TrajectoryPoint> past;  ///< of the last second, up to now
+  bool has_own_id;
+  int measured = 1;  ///< how often
+
+  /// What has no id and was measured once or twice may be an error, or a body that is there.
+  bool is_tentative() const { return !has_own_id && measured < 3; }
+};
+
+struct TrackerOptions {
+  ObjectNoise noise = {};
+  double coasts_for_s = 1.0;   ///< an object that is not measured is believed to go on for so long
+  double misfit_limit = 23.5;  ///< χ² of four degrees of freedom that one in 10⁴ exceeds
+};
+
+/// Objects over time. Detections with an id are of that object; the others are given to the tracks
+/// that they fit best in all (assignment.h), within the misfit limit, to tentative ones last, or
+/// begin tracks of their own. A tentative track that is not measured ends. A track keeps its slot
+/// for as long as it lives, and for ten seconds more nobody else has it.
+class Tracker {
+ public:
+  explicit Tracker(const TrackerOptions& options = {}) : options_(options) {}
+
+  /// Takes everything that is measured at a time.
+  /// @throws std::invalid_argument if the time is not later than that of the call before, or two
+  ///         detections have one id.
+  void observe(double t_s, std::span<const Detection> detections);
+
+  /// Tracks of now; a slot may be empty.
+  std::span<const std::optional<Track>> slots() const { return slots_; }
+
+ private:
+  void go_on(double before_s);
+  void give_by_id(std::span<const Detection> detections, std::vector<bool>& is_taken);
+  void give_by_fit(std::span<const Detection> detections, bool to_tentative,
+                   std::vector<bool>& is_taken);
+  void take(Track& track, const Detection& detection) const;
+  void begin(const Detection& detection);
+  void remember();
+  MeasuredMotion measured(const Detection& detection) const;
+
+  TrackerOptions options_;
+  std::optional<double> t_s_;
+  std::vector<std::optional<Track>> slots_;
+  std::vector<double> left_at_s_;                  ///< per slot, when it became empty
+  std::map<std::string, std::size_t> slot_of_id_;  ///< of tracks with an id of their own
+  std::size_t named_ = 0;                          ///< tracks without one, so far
+};
+
+}  // namespace roadbed::planning::tracking

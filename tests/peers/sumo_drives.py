@@ -1,0 +1,342 @@
+#!/usr/bin/env python3
+"""Drives with roadbed's planner in the traffic of SUMO, which answers.
+
+usage: sumo_drives.py ROADBED [--map MAP.xodr]... [--seeds N] [--density VEHICLES_PER_KM]...
+                      [--limit SECONDS] [--log DIR]
+
+Each map is converted by netconvert, without an offset, so that both see the same coordinates. A drive
+is a random trip of at least 400 m among random trips of others; SUMO moves these every 0.1 s, `roadbed
+pilot` is told of those within 100 m and of the traffic lights, and the vehicle is put where its
+trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver.
+    hits       collisions that SUMO reports of the vehicle
+    brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
+    red        stop lines passed while SUMO shows red
+    time       of the trips that both finish, up to 50 m before the goal: roadbed's over SUMO's
+A row per map and density. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
+import argparse
+import json
+import math
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import libsumo
+import sumo
+import sumolib
+
+STEP_S = 0.1
+SEEN_M = 100.0
+LENGTH_M, WIDTH_M, REAR_OVERHANG_M = 4.508, 1.610, 0.8312829  # the pilot's default vehicle
+FRONT_M = LENGTH_M - REAR_OVERHANG_M
+COMFORTABLE_MPS2 = 4.5
+LEAST_TRIP_M = 400.0
+ARRIVED_M = 50.0
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+def net_of(map_file, folder):
+    """The net that netconvert makes of a map."""
+    net = folder / (map_file.stem + ".net.xml")
+    subprocess.run([str(Path(sumo.SUMO_HOME) / "bin" / "netconvert"), "--opendrive-files", str(map_file),
+                    "--offset.disable-normalization", "--opendrive.import-all-lanes", "false",
+                    "--no-warnings", "--output-file", str(net)],
+                   check=True, stdout=subprocess.DEVNULL)
+    return net
+
+
+class Traffic:
+    """SUMO with random trips of others; one at a time, as libsumo is."""
+
+    def __init__(self, net, density, seed):
+        self.random = random.Random(seed)
+        self.edges = [edge for edge in net.getEdges()
+                      if edge.allows("passenger") and edge.getLength() > 20.0]
+        length_km = sum(edge.getLength() * edge.getLaneNumber() for edge in self.edges) / 1000.0
+        self.wanted = max(1, round(density * length_km))
+        libsumo.start(["sumo", "--net-file", net.file, "--step-length", str(STEP_S), "--seed", str(seed),
+                       "--no-step-log", "--no-warnings", "--collision.action", "warn",
+                       "--collision.check-junctions", "--time-to-teleport", "-1",
+                       "--default.speeddev", "0.1"])
+        libsumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
+        libsumo.vehicletype.setLength("ego", LENGTH_M)
+        libsumo.vehicletype.setWidth("ego", WIDTH_M)
+        libsumo.vehicletype.setSpeedFactor("ego", 1.0)
+        libsumo.vehicletype.setSpeedDeviation("ego", 0.0)
+        self.added = 0
+
+    def trip(self, least_m=0.0):
+        """Edges from one random edge to another; None if none is found."""
+        for _ in range(50):
+            first, last = self.random.choice(self.edges), self.random.choice(self.edges)
+            if first == last:
+                continue
+            found = libsumo.simulation.findRoute(first.getID(), last.getID(), "DEFAULT_VEHTYPE")
+            if found.edges and found.length >= least_m:
+                return list(found.edges)
+        return None
+
+    def fill(self):
+        """As many others as there are to be, a few more each time."""
+        others = libsumo.vehicle.getIDCount() + len(libsumo.simulation.getPendingVehicles())
+        for _ in range(min(5, self.wanted - others)):
+            edges = self.trip()
+            if edges is None:
+                return
+            name = f"other{self.added}"
+            self.added += 1
+            libsumo.route.add("route" + name, edges)
+            libsumo.vehicle.add(name, "route" + name, departLane="best", departPos="random_free",
+                                departSpeed="max")
+
+    def step(self):
+        self.fill()
+        libsumo.simulationStep()
+
+
+def heading_of(angle_deg):
+    """SUMO counts from north, clockwise."""
+    return math.radians(90.0 - angle_deg)
+
+
+def seen_objects(ego_front):
+    objects = []
+    for name in libsumo.vehicle.getIDList():
+        if name == "ego":
+            continue
+        x, y = libsumo.vehicle.getPosition(name)
+        if math.dist((x, y), ego_front) > SEEN_M:
+            continue
+        heading = heading_of(libsumo.vehicle.getAngle(name))
+        length = libsumo.vehicle.getLength(name)
+        objects.append({"id": name, "kind": "car", "x_m": x - 0.5 * length * math.cos(heading),
+                        "y_m": y - 0.5 * length * math.sin(heading), "heading_rad": heading,
+                        "speed_mps": libsumo.vehicle.getSpeed(name), "length_m": length,
+                        "width_m": libsumo.vehicle.getWidth(name)})
+    return objects
+
+
+class Lights:
+    """Signals of the map by the links that SUMO switches, whose ids netconvert keeps. One of several
+    links shows what the freest of them does."""
+
+    def __init__(self):
+        self.links = []  # (traffic light, link, signal)
+        for light in libsumo.trafficlight.getIDList():
+            for index in range(len(libsumo.trafficlight.getRedYellowGreenState(light))):
+                signal = libsumo.trafficlight.getParameter(light, f"linkSignalID:{index}")
+                for one in signal.split():
+                    self.links.append((light, index, one))
+
+    def now(self):
+        colour_of = {"r": "red", "u": "red", "y": "yellow", "Y": "yellow"}
+        shown = {}
+        for light, index, signal in self.links:
+            state = libsumo.trafficlight.getRedYellowGreenState(light)[index]
+            colour = colour_of.get(state, "green")
+            freer = ["red", "yellow", "green"]
+            shown[signal] = max(shown.get(signal, "red"), colour, key=freer.index)
+        return [{"signal": signal, "colour": colour} for signal, colour in sorted(shown.items())]
+
+
+class Pilot:
+    """`roadbed pilot`, and where its trajectory has the vehicle."""
+
+    def __init__(self, roadbed, map_file, start, speed_mps, goal, log):
+        x, y, heading = start
+        self.state = [x, y, heading, speed_mps, 0.0, 0.0]
+        self.log = open(log, "w", encoding="utf-8") if log else None
+        self.process = subprocess.Popen(
+            [roadbed, "pilot", str(map_file), "--goal", "{:.3f},{:.3f},{:.4f}".format(*goal)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def front(self):
+        x, y, heading = self.state[:3]
+        return x + FRONT_M * math.cos(heading), y + FRONT_M * math.sin(heading)
+
+    def drive(self, t_s, objects, lights):
+        x, y, heading, speed, acceleration, steering = self.state
+        line = {"t_s": t_s, "ego": {"x_m": x, "y_m": y, "heading_rad": heading, "speed_mps": speed,
+                                    "acceleration_mps2": acceleration, "steering_rad": steering},
+                "obstacles": objects, "lights": lights}
+        self.process.stdin.write(json.dumps(line) + "\n")
+        self.process.stdin.flush()
+        answer = json.loads(self.process.stdout.readline())
+        if "error" in answer:
+            raise RuntimeError(answer["error"])
+        if self.log:
+            brief = {key: answer[key] for key in ("t_s", "behaviour", "reason", "lead")}
+            self.log.write(json.dumps({**brief, "ego": line["ego"], "seen": len(objects)}) + "\n")
+        rows = answer["trajectory"]
+        later = next((row for row in rows if row[0] >= t_s + STEP_S - 1e-6), rows[-1])
+        self.state = later[1:7]
+        return answer
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+        if self.log:
+            self.log.close()
+
+
+def lane_pose(net, edge_id, at_end):
+    """Of the rightmost lane that cars may use: where it begins or ends, 5 m within."""
+    lane = next(lane for lane in net.getEdge(edge_id).getLanes() if lane.allows("passenger"))
+    shape = lane.getShape()
+    at_m = lane.getLength() - 5.0 if at_end else 5.0
+    x, y = sumolib.geomhelper.positionAtShapeOffset(shape, at_m)
+    ahead = sumolib.geomhelper.positionAtShapeOffset(shape, at_m + 0.5)
+    return x, y, math.atan2(ahead[1] - y, ahead[0] - x)
+
+
+def brakes_behind():
+    """Who brakes harder than is liked directly behind the vehicle."""
+    hard = set()
+    for name in libsumo.vehicle.getIDList():
+        if name == "ego" or libsumo.vehicle.getAcceleration(name) > -COMFORTABLE_MPS2 - 0.1:
+            continue
+        leader = libsumo.vehicle.getLeader(name, 60.0)
+        if leader and leader[0] == "ego":
+            hard.add(name)
+    return hard
+
+
+def red_passed(before, after, lights_before):
+    """Whether the vehicle has gone from an edge onto a link that shows red."""
+    if not before or before.startswith(":") or not after.startswith(":"):
+        return False
+    return any(via.startswith(after) and state in "ru" for via, state in lights_before)
+
+
+def links_ahead(lane):
+    if not lane or lane.startswith(":"):
+        return []
+    return [(link[4], link[5]) for link in libsumo.lane.getLinks(lane)]
+
+
+def run(options, net, map_file, density, seed, by_roadbed):
+    """One drive. Returns what became of it."""
+    traffic = Traffic(net, density, seed)
+    result = {"hits": 0, "brakes": set(), "red": 0, "time_s": None, "why": ""}
+    try:
+        for _ in range(round(20.0 / STEP_S)):
+            traffic.step()
+        edges = traffic.trip(LEAST_TRIP_M)
+        if edges is None:
+            return None
+        libsumo.route.add("ego", edges)
+        libsumo.vehicle.add("ego", "ego", typeID="ego", departLane="first", departPos="9.0",
+                            departSpeed="0", arrivalPos="max")
+        for _ in range(round(30.0 / STEP_S)):
+            traffic.step()
+            if "ego" in libsumo.vehicle.getIDList():
+                break
+        else:
+            return None
+        (drive_by_roadbed if by_roadbed else drive_by_sumo)(
+            options, net, map_file, traffic, edges, result, f"{map_file.stem}_{density:g}_{seed}")
+        return result
+    finally:
+        libsumo.close()
+
+
+def has_arrived(edges, goal):
+    """Before either driver slows down for the goal."""
+    return (libsumo.vehicle.getRoadID("ego") == edges[-1]
+            and math.dist(libsumo.vehicle.getPosition("ego"), goal) < ARRIVED_M)
+
+
+def drive_by_sumo(options, net, map_file, traffic, edges, result, name):
+    begin_s = libsumo.simulation.getTime()
+    goal = lane_pose(net, edges[-1], True)[:2]
+    while libsumo.simulation.getTime() - begin_s < options.limit:
+        traffic.step()
+        if "ego" not in libsumo.vehicle.getIDList():
+            result["time_s"] = libsumo.simulation.getTime() - begin_s
+            return
+        if has_arrived(edges, goal):
+            result["time_s"] = libsumo.simulation.getTime() - begin_s
+            return
+
+
+def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
+    x, y = libsumo.vehicle.getPosition("ego")
+    heading = heading_of(libsumo.vehicle.getAngle("ego"))
+    start = (x - FRONT_M * math.cos(heading), y - FRONT_M * math.sin(heading), heading)
+    goal = lane_pose(net, edges[-1], True)
+    log = options.log / (name + ".jsonl") if options.log else None
+    pilot = Pilot(options.roadbed, map_file, start, 0.0, goal, log)
+    lights = Lights()
+    begin_s = libsumo.simulation.getTime()
+    answer = {"reason": "never asked"}
+    try:
+        while libsumo.simulation.getTime() - begin_s < options.limit:
+            now_s = libsumo.simulation.getTime()
+            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now())
+            lane = libsumo.vehicle.getLaneID("ego")
+            links = links_ahead(lane)
+            front = pilot.front()
+            libsumo.vehicle.moveToXY("ego", "", -1, *front, 90.0 - math.degrees(pilot.state[2]),
+                                     keepRoute=2)
+            traffic.step()
+            if "ego" not in libsumo.vehicle.getIDList():
+                result["why"] = "SUMO took it away"
+                return
+            result["hits"] += sum("ego" in (hit.collider, hit.victim)
+                                  for hit in libsumo.simulation.getCollisions())
+            result["brakes"] |= brakes_behind()
+            result["red"] += red_passed(lane, libsumo.vehicle.getLaneID("ego"), links)
+            if has_arrived(edges, goal[:2]) or answer["at_goal"]:
+                result["time_s"] = libsumo.simulation.getTime() - begin_s
+                return
+        result["why"] = answer["reason"]
+    finally:
+        pilot.close()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("roadbed")
+    parser.add_argument("--map", type=Path, action="append")
+    parser.add_argument("--density", type=float, action="append")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--limit", type=float, default=300.0)
+    parser.add_argument("--log", type=Path)
+    options = parser.parse_args()
+    if options.log:
+        options.log.mkdir(parents=True, exist_ok=True)
+    worst = 0
+    print(f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'hours':>6} {'hits':>5} {'brakes':>6} "
+          f"{'red':>4} {'time':>6}")
+    with tempfile.TemporaryDirectory() as folder:
+        for map_file in options.map or [DATA / "town.xodr"]:
+            net = sumolib.net.readNet(str(net_of(map_file, Path(folder))))
+            net.file = str(Path(folder) / (map_file.stem + ".net.xml"))
+            for density in options.density or [2.0, 6.0, 12.0]:
+                drives, ratios, hours = [], [], 0.0
+                for seed in range(1, options.seeds + 1):
+                    own = run(options, net, map_file, density, seed, True)
+                    if own is None:
+                        continue
+                    drives.append(own)
+                    hours += (own["time_s"] or options.limit) / 3600.0
+                    if own["why"]:
+                        print(f"  seed {seed}: {own['why']}", file=sys.stderr)
+                    theirs = run(options, net, map_file, density, seed, False)
+                    if own["time_s"] and theirs and theirs["time_s"]:
+                        ratios.append(own["time_s"] / theirs["time_s"])
+                done = sum(drive["time_s"] is not None for drive in drives)
+                hits = sum(drive["hits"] for drive in drives)
+                brakes = sum(len(drive["brakes"]) for drive in drives)
+                red = sum(drive["red"] for drive in drives)
+                ratio = f"{statistics.median(ratios):6.2f}" if ratios else "     -"
+                print(f"{map_file.stem[:16]:16} {density:6g} {len(drives):6} {done:5} {hours:6.2f} {hits:5} "
+                      f"{brakes:6} {red:4} {ratio}", flush=True)
+                worst |= hits > 0 or red > 0 or done < len(drives)
+    return worst
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,129 @@
+#include "roadbed/planning/pilot/pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::planning {
+namespace {
+
+/// On the bypass of the town, 12 m/s in the right lane.
+class Pilots : public testing::Test {
+ protected:
+  Pilots() { view_.ego = {.map_from_vehicle = place("31/0/-2", 20.0), .speed_mps = 12.0}; }
+
+  geometry::Pose2 place(const std::string& lane, double s_m) const {
+    return road_map_->lane(*road_map_->find_lane(lane)).pose_at(s_m);
+  }
+  PilotSetup setup(const std::string& goal_lane = "6/0/-1", double s_m = 100.0) const {
+    return {.road_map = road_map_,
+            .goal = {*road_map_->find_lane(goal_lane), s_m},
+            .driving = {.desired_speed_mps = 12.0}};
+  }
+  /// The next view, with the vehicle where its last trajectory has it.
+  PilotView& follow(const PilotAnswer& answer) {
+    view_.t_s += 0.1;
+    const geometry::TrajectoryPoint now = answer.trajectory.at(view_.t_s);
+    view_.ego = {.map_from_vehicle = now.pose(),
+                 .speed_mps = now.speed_mps,
+                 .steering_rad = now.steering_rad,
+                 .acceleration_mps2 = now.acceleration_mps2};
+    return view_;
+  }
+
+  std::shared_ptr<const map::RoadMap> road_map_ =
+      std::make_shared<map::RoadMap>(map::load_map(tests::data_folder() / "town.xodr"));
+  PilotView view_;
+};
+
+TEST_F(Pilots, DriveToTheGoalAndStandThere) {
+  Pilot pilot(setup());
+  PilotAnswer answer = pilot.step(view_);
+  for (int k = 0; k < 1200 && !answer.is_at_goal; ++k) {
+    EXPECT_EQ(answer.trajectory.start_s(), view_.t_s);
+    EXPECT_EQ(answer.trajectory.points().back().speed_mps, 0.0);
+    EXPECT_NEAR((answer.trajectory.points().front().pose().position() -
+                 view_.ego.map_from_vehicle.position())
+                    .norm(),
+                0.0, 0.2);
+    answer = pilot.step(follow(answer));
+  }
+  EXPECT_TRUE(answer.is_at_goal) << answer.decision.reason;
+  const Eigen::Vector2d goal = place("6/0/-1", 100.0).position();
+  EXPECT_LT((view_.ego.map_from_vehicle.position() - goal).norm(), 1.5);
+}
+
+TEST_F(Pilots, StandBehindWhoStandsWhereverTheyAreNotTold) {
+  Pilot pilot(setup());
+  // All lanes of the bypass are closed, 60 m ahead.
+  for (const char* lane : {"31/0/-1", "31/0/-2"}) {
+    view_.objects.push_back({.id = lane, .centre = place(lane, 80.0)});
+  }
+  PilotAnswer answer = pilot.step(view_);
+  for (int k = 0; k < 200; ++k) {
+    if (k == 40) view_.objects.clear();  // not measured for half a second: believed in
+    if (k == 45) {
+      for (const char* lane : {"31/0/-1", "31/0/-2"}) {
+        view_.objects.push_back({.id = lane, .centre = place(lane, 80.0)});
+      }
+    }
+    answer = pilot.step(follow(answer));
+  }
+  EXPECT_EQ(view_.ego.speed_mps, 0.0);
+  const double gap_m =
+      (place("31/0/-2", 80.0).position() - view_.ego.map_from_vehicle.position()).norm() - 2.25 -
+      geometry::VehicleShape{}.front_m();
+  EXPECT_GT(gap_m, 0.5);
+  EXPECT_LT(gap_m, 8.0);
+}
+
+TEST_F(Pilots, SayWhyThereIsNoRouteAndStop) {
+  Pilot pilot(setup());
+  view_.ego.map_from_vehicle = {1e4, 1e4, 0.0};
+  const PilotAnswer answer = pilot.step(view_);
+  EXPECT_EQ(answer.decision.behaviour, Behaviour::stop);
+  EXPECT_EQ(answer.decision.reason, "no route leads to the goal: the vehicle stands along no lane");
+  EXPECT_EQ(answer.acceleration_mps2, -3.0);
+  EXPECT_EQ(answer.trajectory.points().back().speed_mps, 0.0);
+}
+
+TEST_F(Pilots, FindAnotherRouteWhereTheVehicleIsPutElsewhere) {
+  Pilot pilot(setup());
+  pilot.step(view_);
+  view_.t_s = 5.0;
+  view_.ego = {.map_from_vehicle = place("6/0/-1", 20.0), .speed_mps = 5.0};
+  const PilotAnswer answer = pilot.step(view_);
+  EXPECT_LT(
+      (answer.trajectory.points().front().pose().position() - view_.ego.map_from_vehicle.position())
+          .norm(),
+      0.5);
+}
+
+TEST_F(Pilots, RefuseWhatIsUnusableAndGoOnAsIfItHadNotBeenSaid) {
+  EXPECT_THROW(Pilot(PilotSetup{}), std::invalid_argument);
+  Pilot pilot(setup()), undisturbed(setup());
+  const PilotAnswer first = pilot.step(view_);
+  undisturbed.step(view_);
+  const PilotView good = follow(first);
+  PilotView bad = good;
+  bad.ego.speed_mps = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(pilot.step(bad), std::invalid_argument);
+  bad = good;
+  bad.t_s = 0.0;
+  EXPECT_THROW(pilot.step(bad), std::invalid_argument);
+  bad = good;
+  bad.objects.assign(2, {.id = "a", .centre = {}});
+  EXPECT_THROW(pilot.step(bad), std::invalid_argument);
+  const PilotAnswer answer = pilot.step(good), expected = undisturbed.step(good);
+  EXPECT_EQ(answer.acceleration_mps2, expected.acceleration_mps2);
+  EXPECT_EQ(answer.trajectory.points().back().x_m, expected.trajectory.points().back().x_m);
+}
+
+}  // namespace
+}  // namespace roadbed::planning

@@ -1,0 +1,124 @@
+#include "roadbed/planning/tracking/lane_forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::planning {
+namespace {
+
+class LaneForecasts : public testing::Test {
+ protected:
+  /// Of a body that has been measured there for two seconds.
+  std::vector<ForecastMotion> motions(const geometry::Pose2& pose, double speed_mps,
+                                      const std::string& kind = "car") {
+    Tracker tracker({.noise = {.position_m = 0.01, .heading_rad = 0.001, .speed_mps = 0.01}});
+    for (int k = -20; k <= 0; ++k) {
+      const geometry::Pose2 then = pose * geometry::Pose2{0.1 * k * speed_mps, 0.0, 0.0};
+      tracker.observe(
+          0.1 * k,
+          std::vector{Detection{.id = "a", .kind = kind, .centre = then, .speed_mps = speed_mps}});
+    }
+    return forecast_.motions(*tracker.slots()[0], 0);
+  }
+
+  double length_of(const std::vector<map::LaneId>& lanes) const {
+    double length_m = 0.0;
+    for (const map::LaneId lane : lanes) length_m += road_map_.lane(lane).length_m();
+    return length_m;
+  }
+
+  map::RoadMap road_map_ = map::load_map(tests::data_folder() / "town.xodr");
+  LaneForecast forecast_{road_map_};
+};
+
+double sum_of(const std::vector<ForecastMotion>& motions) {
+  double sum = 0.0;
+  for (const ForecastMotion& motion : motions) sum += motion.probability;
+  return sum;
+}
+
+TEST_F(LaneForecasts, FollowTheLanesMiddle) {
+  std::size_t asked = 0;
+  for (std::uint32_t i = 0; i < road_map_.lanes().size(); ++i) {
+    const map::Lane& lane = road_map_.lane(map::LaneId{i});
+    if (lane.type != map::LaneType::driving || lane.length_m() < 30.0) continue;
+    const geometry::Pose2 start = lane.pose_at(5.0) * geometry::Pose2{0.0, 0.3, 0.0};
+    const auto found = motions(start, 8.0);
+    ASSERT_FALSE(found.empty());
+    EXPECT_NEAR(sum_of(found), 1.0, 1e-12);
+    for (const ForecastMotion& motion : found) {
+      ASSERT_FALSE(motion.lanes.empty()) << lane.name;
+      for (double t = 8.0; t <= 12.0; t += 0.5) {  // from a lane beside it comes back so late
+        const geometry::Pose2 pose = motion.motion.at(t).pose();
+        double nearest_m = 1e9;
+        for (const map::LaneId on : motion.lanes) {
+          nearest_m = std::min(
+              nearest_m, std::abs(road_map_.lane(on).centre.in_map.project(pose.position()).d_m));
+        }
+        const bool is_past_the_road = 8.0 * t > length_of(motion.lanes) - 5.0;
+        EXPECT_TRUE(is_past_the_road || nearest_m < 0.1)
+            << lane.name << " after " << t << " s: " << nearest_m << " m";
+      }
+      EXPECT_NEAR(motion.motion.at(0.0).x_m, start.x_m, 0.1);
+      EXPECT_NEAR(motion.motion.at(0.0).y_m, start.y_m, 0.1);
+    }
+    ++asked;
+  }
+  EXPECT_GT(asked, 10u);
+}
+
+TEST_F(LaneForecasts, ABodyInATurnIsExpectedToTurn) {
+  std::size_t turns = 0;
+  for (std::uint32_t i = 0; i < road_map_.lanes().size(); ++i) {
+    const map::Lane& lane = road_map_.lane(map::LaneId{i});
+    if (lane.type != map::LaneType::driving || lane.length_m() < 8.0) continue;
+    const double turn =
+        std::abs(lane.pose_at(lane.length_m()).heading_rad - lane.pose_at(0.0).heading_rad);
+    if (turn < 1.2 || turn > 2.0) continue;
+    const auto found = motions(lane.pose_at(0.6 * lane.length_m()), 6.0);
+    ASSERT_FALSE(found.front().lanes.empty()) << lane.name;
+    EXPECT_EQ(found.front().lanes.front(), map::LaneId{i}) << lane.name;
+    EXPECT_GT(found.front().probability, 0.5);
+    ++turns;
+  }
+  EXPECT_GT(turns, 3u);
+}
+
+TEST_F(LaneForecasts, BeforeAForkEachWayIsPossible) {
+  std::size_t forks = 0;
+  for (std::uint32_t i = 0; i < road_map_.lanes().size(); ++i) {
+    const map::Lane& lane = road_map_.lane(map::LaneId{i});
+    if (lane.type != map::LaneType::driving || lane.length_m() < 12.0) continue;
+    std::size_t next = 0;
+    for (const map::LaneId on : road_map_.graph().of(map::LaneId{i}).successors) {
+      next += map::is_drivable(road_map_.lane(on).type) ? 1 : 0;
+    }
+    if (next < 2) continue;
+    const auto found = motions(lane.pose_at(lane.length_m() - 8.0), 8.0);
+    EXPECT_GE(found.size(), 2u) << lane.name;
+    EXPECT_NEAR(sum_of(found), 1.0, 1e-12);
+    for (std::size_t k = 1; k < found.size(); ++k) {
+      EXPECT_LE(found[k].probability, found[k - 1].probability);
+    }
+    ++forks;
+  }
+  EXPECT_GT(forks, 3u);
+}
+
+TEST_F(LaneForecasts, WhoWalksOrDrivesAgainstTheLaneFollowsNone) {
+  const map::LaneId id = *road_map_.find_lane("31/0/-2");
+  const geometry::Pose2 on = road_map_.lane(id).pose_at(30.0);
+  const geometry::Pose2 against{on.x_m, on.y_m, on.heading_rad + 3.14159265};
+  EXPECT_TRUE(motions(against, 8.0).front().lanes.empty());
+  EXPECT_TRUE(motions(on, 1.2, "pedestrian").front().lanes.empty());
+  const auto stands = motions(on, 0.0);
+  EXPECT_EQ(stands.front().motion.points().size(), 1u);
+}
+
+}  // namespace
+}  // namespace roadbed::planning
