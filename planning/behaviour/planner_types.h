@@ -34,7 +34,7 @@ struct PlannerCommand {
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
   /// What is foreseen to be driven along the path, from its state now; not empty.
   std::vector<SpeedState> drive = {};
-  bool is_news = false;                            ///< the reason is worth an event
+  bool is_news = false;  ///< the reason is worth an event
   /// To be put into the task before the next decision, by a planner of its own.
   std::optional<Detour> detour = {};
 };

@@ -12,7 +12,6 @@
 #include "roadbed/planning/route/match_place.h"
 #include "roadbed/planning/route/router.h"
 
-
 namespace roadbed::tools::inline simulation {
 namespace {
 
