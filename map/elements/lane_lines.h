@@ -31,7 +31,8 @@ void pair_points(std::vector<Eigen::Vector3d>& left_in_map,
 std::vector<Eigen::Vector3d> points_halfway(const std::vector<Eigen::Vector3d>& left_in_map,
                                             const std::vector<Eigen::Vector3d>& right_in_map);
 
-/// The same as set_borders() of three lines of equally many points each: those of one index are opposite each other.
+/// The same as set_borders() of three lines of equally many points each: those of one index are
+/// opposite each other.
 void set_lines(const std::vector<Eigen::Vector3d>& left_in_map,
                const std::vector<Eigen::Vector3d>& centre_in_map,
                const std::vector<Eigen::Vector3d>& right_in_map, Lane& lane);
