@@ -141,6 +141,13 @@ RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::V
   return position;
 }
 
+BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint) {
+  while (hint + 2 < line.size() && line[hint + 1].s_m <= s_m) ++hint;
+  const BesidePoint &a = line[hint], &b = line[std::min(hint + 1, line.size() - 1)];
+  const double share = b.s_m > a.s_m ? std::clamp((s_m - a.s_m) / (b.s_m - a.s_m), 0.0, 1.0) : 0.0;
+  return {s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
+}
+
 BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
                        double to_m, BesideFaults& faults) {
   return BorderPlacer(plan_view, faults).place(border, from_m, to_m);

@@ -23,6 +23,11 @@ struct BesidePoint {
 };
 using BesideLine = std::vector<BesidePoint>;
 
+/// The line at a station, constant beyond its ends.
+/// @param hint  where to look first, no point there being behind the station; is left where it was
+///              found.
+BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint);
+
 /// What is wrong with borders beside a reference line: nothing where every cross-section crosses
 /// each of them once, at more than 18°, and no other cross-section before that.
 struct BesideFaults {

@@ -137,7 +137,7 @@ class EndLineFinder {
     const bool in_line = std::max(-behind_m, before_m) <= kOffLine_m;
     std::vector<EndLine> lines;
     if (in_line && std::abs(skew_rad) <= (is_free_[group] ? kMostSkew_rad : kSkew_rad)) {
-      lines.push_back(through);
+      lines.push_back(at_heading(group, through.heading_rad).front());
     }
     const EndLine own = leading.through();
     const double own_rad = std::remainder(own.heading_rad - square_rad, 2.0 * std::numbers::pi);
@@ -145,7 +145,9 @@ class EndLineFinder {
       const double turn_rad = share * std::clamp(own_rad, -kMostSkew_rad, kMostSkew_rad);
       for (const EndLine& line : at_heading(group, square_rad + turn_rad)) lines.push_back(line);
     }
-    if (in_line && std::abs(skew_rad) <= kMostSkew_rad) lines.push_back(through);
+    if (in_line && std::abs(skew_rad) <= kMostSkew_rad) {
+      lines.push_back(at_heading(group, through.heading_rad).front());
+    }
     lines.push_back({all.middle(), all.heading_rad()});
     return lines;
   }

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
 #include "roadbed/geometry/curves/piecewise_cubic.h"
 #include "roadbed/geometry/curves/plan_view.h"
-#include "roadbed/map/opendrive/write/beside_line.h"
-#include "roadbed/map/opendrive/write/end_lines.h"
 #include "roadbed/map/opendrive/write/fit_cubics.h"
+#include "roadbed/map/opendrive/write/placed_road.h"
 #include "roadbed/map/opendrive/write/road_plan.h"
 
 namespace roadbed::map::opendrive {
@@ -38,16 +36,12 @@ struct RoadShape {
   std::vector<SectionShape> sections;
   double error_m = 0.0;         ///< largest distance of a border to the map's, in plan
   double height_error_m = 0.0;  ///< the same in height
-  double fault_m =
-      0.0;  ///< how far its cross-sections are from crossing each border once; 0: sound
 };
 
 /// The section that a road has just before s.
 std::size_t section_before(const RoadShape& shape, double s_m);
 
-/// @param border  of the first section, which the reference line follows; of a road of the map it
-///                follows that road's own.
-RoadShape shape_road(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
-                     const std::array<EndLine, 2>& ends);
+/// Offsets, widths and heights of a road whose borders are placed.
+RoadShape shape_road(const RoadMap& road_map, const PlannedRoad& road, const PlacedRoad& placed);
 
 }  // namespace roadbed::map::opendrive

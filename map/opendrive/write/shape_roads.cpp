@@ -15,9 +15,9 @@ constexpr double kParting_m = 0.2;   // fault of a road with several lanes that 
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
 constexpr double kGain_m = 1e-3;     // that makes another line worth while
 
-class RoadsShaper {
+class RoadsPlacer {
  public:
-  RoadsShaper(const RoadMap& road_map, const RoadPlan& plan)
+  RoadsPlacer(const RoadMap& road_map, const RoadPlan& plan)
       : road_map_(road_map),
         plan_(plan),
         borders_(reference_borders(road_map, plan)),
@@ -25,7 +25,7 @@ class RoadsShaper {
         chosen_(lines_.choices.size(), 0),
         roads_of_(lines_.choices.size()) {
     for (std::uint32_t road = 0; road < plan.roads.size(); ++road) {
-      shapes_.push_back(shape(road));
+      roads_.push_back(place(road));
       for (const std::uint32_t end : {2 * road, 2 * road + 1}) {
         auto& roads = roads_of_[lines_.group_of_end[end]];
         if (roads.empty() || roads.back() != road) roads.push_back(road);
@@ -33,7 +33,7 @@ class RoadsShaper {
     }
   }
 
-  std::vector<RoadShape> shape_all() {
+  std::vector<PlacedRoad> place_all() {
     bool is_better = true;
     for (int round = 0; is_better && round < kMostRounds; ++round) {
       is_better = false;
@@ -41,38 +41,38 @@ class RoadsShaper {
         is_better = improve(group) || is_better;
       }
     }
-    return std::move(shapes_);
+    return std::move(roads_);
   }
 
  private:
-  RoadShape shape(std::uint32_t road) const {
+  PlacedRoad place(std::uint32_t road) const {
     const auto line = [&](std::uint32_t end) {
       return lines_.at(end, chosen_[lines_.group_of_end[end]]);
     };
-    return shape_road(road_map_, plan_.roads[road], borders_[road],
+    return place_road(road_map_, plan_.roads[road], borders_[road],
                       {line(2 * road), line(2 * road + 1)});
   }
 
   bool improve(std::size_t group) {
     const auto& roads = roads_of_[group];
     double least_m = 0.0;
-    for (const std::uint32_t road : roads) least_m += shapes_[road].fault_m;
+    for (const std::uint32_t road : roads) least_m += roads_[road].fault_m;
     const std::size_t before = chosen_[group];
     std::size_t best = before;
     for (std::size_t i = 0; i < lines_.choices[group].size() && least_m > 0.0; ++i) {
       if (i == before) continue;
       chosen_[group] = i;
       double sum_m = 0.0;
-      std::vector<RoadShape> shapes;
+      std::vector<PlacedRoad> placed;
       for (const std::uint32_t road : roads) {
         if (sum_m > least_m - kGain_m) break;
-        shapes.push_back(shape(road));
-        sum_m += shapes.back().fault_m;
+        placed.push_back(place(road));
+        sum_m += placed.back().fault_m;
       }
       if (sum_m > least_m - kGain_m) continue;
       least_m = sum_m;
       best = i;
-      for (std::size_t k = 0; k < roads.size(); ++k) shapes_[roads[k]] = std::move(shapes[k]);
+      for (std::size_t k = 0; k < roads.size(); ++k) roads_[roads[k]] = std::move(placed[k]);
     }
     chosen_[group] = best;
     return best != before;
@@ -84,17 +84,18 @@ class RoadsShaper {
   EndLines lines_;
   std::vector<std::size_t> chosen_;                   // by group of ends
   std::vector<std::vector<std::uint32_t>> roads_of_;  // likewise
-  std::vector<RoadShape> shapes_;
+  std::vector<PlacedRoad> roads_;
 };
 
 // Takes company from lanes of roads that are not sound; whether there are any.
-bool part_lanes(const ShapedRoads& roads, std::vector<Company>& company) {
+bool part_lanes(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
+                std::vector<Company>& company) {
   bool is_changed = false;
-  for (std::size_t i = 0; i < roads.shapes.size(); ++i) {
-    const PlannedRoad& road = roads.plan.roads[i];
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const PlannedRoad& road = plan.roads[i];
     if (road.source) continue;
     const auto& lanes = road.sections.front().lanes;
-    if (roads.shapes[i].fault_m <= (lanes.size() > 1 ? kParting_m : kHopeless_m)) continue;
+    if (placed[i].fault_m <= (lanes.size() > 1 ? kParting_m : kHopeless_m)) continue;
     for (const PlannedLane& lane : lanes) {
       company[lane.lane.index] = lanes.size() > 1 ? Company::none : Company::left_out;
     }
@@ -109,8 +110,12 @@ ShapedRoads shape_roads(const RoadMap& road_map) {
   std::vector<Company> company(road_map.lanes().size(), Company::any);
   for (int round = 0;; ++round) {
     ShapedRoads roads{plan_network_roads(road_map, company), {}};
-    roads.shapes = RoadsShaper(road_map, roads.plan).shape_all();
-    if (round == kMostPlans || !part_lanes(roads, company)) return roads;
+    const auto placed = RoadsPlacer(road_map, roads.plan).place_all();
+    if (round < kMostPlans && part_lanes(roads.plan, placed, company)) continue;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      roads.shapes.push_back(shape_road(road_map, roads.plan.roads[i], placed[i]));
+    }
+    return roads;
   }
 }
 

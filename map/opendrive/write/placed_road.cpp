@@ -1,0 +1,213 @@
+#include "roadbed/map/opendrive/write/placed_road.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/opendrive/write/clothoid.h"
+#include "roadbed/map/opendrive/write/reference_line.h"
+#include "roadbed/map/opendrive/write/road_lines.h"
+
+namespace roadbed::map::opendrive {
+namespace {
+
+constexpr double kScales_m[] = {0.7, 1.4, 2.5, 4.0, 8.0, 16.0, 40.0};
+constexpr double kReferenceTolerance_m = 0.004;
+constexpr double kLeastBend = 0.1;
+constexpr double kBack_m = 0.005, kMissing_m = 0.01, kSideways_m = 0.3, kCrossing_m = 0.005;
+constexpr double kShortest_m = 0.02;  // of a road between its ends
+
+/// Where a border crosses the line across the road's end.
+struct Crossing {
+  Eigen::Vector2d in_map;
+  std::size_t inside = 0;  ///< the next point of the border in the road
+};
+
+// From the border's end inwards to the line; a border that ends before it goes straight on.
+Crossing crossing(const RoadBorder& border, const EndLine& line, bool last) {
+  const Line3& points = border.points;
+  const Eigen::Vector2d ahead = (last ? 1.0 : -1.0) * unit(line.heading_rad);
+  const auto place = [&](std::size_t i) { return last ? points.size() - 1 - i : i; };
+  const auto at = [&](std::size_t i) { return Eigen::Vector2d(points[place(i)].head<2>()); };
+  const auto beyond_m = [&](std::size_t i) { return ahead.dot(at(i) - line.in_map); };
+  std::size_t i = 0;
+  while (i + 1 < points.size() && beyond_m(i) > 1e-9) ++i;
+  if (i == 0) {
+    const Eigen::Vector2d along = (at(0) - at(1)).normalized();
+    const double cosine = ahead.dot(along);
+    const Eigen::Vector2d step = cosine < 0.3 ? ahead : Eigen::Vector2d(along / cosine);
+    return {at(0) - beyond_m(0) * step, place(0)};
+  }
+  const double a = beyond_m(i), b = beyond_m(i - 1);
+  if (a > 0.0) return {at(i) - a * ahead, place(i)};  // all of it lies beyond
+  return {at(i) + a / (a - b) * (at(i - 1) - at(i)), place(i)};
+}
+
+class RoadPlacer {
+ public:
+  RoadPlacer(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
+             const std::array<EndLine, 2>& ends)
+      : road_(road) {
+    for (const PlannedSection& section : road.sections) {
+      auto& borders = borders_.emplace_back();
+      for (std::size_t i = 0; i <= section.lanes.size(); ++i) {
+        borders.push_back(border_along(road_map, section, i));
+      }
+    }
+    targets_.push_back(target(reference_along(road_map, road, border), ends));
+    if (!road.source) targets_.push_back(middle(ends));
+  }
+
+  PlacedRoad place() {
+    choose_reference();
+    return std::move(placed_);
+  }
+
+ private:
+  // The first sound one of: along the border, along the middle, both ever smoother.
+  void choose_reference() {
+    std::pair<std::size_t, double> best{0, 0.0};
+    double least_m = 1e300;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      for (const double scale_m : kScales_m) {
+        try_reference(targets_[i], scale_m);
+        if (placed_.fault_m < least_m) {
+          least_m = placed_.fault_m;
+          best = {i, scale_m};
+        }
+        if (least_m <= 0.0) return;
+      }
+    }
+    try_reference(targets_[best.first], best.second);
+  }
+
+  // Midway between the outer borders of a road with one section, by shares of their length.
+  ReferenceTarget middle(const std::array<EndLine, 2>& ends) const {
+    const auto edge = [&](const RoadBorder& border) {
+      return geometry::Polyline(target(border, ends).in_map);
+    };
+    const auto left = edge(borders_.front().front()), right = edge(borders_.front().back());
+    ReferenceTarget line{{}, ends[0].heading_rad, ends[1].heading_rad};
+    const double steps = std::ceil(std::max(left.length_m(), right.length_m())) + 1.0;
+    for (double i = 0.0; i <= steps; i += 1.0) {
+      line.in_map.push_back(
+          0.5 * (left.at(i / steps * left.length_m()) + right.at(i / steps * right.length_m())));
+    }
+    return line;
+  }
+
+  static ReferenceTarget target(const RoadBorder& line, const std::array<EndLine, 2>& ends) {
+    const Eigen::Vector2d own_first = line.points[line.own_from].head<2>();
+    const Eigen::Vector2d own_last = line.points[line.own_to].head<2>();
+    const Crossing first = crossing(line, ends[0], false), last = crossing(line, ends[1], true);
+    const Eigen::Vector2d own = own_last - own_first;
+    const bool turns_back = own.dot(last.in_map - first.in_map) < kShortest_m * own.norm();
+    if (own.norm() > kShortest_m && turns_back) {  // the end lines cross in it
+      return {{own_first, own_last}, std::atan2(own.y(), own.x()), std::atan2(own.y(), own.x())};
+    }
+    ReferenceTarget target{{first.in_map}, ends[0].heading_rad, ends[1].heading_rad};
+    for (std::size_t i = first.inside; i <= last.inside; ++i) {
+      target.in_map.emplace_back(line.points[i].head<2>());
+    }
+    target.in_map.push_back(last.in_map);
+    return target;
+  }
+
+  void try_reference(const ReferenceTarget& target, double scale_m) {
+    placed_.plan_view = fit_reference_line(target, scale_m, kReferenceTolerance_m);
+    view_.emplace(placed_.plan_view);
+    placed_.faults = {};
+    place_borders();
+    for (const auto& lines : placed_.borders) {
+      for (std::size_t i = 1; i < lines.size(); ++i) note_crossing(lines[i - 1], lines[i]);
+    }
+    note_folds();
+    const auto over = [](double fault, double allowed) { return std::max(0.0, fault - allowed); };
+    placed_.fault_m =
+        over(kLeastBend, placed_.faults.least_bend) + over(placed_.faults.back_m, kBack_m) +
+        over(placed_.faults.missing_m, kMissing_m) + over(placed_.faults.sideways_m, kSideways_m) +
+        over(placed_.faults.crossing_m, kCrossing_m);
+  }
+
+  // Vertices of a border may lie on both sides of a fold: all along the line, too.
+  void note_folds() {
+    constexpr double step_m = 0.25;
+    for (std::size_t i = 0; i < placed_.borders.size(); ++i) {
+      for (const BesideLine* edge : {&placed_.borders[i].front(), &placed_.borders[i].back()}) {
+        std::size_t hint = 0;
+        for (const geometry::PlanPiece& piece : placed_.plan_view) {
+          const double steps = std::ceil(piece.length_m / step_m);
+          for (double k = 0.0; k <= steps; k += 1.0) {
+            const double s_m = piece.s_m + k / steps * piece.length_m;
+            if (s_m < placed_.section_from_m[i] || s_m > placed_.section_from_m[i + 1]) continue;
+            const double curvature_per_m = geometry::plan_point(piece, s_m).curvature_per_m;
+            placed_.faults.least_bend = std::min(
+                placed_.faults.least_bend, 1.0 - curvature_per_m * point_at(*edge, s_m, hint).t_m);
+          }
+        }
+      }
+    }
+  }
+
+  void note_crossing(const BesideLine& left, const BesideLine& right) {
+    std::size_t at_left = 0, at_right = 0;
+    const auto note = [&](double s_m) {
+      const double width_m = point_at(left, s_m, at_left).t_m - point_at(right, s_m, at_right).t_m;
+      placed_.faults.crossing_m = std::max(placed_.faults.crossing_m, -width_m);
+    };
+    for (const BesidePoint& point : left) note(point.s_m);
+    at_left = at_right = 0;
+    for (const BesidePoint& point : right) note(point.s_m);
+  }
+
+  void place_borders() {
+    placed_.borders.clear();
+    placed_.section_from_m.clear();
+    double hint_m = 0.0;
+    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
+      if (i > 0) hint_m = boundary_s_m(i, hint_m);
+      placed_.section_from_m.push_back(hint_m);
+    }
+    placed_.section_from_m.push_back(view_->end_s_m());
+    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
+      auto& lines = placed_.borders.emplace_back();
+      for (const RoadBorder& border : borders_[i]) {
+        lines.push_back(line_beside(*view_, border, placed_.section_from_m[i],
+                                    placed_.section_from_m[i + 1], placed_.faults));
+      }
+    }
+  }
+
+  // Where a section begins: at the foot of its middle border's first point.
+  double boundary_s_m(std::size_t section, double from_m) const {
+    const RoadBorder& border = borders_[section][road_.sections[section].left_lanes];
+    const Eigen::Vector2d at = border.points[border.own_from].head<2>();
+    double nearest_m = from_m, least_m = 1e300;
+    for (double s_m = from_m; s_m <= view_->end_s_m(); s_m += 1.0) {
+      const double off_m = (view_->at(s_m).pose.position() - at).norm();
+      if (off_m < least_m) {
+        least_m = off_m;
+        nearest_m = s_m;
+      }
+    }
+    const double s_m = position_beside(*view_, at, nearest_m).s_m;
+    return std::clamp(s_m, from_m + 1e-3, std::max(from_m + 1e-3, view_->end_s_m() - 1e-3));
+  }
+
+  const PlannedRoad& road_;
+  std::vector<std::vector<RoadBorder>> borders_;  // by section, from left to right
+  std::vector<ReferenceTarget> targets_;          // what the reference line may follow
+  std::optional<geometry::PlanView> view_;
+  PlacedRoad placed_;
+};
+
+}  // namespace
+
+PlacedRoad place_road(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
+                      const std::array<EndLine, 2>& ends) {
+  return RoadPlacer(road_map, road, border, ends).place();
+}
+
+}  // namespace roadbed::map::opendrive
