@@ -69,7 +69,7 @@ std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_a
   double within_m = look_ahead_m;
   const Eigen::Vector2d here = path.pose_at(s_m).position();
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!ignored.empty() && ignored[i]) continue;
+    if ((!ignored.empty() && ignored[i]) || !obstacles[i].is_there(t_s)) continue;
     const Rectangle body = rectangle_at(obstacles[i], t_s);
     const double far = within_m + vehicle.reach_m() + body.radius_m() + side_margin_m;
     if ((body.centre - here).norm() > kMostStretch * far) continue;

@@ -25,7 +25,8 @@ struct Lead {
 /// @param s_m            station of the rear axle.
 /// @param look_ahead_m   no further than this.
 /// @param side_margin_m  an obstacle this near to the body's sides counts as touched.
-/// @param ignored        obstacles that are not looked at; none if empty.
+/// @param obstacles      those that are not there at the time are not looked at.
+/// @param ignored        nor are these; none if empty.
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
                               std::span<const Obstacle> obstacles, double t_s,
                               const geometry::VehicleShape& vehicle, double side_margin_m,

@@ -161,12 +161,12 @@ class Planner::Impl {
     std::vector<Obstacle> obstacles;
     for (std::size_t i = 0; i < traffic_.obstacles.size(); ++i) {
       const Obstacle& obstacle = traffic_.obstacles[i];
+      if (!obstacle.is_there(view.t_s)) continue;
       if (!task_.goal) {
         if (scene.no_matter[i] || scene.crosses[i]) continue;
         obstacles.push_back(obstacle);
         continue;
       }
-      if (!obstacle.is_there(view.t_s)) continue;
       const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
       const geometry::TrajectoryPoint later = obstacle.motion.at(view.t_s + kStillFor_s);
       if ((later.pose().position() - now.pose().position()).norm() > kStill_m) continue;

@@ -118,9 +118,12 @@ def seen_objects(ego_front):
     return objects
 
 
+def colour_of(state):
+    return {"r": "red", "u": "red", "y": "yellow", "Y": "yellow"}.get(state, "green")
+
+
 class Lights:
-    """Signals of the map by the links that SUMO switches, whose ids netconvert keeps. One of several
-    links shows what the freest of them does."""
+    """Signals of the map by the links that SUMO switches, whose ids netconvert keeps."""
 
     def __init__(self):
         self.links = []  # (traffic light, link, signal)
@@ -131,13 +134,16 @@ class Lights:
                     self.links.append((light, index, one))
 
     def now(self):
-        colour_of = {"r": "red", "u": "red", "y": "yellow", "Y": "yellow"}
+        """The link that the vehicle takes counts for the signals that it shares with others."""
         shown = {}
         for light, index, signal in self.links:
             state = libsumo.trafficlight.getRedYellowGreenState(light)[index]
-            colour = colour_of.get(state, "green")
             freer = ["red", "yellow", "green"]
-            shown[signal] = max(shown.get(signal, "red"), colour, key=freer.index)
+            shown[signal] = max(shown.get(signal, "red"), colour_of(state), key=freer.index)
+        for light, own_index, _, state in libsumo.vehicle.getNextTLS("ego"):
+            for other, index, signal in self.links:
+                if (other, index) == (light, own_index):
+                    shown[signal] = colour_of(state)
         return [{"signal": signal, "colour": colour} for signal, colour in sorted(shown.items())]
 
 

@@ -59,6 +59,14 @@ TEST_F(LeadTest, WhatIsBesideOrBehindIsNoLead) {
   EXPECT_FALSE(find({}));
 }
 
+TEST_F(LeadTest, WhoIsNotThereYetOrAnyMoreIsNoLead) {
+  planning::Obstacle visitor = car("visitor", 40.0, 0.0);
+  visitor.validity = {2.0, 4.0};
+  EXPECT_FALSE(find({visitor}, 1.9));
+  EXPECT_TRUE(find({visitor}, 3.0));
+  EXPECT_FALSE(find({visitor}, 4.1));
+}
+
 TEST_F(LeadTest, SpeedIsThatAlongThePathAtTheTime) {
   const auto away = find({moving("m", 30.0, 0.0, 4.0)}, 5.0);
   ASSERT_TRUE(away);

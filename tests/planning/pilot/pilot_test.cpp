@@ -83,6 +83,18 @@ TEST_F(Pilots, StandBehindWhoStandsWhereverTheyAreNotTold) {
   EXPECT_LT(gap_m, 8.0);
 }
 
+TEST_F(Pilots, DriveOnWhereSomebodyWasWhoIsGone) {
+  Pilot pilot(setup());
+  view_.ego.speed_mps = 4.0;
+  view_.objects.push_back({.id = "gone", .centre = place("31/0/-2", 40.0)});
+  PilotAnswer answer = pilot.step(view_);
+  EXPECT_TRUE(answer.decision.lead || answer.decision.behaviour != Behaviour::cruise);
+  view_.objects.clear();
+  for (int k = 0; k < 30; ++k) answer = pilot.step(follow(answer));
+  EXPECT_FALSE(answer.decision.lead);
+  EXPECT_GT(view_.ego.speed_mps, 4.0) << answer.decision.reason;
+}
+
 TEST_F(Pilots, SayWhyThereIsNoRouteAndStop) {
   Pilot pilot(setup());
   view_.ego.map_from_vehicle = {1e4, 1e4, 0.0};
