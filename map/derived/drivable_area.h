@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/motion/region_edges.h"
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/derived/surface.h"
 
@@ -19,7 +19,7 @@ class DrivableArea {
   explicit DrivableArea(std::vector<geometry::Polygon> polygons);
 
   /// Whether the point is on the surface or its edge. O(log N) on average, exact.
-  bool contains(const Eigen::Vector2d& point_in_map) const;
+  bool contains(const Eigen::Vector2d& point_in_map) const { return edges_.contains(point_in_map); }
 
   /// Distance to the nearest edge of the surface [m], negative off the surface; minus infinity
   /// where there is no surface at all. O(log N) on average.
@@ -28,15 +28,8 @@ class DrivableArea {
   const std::vector<geometry::Polygon>& polygons() const { return polygons_; }
 
  private:
-  struct Edge {
-    Eigen::Vector2d from, to;
-  };
-  void add_edges(const geometry::Ring& ring);
-
   std::vector<geometry::Polygon> polygons_;
-  std::vector<Edge> edges_;
-  geometry::BoxTree tree_;
-  geometry::Box extent_;
+  geometry::RegionEdges edges_;
 };
 
 }  // namespace roadbed::map::derived

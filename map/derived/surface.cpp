@@ -117,10 +117,12 @@ std::vector<LaneId> lanes_where(const RoadMap& road_map, const Wants& wants) {
   return wanted;
 }
 
-/// The union, or an error where the map's areas cross each other without end.
-geometry::United united_of(const std::vector<Polygon>& polygons, const SurfaceOptions& options) {
+}  // namespace
+
+Surface surface_of(std::span<const Polygon> polygons, const SurfaceOptions& options) {
   try {
-    return geometry::unite_and_report(polygons, options.weld_m);
+    geometry::United united = geometry::unite_and_report(polygons, options.weld_m);
+    return {std::move(united.polygons), united.moved_points, united.most_moved_m};
   } catch (const geometry::TooMuchWork& error) {
     throw InputError({.file = "map",
                       .element = "surface",
@@ -129,8 +131,6 @@ geometry::United united_of(const std::vector<Polygon>& polygons, const SurfaceOp
                       .remedy = "cut the map with map clip, or remove what lies there twice"});
   }
 }
-
-}  // namespace
 
 Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
                       const SurfaceOptions& options) {
@@ -144,8 +144,7 @@ Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
       if (road_map.lane(id).polygon.size() > 2) polygons.push_back({road_map.lane(id).polygon, {}});
     }
   }
-  geometry::United united = united_of(polygons, options);
-  return {std::move(united.polygons), united.moved_points, united.most_moved_m};
+  return surface_of(polygons, options);
 }
 
 std::vector<LaneId> drivable_lanes(const RoadMap& road_map) {
@@ -184,7 +183,7 @@ std::vector<geometry::Polygon> road_area_surface(const RoadMap& road_map,
   for (const Area& area : road_map.areas()) {
     if (area.is_road) polygons.insert(polygons.end(), area.in_map.begin(), area.in_map.end());
   }
-  return united_of(polygons, options).polygons;
+  return surface_of(polygons, options).polygons;
 }
 
 std::vector<geometry::MedialBranch> road_centrelines(const RoadMap& road_map,

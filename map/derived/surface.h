@@ -29,6 +29,10 @@ struct Surface {
 Surface lanes_surface(const RoadMap& road_map, std::span<const LaneId> lanes,
                       const SurfaceOptions& options = {});
 
+/// Union of any polygons, in coordinates of the map.
+/// @throws InputError where they cross each other without end.
+Surface surface_of(std::span<const geometry::Polygon> polygons, const SurfaceOptions& options = {});
+
 /// Drivable lanes of the whole map, and those of a junction's connecting roads, in order of id.
 std::vector<LaneId> drivable_lanes(const RoadMap& road_map);
 std::vector<LaneId> drivable_lanes(const RoadMap& road_map, JunctionId junction);
