@@ -30,7 +30,6 @@ class BodyProbe : public ClearanceProbe {
 
  private:
   double field_bound_m(const Eigen::Vector2d& point) const;
-  geometry::Rectangle swept_over(const Span& span) const;
 
   const map::ClearanceField& field_;
   geometry::BodyPart part_;

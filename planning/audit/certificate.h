@@ -7,17 +7,10 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/audit_report.h"
+#include "roadbed/planning/audit/proven_span.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
-
-/// A part of one segment of a drive, from sample `segment` to the next, and what holds in all of
-/// it.
-struct ProvenSpan {
-  std::size_t segment = 0;
-  double from = 0.0, to = 1.0;  ///< fractions of the segment's time
-  double at_least_m = 0.0;      ///< no time of the span is nearer to what the proof is about
-};
 
 /// A part of a drive by time, and what holds in all of it.
 struct ProvenTime {

@@ -87,4 +87,42 @@ double ClearanceProbe::motion_bound_m(const Span& span) const {
          sum_rounding_m_;
 }
 
+// A point (x, y) of the body, moved by (u, v) and turned by δ as seen from the middle of the span,
+// is at most |y δ| + |x| δ²/2 farther ahead than u, and x δ and at most |y| δ²/2 + |x δ³|/6 farther
+// to the left than v. All of that is convex, and greatest at the ends of segments.
+geometry::Rectangle ClearanceProbe::swept_over(const Span& span,
+                                               const geometry::BodyPart& part) const {
+  const geometry::Pose2 middle = middle_pose_of(span);
+  const Eigen::Vector2d forward(std::cos(middle.heading_rad), std::sin(middle.heading_rad));
+  const Eigen::Vector2d left(-forward.y(), forward.x());
+  const double x_m = std::max(std::abs(part.rear_m), std::abs(part.front_m));
+  const double y_m = std::max(std::abs(part.right_m), std::abs(part.left_m));
+  double ahead_m = 0.0, behind_m = 0.0, to_left_m = 0.0, to_right_m = 0.0;
+  const auto take = [&](const geometry::Pose2& at) {
+    const Eigen::Vector2d moved = at.position() - middle.position();
+    const double turned_rad = at.heading_rad - middle.heading_rad, turn_rad = std::abs(turned_rad);
+    const double along_m = moved.dot(forward), across_m = moved.dot(left);
+    const double more_along_m = turn_rad * (y_m + 0.5 * x_m * turn_rad);
+    const double more_across_m = turn_rad * turn_rad * (0.5 * y_m + x_m * turn_rad / 6.0);
+    const double at_rear_m = across_m + part.rear_m * turned_rad,
+                 at_front_m = across_m + part.front_m * turned_rad;
+    ahead_m = std::max(ahead_m, along_m + more_along_m);
+    behind_m = std::max(behind_m, more_along_m - along_m);
+    to_left_m = std::max(to_left_m, std::max(at_rear_m, at_front_m) + more_across_m);
+    to_right_m = std::max(to_right_m, more_across_m - std::min(at_rear_m, at_front_m));
+  };
+  take(pose_at(span.segment, span.from));
+  for (std::size_t i = 1; i < span.segments; ++i) take(pose_at(span.segment + i, 0.0));
+  take(pose_at(span.segment + span.segments - 1, span.to));
+  const double rear_m = part.rear_m - behind_m - kRounding_m,
+               front_m = part.front_m + ahead_m + kRounding_m,
+               right_m = part.right_m - to_right_m - kRounding_m,
+               left_m = part.left_m + to_left_m + kRounding_m;
+  return {.centre = middle.position() + 0.5 * (rear_m + front_m) * forward +
+                    0.5 * (right_m + left_m) * left,
+          .axis = forward,
+          .half_length_m = 0.5 * (front_m - rear_m),
+          .half_width_m = 0.5 * (left_m - right_m)};
+}
+
 }  // namespace roadbed::planning::audit

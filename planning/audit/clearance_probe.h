@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/motion/body_part.h"
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 
@@ -105,6 +106,9 @@ class ClearanceProbe {
   geometry::Pose2 middle_pose_of(const Span& span) const {
     return pose_at(span.middle_segment(), span.middle());
   }
+  /// A rectangle, turned as the body is in the middle of a span, that a part of it (without its
+  /// radius) stays in all along. O(segments).
+  geometry::Rectangle swept_over(const Span& span, const geometry::BodyPart& part) const;
 
  private:
   double segment_motion_m(std::size_t segment) const;
