@@ -1,0 +1,137 @@
+#include "roadbed/planning/rules/rule_audit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "roadbed/tests/support/made_maps.h"
+
+namespace roadbed::planning {
+namespace {
+
+using geometry::Trajectory;
+using map::MarkType;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const geometry::BodyPart kBody = geometry::body_of({});
+
+Trajectory line(double from_x, double from_y, double to_x, double to_y, double speed_mps = 10.0) {
+  const double way_m = std::hypot(to_x - from_x, to_y - from_y);
+  const double heading_rad = std::atan2(to_y - from_y, to_x - from_x);
+  return Trajectory(
+      {{.t_s = 0.0, .x_m = from_x, .y_m = from_y, .heading_rad = heading_rad},
+       {.t_s = way_m / speed_mps, .x_m = to_x, .y_m = to_y, .heading_rad = heading_rad}});
+}
+
+RuleReport audited(const tests::MadeMap& made, TrafficRule rule, const Trajectory& drive,
+                   std::span<const LightCycle> lights = {}) {
+  const map::RoadMap road_map = made.build();
+  return audit_rules({&road_map, lights}, drive, kBody)[static_cast<std::size_t>(rule)];
+}
+
+TEST(RuleAudit, TellsDrivesAgainstTheLaneFromThoseAlongIt) {
+  const tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const auto verdict = [&](const Trajectory& drive) {
+    return audited(made, TrafficRule::direction, drive).verdict;
+  };
+  EXPECT_EQ(verdict(line(10, -1.75, 60, -1.75)), Verdict::clear);
+  EXPECT_EQ(verdict(line(60, -1.75, 10, -1.75)), Verdict::conflict);
+  EXPECT_EQ(verdict(line(60, 1.75, 10, 1.75)), Verdict::clear);
+  EXPECT_EQ(verdict(line(10, 20, 60, 20)), Verdict::unknown);  // on no lane
+  // Backwards out of the lane's direction: it is the way that counts, not where the nose points.
+  Trajectory reverse(
+      {{.t_s = 0.0, .x_m = 60, .y_m = -1.75}, {.t_s = 5.0, .x_m = 50, .y_m = -1.75}});
+  EXPECT_EQ(verdict(reverse), Verdict::conflict);
+}
+
+TEST(RuleAudit, TellsWhereTheAxleEntersTheOncomingLane) {
+  const RuleReport report =
+      audited(tests::straight_two_lane_road(100.0), TrafficRule::direction, line(10, -2, 90, 2));
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_NEAR(report.violations.front().at.x_m, 50.0, 0.4);  // y = 0
+  EXPECT_EQ(report.violations.front().lane, "1/0/1");
+}
+
+TEST(RuleAudit, HoldsSpeedsAgainstTheLimitOfTheLane) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const auto at = [&](double speed_mps) {
+    return audited(made, TrafficRule::speed, line(10, -1.75, 60, -1.75, speed_mps));
+  };
+  EXPECT_EQ(at(13.8).verdict, Verdict::clear);
+  EXPECT_EQ(at(14.0).verdict, Verdict::conflict);
+  made.lane(map::LaneId{0}).speed_limits = {{0.0, 20.0}, {30.0, 10.0}};
+  const RuleReport report = at(15.0);
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_NEAR(report.violations.front().from_s, 20.0 / 15.0, 0.03);
+  EXPECT_EQ(report.violations.front().text, "54.0 km/h, limit 36.0 km/h");
+  made.lane(map::LaneId{0}).speed_limits.clear();
+  EXPECT_EQ(at(15.0).verdict, Verdict::unknown);
+}
+
+TEST(RuleAudit, SeesTheBodyOverSolidLinesOnly) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  const auto over_middle = [&](MarkType type, double y_m) {
+    for (std::uint32_t id : {0u, 1u}) made.lane(map::LaneId{id}).left_marks = {{.type = type}};
+    return audited(made, TrafficRule::markings, line(10, y_m, 60, y_m)).verdict;
+  };
+  const double touches_m = -kBody.left_m + 0.01, clear_m = -kBody.left_m - 0.01;
+  EXPECT_EQ(over_middle(MarkType::solid, touches_m), Verdict::conflict);
+  EXPECT_EQ(over_middle(MarkType::solid, clear_m), Verdict::clear);
+  EXPECT_EQ(over_middle(MarkType::solid_solid, touches_m), Verdict::conflict);
+  EXPECT_EQ(over_middle(MarkType::broken, touches_m), Verdict::clear);
+  EXPECT_EQ(over_middle(MarkType::none, touches_m), Verdict::clear);
+}
+
+TEST(RuleAudit, KnowsFromWhichStationAMarkingIsSolid) {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  made.lane(map::LaneId{0}).left = made.lane(map::LaneId{0}).left;
+  made.lane(map::LaneId{0}).right_marks = {{0.0, MarkType::solid, "", 0.0}};
+  const RuleReport report = audited(made, TrafficRule::markings, line(10, -2.0, 60, -3.4));
+  ASSERT_THAT(report.violations, SizeIs(1));
+  EXPECT_EQ(report.violations.front().text, "over the solid marking on its right");
+}
+
+/// A light at station 50 of the eastward lane: green for 4 s, then red for 6 s.
+struct LitRoad {
+  tests::MadeMap made = tests::straight_two_lane_road(100.0);
+  std::vector<LightCycle> lights{{.signals = {"7"},
+                                  .pointer = {},
+                                  .phases = {{LightColour::green, 4.0}, {LightColour::red, 6.0}}}};
+
+  LitRoad() {
+    made.parts.signals.push_back({.source_id = "7",
+                                  .in_map = {50.0, -4.0},
+                                  .dynamic = true,
+                                  .lanes = {map::LaneId{0}},
+                                  .lane_s_m = {50.0}});
+  }
+
+  RuleReport passed_at(double t_s, bool is_known = true) const {
+    const double speed_mps = 5.0, from_x = 50.0 - kBody.front_m - speed_mps * t_s;
+    Trajectory drive = line(from_x, -1.75, from_x + 8.0 * speed_mps, -1.75, speed_mps);
+    return audited(made, TrafficRule::lights, drive,
+                   is_known ? std::span<const LightCycle>(lights) : std::span<const LightCycle>());
+  }
+};
+
+TEST(RuleAudit, SeesTheFrontPassARedLight) {
+  const LitRoad road;
+  EXPECT_EQ(road.passed_at(3.5).verdict, Verdict::clear);
+  const RuleReport red = road.passed_at(4.5);
+  ASSERT_EQ(red.verdict, Verdict::conflict);
+  EXPECT_NEAR(red.violations.front().from_s, 4.5, 0.05);
+  EXPECT_EQ(road.passed_at(4.5, false).verdict, Verdict::unknown);
+}
+
+TEST(RuleAudit, LooksAtLightsOfOtherLanesNot) {
+  const LitRoad road;
+  EXPECT_EQ(
+      audited(road.made, TrafficRule::lights, line(80, 1.75, 20, 1.75, 5.0), road.lights).verdict,
+      Verdict::clear);
+}
+
+}  // namespace
+}  // namespace roadbed::planning
