@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "roadbed/tools/cli/in_threads.h"
 
@@ -15,16 +16,26 @@ namespace {
 
 using planning::GroundRule;
 
-AuditedDrive audit_one(const map::OccupancySource& occupancy, const AuditSubject& subject,
-                       const planning::AuditQuestion& question) {
+AuditedDrive audit_subject(const AuditDemand& demand, const AuditSubject& subject) {
   AuditedDrive audited{.name = subject.name};
   try {
     audited.drive = subject.drive();
-    audited.audit = planning::audit_drive(occupancy, audited.drive, question);
+    audit_one(demand, audited);
   } catch (const std::exception& error) {
     audited.fault = error.what();
   }
   return audited;
+}
+
+void take_excursion(const planning::Excursion& out, planning::AuditReport& whole) {
+  planning::Conflict& conflict = whole.conflicts.emplace_back();
+  conflict.from_s = out.from_s;
+  conflict.to_s = out.to_s;
+  conflict.least_clearance_m = out.least_margin_m;
+  conflict.at = out.at;
+  const Eigen::Vector2d& witness = out.depth_m > 0.0 ? out.point_in_source : out.edge_in_source;
+  conflict.witness = {witness, witness};
+  conflict.part = out.part;
 }
 
 std::optional<double> height_in(const std::string& text) {
@@ -73,16 +84,60 @@ std::string ground_note(const planning::GroundUnder& ground,
                     cell_m, underside_m);
 }
 
-std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
-                                    const std::vector<AuditSubject>& subjects,
-                                    const planning::AuditQuestion& question, int threads,
+std::string_view AuditedDrive::outcome() const {
+  using planning::Verdict;
+  if (!fault.empty()) return "unusable";
+  const Verdict of_occupancy = has_occupancy ? audit.report.verdict : Verdict::clear;
+  const Verdict of_road = road ? road->verdict() : Verdict::clear;
+  for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
+    if (of_occupancy == grave || of_road == grave) return planning::to_string(grave);
+  }
+  return planning::to_string(Verdict::clear);
+}
+
+planning::AuditReport AuditedDrive::whole() const {
+  planning::AuditReport whole = audit.report;
+  if (!road) return whole;
+  const planning::SurfaceReport& surface = road->surface;
+  if (!has_occupancy) {
+    whole.verdict = surface.verdict;
+    whole.least_clearance_m = surface.least_margin_m;
+    whole.proven_clearance_m = surface.proven_margin_m;
+    whole.least_clearance_at_s = surface.least_margin_at_s;
+    whole.beyond_horizon = surface.beyond_horizon;
+    whole.part = surface.part;
+    if (!surface.beyond_horizon) whole.witness = {surface.edge_in_source, surface.edge_in_source};
+  }
+  for (const planning::Excursion& out : surface.conflicts) take_excursion(out, whole);
+  std::ranges::stable_sort(whole.conflicts, {}, &planning::Conflict::from_s);
+  whole.undecided.insert(whole.undecided.end(), surface.undecided.begin(), surface.undecided.end());
+  whole.undecided = planning::joined(std::move(whole.undecided));
+  whole.verdict = planning::verdict_of(whole);
+  return whole;
+}
+
+void audit_one(const AuditDemand& demand, AuditedDrive& audited,
+               const std::function<void(const planning::GroundUnder&)>& on_ground) {
+  audited.has_occupancy = demand.occupancy != nullptr;
+  if (demand.occupancy != nullptr) {
+    audited.audit =
+        planning::audit_drive(*demand.occupancy, audited.drive, demand.question, on_ground);
+  }
+  if (demand.road != nullptr) {
+    audited.road = audit_road(audited.drive, demand.question.inflated_parts(), *demand.road,
+                              demand.question.certifies);
+  }
+}
+
+std::vector<AuditedDrive> audit_all(const AuditDemand& demand,
+                                    const std::vector<AuditSubject>& subjects, int threads,
                                     const std::function<void()>& done_one) {
   std::vector<AuditedDrive> audited(subjects.size());
-  planning::AuditQuestion shared = question;
-  shared.drives_at_once =
+  AuditDemand shared = demand;
+  shared.question.drives_at_once =
       std::clamp<std::size_t>(subjects.size(), 1, static_cast<std::size_t>(std::max(1, threads)));
   in_threads(subjects.size(), threads, [&](std::size_t i) {
-    audited[i] = audit_one(occupancy, subjects[i], shared);
+    audited[i] = audit_subject(shared, subjects[i]);
     done_one();
   });
   return audited;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/planning/audit/audit_drive.h"
 #include "roadbed/tools/audit/audit_subjects.h"
+#include "roadbed/tools/audit/road_audit.h"
 
 namespace roadbed::tools::inline audit {
 
@@ -25,25 +27,41 @@ planning::GroundRule ground_rule(const std::string& text, const map::RoadMap* ro
 std::string ground_note(const planning::GroundUnder& ground,
                         const planning::AuditQuestion& question, double cell_m);
 
+/// All that drives are audited for.
+struct AuditDemand {
+  const map::OccupancySource* occupancy = nullptr;  ///< null: the road only
+  planning::AuditQuestion question = {};
+  const RoadQuestion* road = nullptr;  ///< null: the occupancy only
+};
+
 /// A drive and what its audit found.
 struct AuditedDrive {
   std::string name;
   std::string fault = {};  ///< why it could not be audited; empty: it was
   geometry::Trajectory drive = {};
-  planning::DriveAudit audit = {};
+  bool has_occupancy = true;        ///< whether it was audited against one
+  planning::DriveAudit audit = {};  ///< against the occupancy
+  std::optional<RoadAudit> road = {};
 
-  bool is_clear() const { return fault.empty() && audit.is_clear(); }
-  /// "clear", "conflict", …, or "unusable".
-  std::string_view outcome() const {
-    return fault.empty() ? planning::to_string(audit.report.verdict) : "unusable";
-  }
+  bool is_clear() const { return outcome() == "clear"; }
+  /// "clear", "conflict", …, the gravest of all that was asked, or "unusable".
+  std::string_view outcome() const;
+
+  /// What speaks against the drive, as one report: that of the occupancy, in which excursions from
+  /// the surface are conflicts, their witness a point of its edge. Without an occupancy, clearances
+  /// are distances to the edge.
+  planning::AuditReport whole() const;
 };
+
+/// Audits a drive; `on_ground` as of `planning::audit_drive`.
+/// @throws InputError and std::invalid_argument as that and `audit_road`.
+void audit_one(const AuditDemand& demand, AuditedDrive& audited,
+               const std::function<void(const planning::GroundUnder&)>& on_ground = {});
 
 /// Audits each drive by itself; one that is unusable does not stop the others. The same for any
 /// number of threads. `done_one` is called in the threads.
-std::vector<AuditedDrive> audit_all(const map::OccupancySource& occupancy,
-                                    const std::vector<AuditSubject>& subjects,
-                                    const planning::AuditQuestion& question, int threads,
+std::vector<AuditedDrive> audit_all(const AuditDemand& demand,
+                                    const std::vector<AuditSubject>& subjects, int threads,
                                     const std::function<void()>& done_one);
 
 }  // namespace roadbed::tools::audit

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -55,6 +56,10 @@ class CertificateCheck {
   Json json() const;
 
  private:
+  using Line = std::function<void(const std::string& head, const std::string& text)>;
+  void print_surface(const Line& line) const;
+  void print_clearance(const Line& line) const;
+
   static fs::path path_of(const CertifiedFile& named, const fs::path& demanded) {
     return demanded.empty() ? fs::path(named.name) : demanded;
   }
@@ -103,10 +108,12 @@ class CertificateCheck {
   }
 
   void compare_demands() {
+    demand("an underside at", demands_.underside_m, file_.underside_m);
+    compare_surface();
+    if (file_.parts.empty()) return;
     const planning::AuditCertificate& question = file_.parts.front();
     demand("a clearance of", demands_.clearance_m, question.clearance_m);
     demand("a margin around the vehicle of", demands_.inflate_m, question.inflate_m);
-    demand("an underside at", demands_.underside_m, file_.underside_m);
     demand("a measured share of at least", demands_.least_measured, file_.least_measured, "");
     if (demands_.unknown && *demands_.unknown != question.unknown_policy) {
       faults_.push_back(fmt::format("unknown space counts as {}, not {}",
@@ -114,6 +121,20 @@ class CertificateCheck {
                                     planning::to_string(*demands_.unknown)));
     }
     if (!demands_.ground.empty() && ground_text() != demands_.ground) compare_ground();
+  }
+
+  void compare_surface() {
+    if (!file_.surface) {
+      if (!demands_.on.empty()) faults_.push_back("it is about no surface, and --on is given");
+      return;
+    }
+    const CertifiedSurface& surface = *file_.surface;
+    if (!demands_.on.empty() && demands_.on != surface.on) {
+      faults_.push_back(fmt::format("it is about staying on {}, not {}", surface.on, demands_.on));
+    }
+    demand("a distance from the edge of", demands_.margin_m, surface.margin_m);
+    demand("a margin around the vehicle of", demands_.inflate_m, surface.inflate_m);
+    if (surface.file) compare("surface", surface.file, {});
   }
 
   void compare_ground() {
@@ -151,18 +172,27 @@ class CertificateCheck {
   }
 
   void check_claims() {
-    const auto occupancy = inputs_.occupancy(path_of(file_.occupancy, demands_.occupancy));
     std::shared_ptr<const map::RoadMap> road_map;
-    if (file_.ground.kind == GroundRule::Kind::map && file_.roads) {
+    const bool is_on_map = file_.surface || file_.ground.kind == GroundRule::Kind::map;
+    if (is_on_map && file_.roads) {
       road_map = inputs_.road_map(path_of(*file_.roads, demands_.map));
     }
     const Vehicle vehicle =
         file_.vehicle ? read_vehicle(path_of(*file_.vehicle, demands_.vehicle)) : Vehicle{};
+    if (file_.occupancy) check_clearance(vehicle, road_map.get());
+    if (!file_.surface) return;
+    const auto faults =
+        surface_faults(*file_.surface, vehicle.parts(file_.underside_m), road_map.get(), drive_);
+    faults_.insert(faults_.end(), faults.begin(), faults.end());
+  }
+
+  void check_clearance(const Vehicle& vehicle, const map::RoadMap* road_map) {
+    const auto occupancy = inputs_.occupancy(path_of(*file_.occupancy, demands_.occupancy));
     faults_ = part_faults(file_, vehicle);
     if (!faults_.empty()) return;
     try {
       const std::vector<map::OccupancyCell> cells = cells_of(*occupancy);
-      faults_ = ground_faults_of(file_, drive_, road_map.get(), cells, occupancy->resolution_m());
+      faults_ = ground_faults_of(file_, drive_, road_map, cells, occupancy->resolution_m());
       for (const planning::AuditCertificate& part : file_.parts) {
         for (const std::string& fault :
              planning::check_certificate(part, cells, occupancy->resolution_m(), drive_, moving_)) {
@@ -210,8 +240,15 @@ std::string part_text(const planning::AuditCertificate& audit) {
 
 // What the verdict is about: a certificate of another question proves nothing of one's own.
 std::string CertificateCheck::question() const {
-  const planning::AuditCertificate& audit = file_.parts.front();
   std::string text;
+  if (file_.surface) {
+    text = fmt::format("on {}, {} m from its edge, seams of {} m closed, the vehicle grown by {} m",
+                       file_.surface->on, file_.surface->margin_m, file_.surface->seam_m,
+                       file_.surface->inflate_m);
+    if (file_.parts.empty()) return text;
+    text += "; ";
+  }
+  const planning::AuditCertificate& audit = file_.parts.front();
   for (const planning::AuditCertificate& part : file_.parts) text += part_text(part) + "; ";
   if (const map::Ground* ground = audit.band.ground; ground != nullptr && !drive_.empty()) {
     const auto [low_m, high_m] = map::heights_at_samples_m(*ground, drive_);
@@ -226,7 +263,7 @@ std::string CertificateCheck::question() const {
 }
 
 void CertificateCheck::print(std::ostream& out) const {
-  const auto line = [&](const std::string& head, const std::string& text) {
+  const Line line = [&](const std::string& head, const std::string& text) {
     out << fmt::format("{:<17}{}\n", head, text);
   };
   line("certificate", faults_.empty() ? "holds" : "does not hold");
@@ -236,6 +273,23 @@ void CertificateCheck::print(std::ostream& out) const {
     line(checked.role, fmt::format("{}, SHA-256 {}", checked.file.name, checked.file.sha256));
   }
   if (!file_.vehicle) line("vehicle", "none named: CommonRoad's vehicle 2");
+  if (file_.surface) print_surface(line);
+  if (!file_.parts.empty()) print_clearance(line);
+  for (const std::string& fault : faults_) line("fault", fault);
+}
+
+void CertificateCheck::print_surface(const Line& line) const {
+  std::size_t spans = 0;
+  for (const planning::SurfaceCertificate& part : file_.surface->parts) {
+    spans += part.from_edge.size();
+  }
+  line("on the surface", fmt::format("{} proven spans from its edge", spans));
+  if (file_.surface->certified_margin_m() > 0.0) {
+    line("certified", fmt::format("{:.3f} m from its edge", file_.surface->certified_margin_m()));
+  }
+}
+
+void CertificateCheck::print_clearance(const Line& line) const {
   line("measured", fmt::format("{:.1f} % of the space that the vehicle takes, {:g} % required",
                                100.0 * file_.measured_fraction(), 100.0 * file_.least_measured));
   std::size_t from_occupied = 0, from_unknown = 0, from_moving = 0;
@@ -248,7 +302,6 @@ void CertificateCheck::print(std::ostream& out) const {
        fmt::format("{} from occupied space, {} from unknown space, {} from dynamic obstacles",
                    from_occupied, from_unknown, from_moving));
   if (is_whole()) line("certified", fmt::format("{:.3f} m", file_.certified_clearance_m()));
-  for (const std::string& fault : faults_) line("fault", fault);
 }
 
 Json CertificateCheck::json() const {
@@ -257,15 +310,19 @@ Json CertificateCheck::json() const {
     files.push_back(
         {{"role", checked.role}, {"file", checked.file.name}, {"sha256", checked.file.sha256}});
   }
-  return {{"roadbed_certificate_check", 1},
-          {"holds", faults_.empty()},
-          {"question", question()},
-          {"verdict", to_string(file_.verdict())},
-          {"certified_clearance_m", file_.certified_clearance_m()},
-          {"measured_share", file_.measured_fraction()},
-          {"least_measured", file_.least_measured},
-          {"files", std::move(files)},
-          {"faults", faults_}};
+  Json json{{"roadbed_certificate_check", 1},
+            {"holds", faults_.empty()},
+            {"question", question()},
+            {"verdict", to_string(file_.verdict())}};
+  if (file_.surface) json["certified_margin_m"] = file_.surface->certified_margin_m();
+  if (!file_.parts.empty()) {
+    json["certified_clearance_m"] = file_.certified_clearance_m();
+    json["measured_share"] = file_.measured_fraction();
+    json["least_measured"] = file_.least_measured;
+  }
+  json["files"] = std::move(files);
+  json["faults"] = faults_;
+  return json;
 }
 
 }  // namespace

@@ -21,7 +21,9 @@ namespace roadbed::tools::inline audit {
 struct CertificateDemands {
   std::filesystem::path occupancy = {}, trajectory = {}, vehicle = {}, map = {}, obstacles = {};
   std::string ground = {};  ///< the words of `--ground`
-  std::optional<double> clearance_m = {}, inflate_m = {}, underside_m = {}, least_measured = {};
+  std::string on = {};      ///< those of `--on`
+  std::optional<double> clearance_m = {}, inflate_m = {}, underside_m = {}, least_measured = {},
+                        margin_m = {};
   std::optional<planning::UnknownPolicy> unknown = {};
 };
 

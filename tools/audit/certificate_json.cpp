@@ -13,12 +13,10 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
-#include "roadbed/map/files/sha256.h"
 #include "roadbed/map/occupancy/ground/ground.h"
-#include "roadbed/map/occupancy/octree/tiles_index.h"
+#include "roadbed/tools/audit/certificate_values.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/obstacles_csv.h"
-#include "roadbed/tools/files/vehicle_file.h"
+#include "roadbed/tools/files/vehicle_json.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline audit {
@@ -35,8 +33,7 @@ using planning::Stretch;
 using planning::UnknownPolicy;
 using planning::Verdict;
 constexpr std::string_view kFormat = "roadbed audit certificate 2", kBody = "body";
-constexpr Range kAny{-1e12, 1e12}, kFraction{0.0, 1.0}, kLength_m{0.0, 200.0}, kCount{0.0, 1e9},
-    kUnderside_m{-100.0, 100.0};
+constexpr Range kUnderside_m{-100.0, 100.0};
 
 constexpr std::array<UnknownPolicy, 3> kPolicies{UnknownPolicy::free, UnknownPolicy::occupied,
                                                  UnknownPolicy::report};
@@ -90,23 +87,9 @@ Json observed_json(const std::vector<ObservedTime>& times) {
   return json;
 }
 
-Json spans_json(const std::vector<ProvenSpan>& spans) {
-  Json json = Json::array();
-  for (const ProvenSpan& span : spans) {
-    json.push_back({span.segment, span.from, span.to, span.at_least_m});
-  }
-  return json;
-}
-
 Json times_json(const std::vector<ProvenTime>& spans) {
   Json json = Json::array();
   for (const ProvenTime& span : spans) json.push_back({span.from_s, span.to_s, span.at_least_m});
-  return json;
-}
-
-Json stretches_json(const std::vector<Stretch>& stretches) {
-  Json json = Json::array();
-  for (const Stretch& stretch : stretches) json.push_back({stretch.from_s, stretch.to_s});
   return json;
 }
 
@@ -136,15 +119,6 @@ std::string text_of(const Json& document) {
                         dumped(member.value()));
   }
   return text + "\n}\n";
-}
-
-std::vector<JsonNode> numbers(const JsonNode& node, std::size_t count) {
-  std::vector<JsonNode> elements = node.elements();
-  if (elements.size() != count) {
-    node.refuse(fmt::format("has {} values", elements.size()), fmt::format("{}", count),
-                "write the certificate anew");
-  }
-  return elements;
 }
 
 template <class Value, std::size_t N>
@@ -238,20 +212,6 @@ std::vector<ObservedTime> read_observed(const JsonNode& node) {
   return times;
 }
 
-std::vector<ProvenSpan> read_spans(const JsonNode& node) {
-  std::vector<ProvenSpan> spans;
-  for (const JsonNode& element : node.elements()) {
-    const std::vector<JsonNode> values = numbers(element, 4);
-    spans.push_back({static_cast<std::size_t>(values[0].number(kCount)),
-                     values[1].number(kFraction), values[2].number(kFraction),
-                     values[3].number(kLength_m)});
-    if (!(spans.back().from < spans.back().to)) {
-      element.refuse("is empty", "a start before its end", "write the certificate anew");
-    }
-  }
-  return spans;
-}
-
 std::vector<ProvenTime> read_times(const JsonNode& node) {
   std::vector<ProvenTime> spans;
   for (const JsonNode& element : node.elements()) {
@@ -259,15 +219,6 @@ std::vector<ProvenTime> read_times(const JsonNode& node) {
     spans.push_back({values[0].number(kAny), values[1].number(kAny), values[2].number(kLength_m)});
   }
   return spans;
-}
-
-std::vector<Stretch> read_stretches(const JsonNode& node) {
-  std::vector<Stretch> stretches;
-  for (const JsonNode& element : node.elements()) {
-    const std::vector<JsonNode> values = numbers(element, 2);
-    stretches.push_back({values[0].number(kAny), values[1].number(kAny)});
-  }
-  return stretches;
 }
 
 std::vector<Conflict> read_conflicts(const JsonNode& node) {
@@ -316,63 +267,9 @@ void read_claims(const JsonNode& node, bool has_moving, AuditCertificate& audit)
   if (has_moving) audit.from_moving = read_times(node.at("from_moving"));
 }
 
-}  // namespace
-
-CertifiedFile certified_file(const std::filesystem::path& file) {
-  if (const auto vehicle = named_vehicle(file.string())) {
-    return {.name = file.string(), .sha256 = map::sha256_of_bytes(measures_text(vehicle->shape))};
-  }
-  const bool is_tiled = map::is_tiled_occupancy(file);
-  return {.name = file.string(),
-          .sha256 = map::sha256_of_file(is_tiled ? map::tiles_index_file(file) : file)};
-}
-
-CertifiedFile hashed_input(const std::filesystem::path& file) {
-  if (!map::is_stream(file)) return certified_file(file);
-  return {.name = map::input_name(file), .sha256 = map::stream_sha256(file)};
-}
-
-CertifiedFile certified_obstacles(const std::filesystem::path& file,
-                                  const std::vector<planning::ObstacleInSource>& obstacles) {
-  return {.name = file.string(), .sha256 = map::sha256_of_bytes(obstacles_text(obstacles))};
-}
-
-Verdict CertificateFile::verdict() const {
-  const bool is_measured = measured_fraction() >= least_measured;
-  for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
-    if (std::ranges::count(parts, grave, &AuditCertificate::verdict) > 0) return grave;
-    if (grave == Verdict::unknown && !is_measured) return grave;
-  }
-  return Verdict::clear;
-}
-
-double CertificateFile::certified_clearance_m() const {
-  return std::ranges::min(parts, {}, &AuditCertificate::certified_clearance_m)
-      .certified_clearance_m;
-}
-
-double CertificateFile::measured_fraction() const {
-  double measured_m3 = 0.0, all_m3 = 0.0;
-  for (const AuditCertificate& part : parts) {
-    const double height_m = part.band.to_m - part.band.from_m - 2.0 * ground.under.margin_m;
-    const double part_m3 = geometry::box_area_m2(part.part) * height_m;
-    measured_m3 += part.measured_fraction * part_m3;
-    all_m3 += part_m3;
-  }
-  return measured_m3 / all_m3;
-}
-
-std::string write_certificate_json(const CertificateFile& file) {
+void add_parts(Json& json, const CertificateFile& file) {
   const AuditCertificate& body = file.parts.front();
   const bool has_moving = file.obstacles.has_value();
-  Json json;
-  json["format"] = kFormat;
-  json["program"] = file.program;
-  json["occupancy"] = file_json(file.occupancy);
-  json["trajectory"] = file_json(file.trajectory);
-  if (has_moving) json["obstacles"] = file_json(*file.obstacles);
-  if (file.vehicle) json["vehicle_file"] = file_json(*file.vehicle);
-  if (file.roads) json["map"] = file_json(*file.roads);
   json["vehicle"] = part_json(body.part);
   json["heights_m"] = {body.band.from_m, body.band.to_m};
   json["underside_m"] = file.underside_m;
@@ -389,6 +286,75 @@ std::string write_certificate_json(const CertificateFile& file) {
     add_claims(part, audit, has_moving);
     json["parts"].push_back(std::move(part));
   }
+}
+
+void read_parts(const JsonNode& node, CertificateFile& file) {
+  const bool has_moving = file.obstacles.has_value();
+  AuditCertificate audit;
+  audit.clearance_m = node.at("clearance_m").number(kLength_m);
+  audit.inflate_m = node.at("inflate_m").number(kLength_m);
+  audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
+  file.least_measured = node.at("least_measured").number(kFraction);
+  file.ground = read_ground(node.at("heights_above"));
+  read_claims(node, has_moving, audit);
+  audit.band.ground = file.ground.under.surface.get();
+  file.parts.push_back(audit);
+  const auto parts = node.find("parts");
+  if (!parts) return;
+  for (const JsonNode& part : parts->elements()) {
+    part.require_object({"vehicle", "heights_m", "verdict", "certified_clearance_m", "conflicts",
+                         "unknown", "undecided", "from_occupied", "from_unknown", "from_moving",
+                         "observed", "measured_share"});
+    read_claims(part, has_moving, audit);
+    audit.band.ground = file.ground.under.surface.get();
+    file.parts.push_back(audit);
+  }
+}
+
+}  // namespace
+
+Verdict CertificateFile::verdict() const {
+  const bool is_measured = parts.empty() || measured_fraction() >= least_measured;
+  for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
+    if (std::ranges::count(parts, grave, &AuditCertificate::verdict) > 0) return grave;
+    if (surface && surface->verdict() == grave) return grave;
+    if (grave == Verdict::unknown && !is_measured) return grave;
+  }
+  return Verdict::clear;
+}
+
+double CertificateFile::certified_clearance_m() const {
+  if (parts.empty()) return 0.0;
+  return std::ranges::min(parts, {}, &AuditCertificate::certified_clearance_m)
+      .certified_clearance_m;
+}
+
+double CertificateFile::measured_fraction() const {
+  double measured_m3 = 0.0, all_m3 = 0.0;
+  for (const AuditCertificate& part : parts) {
+    const double height_m = part.band.to_m - part.band.from_m - 2.0 * ground.under.margin_m;
+    const double part_m3 = geometry::box_area_m2(part.part) * height_m;
+    measured_m3 += part.measured_fraction * part_m3;
+    all_m3 += part_m3;
+  }
+  return measured_m3 / all_m3;
+}
+
+std::string write_certificate_json(const CertificateFile& file) {
+  Json json;
+  json["format"] = kFormat;
+  json["program"] = file.program;
+  if (file.occupancy) json["occupancy"] = file_json(*file.occupancy);
+  json["trajectory"] = file_json(file.trajectory);
+  if (file.obstacles) json["obstacles"] = file_json(*file.obstacles);
+  if (file.vehicle) json["vehicle_file"] = file_json(*file.vehicle);
+  if (file.roads) json["map"] = file_json(*file.roads);
+  if (file.occupancy) {
+    add_parts(json, file);
+  } else {
+    json["underside_m"] = file.underside_m;
+  }
+  if (file.surface) json["surface"] = surface_certificate_json(*file.surface);
   return text_of(json);
 }
 
@@ -420,39 +386,23 @@ CertificateFile parse_certificate_json(std::string_view bytes, const std::string
                        "observed",
                        "measured_share",
                        "vehicle_file",
-                       "map"});
+                       "map",
+                       "surface"});
   if (const JsonNode format = node.at("format"); format.text() != kFormat) {
     format.refuse(fmt::format("is \"{}\"", format.text()), fmt::format("\"{}\"", kFormat),
                   "write the certificate with this version of roadbed");
   }
   CertificateFile file{.program = node.at("program").one_line(),
-                       .occupancy = read_file_entry(node.at("occupancy")),
                        .trajectory = read_file_entry(node.at("trajectory")),
                        .parts = {}};
+  if (const auto surface = node.find("surface")) file.surface = read_surface_certificate(*surface);
+  const bool has_occupancy = !file.surface || node.find("occupancy");
+  if (has_occupancy) file.occupancy = read_file_entry(node.at("occupancy"));
   if (const auto obstacles = node.find("obstacles")) file.obstacles = read_file_entry(*obstacles);
   if (const auto vehicle = node.find("vehicle_file")) file.vehicle = read_file_entry(*vehicle);
   if (const auto roads = node.find("map")) file.roads = read_file_entry(*roads);
-  const bool has_moving = file.obstacles.has_value();
-  AuditCertificate audit;
-  audit.clearance_m = node.at("clearance_m").number(kLength_m);
-  audit.inflate_m = node.at("inflate_m").number(kLength_m);
-  audit.unknown_policy = one_of(node.at("unknown_counts_as"), kPolicies);
-  file.least_measured = node.at("least_measured").number(kFraction);
   file.underside_m = node.at("underside_m").number(kUnderside_m);
-  file.ground = read_ground(node.at("heights_above"));
-  read_claims(node, has_moving, audit);
-  audit.band.ground = file.ground.under.surface.get();
-  file.parts.push_back(audit);
-  if (const auto parts = node.find("parts")) {
-    for (const JsonNode& part : parts->elements()) {
-      part.require_object({"vehicle", "heights_m", "verdict", "certified_clearance_m", "conflicts",
-                           "unknown", "undecided", "from_occupied", "from_unknown", "from_moving",
-                           "observed", "measured_share"});
-      read_claims(part, has_moving, audit);
-      audit.band.ground = file.ground.under.surface.get();
-      file.parts.push_back(audit);
-    }
-  }
+  if (has_occupancy) read_parts(node, file);
   return file;
 }
 
@@ -463,8 +413,10 @@ CertificateFile read_certificate_json(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> files_named_by_certificate(const std::filesystem::path& file) {
   try {
     const CertificateFile read = read_certificate_json(file);
-    std::vector<std::filesystem::path> files{read.occupancy.name, read.trajectory.name};
-    for (const auto& named : {read.vehicle, read.roads, read.obstacles}) {
+    std::vector<std::filesystem::path> files{read.trajectory.name};
+    const auto of_surface = read.surface ? read.surface->file : std::nullopt;
+    for (const auto& named :
+         {read.occupancy, read.vehicle, read.roads, read.obstacles, of_surface}) {
       if (named) files.emplace_back(named->name);
     }
     if (!read.obstacles) return files;

@@ -10,22 +10,10 @@
 #include "roadbed/map/occupancy/ground/ground.h"
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/ground_under.h"
+#include "roadbed/tools/audit/certified_file.h"
+#include "roadbed/tools/audit/surface_certificate_json.h"
 
 namespace roadbed::tools::inline audit {
-
-/// A file that a certificate speaks of. What it proves, it proves of a file of this hash.
-struct CertifiedFile {
-  std::string name;    ///< as it was given on the command line
-  std::string sha256;  ///< of its bytes, hexadecimal
-};
-
-/// Of a folder of tiles the hash is that of its index, which holds those of the tiles; of a vehicle
-/// that is named (vehicle_file.h) that of its measures.
-/// @throws InputError for a stream, which nobody can hash again, and as map::read_file does.
-CertifiedFile certified_file(const std::filesystem::path& file);
-
-/// The same for what is only shown: of a stream, too, the hash of what it gave.
-CertifiedFile hashed_input(const std::filesystem::path& file);
 
 /// What the heights of a vehicle were above, and where that was taken from.
 struct CertifiedGround {
@@ -35,8 +23,9 @@ struct CertifiedGround {
 
 /// A certificate with its inputs, as it stands in a file.
 struct CertificateFile {
-  std::string program;  ///< name and version of what wrote it
-  CertifiedFile occupancy, trajectory;
+  std::string program;                          ///< name and version of what wrote it
+  std::optional<CertifiedFile> occupancy = {};  ///< none: it is about the surface only
+  CertifiedFile trajectory = {};
   /// Of dynamic obstacles, if there are any; the hash is that of the obstacles, not of the file's
   /// bytes, since a scenario names other files.
   std::optional<CertifiedFile> obstacles = {};
@@ -46,17 +35,16 @@ struct CertificateFile {
   CertifiedGround ground = {};  ///< what the parts' bands are above
   double least_measured = 0.0;  ///< required of `measured_fraction`
   /// One for each part of the vehicle, the body first; all of one question but for their heights.
+  /// None without an occupancy.
   std::vector<planning::AuditCertificate> parts;
+  std::optional<CertifiedSurface> surface = {};  ///< that the drive has to stay on
 
   planning::Verdict verdict() const;  ///< the gravest; unknown where too little was measured
-  /// The least of all; 0 if that of one is not certified.
+  /// The least of all; 0 if that of one is not certified, or without an occupancy.
   double certified_clearance_m() const;
   /// Mean over the parts, by the space that they take.
   double measured_fraction() const;
 };
-
-CertifiedFile certified_obstacles(const std::filesystem::path& file,
-                                  const std::vector<planning::ObstacleInSource>& obstacles);
 
 /// The JSON of a certificate; reading it gives the same numbers, bit for bit. A span is written as
 /// `[segment, from, to, at_least_m]`, a stretch as `[from_s, to_s]`, an observed time as `[from_s,

@@ -78,8 +78,12 @@ JobVerdict audit_verdict(const json& document) {
     return {fmt::format("{}, {} of {} drives are not clear", verdict, drives - clear, drives),
             static_cast<double>(drives - clear)};
   }
-  const double least_m = document.at("least_clearance_m").get<double>();
-  return {fmt::format("{}, least clearance {:.3f} m", verdict, least_m), -least_m};
+  const bool has_occupancy = document.contains("least_clearance_m");
+  const double least_m = has_occupancy ? document.at("least_clearance_m").get<double>()
+                                       : document.at("surface").at("least_margin_m").get<double>();
+  return {fmt::format("{}, least {} {:.3f} m", verdict, has_occupancy ? "clearance" : "margin",
+                      least_m),
+          -least_m};
 }
 
 using Reader = JobVerdict (*)(const json& document);

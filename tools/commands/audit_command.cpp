@@ -22,6 +22,7 @@
 #include "roadbed/tools/audit/audited_drive.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/audit/road_audit.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/audit_frames.h"
@@ -46,7 +47,8 @@ class AuditCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description(
-        "Prove that drives keep clear of occupied space, or show where they do not");
+        "Prove that drives keep clear of occupied space and on the road, or show where they do "
+        "not");
     arguments
         .add("--occupancy", occupancy_,
              "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
@@ -60,7 +62,8 @@ class AuditCommand : public Command {
              std::string("Vehicle: ") + kVehicleSyntax + "; default: commonroad:2")
         .reads()
         .ending(".json .yaml");
-    arguments.add("--map", map_, "Map of the roads: checks that the frames agree, and is drawn")
+    arguments
+        .add("--map", map_, "Map of the roads: what --on is about; checks that frames agree; drawn")
         .reads()
         .ending(kMapEndings);
     arguments
@@ -73,6 +76,7 @@ class AuditCommand : public Command {
         .reads(files_named_by_scenario)
         .ending(".json .xml .csv");
     declare_question(arguments);
+    declare_road(arguments);
     declare_outputs(arguments, not_with_check);
     arguments.require([this] { return missing(); });
     arguments.says_no_if("a drive is not clear, or the certificate does not hold");
@@ -81,7 +85,9 @@ class AuditCommand : public Command {
         "--certificate proof.json\n"
         "  roadbed audit --check proof.json --vehicle car.json --clearance 0.3\n"
         "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
-        "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3");
+        "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3\n"
+        "  roadbed audit --map town.xodr --on drivable --margin 0.1 --trajectory "
+        "drive/trajectory.csv");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -99,8 +105,10 @@ class AuditCommand : public Command {
     std::shared_ptr<const map::RoadMap> road_map;
     if (!map_.empty()) road_map = inputs_->road_map(map_);
     question.ground = ground_rule(ground_, road_map.get());
+    const RoadQuestion road = on_.empty() ? RoadQuestion{} : road_question(road_map.get());
     const std::vector<AuditSubject> subjects = subjects_.list(road_map.get());
-    const Scene scene = make_scene(road_map.get(), vehicle.shape, streams, common);
+    Scene scene = make_scene(road_map.get(), vehicle.shape, streams, common);
+    if (!on_.empty()) scene.road = &road;
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
                                  : run_one(subjects.front(), question, scene, streams, common);
   }
@@ -108,9 +116,18 @@ class AuditCommand : public Command {
  private:
   /// What all drives are audited against.
   struct Scene {
-    std::shared_ptr<const map::OccupancySource> occupancy;
+    std::shared_ptr<const map::OccupancySource> occupancy;  // null: the road only
     const map::RoadMap* road_map;
     geometry::VehicleShape shape;
+    const RoadQuestion* road = nullptr;  // null: the occupancy only
+
+    std::string crs() const {
+      if (occupancy) return occupancy->crs();
+      return road_map == nullptr ? std::string() : road_map->crs();
+    }
+    AuditDemand demand(const AuditQuestion& question) const {
+      return {.occupancy = occupancy.get(), .question = question, .road = road};
+    }
   };
 
   // Beside --check it is what a certificate has to be about.
@@ -157,6 +174,65 @@ class AuditCommand : public Command {
             .with_default();
   }
 
+  void declare_road(Arguments& arguments) {
+    arguments.heading("Road");
+    arguments
+        .add("--on", on_,
+             "What the whole body has to stay on, between the rows too: drivable (drivable lanes "
+             "and road areas of --map), surface (with shoulders, stops, parking, bus and taxi "
+             "lanes), lanes (those that the drive is along in their direction, and those beside "
+             "them), route:F.json (lanes that route --json printed), or area:F.geojson (polygons "
+             "in the drive's coordinates). Needs no --occupancy")
+        .checked(surface_words_fault);
+    margin_argument_ =
+        arguments.add("--margin", margin_m_, "Least distance from the body to the edge of --on [m]")
+            .within(0.0, 0.5 * planning::kSurfaceHorizon_m)
+            .with_default();
+    arguments
+        .add("--seam", seam_m_,
+             "Points of the map this near to each other are one for --on: gaps of maps that do not "
+             "meet exactly are no holes [m]")
+        .within(0.0, 0.1)
+        .with_default();
+    arguments
+        .add("--rules", rules_,
+             "Traffic rules that count in the verdict, with commas: markings (solid ones are not "
+             "crossed), direction, speed, lights (none is passed at red, as far as a CommonRoad "
+             "map or the scenario of --obstacles says what they show), or all. With --on and "
+             "--map each has a verdict of its own either way")
+        .checked(rules_fault);
+  }
+
+  static std::vector<planning::TrafficRule> rules_of(const std::string& words) {
+    std::vector<planning::TrafficRule> rules;
+    for (const planning::TrafficRule rule : planning::kTrafficRules) {
+      const auto name = "," + std::string(planning::to_string(rule)) + ",";
+      if (words == "all" || ("," + words + ",").find(name) != std::string::npos) {
+        rules.push_back(rule);
+      }
+    }
+    return rules;
+  }
+
+  static std::string rules_fault(const std::string& words) {
+    if (words == "all") return {};
+    const auto count = 1 + std::ranges::count(words, ',');
+    const auto known = static_cast<std::ptrdiff_t>(rules_of(words).size());
+    return count == known ? "" : "is not all, nor of markings, direction, speed and lights";
+  }
+
+  RoadQuestion road_question(const map::RoadMap* road_map) const {
+    RoadQuestion road{.on = on_, .surface = surface_rule(on_, road_map), .margin_m = margin_m_};
+    road.surface.seam_m = seam_m_;
+    road.made = made_surface(road.surface);
+    road.counted = rules_of(rules_);
+    for (const auto& file : {map_, obstacles_}) {
+      const std::vector<planning::LightCycle> lights = recorded_lights(file);
+      road.lights.insert(road.lights.end(), lights.begin(), lights.end());
+    }
+    return road;
+  }
+
   // Only what the command line says.
   CertificateDemands demands() const {
     const auto if_given = [](const std::optional<Argument>& argument, auto value) {
@@ -168,10 +244,12 @@ class AuditCommand : public Command {
             .map = map_,
             .obstacles = obstacles_,
             .ground = ground_,
+            .on = on_,
             .clearance_m = if_given(clearance_argument_, options_.clearance_m),
             .inflate_m = if_given(inflate_argument_, options_.inflate_m),
             .underside_m = if_given(from_height_argument_, from_height_m_),
             .least_measured = if_given(least_measured_argument_, options_.least_measured),
+            .margin_m = if_given(margin_argument_, margin_m_),
             .unknown = if_given(unknown_argument_, options_.unknown)};
   }
 
@@ -221,7 +299,14 @@ class AuditCommand : public Command {
   std::string missing() const {
     if (!check_.empty()) return {};
     if (ground_ == "map" && map_.empty()) return "--ground map needs --map";
-    if (occupancy_.empty()) return "--occupancy is required";
+    if (occupancy_.empty() && on_.empty()) return "--occupancy or --on is required";
+    if (on_.empty() && (margin_argument_->given() || !rules_.empty())) {
+      return "--margin and --rules need --on";
+    }
+    const bool is_area = !on_.empty() && on_.starts_with("area:");
+    if (!on_.empty() && !is_area && map_.empty()) return "--on " + on_ + " needs --map";
+    if (!rules_.empty() && map_.empty()) return "--rules needs --map";
+    if (occupancy_.empty() && !ground_.empty()) return "--ground needs --occupancy";
     if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
     if (!subjects_.is_swept()) {
       return saved_drive_.empty() ? "" : "--save-drive needs --lane, or --from and --to";
@@ -242,7 +327,8 @@ class AuditCommand : public Command {
 
   Scene make_scene(const map::RoadMap* road_map, const geometry::VehicleShape& shape,
                    const Streams& streams, const CommonOptions& common) const {
-    Scene scene{inputs_->occupancy(occupancy_), road_map, shape};
+    Scene scene{occupancy_.empty() ? nullptr : inputs_->occupancy(occupancy_), road_map, shape};
+    if (!scene.occupancy) return scene;
     if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
       fmt::print(streams.err,
                  "note: {} was built with --remove-seen-through {}: {} cells with points count as "
@@ -267,8 +353,8 @@ class AuditCommand : public Command {
                              .remedy = "give one file"});
     }
     ProgressBar progress(subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
-    const std::vector<AuditedDrive> audits = audit_all(
-        *scene.occupancy, subjects, question, common.threads, [&] { progress.done_one(); });
+    const std::vector<AuditedDrive> audits =
+        audit_all(scene.demand(question), subjects, common.threads, [&] { progress.done_one(); });
     for (const AuditedDrive& audited : audits) {
       if (!common.quiet && audited.fault.empty()) note_curvature(audited, scene, streams.err);
     }
@@ -292,27 +378,27 @@ class AuditCommand : public Command {
                const Streams& streams, const CommonOptions& common) const {
     AuditedDrive audited{.name = subject.name, .drive = subject.drive()};
     if (!common.quiet) note_curvature(audited, scene, streams.err);
-    audited.audit = planning::audit_drive(
-        *scene.occupancy, audited.drive, question, [&](const planning::GroundUnder& ground) {
-          if (common.quiet) return;
-          streams.err << ground_note(ground, question, scene.occupancy->resolution_m());
-        });
+    audit_one(scene.demand(question), audited, [&](const planning::GroundUnder& ground) {
+      if (common.quiet) return;
+      streams.err << ground_note(ground, question, scene.occupancy->resolution_m());
+    });
     if (!saved_drive_.empty())
       map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
     write_picture(audited, question, scene);
     write_report(audited, question, scene);
-    write_certificate(audited.audit, question);
+    write_certificate(audited, question, scene);
     write_files({audited}, question, scene);
     if (json_) {
       streams.out << text_of_json(versioned("audit", with_removal(audit_json(audited), scene)));
     } else {
-      streams.out << audit_text(audited.audit.report);
+      streams.out << audit_text(audited);
     }
     return audited.is_clear() ? Exit::ok : Exit::no;
   }
 
   static nlohmann::ordered_json with_removal(nlohmann::ordered_json json, const Scene& scene) {
-    if (const auto removed = scene.occupancy->seen_through()) {
+    const auto removed = scene.occupancy ? scene.occupancy->seen_through() : std::nullopt;
+    if (removed) {
       json["occupancy_seen_through"] = {{"clouds", removed->clouds},
                                         {"removed_cells", removed->cells}};
     }
@@ -347,13 +433,33 @@ class AuditCommand : public Command {
   void write_picture(const AuditedDrive& audited, const AuditQuestion& question,
                      const Scene& scene) const {
     if (svg_.empty()) return;
-    const map::HeightBand heights = question.heights(audited.audit.ground);
+    const planning::AuditReport whole = audited.whole();
     map::write_output(
         svg_,
-        audit_svg({audited.drive, question.inflated_parts(), audited.audit.report,
-                   occupied_boxes(*scene.occupancy, heights, drawn(audited, question)),
-                   drawn_lanes(audited, question, scene), question.moving_in_source}),
+        audit_svg({audited.drive, question.inflated_parts(), whole,
+                   occupied_around(audited, question, scene),
+                   drawn_ground(audited, question, scene), question.moving_in_source}),
         force_);
+  }
+
+  std::vector<map::Box2> occupied_around(const AuditedDrive& audited, const AuditQuestion& question,
+                                         const Scene& scene) const {
+    if (!scene.occupancy) return {};
+    return occupied_boxes(*scene.occupancy, question.heights(audited.audit.ground),
+                          drawn(audited, question));
+  }
+
+  // The surface that the drive has to stay on; else lanes.
+  std::vector<geometry::Ring> drawn_ground(const AuditedDrive& audited,
+                                           const AuditQuestion& question,
+                                           const Scene& scene) const {
+    if (!audited.road) return drawn_lanes(audited, question, scene);
+    std::vector<geometry::Ring> rings;
+    for (const geometry::Polygon& polygon : audited.road->made->polygons_in_source) {
+      rings.push_back(polygon.outer);
+      rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+    }
+    return rings;
   }
 
   // The vehicle's rectangle, grown by the margin on every side.
@@ -368,27 +474,32 @@ class AuditCommand : public Command {
   void write_report(const AuditedDrive& audited, const AuditQuestion& question,
                     const Scene& scene) const {
     if (report_.empty()) return;
-    const map::HeightBand heights = question.heights(audited.audit.ground);
     const map::Box2 around = drawn(audited, question);
     const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
     AuditSurroundings page{.name = audited.name,
                            .body = inflated(scene.shape),
                            .parts = question.inflated_parts(),
                            .clearance_m = options_.clearance_m,
-                           .occupied = occupied_in(*scene.occupancy, heights, box),
+                           .occupied = {},
                            .lanes = {},
                            .moving = question.moving_in_source,
-                           .command = "roadbed audit --occupancy " + occupancy_.string(),
+                           .command = "roadbed audit " + against(),
                            .version = name_and_version(),
-                           .crs = scene.occupancy->crs(),
-                           .sources = {source("occupancy", hashed_once(occupancy_))}};
+                           .crs = scene.crs(),
+                           .sources = {}};
+    if (scene.occupancy) {
+      page.occupied = occupied_in(*scene.occupancy, question.heights(audited.audit.ground), box);
+      page.sources.push_back(source("occupancy", hashed_once(occupancy_)));
+    } else {
+      page.clearance_m = margin_m_;
+      if (!map_.empty()) page.sources.push_back(source("map", hashed_once(map_)));
+    }
     if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
     if (!subjects_.is_swept()) {
       page.sources.push_back(source("trajectory", hashed_input(subjects_.file())));
     }
-    map::write_output(report_,
-                      drive_report_html(report_of_audit(audited.drive, audited.audit.report, page)),
-                      force_);
+    map::write_output(
+        report_, drive_report_html(report_of_audit(audited.drive, audited.whole(), page)), force_);
   }
 
   void write_index(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
@@ -399,14 +510,27 @@ class AuditCommand : public Command {
     for (const AuditedDrive& audited : audits) {
       index.push_back(indexed(audited));
       if (!audited.fault.empty()) continue;
-      const auto occupied = occupied_boxes(*scene.occupancy, question.heights(audited.audit.ground),
-                                           drawn(audited, question));
-      const std::vector<geometry::Ring> lanes = drawn_lanes(audited, question, scene);
+      const auto occupied = occupied_around(audited, question, scene);
+      const std::vector<geometry::Ring> lanes = drawn_ground(audited, question, scene);
       index.back().pictures = close_ups(
-          audited.audit.report, {audited.drive, parts, occupied, lanes, question.moving_in_source});
+          audited.whole(), {audited.drive, parts, occupied, lanes, question.moving_in_source});
     }
-    map::write_output(report_, audit_index_html(index, occupancy_.string(), name_and_version()),
-                      force_);
+    map::write_output(report_, audit_index_html(index, suite(), name_and_version()), force_);
+  }
+
+  // "--occupancy street.bt --on drivable", as one would type it.
+  std::string against() const {
+    std::string words;
+    if (!occupancy_.empty()) words = "--occupancy " + occupancy_.string();
+    if (!on_.empty()) words += (words.empty() ? "--on " : " --on ") + on_;
+    if (occupancy_.empty() && !map_.empty()) words += " --map " + map_.string();
+    return words;
+  }
+
+  // What drives were audited against, by name.
+  std::string suite() const {
+    if (!occupancy_.empty()) return occupancy_.string();
+    return map_.empty() ? on_ : map_.string();
   }
 
   static ReportSource source(const char* role, const CertifiedFile& file) {
@@ -427,30 +551,31 @@ class AuditCommand : public Command {
     }
   }
 
-  void write_certificate(const planning::DriveAudit& audit, const AuditQuestion& question) const {
+  void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
+                         const Scene& scene) const {
     if (certificate_.empty()) return;
     const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
     CertificateFile file{.program = name_and_version(),
-                         .occupancy = hashed_once(occupancy_),
                          .trajectory = certified_file(drive),
                          .underside_m = from_height_m_,
-                         .ground = {question.ground.kind, audit.ground},
+                         .ground = {question.ground.kind, audited.audit.ground},
                          .least_measured = options_.least_measured,
-                         .parts = audit.certificates};
-    if (!obstacles_.empty()) {
+                         .parts = audited.audit.certificates};
+    if (scene.occupancy) file.occupancy = hashed_once(occupancy_);
+    if (!obstacles_.empty() && scene.occupancy) {
       file.obstacles = certified_obstacles(obstacles_, question.moving_in_source);
     }
     if (!vehicle_.empty()) file.vehicle = certified_file(vehicle_);
     if (!map_.empty()) file.roads = hashed_once(map_);
+    if (audited.road) file.surface = certified_surface(*audited.road, options_.inflate_m);
     map::write_output(certificate_, write_certificate_json(file), force_);
   }
 
   void write_files(const std::vector<AuditedDrive>& audits, const AuditQuestion& question,
                    const Scene& scene) const {
-    if (!junit_.empty())
-      map::write_output(junit_, audits_junit(audits, occupancy_.string()), force_);
+    if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, suite()), force_);
     if (!geojson_.empty()) {
-      map::write_output(geojson_, audits_geojson(audits, question, scene.occupancy->crs()), force_);
+      map::write_output(geojson_, audits_geojson(audits, question, scene.crs()), force_);
     }
   }
 
@@ -464,6 +589,9 @@ class AuditCommand : public Command {
   planning::AuditOptions options_;
   std::string ground_;
   double from_height_m_ = map::HeightBand{}.from_m;
+  std::optional<Argument> margin_argument_;
+  std::string on_, rules_;
+  double margin_m_ = 0.0, seam_m_ = planning::SurfaceRule{}.seam_m;
   bool json_ = false, force_ = false;
 };
 

@@ -16,19 +16,51 @@ namespace {
 
 using Eigen::Vector2d;
 
-std::string audit_case(const AuditedDrive& audited, const std::string& occupancy) {
-  std::string text = fmt::format(R"(    <testcase classname="{}" name="{}")",
-                                 map::html_text(occupancy), map::html_text(audited.name));
-  if (!audited.fault.empty()) {
-    return text + fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n",
-                              map::html_text(audited.fault));
+// A test case with the text of what was found.
+std::string test_case(const std::string& suite, const std::string& name, std::string_view outcome,
+                      const std::string& text) {
+  const std::string head = fmt::format(R"(    <testcase classname="{}" name="{}")",
+                                       map::html_text(suite), map::html_text(name));
+  const std::string found = map::html_text(text);
+  if (outcome == "clear") {
+    return head + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", found);
   }
-  const std::string report = map::html_text(audit_text(audited.audit.report));
-  if (audited.is_clear()) {
-    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", report);
+  if (outcome == "unusable") {
+    return head + fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n", found);
   }
-  return text + fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                            audited.outcome(), report);
+  if (outcome == "skipped") {
+    return head + fmt::format(">\n      <skipped message=\"{}\"/>\n    </testcase>\n", found);
+  }
+  return head + fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                            outcome, found);
+}
+
+/// A suite of test cases, counted.
+struct Cases {
+  std::string text;
+  std::ptrdiff_t all = 0, failed = 0, unusable = 0, skipped = 0;
+
+  void add(const std::string& suite, const std::string& name, std::string_view outcome,
+           const std::string& found) {
+    text += test_case(suite, name, outcome, found);
+    ++all;
+    unusable += outcome == "unusable";
+    skipped += outcome == "skipped";
+    failed += outcome != "unusable" && outcome != "clear" && outcome != "skipped";
+  }
+};
+
+void add_road(const std::string& suite, const AuditedDrive& audited, Cases& cases) {
+  const RoadAudit& road = *audited.road;
+  cases.add(suite, fmt::format("{}: on {}", audited.name, road.on),
+            planning::to_string(road.surface.verdict), surface_text(road));
+  for (const planning::RuleReport& rule : road.rules) {
+    const bool counts = std::ranges::count(road.counted, rule.rule) > 0;
+    // What the map does not say is no failure, unless it was asked for.
+    const bool is_skipped = rule.verdict == planning::Verdict::unknown && !counts;
+    cases.add(suite, fmt::format("{}: {}", audited.name, planning::to_string(rule.rule)),
+              is_skipped ? "skipped" : planning::to_string(rule.verdict), rule_text(rule, counts));
+  }
 }
 
 Json position(const Vector2d& point) { return Json::array({point.x(), point.y()}); }
@@ -94,18 +126,36 @@ void add_conflict(Json& features, const AuditedDrive& audited, const planning::C
       std::move(witness)));
 }
 
+// The outlines of all parts where they are farthest out, and the point that is.
+void add_excursion(Json& features, const AuditedDrive& audited, const planning::Excursion& out,
+                   const std::vector<geometry::BodyPart>& parts) {
+  const Json about = {
+      {"drive", audited.name},  {"kind", "excursion"}, {"from_s", out.from_s},
+      {"to_s", out.to_s},       {"at_s", out.at.t_s},  {"margin_m", out.least_margin_m},
+      {"depth_m", out.depth_m}, {"part", out.part},    {"onto", planning::text_of(out.onto)}};
+  features.push_back(feature(outlines(parts, out.at.pose()), about));
+  Json place = about;
+  place["kind"] = "excursion point";
+  features.push_back(feature({{"type", "Point"}, {"coordinates", position(out.point_in_source)}},
+                             std::move(place)));
+}
+
 }  // namespace
 
-std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& occupancy) {
-  const auto errors = std::ranges::count(audits, "unusable", &AuditedDrive::outcome);
-  const auto clear = std::ranges::count(audits, true, &AuditedDrive::is_clear);
-  const auto all = static_cast<std::ptrdiff_t>(audits.size());
-  std::string text = fmt::format(
+std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& name) {
+  Cases cases;
+  for (const AuditedDrive& audited : audits) {
+    const bool is_usable = audited.fault.empty();
+    cases.add(name, audited.name, audited.outcome(),
+              is_usable ? audit_text(audited) : audited.fault);
+    if (is_usable && audited.road) add_road(name, audited, cases);
+  }
+  return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-      "  <testsuite name=\"roadbed audit {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
-      map::html_text(occupancy), all, all - clear - errors, errors);
-  for (const AuditedDrive& audited : audits) text += audit_case(audited, occupancy);
-  return text + "  </testsuite>\n</testsuites>\n";
+      "  <testsuite name=\"roadbed audit {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\"{}>\n"
+      "{}  </testsuite>\n</testsuites>\n",
+      map::html_text(name), cases.all, cases.failed, cases.unusable,
+      cases.skipped > 0 ? fmt::format(" skipped=\"{}\"", cases.skipped) : "", cases.text);
 }
 
 std::string audits_geojson(const std::vector<AuditedDrive>& audits,
@@ -115,9 +165,13 @@ std::string audits_geojson(const std::vector<AuditedDrive>& audits,
   for (const AuditedDrive& audited : audits) {
     if (!audited.fault.empty()) continue;
     const geometry::Trajectory& drive = audited.drive;
-    for (const auto& stretch :
-         judged_stretches(audited.audit.report, drive.start_s(), drive.end_s())) {
+    for (const auto& stretch : judged_stretches(audited.whole(), drive.start_s(), drive.end_s())) {
       features.push_back(stretch_feature(audited, stretch));
+    }
+    if (audited.road) {
+      for (const planning::Excursion& out : audited.road->surface.conflicts) {
+        add_excursion(features, audited, out, parts);
+      }
     }
     for (const planning::Conflict& conflict : audited.audit.report.conflicts) {
       add_conflict(features, audited, conflict, parts);

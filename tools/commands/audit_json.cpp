@@ -59,11 +59,9 @@ Json conflict_json(const planning::Conflict& conflict, const geometry::Trajector
           {"witness", box_json(conflict.witness)}};
 }
 
-Json judged_json(const AuditedDrive& audited) {
+Json judged_json(const std::vector<planning::JudgedStretch>& stretches) {
   Json json = Json::array();
-  const geometry::Trajectory& drive = audited.drive;
-  for (const planning::JudgedStretch& stretch :
-       judged_stretches(audited.audit.report, drive.start_s(), drive.end_s())) {
+  for (const planning::JudgedStretch& stretch : stretches) {
     json.push_back({{"from_s", stretch.from_s},
                     {"to_s", stretch.to_s},
                     {"verdict", planning::to_string(stretch.verdict)}});
@@ -121,6 +119,70 @@ std::string conflict_text(const planning::Conflict& conflict) {
                      thing, place, deepest.overlap.depth_m, deepest.overlap.area_m2, deepest.at_s);
 }
 
+Json point_json(const Eigen::Vector2d& point) { return {{"x_m", point.x()}, {"y_m", point.y()}}; }
+
+Json excursion_json(const planning::Excursion& out) {
+  return {{"from_s", out.from_s},
+          {"to_s", out.to_s},
+          {"from", state_json(out.from)},
+          {"at", state_json(out.at)},
+          {"least_margin_m", out.least_margin_m},
+          {"depth_m", out.depth_m},
+          {"part", out.part},
+          {"point", point_json(out.point_in_source)},
+          {"edge", point_json(out.edge_in_source)},
+          {"onto",
+           {{"kind", planning::to_string(out.onto.kind)},
+            {"name", id_json(out.onto.name)},
+            {"type", id_json(out.onto.type)}}}};
+}
+
+Json surface_json(const RoadAudit& road, const geometry::Trajectory& drive) {
+  const planning::SurfaceReport& surface = road.surface;
+  Json excursions = Json::array();
+  for (const planning::Excursion& out : surface.conflicts) {
+    excursions.push_back(excursion_json(out));
+  }
+  return {{"on", road.on},
+          {"verdict", planning::to_string(surface.verdict)},
+          {"margin_m", road.margin_m},
+          {"seam_m", road.seam_m},
+          {"least_margin_m", surface.least_margin_m},
+          {"proven_margin_m", surface.proven_margin_m},
+          {"least_margin_at_s", surface.least_margin_at_s},
+          {"beyond_horizon", surface.beyond_horizon},
+          {"part", surface.beyond_horizon ? Json() : Json(surface.part)},
+          {"edge", surface.beyond_horizon ? Json() : point_json(surface.edge_in_source)},
+          {"excursions", std::move(excursions)},
+          {"undecided", times_json(surface.undecided)},
+          {"stretches", judged_json(judged_stretches(surface, drive.start_s(), drive.end_s()))}};
+}
+
+bool counts(const RoadAudit& road, planning::TrafficRule rule) {
+  return std::ranges::count(road.counted, rule) > 0;
+}
+
+Json rules_json(const RoadAudit& road) {
+  Json json = Json::object();
+  for (const planning::RuleReport& rule : road.rules) {
+    Json violations = Json::array();
+    for (const planning::Violation& one : rule.violations) {
+      violations.push_back({{"from_s", one.from_s},
+                            {"to_s", one.to_s},
+                            {"at", state_json(one.at)},
+                            {"lane", one.lane},
+                            {"text", one.text}});
+    }
+    json[std::string(planning::to_string(rule.rule))] = {
+        {"verdict", planning::to_string(rule.verdict)},
+        {"counts", counts(road, rule.rule)},
+        {"violations", std::move(violations)},
+        {"unknown", times_json(rule.unknown)},
+        {"reason", id_json(rule.reason)}};
+  }
+  return json;
+}
+
 // Those of which not all is said by a reason.
 std::vector<planning::Stretch> unknown_besides(const planning::AuditReport& report) {
   if (!report.is_measured_enough()) return {};
@@ -155,7 +217,7 @@ std::string_view gravest(const std::vector<AuditedDrive>& audits) {
 std::string table_row(const AuditedDrive& audited, std::size_t width) {
   const std::string head = fmt::format("{:<{}}  {:<9}", audited.name, width, audited.outcome());
   if (!audited.fault.empty()) return fmt::format("{}  {}\n", head, audited.fault);
-  const planning::AuditReport& report = audited.audit.report;
+  const planning::AuditReport report = audited.whole();
   std::string conflict;
   if (!report.conflicts.empty()) {
     const geometry::TrajectoryPoint from = audited.drive.at(report.conflicts.front().from_s);
@@ -170,12 +232,8 @@ std::string table_row(const AuditedDrive& audited, std::size_t width) {
   return row + "\n";
 }
 
-}  // namespace
-
-Json audit_json(const AuditedDrive& audited) {
+void add_clearance(const AuditedDrive& audited, Json& json) {
   const planning::AuditReport& report = audited.audit.report;
-  Json json;
-  json["verdict"] = std::string(to_string(report.verdict));
   json["least_clearance_m"] = report.least_clearance_m;
   json["proven_clearance_m"] = report.proven_clearance_m;
   json["least_clearance_at_s"] = report.least_clearance_at_s;
@@ -192,13 +250,10 @@ Json audit_json(const AuditedDrive& audited) {
   json["unknown"] = times_json(report.unknown);
   json["unobserved"] = unobserved_json(report.unobserved);
   json["undecided"] = times_json(report.undecided);
-  json["stretches"] = judged_json(audited);
-  return json;
 }
 
-std::string audit_text(const planning::AuditReport& report) {
-  std::string text = fmt::format("{:<17}{}\n", "verdict", to_string(report.verdict));
-  text += fmt::format("{:<17}", "least clearance") + least_text(report);
+std::string clearance_text(const planning::AuditReport& report) {
+  std::string text = fmt::format("{:<17}", "least clearance") + least_text(report);
   text += fmt::format("{:<17}{:.1f} % of the space that the vehicle takes{}\n", "not measured",
                       100.0 * report.unknown_fraction, demand_text(report));
   for (const planning::Conflict& conflict : report.conflicts) {
@@ -219,6 +274,91 @@ std::string audit_text(const planning::AuditReport& report) {
   for (const planning::Stretch& stretch : report.undecided) {
     text += fmt::format("{:<17}{:.3f} s to {:.3f} s: within 1 mm of the clearance asked for\n",
                         "undecided", stretch.from_s, stretch.to_s);
+  }
+  return text;
+}
+
+std::string margin_text(const planning::SurfaceReport& surface) {
+  if (surface.beyond_horizon) {
+    return surface.verdict == planning::Verdict::conflict
+               ? "nowhere near"
+               : fmt::format("over {} m from its edge all along", planning::kSurfaceHorizon_m);
+  }
+  if (surface.least_margin_m == 0.0) {
+    return fmt::format("off it at {:.3f} s, {}", surface.least_margin_at_s, surface.part);
+  }
+  return fmt::format(
+      "least margin {:.3f} m at {:.3f} s, {}, from its edge at ({:.2f}, {:.2f}); "
+      "nowhere under {:.3f} m",
+      surface.least_margin_m, surface.least_margin_at_s, surface.part, surface.edge_in_source.x(),
+      surface.edge_in_source.y(), surface.proven_margin_m);
+}
+
+// "off 1.2 s to 3.4 s: from (1.00, 2.00); front left corner 0.812 m off at 2.1 s, at (…), onto …".
+std::string excursion_text(const planning::Excursion& out) {
+  const bool is_off = out.depth_m > 0.0;
+  return fmt::format(
+      "{:<17}{:.3f} s to {:.3f} s: from ({:.2f}, {:.2f}); {} {:.3f} m {} at {:.3f} s, at "
+      "({:.2f}, {:.2f}), {} {}\n",
+      is_off ? "off" : "near the edge", out.from_s, out.to_s, out.from.x_m, out.from.y_m, out.part,
+      is_off ? out.depth_m : out.least_margin_m, is_off ? "off" : "from it", out.at.t_s,
+      out.point_in_source.x(), out.point_in_source.y(), is_off ? "onto" : "beside",
+      planning::text_of(out.onto));
+}
+
+}  // namespace
+
+Json audit_json(const AuditedDrive& audited) {
+  const geometry::Trajectory& drive = audited.drive;
+  Json json;
+  json["verdict"] = std::string(audited.outcome());
+  if (audited.has_occupancy) add_clearance(audited, json);
+  json["stretches"] =
+      judged_json(judged_stretches(audited.whole(), drive.start_s(), drive.end_s()));
+  if (audited.road) {
+    json["surface"] = surface_json(*audited.road, drive);
+    json["rules"] = rules_json(*audited.road);
+  }
+  return json;
+}
+
+std::string audit_text(const AuditedDrive& audited) {
+  std::string text = fmt::format("{:<17}{}\n", "verdict", audited.outcome());
+  if (audited.has_occupancy) text += clearance_text(audited.audit.report);
+  if (audited.road) {
+    text += surface_text(*audited.road);
+    for (const planning::RuleReport& rule : audited.road->rules) {
+      text += rule_text(rule, counts(*audited.road, rule.rule));
+    }
+  }
+  return text;
+}
+
+std::string surface_text(const RoadAudit& road) {
+  const planning::SurfaceReport& surface = road.surface;
+  std::string text =
+      fmt::format("{:<17}{}, on {}: {}\n", "surface", planning::to_string(surface.verdict), road.on,
+                  margin_text(surface));
+  for (const planning::Excursion& out : surface.conflicts) text += excursion_text(out);
+  for (const planning::Stretch& stretch : surface.undecided) {
+    text += fmt::format("{:<17}{:.3f} s to {:.3f} s: within {:.1f} mm of the margin asked for\n",
+                        "undecided", stretch.from_s, stretch.to_s, 1e3 * (1e-3 + surface.off_by_m));
+  }
+  return text;
+}
+
+std::string rule_text(const planning::RuleReport& rule, bool counts) {
+  std::string text =
+      fmt::format("{:<17}{}{}\n", planning::to_string(rule.rule), planning::to_string(rule.verdict),
+                  counts ? "" : ", does not count: --rules");
+  for (const planning::Violation& one : rule.violations) {
+    text += fmt::format("{:<17}{:.3f} s to {:.3f} s: lane {}: {}, at ({:.2f}, {:.2f})\n", "broken",
+                        one.from_s, one.to_s, one.lane, one.text, one.at.x_m, one.at.y_m);
+  }
+  if (!rule.unknown.empty()) {
+    text += fmt::format("{:<17}{:.3f} s to {:.3f} s{}: {}\n", "unknown",
+                        rule.unknown.front().from_s, rule.unknown.back().to_s,
+                        rule.unknown.size() > 1 ? ", in parts" : "", rule.reason);
   }
   return text;
 }
@@ -251,11 +391,10 @@ IndexedAudit indexed(const AuditedDrive& audited) {
                      .text = audited.fault,
                      .pictures = {}};
   if (!audited.fault.empty()) return index;
-  const bool is_open = audited.audit.report.verdict == planning::Verdict::unknown ||
-                       audited.audit.report.verdict == planning::Verdict::undecided;
-  if (is_open) index.tone = Tone::open;
-  index.least = least_text(audited.audit.report);
-  index.text = audit_text(audited.audit.report);
+  if (index.outcome == "unknown" || index.outcome == "undecided") index.tone = Tone::open;
+  index.least =
+      audited.has_occupancy ? least_text(audited.audit.report) : margin_text(audited.road->surface);
+  index.text = audit_text(audited);
   return index;
 }
 

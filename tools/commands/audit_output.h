@@ -17,7 +17,11 @@ namespace roadbed::tools::inline commands {
 nlohmann::ordered_json audit_json(const AuditedDrive& audited);
 
 /// An audit for people: the verdict, the figures, and a line for every stretch that is not clear.
-std::string audit_text(const planning::AuditReport& report);
+std::string audit_text(const AuditedDrive& audited);
+
+/// The same of the surface, and of one rule.
+std::string surface_text(const RoadAudit& road);
+std::string rule_text(const planning::RuleReport& rule, bool counts);
 
 /// `{"verdict":…,"counts":{…},"audits":[…]}`: each audit as above with the name of its drive, or
 /// why there is none. The verdict is the gravest.
@@ -29,8 +33,10 @@ IndexedAudit indexed(const AuditedDrive& audited);
 /// A line per drive, and one with the counts.
 std::string audits_table(const std::vector<AuditedDrive>& audits);
 
-/// A test case per drive: failed where the drive is not clear, an error where it is unusable.
-std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& occupancy);
+/// A test case per drive: failed where the drive is not clear, an error where it is unusable. Of a
+/// drive that was asked about the road further ones: for the surface, and for each rule.
+/// @param name  of what drives were audited against.
+std::string audits_junit(const std::vector<AuditedDrive>& audits, const std::string& name);
 
 /// A line per stretch of one verdict, and for each conflict the vehicle's outline (with its
 /// margin) where it is nearest, and the witness. Coordinates are the source's; `crs` names them.

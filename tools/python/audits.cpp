@@ -202,7 +202,7 @@ void bind_audit_results(nb::class_<Audit>& bound) {
           "their hashes: the occupancy's, the drive's, which is written to `trajectory` if that is "
           "given, and those of vehicle, map and obstacles.")
       .def("__bool__", [](const Audit& of) { return of.audited.is_clear(); })
-      .def("__str__", [](const Audit& of) { return audit_text(of.audited.audit.report); })
+      .def("__str__", [](const Audit& of) { return audit_text(of.audited); })
       .def("__repr__",
            [](const Audit& of) {
              return fmt::format("<Audit: {}, least clearance {:.2f} m at {:.2f} s>",

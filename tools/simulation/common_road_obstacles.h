@@ -5,6 +5,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/commonroad/scenario.h"
+#include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/common_road_routes.h"
 
@@ -23,5 +24,10 @@ std::vector<planning::Obstacle> obstacles_of(const map::commonroad::Scenario& fr
                                              const geometry::Pose2& start,
                                              const geometry::VehicleShape& vehicle,
                                              bool drops_ego_recording);
+
+/// What a file's lights show, in seconds from a time step on: red with yellow is red, and one that
+/// is off is dark.
+std::vector<planning::LightCycle> light_cycles(const map::commonroad::Scenario& from,
+                                               long start_step);
 
 }  // namespace roadbed::tools::simulation

@@ -113,28 +113,6 @@ double usual_speed_mps(double start_mps, const planning::TimedGoal& goal, double
   return std::max({usual, kHurry * mean_mps, std::min(even_mps, kFastestUsual_mps)});
 }
 
-/// What a file's lights show: red with yellow is red, and one that is off is dark.
-std::vector<planning::LightCycle> lights_of(const map::commonroad::Scenario& from,
-                                            long start_step) {
-  std::vector<planning::LightCycle> lights;
-  for (const map::commonroad::TrafficLight& light : from.lights) {
-    planning::LightCycle shown{.signals = {light.id}, .pointer = {}, .phases = {}};
-    bool is_on = light.is_active;
-    for (const map::commonroad::LightPhase& phase : light.cycle) {
-      const double duration_s = from.time_step_s * phase.duration_steps;
-      is_on = is_on && phase.colour != "inactive";
-      if (!(duration_s > 0.0)) continue;
-      shown.phases.push_back({phase.colour == "green"    ? planning::LightColour::green
-                              : phase.colour == "yellow" ? planning::LightColour::yellow
-                                                         : planning::LightColour::red,
-                              duration_s});
-    }
-    shown.offset_s = from.time_step_s * (light.offset_steps - static_cast<double>(start_step));
-    if (is_on && !shown.phases.empty()) lights.push_back(std::move(shown));
-  }
-  return lights;
-}
-
 Scenario scenario_of(const std::filesystem::path& file, const std::string& benchmark_id,
                      double speed_mps, const planning::TimedGoal& goal) {
   Scenario scenario;
@@ -186,7 +164,7 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
       .corner_vehicle = scenario.vehicle};
   planning::ReferenceLine line =
       planning::ReferenceLine::along(road_map, routes.best, line_options);
-  scenario.lights = lights_of(from, problem.initial_state.time_step.least);
+  scenario.lights = light_cycles(from, problem.initial_state.time_step.least);
   std::vector<planning::StopPoint> places =
       stop_points(road_map, routes.best, line, scenario.lights);
   std::vector<planning::ReferenceLine> other_lines;
@@ -215,6 +193,27 @@ CommonRoadDrive read_common_road_drive(const std::filesystem::path& file,
           .version = from.version,
           .problem_id = problem.id,
           .start_step = problem.initial_state.time_step.least};
+}
+
+std::vector<planning::LightCycle> light_cycles(const map::commonroad::Scenario& from,
+                                               long start_step) {
+  std::vector<planning::LightCycle> lights;
+  for (const map::commonroad::TrafficLight& light : from.lights) {
+    planning::LightCycle shown{.signals = {light.id}, .pointer = {}, .phases = {}};
+    bool is_on = light.is_active;
+    for (const map::commonroad::LightPhase& phase : light.cycle) {
+      const double duration_s = from.time_step_s * phase.duration_steps;
+      is_on = is_on && phase.colour != "inactive";
+      if (!(duration_s > 0.0)) continue;
+      shown.phases.push_back({phase.colour == "green"    ? planning::LightColour::green
+                              : phase.colour == "yellow" ? planning::LightColour::yellow
+                                                         : planning::LightColour::red,
+                              duration_s});
+    }
+    shown.offset_s = from.time_step_s * (light.offset_steps - static_cast<double>(start_step));
+    if (is_on && !shown.phases.empty()) lights.push_back(std::move(shown));
+  }
+  return lights;
 }
 
 }  // namespace roadbed::tools::simulation

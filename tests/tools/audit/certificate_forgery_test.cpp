@@ -202,7 +202,7 @@ class Truth {
  public:
   Truth(const CertificateFile& file, const Inputs& inputs)
       : file_(file),
-        occupancy_(inputs.occupancy(file.occupancy.name)),
+        occupancy_(inputs.occupancy(file.occupancy->name)),
         road_map_(file.roads ? inputs.road_map(file.roads->name) : nullptr),
         drive_(read_trajectory_csv(file.trajectory.name)),
         question_(question_of(file, road_map_.get(), inputs)),
