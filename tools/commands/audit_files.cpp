@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector2d;
 
 // A test case with the text of what was found.
-std::string test_case(const std::string& suite, const std::string& name, std::string_view outcome,
-                      const std::string& text) {
+std::string audit_case(const std::string& suite, const std::string& name, std::string_view outcome,
+                       const std::string& text) {
   const std::string head = fmt::format(R"(    <testcase classname="{}" name="{}")",
                                        map::html_text(suite), map::html_text(name));
   const std::string found = map::html_text(text);
@@ -42,7 +42,7 @@ struct Cases {
 
   void add(const std::string& suite, const std::string& name, std::string_view outcome,
            const std::string& found) {
-    text += test_case(suite, name, outcome, found);
+    text += audit_case(suite, name, outcome, found);
     ++all;
     unusable += outcome == "unusable";
     skipped += outcome == "skipped";
