@@ -1,65 +1,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/commonroad/document.h"
 #include "roadbed/map/edit/clip.h"
-#include "roadbed/map/edit/touching_spans.h"
+#include "roadbed/map/edit/ladders.h"
+#include "roadbed/map/edit/new_ids.h"
 #include "roadbed/map/edit/xml_edit.h"
 
 namespace roadbed::map::inline edit {
 namespace {
 
-using Eigen::Vector2d;
-using Line = std::vector<Vector2d>;
-
-constexpr double kShortM = 0.1;    // stretches shorter than this are not looked into
-constexpr double kSameRow = 1e-9;  // fractions of a row this near to a row are that row
-
-/// A lanelet: rows of a left and a right point, in its driving direction.
-struct Ladder {
-  pugi::xml_node node;
-  std::string id;
-  Line left, right;
-  std::size_t group = 0;
-  bool against = false;  ///< runs against its group's direction
-
-  std::size_t rows() const { return left.size(); }
-};
-
-Vector2d at(const Line& line, double row) {
-  const auto i = std::min(static_cast<std::size_t>(row), line.size() - 2);
-  return line[i] + (row - static_cast<double>(i)) * (line[i + 1] - line[i]);
-}
-
 class CommonRoadClipper {
  public:
   CommonRoadClipper(const commonroad::Document& document, const Region& region,
                     const ClipOptions& options)
-      : root_(document.xml.root()), region_(region), options_(options) {
-    for (const auto lanelet : document.lanelets()) read(document.xml, lanelet);
-    for (const auto one : root_.children()) {
-      std::int64_t value = 0;
-      const std::string id = text(one, "id");
-      const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), value);
-      if (error == std::errc() && value >= next_id_ && value < INT64_MAX) next_id_ = value + 1;
-    }
+      : root_(document.xml.root()),
+        region_(region),
+        found_(ladders_inside(document, region, options.whole)) {
+    for (const auto one : root_.children()) fresh_.take(text(one, "id"));
   }
 
   bool run(Edited& result) {
-    make_groups();
-    find_spans();
-    for (std::size_t i = 0; i < ladders_.size(); ++i) clip_lanelet(i);
+    outside_ = found_.unusable.size();
+    for (const auto lanelet : found_.unusable) root_.remove_child(lanelet);
+    for (std::size_t i = 0; i < found_.ladders.size(); ++i) clip_lanelet(i);
     if (kept_.empty()) return false;
     for (const auto& [node, part] : kept_) settle_lanelet(node, part);
     settle_signs("trafficSign", "trafficSignRef");
@@ -86,136 +56,20 @@ class CommonRoadClipper {
     std::string id;
   };
 
-  void read(const XmlDocument& xml, pugi::xml_node lanelet) {
-    Ladder ladder{lanelet, text(lanelet, "id"), {}, {}};
-    const auto points = [&](const char* bound, Line& line) {
-      for (const Eigen::Vector3d& point :
-           commonroad::read_points(xml, lanelet.child(bound), {0.0, 0.0})) {
-        line.push_back(point.head<2>());
-      }
-    };
-    points("leftBound", ladder.left);
-    points("rightBound", ladder.right);
-    if (ladder.rows() < 2 || ladder.right.size() < 2) {
-      ++outside_;
-      root_.remove_child(lanelet);
-      return;
-    }
-    by_id_.emplace(ladder.id, ladders_.size());
-    ladders_.push_back(std::move(ladder));
-  }
-
-  // Lanelets beside each other, with rows that correspond, are cut together.
-  void make_groups() {
-    for (std::size_t i = 0; i < ladders_.size(); ++i) {
-      ladders_[i].group = SIZE_MAX;
-    }
-    for (std::size_t i = 0; i < ladders_.size(); ++i) {
-      if (ladders_[i].group != SIZE_MAX) continue;
-      ladders_[i].group = groups_.size();
-      groups_.push_back({i});
-      for (std::size_t k = 0; k < groups_.back().size(); ++k) add_neighbours(groups_.back()[k]);
-    }
-  }
-
-  void add_neighbours(std::size_t index) {
-    const Ladder& ladder = ladders_[index];
-    for (const char* side : {"adjacentLeft", "adjacentRight"}) {
-      const auto adjacent = ladder.node.child(side);
-      const auto found = by_id_.find(text(adjacent, "ref"));
-      if (found == by_id_.end()) continue;
-      Ladder& other = ladders_[found->second];
-      if (other.group != SIZE_MAX || !is_regular(ladder) || !is_regular(other) ||
-          other.rows() != ladder.rows()) {
-        continue;
-      }
-      other.group = ladder.group;
-      other.against = ladder.against != !commonroad::is_same_direction(adjacent);
-      groups_[ladder.group].push_back(found->second);
-    }
-  }
-
-  static bool is_regular(const Ladder& ladder) { return ladder.left.size() == ladder.right.size(); }
-
-  void find_spans() {
-    for (const std::vector<std::size_t>& group : groups_) {
-      std::vector<Span>& spans = spans_.emplace_back();
-      const double last = static_cast<double>(ladders_[group.front()].rows() - 1);
-      if (!is_regular(ladders_[group.front()])) {  // rows that do not correspond: whole or nothing
-        if (side_of(group, 0.0, last) != Region::Side::outside) spans.push_back({0.0, last});
-        continue;
-      }
-      for (double row = 0.0; row < last; row += 1.0) {
-        touching_spans(
-            row, row + 1.0, [&](double a, double b) { return side_of(group, a, b); },
-            [&](double a, double b) { return length_m(group, a, b) <= kShortM; },
-            [&](double r) { return touches(group, r); }, spans);
-      }
-      for (Span& span : spans) {
-        for (double* end : {&span.from, &span.to}) {
-          if (std::abs(*end - std::round(*end)) < kSameRow) *end = std::round(*end);
-        }
-      }
-      std::erase_if(spans, [](const Span& span) { return !(span.to - span.from > 1e-6); });
-      if (!spans.empty() && options_.whole) spans = {{0.0, last}};
-    }
-  }
-
-  double own_row(const Ladder& ladder, double row) const {
-    return ladder.against ? static_cast<double>(ladder.rows() - 1) - row : row;
-  }
-
-  Region::Side side_of(const std::vector<std::size_t>& group, double from, double to) const {
-    bool all_outside = true;
-    for (const std::size_t i : group) {
-      const Ladder& ladder = ladders_[i];
-      const double a = own_row(ladder, from), b = own_row(ladder, to);
-      geometry::Box box;
-      if (is_regular(ladder)) {
-        for (const Line* line : {&ladder.left, &ladder.right}) {
-          box.extend(at(*line, a));
-          box.extend(at(*line, b));
-        }
-      } else {
-        for (const Vector2d& point : ladder.left) box.extend(point);
-        for (const Vector2d& point : ladder.right) box.extend(point);
-      }
-      const auto side = region_.side_of_disc(box.center(), 0.5 * box.diagonal().norm() + 1e-6);
-      if (side == Region::Side::inside) return side;
-      all_outside = all_outside && side == Region::Side::outside;
-    }
-    return all_outside ? Region::Side::outside : Region::Side::border;
-  }
-
-  double length_m(const std::vector<std::size_t>& group, double from, double to) const {
-    double most_m = 0.0;
-    for (const std::size_t i : group) {
-      const double a = own_row(ladders_[i], from), b = own_row(ladders_[i], to);
-      most_m = std::max({most_m, (at(ladders_[i].left, a) - at(ladders_[i].left, b)).norm(),
-                         (at(ladders_[i].right, a) - at(ladders_[i].right, b)).norm()});
-    }
-    return most_m;
-  }
-
-  bool touches(const std::vector<std::size_t>& group, double row) const {
-    return std::any_of(group.begin(), group.end(), [&](std::size_t i) {
-      const double own = own_row(ladders_[i], row);
-      return region_.touches(at(ladders_[i].left, own), at(ladders_[i].right, own));
-    });
-  }
+  const Ladder& ladder_of(const Part& part) const { return found_.ladders[part.ladder]; }
 
   void clip_lanelet(std::size_t index) {
-    const Ladder& ladder = ladders_[index];
-    const std::vector<Span>& spans = spans_[ladder.group];
+    const Ladder& ladder = found_.ladders[index];
+    const std::vector<Span>& spans = found_.spans[ladder.group];
     if (spans.empty()) {
       ++outside_;
       root_.remove_child(ladder.node);
       return;
     }
-    const double last = static_cast<double>(ladder.rows() - 1);
+    const double last = ladder.last_row();
     std::vector<Part> parts;
     for (std::size_t k = 0; k < spans.size(); ++k) {
-      const double a = own_row(ladder, spans[k].from), b = own_row(ladder, spans[k].to);
+      const double a = ladder.own_row(spans[k].from), b = ladder.own_row(spans[k].to);
       parts.push_back({index, k, std::min(a, b), std::max(a, b), ladder.id});
     }
     std::sort(parts.begin(), parts.end(),
@@ -226,7 +80,7 @@ class CommonRoadClipper {
       const pugi::xml_node next =
           k + 1 < parts.size() ? root_.insert_copy_after(node, node) : pugi::xml_node();
       if (k > 0) {
-        parts[k].id = std::to_string(next_id_++);
+        parts[k].id = fresh_.fresh();
         set_text(node, "id", parts[k].id);
         ++parts_;
       }
@@ -244,7 +98,7 @@ class CommonRoadClipper {
     pugi::xml_node memory = node.prepend_child(pugi::node_pi);
     memory.set_name("roadbed-clip");
     memory.set_value(fmt::format("lanelet=\"{}\" from=\"{}\" to=\"{}\" rows=\"{}\"", ladder.id,
-                                 part.from, part.to, ladder.rows())
+                                 part.from, part.to, ladder.left.size())
                          .c_str());
   }
 
@@ -285,14 +139,14 @@ class CommonRoadClipper {
     const auto found = parts_of_.find(id);
     if (found == parts_of_.end()) return nullptr;
     const Part& part = start ? found->second.front() : found->second.back();
-    const double last = static_cast<double>(ladders_[part.ladder].rows() - 1);
+    const double last = ladder_of(part).last_row();
     return (start ? part.from <= 0.0 : part.to >= last) ? &part : nullptr;
   }
 
   const Part* beside(const std::string& id, const Part& part) const {
     const auto found = parts_of_.find(id);
     if (found == parts_of_.end()) return nullptr;
-    const bool together = ladders_[found->second[0].ladder].group == ladders_[part.ladder].group;
+    const bool together = ladder_of(found->second[0]).group == ladder_of(part).group;
     if (!together)
       return is_whole(part) && is_whole(found->second[0]) ? &found->second[0] : nullptr;
     const auto other = std::find_if(found->second.begin(), found->second.end(),
@@ -301,7 +155,7 @@ class CommonRoadClipper {
   }
 
   bool is_whole(const Part& part) const {
-    return part.from <= 0.0 && part.to >= static_cast<double>(ladders_[part.ladder].rows() - 1);
+    return part.from <= 0.0 && part.to >= ladder_of(part).last_row();
   }
 
   template <typename Find>
@@ -318,7 +172,7 @@ class CommonRoadClipper {
   }
 
   void settle_lanelet(pugi::xml_node node, const Part& part) {
-    const double last = static_cast<double>(ladders_[part.ladder].rows() - 1);
+    const double last = ladder_of(part).last_row();
     const bool starts = part.from <= 0.0, ends = part.to >= last;
     settle_links(node, "predecessor",
                  [&](const std::string& id) { return starts ? with_end(id, false) : nullptr; });
@@ -418,12 +272,8 @@ class CommonRoadClipper {
 
   pugi::xml_node root_;
   const Region& region_;
-  const ClipOptions& options_;
-  std::int64_t next_id_ = 1;
-  std::vector<Ladder> ladders_;
-  std::map<std::string, std::size_t> by_id_;
-  std::vector<std::vector<std::size_t>> groups_;  // of ladders that are cut together
-  std::vector<std::vector<Span>> spans_;          // of each group, in rows
+  const LadderSpans found_;
+  FreshIds fresh_;
   std::vector<std::pair<pugi::xml_node, Part>> kept_;
   std::map<std::string, std::vector<Part>> parts_of_;  // of each lanelet, from its start on
   std::size_t cut_ = 0, parts_ = 0, outside_ = 0, links_ = 0, signs_ = 0, incomings_ = 0,

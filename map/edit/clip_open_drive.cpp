@@ -1,12 +1,10 @@
-#include <charconv>
-#include <cstdint>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "roadbed/map/edit/clip.h"
 #include "roadbed/map/edit/inside_stretches.h"
+#include "roadbed/map/edit/new_ids.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/road_references.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -15,28 +13,13 @@
 namespace roadbed::map::inline edit {
 namespace {
 
-// Numbers that no road has.
-class FreshIds {
- public:
-  explicit FreshIds(pugi::xml_node root) {
-    for (const auto road : root.children("road")) {
-      const std::string_view id = road.attribute("id").value();
-      std::int64_t value = 0;
-      const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), value);
-      if (error == std::errc() && value >= next_ && value < INT64_MAX) next_ = value + 1;
-    }
-  }
-  std::string take() { return std::to_string(next_++); }
-
- private:
-  std::int64_t next_ = 1;
-};
-
 class Clipper {
  public:
   Clipper(pugi::xml_node root, const opendrive::Document& document, const Region& region,
           const ClipOptions& options)
-      : root_(root), document_(document), region_(region), options_(options), fresh_(root) {}
+      : root_(root), document_(document), region_(region), options_(options) {
+    for (const auto road : root.children("road")) fresh_.take(text(road, "id"));
+  }
 
   // Whether anything is left.
   bool run(Edited& result) {
@@ -84,7 +67,7 @@ class Clipper {
       last_ = root_.insert_copy_after(road.node, last_);
       judged_.insert(last_);
       cut_road(last_, spans[i].from_m, spans[i].to_m);
-      set_text(last_, "id", fresh_.take());  // its clip memory knows whose part it is
+      set_text(last_, "id", fresh_.fresh());  // its clip memory knows whose part it is
       ++parts_;
     }
     cut_road(road.node, spans.front().from_m, spans.front().to_m);

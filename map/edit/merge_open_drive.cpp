@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -15,6 +13,7 @@
 #include "roadbed/map/edit/coordinate_systems.h"
 #include "roadbed/map/edit/link_ends.h"
 #include "roadbed/map/edit/merge.h"
+#include "roadbed/map/edit/new_ids.h"
 #include "roadbed/map/edit/plan_cut.h"
 #include "roadbed/map/edit/road_cut.h"
 #include "roadbed/map/edit/road_join.h"
@@ -28,85 +27,6 @@ namespace {
 bool is_clip_memory(pugi::xml_node node) { return text(node, "code") == "roadbed.clip"; }
 
 bool are_equal(pugi::xml_node a, pugi::xml_node b) { return say_the_same(a, b, is_clip_memory); }
-
-using Names = std::map<std::string, std::string>;
-
-std::optional<std::int64_t> number_of(const std::string& id) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), value);
-  return error == std::errc() && end == id.data() + id.size() ? std::optional(value) : std::nullopt;
-}
-
-/// Numbers that are no id yet.
-class Ids {
- public:
-  void take(const std::string& id) {
-    const std::int64_t value = number_of(id).value_or(0);
-    if (value >= next_ && value < INT64_MAX) next_ = value + 1;
-  }
-  std::string fresh() {
-    const std::string id = std::to_string(next_);
-    take(id);
-    return id;
-  }
-
- private:
-  std::int64_t next_ = 1;
-};
-
-void rename(pugi::xml_node node, const char* attribute, const Names& names) {
-  const auto found = names.find(text(node, attribute));
-  if (found != names.end()) set_text(node, attribute, found->second);
-}
-
-/// New names of what one file holds, by kind.
-struct FileNames {
-  Names roads, junctions, controllers, signals, objects;
-
-  void apply(pugi::xml_node root) const {
-    for (const auto road : root.children("road")) apply_to_road(road);
-    for (const auto controller : root.children("controller")) {
-      rename(controller, "id", controllers);
-      for (const auto control : controller.children("control")) {
-        rename(control, "signalId", signals);
-      }
-    }
-    for (const auto junction : root.children("junction")) apply_to_junction(junction);
-  }
-
- private:
-  void apply_to_road(pugi::xml_node road) const {
-    rename(find_clip_memory(road).child("cut"), "road", roads);
-    rename(road, "id", roads);
-    rename(road, "junction", junctions);
-    for (const auto end : road.child("link").children()) {
-      rename(end, "elementId", text(end, "elementType") == "junction" ? junctions : roads);
-    }
-    for (const auto signal : road.child("signals").children()) {
-      rename(signal, "id", signals);
-      for (const auto other : signal.children("dependency")) rename(other, "id", signals);
-    }
-    for (const auto object : road.child("objects").children()) rename(object, "id", objects);
-  }
-
-  void apply_to_junction(pugi::xml_node junction) const {
-    rename(junction, "id", junctions);
-    rename(junction, "mainRoad", roads);
-    for (const auto controller : junction.children("controller")) {
-      rename(controller, "id", controllers);
-    }
-    for (const auto priority : junction.children("priority")) {
-      rename(priority, "high", roads);
-      rename(priority, "low", roads);
-    }
-    for (const auto connection : junction.children("connection")) {
-      for (const char* role : {"incomingRoad", "connectingRoad", "linkedRoad"}) {
-        rename(connection, role, roads);
-      }
-      for (const auto end : connection.children()) rename(end, "elementId", roads);
-    }
-  }
-};
 
 /// A file whose elements are merged.
 struct Source {
@@ -129,26 +49,7 @@ constexpr std::array<const char*, 3> kKinds = {"road", "controller", "junction"}
 
 /// Whether the elements of each kind stand in order of their numbers.
 std::array<bool, 3> kinds_in_order(pugi::xml_node root) {
-  std::array<bool, 3> in_order = {true, true, true};
-  for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    std::optional<std::int64_t> before = INT64_MIN;
-    for (const auto one : root.children(kKinds[i])) {
-      const auto number = number_of(text(one, "id"));
-      in_order[i] = in_order[i] && number && *before <= *number;
-      if (number) before = number;
-    }
-  }
-  return in_order;
-}
-
-void put_in_order(pugi::xml_node root, const char* kind) {
-  std::vector<pugi::xml_node> all = children(root, kind);
-  if (all.empty()) return;
-  std::stable_sort(all.begin(), all.end(), [](pugi::xml_node a, pugi::xml_node b) {
-    return number_of(text(a, "id")) < number_of(text(b, "id"));
-  });
-  root.insert_move_before(all.front(), root.child(kind));
-  for (std::size_t i = 1; i < all.size(); ++i) root.insert_move_after(all[i], all[i - 1]);
+  return {is_in_order(root, kKinds[0]), is_in_order(root, kKinds[1]), is_in_order(root, kKinds[2])};
 }
 
 class Merger {
@@ -169,7 +70,7 @@ class Merger {
   void add(const Source& source, Merged& result) {
     const std::array<bool, 3> in_order = kinds_in_order(source.root());
     for (std::size_t i = 0; i < in_order.size(); ++i) in_order_[i] = in_order_[i] && in_order[i];
-    const FileNames names = new_names(source, result);
+    const NewIds names = new_names(source, result);
     names.apply(source.root());
     for (const auto road : source.root().children("road")) add_road(road);
     for (const auto one : source.root().children("controller")) add_once(controllers_, one);
@@ -216,14 +117,14 @@ class Merger {
   }
 
   // Roads, junctions, controllers and signals of the same id that are not the same.
-  FileNames new_names(const Source& source, Merged& result) {
+  NewIds new_names(const Source& source, Merged& result) {
     ++source_;
-    FileNames names;
-    Ids roads, junctions, controllers;
+    NewIds names;
+    FreshIds roads, junctions, controllers;
     for (const auto& [id, parts] : parts_) roads.take(id);
     for (const auto& [id, one] : junctions_) junctions.take(id);
     for (const auto& [id, one] : controllers_) controllers.take(id);
-    const auto give = [&](const char* kind, Names& to, Ids& ids, const std::string& id) {
+    const auto give = [&](const char* kind, NameChanges& to, FreshIds& ids, const std::string& id) {
       to[id] = ids.fresh();
       result.renamed.push_back({source.name, kind, id, to[id]});
     };
@@ -261,8 +162,8 @@ class Merger {
     }
   }
 
-  static void name_others(const Source& source, const char* kind, const ById& own, Names& to,
-                          Ids& ids, Merged& result, const FileNames& names) {
+  static void name_others(const Source& source, const char* kind, const ById& own, NameChanges& to,
+                          FreshIds& ids, Merged& result, const NewIds& names) {
     for (const auto one : source.root().children(kind)) ids.take(text(one, "id"));
     for (const auto one : source.root().children(kind)) {
       const std::string id = text(one, "id");
@@ -274,7 +175,7 @@ class Merger {
     }
   }
 
-  static bool leads_to_renamed(pugi::xml_node one, const FileNames& names) {
+  static bool leads_to_renamed(pugi::xml_node one, const NewIds& names) {
     const auto parts = one.children();
     return std::any_of(parts.begin(), parts.end(), [&](pugi::xml_node part) {
       return names.roads.contains(text(part, "incomingRoad")) ||
@@ -388,7 +289,7 @@ class Merger {
 
   // The first part of a road has its id, the others have ids of their own.
   void name_parts(const std::string& file, Merged& result) {
-    Ids ids;
+    FreshIds ids;
     for (const auto& [id, parts] : parts_) ids.take(id);
     for (auto& [id, parts] : parts_) {
       for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -413,7 +314,7 @@ class Merger {
   pugi::xml_node last_road_, last_controller_, last_junction_;  // behind which new ones stand
   ById junctions_, controllers_;
   std::map<std::string, std::string> signals_, objects_;  // and the whole road of each
-  Ids signal_ids_, object_ids_;
+  FreshIds signal_ids_, object_ids_;
   std::set<std::string> joined_;
   std::vector<Seam> seams_;
   std::size_t repeated_ = 0, open_parts_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/files/xml_places.h"
 #include "roadbed/map/files/xml_scanner.h"
 
 namespace roadbed::map::inline edit {
@@ -12,59 +13,15 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-// Behind the `>` that ends the tag which begins there.
-std::size_t tag_end(std::string_view text, std::size_t at) {
-  char quote = '\0';
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quote != '\0') {
-      if (c == quote) quote = '\0';
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '>') {
-      return at + 1;
-    }
-  }
-  return text.size();
-}
-
-std::string_view name_at(std::string_view text, std::size_t at) {
-  const std::size_t end = text.find_first_of(" \t\r\n/>", at + 1);
-  return text.substr(at + 1, end - at - 1);
-}
-
-// Where the value of an attribute stands in a start tag; empty if it has none of that name.
-std::pair<std::size_t, std::size_t> value_range(std::string_view tag, std::string_view name) {
-  for (std::size_t at = tag.find(name); at != tag.npos; at = tag.find(name, at + 1)) {
-    std::size_t behind = at + name.size();
-    if (at == 0 || kBlanks.find(tag[at - 1]) == kBlanks.npos) continue;
-    behind = tag.find_first_not_of(kBlanks, behind);
-    if (behind == tag.npos || tag[behind] != '=') continue;
-    const std::size_t open = tag.find_first_of("'\"", behind);
-    if (open == tag.npos) break;
-    const std::size_t close = tag.find(tag[open], open + 1);
-    if (close != tag.npos) return {open + 1, close};
-  }
-  return {0, 0};
-}
-
 std::string value_of(std::string_view tag, std::string_view name) {
-  const auto [from, to] = value_range(tag, name);
-  return decode_xml(tag.substr(from, to - from));
+  const auto value = xml_value_in(tag, name);
+  return value ? decode_xml(tag.substr(value->at, value->size)) : std::string();
 }
 
 }  // namespace
 
-std::string_view element_text(std::string_view text, std::size_t at) {
-  std::size_t end = tag_end(text, at);
-  if (end >= 2 && text[end - 2] == '/') return text.substr(at, end - at);
-  const std::string close = fmt::format("</{}", name_at(text, at));
-  end = text.find(close, end);
-  return end == text.npos ? text.substr(at) : text.substr(at, tag_end(text, end) - at);
-}
-
-OsmElement::OsmElement(std::string_view text) : name_(name_at(text, 0)) {
-  std::size_t at = tag_end(text, 0);
+OsmElement::OsmElement(std::string_view text) : name_(xml_tag_name(text, 0)) {
+  std::size_t at = xml_tag_end(text, 0);
   const bool empty = text[at - 2] == '/';
   start_ = text.substr(0, at - (empty ? 2 : 1));
   while (!start_.empty() && kBlanks.find(start_.back()) != kBlanks.npos) start_.pop_back();
@@ -84,8 +41,8 @@ OsmElement::OsmElement(std::string_view text) : name_(name_at(text, 0)) {
     const bool is_comment = text.substr(child, 4) == "<!--";
     const std::string_view whole = is_comment
                                        ? text.substr(child, text.find("-->", child) + 3 - child)
-                                       : element_text(text, child);
-    const std::string name(is_comment ? std::string_view("!--") : name_at(text, child));
+                                       : xml_element_at(text, child);
+    const std::string name(is_comment ? std::string_view("!--") : xml_tag_name(text, child));
     children_.push_back({name, name == "tag" ? value_of(whole, "k") : "", std::string(whole)});
     at = child + whole.size();
   }
@@ -100,11 +57,10 @@ std::string OsmElement::attribute(std::string_view name, std::string_view value)
 }
 
 void OsmElement::set_attribute(std::string_view name, std::string_view value) {
-  const auto [from, to] = value_range(start_, name);
-  if (from == 0) {
-    start_ += attribute(name, value);
+  if (const auto found = xml_value_in(start_, name)) {
+    start_.replace(found->at, found->size, xml_text(value));
   } else {
-    start_.replace(from, to - from, xml_text(value));
+    start_ += attribute(name, value);
   }
 }
 
@@ -181,7 +137,7 @@ std::string OsmEdit::file() const {
                     relation = last(document_.relations, way);
   std::map<std::size_t, std::string> added;
   const auto behind = [&](std::size_t at) {
-    return at == root ? tag_end(text, root) : at + element_text(text, at).size();
+    return at == root ? xml_tag_end(text, root) : at + xml_element_at(text, at).size();
   };
   added[behind(node)] += nodes_;
   added[behind(way)] += ways_;
@@ -206,14 +162,14 @@ std::string OsmEdit::file() const {
       file.erase(file.find_last_not_of(kBlanks) + 1);
     }
     file += replacement;
-    cursor = at + element_text(text, at).size();
+    cursor = at + xml_element_at(text, at).size();
   }
   copy_to(text.size());
   return file;
 }
 
 std::string with_root_attribute(std::string file, std::string_view name, std::string_view value) {
-  const std::size_t at = file.find("<osm"), end = tag_end(file, at);
+  const std::size_t at = file.find("<osm"), end = xml_tag_end(file, at);
   OsmElement root(file.substr(at, end - at - 1) + "/>");
   root.set_attribute(name, value);
   const std::string tag = root.text();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/files/xml_places.h"
 #include "roadbed/map/lanelet2/document.h"
 
 namespace roadbed::map::inline edit {
@@ -53,9 +54,6 @@ class OsmElement {
   std::vector<Child> children_;
 };
 
-/// The text of the element that begins there.
-std::string_view element_text(std::string_view text, std::size_t at);
-
 /// A file of OpenStreetMap's XML in which elements are taken out, changed and added; all else stays
 /// byte by byte.
 class OsmEdit {
@@ -70,7 +68,7 @@ class OsmEdit {
   /// Behind all others of their kind.
   void add(lanelet2::MemberKind kind, const std::string& text);
 
-  std::string_view text_of(std::size_t at) const { return element_text(document_.text, at); }
+  std::string_view text_of(std::size_t at) const { return xml_element_at(document_.text, at); }
 
   /// The whole file.
   std::string file() const;
