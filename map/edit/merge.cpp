@@ -28,7 +28,8 @@ Merged merge(std::vector<MergeInput> inputs, const MergeOptions& options) {
   }
   if (format->name == "OpenDRIVE") return merge_open_drive(std::move(inputs), options);
   if (format->name == "Lanelet2") return merge_lanelet2(std::move(inputs), options);
-  refuse_format(*format, inputs.front().name, "OpenDRIVE or Lanelet2");
+  if (format->name == "CommonRoad") return merge_common_road(std::move(inputs), options);
+  refuse_format(*format, inputs.front().name, "OpenDRIVE, Lanelet2 or CommonRoad");
 }
 
 }  // namespace roadbed::map::edit

@@ -48,7 +48,10 @@ Edited transform(std::string bytes, const std::string& name, const TransformOpti
     return transform_open_drive(std::move(map.bytes), name, options);
   }
   if (map.format.name == "Lanelet2") return transform_lanelet2(std::move(map.bytes), name, options);
-  refuse_format(map.format, name, "OpenDRIVE or Lanelet2");
+  if (map.format.name == "CommonRoad") {
+    return transform_common_road(std::move(map.bytes), name, options);
+  }
+  refuse_format(map.format, name, "OpenDRIVE, Lanelet2 or CommonRoad");
 }
 
 }  // namespace roadbed::map::edit

@@ -61,4 +61,10 @@ Edited transform_open_drive(std::string bytes, const std::string& name,
 Edited transform_lanelet2(std::string bytes, const std::string& name,
                           const TransformOptions& options);
 
+// CommonRoad: all that has a place, lanelets, signs, obstacles with their trajectories, planning
+// problems, and their orientations, which another system turns as in the middle of the map.
+// Lengths, widths and speeds stay.
+Edited transform_common_road(std::string bytes, const std::string& name,
+                             const TransformOptions& options);
+
 }  // namespace roadbed::map::edit

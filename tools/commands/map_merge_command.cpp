@@ -52,7 +52,7 @@ class MergeCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Make one map of several: parts that a clip left, or neighbours");
-    arguments.add("MAPS", inputs_, "OpenDRIVE or Lanelet2 files, all of one format")
+    arguments.add("MAPS", inputs_, "OpenDRIVE, Lanelet2 or CommonRoad files, all of one format")
         .required()
         .reads()
         .ending(kMapEndings);

@@ -1,5 +1,6 @@
 #include "roadbed/map/edit/transform.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,6 +48,37 @@ TEST(Transform, MovesEveryBorderOfALanelet) {
   const std::string bytes = read_file(tests::data_folder() / "crossing.osm");
   const Edited moved = transform(bytes, "crossing.osm", {.motion = kMotion, .to = {}, .crs = {}});
   expect_moved(parse_map(bytes, "a.osm"), parse_map(moved.bytes, "b.osm"), 1e-4);
+}
+
+TEST(Transform, MovesAScenarioWithAllThatIsInIt) {
+  const std::string state =
+      "<initialState><position><point><x>10</x><y>2</y></point></position><orientation><exact>3"
+      "</exact></orientation></initialState>";
+  const std::string bytes =
+      "<commonRoad commonRoadVersion=\"2020a\" benchmarkID=\"ZAM_Made-1\" timeStepSize=\"0.1\">"
+      "<lanelet id=\"1\"><leftBound><point><x>0</x><y>4</y><z>1</z></point><point><x>50</x><y>4</y>"
+      "<z>1</z></point></leftBound><rightBound><point><x>0</x><y>0</y><z>1</z></point><point><x>50"
+      "</x><y>0</y><z>1</z></point></rightBound><laneletType>urban</laneletType></lanelet>"
+      "<dynamicObstacle id=\"2\"><type>car</type><shape><circle><radius>1</radius><center><x>0.5"
+      "</x><y>0</y></center></circle></shape>" +
+      state + "</dynamicObstacle><planningProblem id=\"3\">" + state +
+      "<goalState><position><rectangle><length>4</length><width>2</width><orientation>-0.25"
+      "</orientation><center><x>40</x><y>2</y></center></rectangle></position><orientation>"
+      "<intervalStart>2.5</intervalStart><intervalEnd>3.5</intervalEnd></orientation></goalState>"
+      "</planningProblem></commonRoad>";
+  const Edited moved = transform(bytes, "a.xml", {.motion = kMotion, .to = {}, .crs = {}});
+  expect_moved(parse_map(bytes, "a.xml"), parse_map(moved.bytes, "b.xml"), 1e-6);
+  const auto has = [&](const std::string& part) {
+    EXPECT_NE(moved.bytes.find(part), std::string::npos) << part << "\n" << moved.bytes;
+  };
+  const Vector2d car = kMotion({10, 2}), goal = kMotion({40, 2});
+  has(fmt::format("<x>{:.7g}", car.x()).substr(0, 8));
+  has(fmt::format("<x>{:.7g}", goal.x()).substr(0, 8));
+  has("<x>0.5</x>");  // of the car's own shape, from its middle
+  has(fmt::format("<exact>{:.5f}", 3.7 - 2.0 * 3.14159265359).substr(0, 14));
+  has("<orientation>0.45</orientation>");
+  has("<intervalStart>-3.0831853</intervalStart>");
+  has("<intervalEnd>-2.0831853</intervalEnd>");
 }
 
 TEST(Transform, BackAgainIsWhereItWas) {
