@@ -87,6 +87,18 @@ TEST(ValidateChoice, TakesAndLeavesRulesByPattern) {
   }
 }
 
+TEST(ValidateChoice, TakesOneValueForEachUseOrSeveralWithCommas) {
+  const ProgramRun before =
+      run_roadbed({"validate", "--only", "geometry.gap", gap_file(), "--json"});
+  EXPECT_EQ(rules_of(json::parse(before.out)), std::set<std::string>{"geometry.gap"});
+  EXPECT_EQ(rules_of(findings_of(gap_file(), {"--only", "crs.*,geometry.gap"})),
+            rules_of(findings_of(gap_file(), {"--only", "crs.*", "--only", "geometry.gap"})));
+  EXPECT_EQ(run_roadbed({"validate", "--only", "geometry.gap", "--severity",
+                         "geometry.gap=error,geometry.kink=info", gap_file()})
+                .status,
+            1);
+}
+
 TEST(ValidateChoice, GivesFindingsAnotherSeverity) {
   EXPECT_EQ(run_roadbed({"validate", gap_file(), "--severity", "geometry.gap=error"}).status, 1);
   EXPECT_EQ(run_roadbed({"validate", gap_file(), "--fail-on", "warning", "--severity",

@@ -83,6 +83,11 @@ Argument& Argument::values(int count) {
   return *this;
 }
 
+Argument& Argument::one_each() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Argument& Argument::separated_by(char sign) {
   option_->delimiter(sign);
   return *this;

@@ -59,6 +59,8 @@ class Argument {
   Argument& not_negative();
   /// Takes just so many values.
   Argument& values(int count);
+  /// Takes one value each time that it is given, so that what stands behind is no other one.
+  Argument& one_each();
   /// Takes its values as one text, with this sign between them.
   Argument& separated_by(char sign);
   Argument& one_of(const std::vector<std::string>& accepted);

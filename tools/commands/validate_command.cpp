@@ -147,15 +147,23 @@ class ValidateCommand : public Command {
              "commonroad")
         .one_of({"planning", "asam", "autoware", "commonroad"});
     arguments
-        .add("--only", only_,
-             "Only rules whose id, ASAM or Autoware name fits, as 'geometry.*'; may be given again")
+        .add(
+            "--only", only_,
+            "Only rules whose id, ASAM or Autoware name fits, as 'geometry.*,link.*'; may be given "
+            "again")
+        .one_each()
+        .separated_by(',')
         .checked(pattern_fault);
     arguments.add("--disable", disabled_, "Not these rules; may be given again")
+        .one_each()
+        .separated_by(',')
         .checked(pattern_fault);
     arguments
         .add("--severity", severities_,
              "RULE=error, warning, info or off: how grave findings of a rule are; may be given "
              "again, the last that fits counts")
+        .one_each()
+        .separated_by(',')
         .checked([](const std::string& text) { return severity_of(text).fault; });
   }
 
