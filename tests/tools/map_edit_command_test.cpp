@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -96,6 +98,15 @@ TEST(MapMergeCommand, RefusesOtherSystems) {
   EXPECT_NE(run.err.find("--same-system"), std::string::npos) << run.err;
 }
 
+TEST(MapTransformCommand, RefusesShiftsThatAreNone) {
+  const TemporaryFolder folder;
+  const std::string moved = folder / "moved.xodr";
+  for (const char* shift : {"--shift=nan,0", "--shift=0,inf", "--shift=1"}) {
+    EXPECT_EQ(run_roadbed({"map", "transform", kTown, shift, "-o", moved}).status, 2) << shift;
+  }
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
 TEST(MapTransformCommand, AlignsToPairs) {
   const TemporaryFolder folder;
   const std::string moved = folder / "moved.xodr";
@@ -108,6 +119,54 @@ TEST(MapTransformCommand, AlignsToPairs) {
   EXPECT_NE(run.out.find("turned by 1.570796327 rad and shifted by 10.0000,20.0000 m"),
             std::string::npos)
       << run.out;
+}
+
+// A slope of points under one of the town's roads, and one far away.
+TEST(MapTransformCommand, TakesHeightsFromClouds) {
+  const TemporaryFolder folder;
+  const auto slope = [&](const char* name, double x_m) {
+    std::string points;
+    for (int i = 0; i < 500; ++i) {
+      for (int k = -40; k <= 40; ++k) {
+        points += std::to_string(x_m + 0.2 * i) + " " + std::to_string(0.2 * k) + " " +
+                  std::to_string(7.0 + 0.05 * (x_m + 0.2 * i)) + "\n";
+      }
+    }
+    return folder.write(name, points);
+  };
+  const std::string under = slope("under.xyz", 0.0), away = slope("away.xyz", 90'000.0);
+  const std::string high = folder / "high.xodr", lanes = folder / "lanes.csv";
+  const ProgramRun run = run_roadbed({"map", "transform", kTown, "--elevation", under,
+                                      "--elevation", away, "--lift", "1", "-o", high, "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_GT(document_of(run)["counts"]["stations on the ground"].get<int>(), 20);
+  const ProgramRun place = run_roadbed({"locate", high, "--at", "60,-1.7", "--json"});
+  ASSERT_EQ(place.status, 0) << place.err;
+  ASSERT_EQ(run_roadbed({"export", high, "-o", lanes}).status, 0);
+  std::istringstream rows(bytes_of(lanes));
+  std::string row;
+  std::getline(rows, row);
+  std::size_t on_slope = 0;
+  while (std::getline(rows, row)) {
+    std::vector<std::string> cells;
+    std::istringstream line(row);
+    for (std::string cell; std::getline(line, cell, ',');) cells.push_back(cell);
+    const double x = std::stod(cells[6]), y = std::stod(cells[7]), z = std::stod(cells[8]);
+    if (x < 4.0 || x > 90.0 || std::abs(y) > 5.0 || cells[3] != "driving") continue;
+    EXPECT_NEAR(z, 8.0 + 0.05 * x, 0.01) << row;
+    ++on_slope;
+  }
+  EXPECT_GT(on_slope, 10u);
+}
+
+TEST(MapTransformCommand, RefusesGroundThatIsElsewhere) {
+  const TemporaryFolder folder;
+  const std::string cloud = folder.write("far.xyz", "90000 0 1\n90001 0 1\n90000 1 1\n");
+  const ProgramRun run =
+      run_roadbed({"map", "transform", kTown, "--elevation", cloud, "-o", folder / "high.xodr"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("ground at no point of the map"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("90000,0 to 90001,1"), std::string::npos) << run.err;
 }
 
 }  // namespace

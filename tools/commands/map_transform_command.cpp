@@ -6,15 +6,18 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/edit/elevate.h"
 #include "roadbed/map/edit/transform.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/edit_output.h"
+#include "roadbed/tools/commands/measured_ground.h"
 #include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tools::inline commands {
@@ -58,8 +61,9 @@ std::vector<map::PointPair> read_pairs(const std::filesystem::path& file) {
 class TransformCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Move a map, or bring it into another coordinate system");
-    arguments.add("MAP", input_, "An OpenDRIVE or Lanelet2 file")
+    arguments.description(
+        "Move a map, bring it into another coordinate system, or onto the measured ground");
+    arguments.add("MAP", input_, "An OpenDRIVE, Lanelet2 or CommonRoad file")
         .required()
         .reads()
         .ending(kMapEndings);
@@ -71,8 +75,10 @@ class TransformCommand : public Command {
             .checked([](const std::string& text) {
               return angle_of(text) ? "" : "is not an angle within a whole turn, as 0.1 or 90deg";
             });
-    const Argument shift =
-        arguments.add("--shift", shift_m_, "Then shift it by X,Y [m]").values(2).separated_by(',');
+    const Argument shift = arguments.add("--shift", shift_m_, "Then shift it by X,Y [m]")
+                               .within(-1e9, 1e9)
+                               .values(2)
+                               .separated_by(',');
     arguments.add("--lift", lift_m_, "Raise it [m]").within(-1e5, 1e5);
     arguments
         .add("--align", pairs_file_,
@@ -87,11 +93,20 @@ class TransformCommand : public Command {
     arguments.add("--crs", crs_,
                   "What the coordinates' system is, in place of what the map says; after a motion "
                   "alone, what it is called");
+    arguments
+        .add("--elevation", ground_files_,
+             "Then take heights from the ground under it: point clouds (.pcd .ply .las .xyz) or "
+             "octrees (.bt .ot .tiles) in the coordinates that the map has then; may be given "
+             "again. --lift is added to them")
+        .one_each()
+        .reads()
+        .ending(kCloudEndings);
     output_.declare(arguments);
     arguments.require([this] { return fault(); });
     arguments.example(
         "  roadbed map transform town.xodr --turn 90deg --shift=1000,-500 -o moved.xodr\n"
-        "  roadbed map transform town.xodr --to EPSG:25832 -o utm.xodr");
+        "  roadbed map transform town.xodr --to EPSG:25832 -o utm.xodr\n"
+        "  roadbed map transform town.xodr --elevation scan.pcd -o hilly.xodr");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
@@ -109,23 +124,46 @@ class TransformCommand : public Command {
           found.motion.turn_rad, found.motion.shift_m.x(), found.motion.shift_m.y(), found.rms_m,
           found.worst_m));
     }
-    options.motion.shift_m.z() = lift_m_.value_or(0.0);
     if (!to_.empty()) options.to = to_;
     if (!crs_.empty()) options.crs = crs_;
-    map::Edited edited = map::transform(map::read_file(input_), map::input_name(input_), options);
+    map::Edited edited;
+    edited.bytes = map::read_file(input_);
+    if (ground_files_.empty()) options.motion.shift_m.z() = lift_m_.value_or(0.0);
+    if (moves()) edited = map::transform(std::move(edited.bytes), map::input_name(input_), options);
     edited.notes.insert(edited.notes.begin(), notes.begin(), notes.end());
+    if (!ground_files_.empty()) elevate(edited);
     return output_.finish(edited, "map_transform", streams, common);
   }
 
  private:
+  bool moves() const {
+    return !turn_.empty() || !shift_m_.empty() || !pairs_file_.empty() || !to_.empty() ||
+           !crs_.empty() || (lift_m_ && ground_files_.empty());
+  }
+
+  void elevate(map::Edited& edited) const {
+    const auto ground = [this](std::span<const Eigen::Vector2d> at) {
+      auto heights_m = measured_ground(ground_files_, at);
+      for (auto& height_m : heights_m) {
+        if (height_m) *height_m += lift_m_.value_or(0.0);
+      }
+      return heights_m;
+    };
+    map::Edited higher = map::elevate(std::move(edited.bytes), map::input_name(input_), ground);
+    edited.bytes = std::move(higher.bytes);
+    edited.counts.insert(edited.counts.end(), higher.counts.begin(), higher.counts.end());
+    edited.notes.insert(edited.notes.end(), higher.notes.begin(), higher.notes.end());
+  }
+
   std::string fault() const {
-    const bool any = !turn_.empty() || !shift_m_.empty() || lift_m_ || !pairs_file_.empty() ||
-                     !to_.empty() || !crs_.empty();
-    return any ? output_.fault()
-               : "at least one of --turn, --shift, --lift, --align, --to and --crs is required";
+    return moves() || !ground_files_.empty()
+               ? output_.fault()
+               : "at least one of --turn, --shift, --lift, --align, --to, --crs and --elevation is "
+                 "required";
   }
 
   std::filesystem::path input_, pairs_file_;
+  std::vector<std::filesystem::path> ground_files_;
   std::string turn_, to_, crs_;
   std::vector<double> shift_m_;
   std::optional<double> lift_m_;
