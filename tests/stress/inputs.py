@@ -373,6 +373,46 @@ def cr_obstacles(folder: Path, n: int) -> Path:
     return common_road(folder, cr_lanelet(1, 0, 100) + obstacles)
 
 
+# A table of lanes
+
+
+def lane_table(folder: Path, lanes) -> Path:
+    """Lanes by name, successors and the points of their centre lines."""
+    columns = {"drawing": "centreline", "lane": "id", "width_m": "width", "successors": "next"}
+    written(folder / "columns.json", json.dumps(columns))
+    return geojson(
+        folder,
+        (
+            {
+                "type": "Feature",
+                "properties": {"id": name, "width": 3.5, "next": following},
+                "geometry": {"type": "LineString", "coordinates": line},
+            }
+            for name, following, line in lanes
+        ),
+    )
+
+
+def table_lanes_in_a_row(folder: Path, n: int) -> Path:
+    return lane_table(
+        folder, ((str(i), str(i + 1), [[100 * i, 0], [100 * i + 100, 0]]) for i in range(n))
+    )
+
+
+def table_same_lanes(folder: Path, n: int) -> Path:
+    return lane_table(folder, ((str(i), "", [[0, 0], [100, 0]]) for i in range(n)))
+
+
+def table_points_of_a_lane(folder: Path, n: int) -> Path:
+    return lane_table(folder, [("0", "", [[i, i % 2 / 10] for i in range(n)])])
+
+
+def table_successors_of_a_lane(folder: Path, n: int) -> Path:
+    following = ",".join(str(i + 1) for i in range(n))
+    ahead = [(str(i + 1), "", [[100, 0], [200, i / 10]]) for i in range(n)]
+    return lane_table(folder, [("0", following, [[0, 0], [100, 0]]), *ahead])
+
+
 # GeoJSON
 
 
