@@ -1,16 +1,19 @@
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/edit/clip.h"
+#include "roadbed/map/edit/elevate.h"
 #include "roadbed/map/edit/merge.h"
 #include "roadbed/map/edit/transform.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 
-// What can be read can be cut in two, put together and moved, and read again.
+// What can be read can be cut in two, put together, put on a ground and moved, and read again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed::map;
   using roadbed::geometry::box_ring;
@@ -24,6 +27,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!part.bytes.empty()) halves.push_back({std::move(part.bytes), "half"});
     }
     if (!halves.empty()) parse_map(merge(std::move(halves)).bytes, "together");
+    const auto ground = [](std::span<const Eigen::Vector2d> at) {
+      std::vector<std::optional<double>> heights_m(at.size());
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        if (at[i].x() > 0.0) heights_m[i] = 0.1 * at[i].y();
+      }
+      return heights_m;
+    };
+    parse_map(elevate(bytes, "fuzz", ground).bytes, "higher");
     const RigidMotion motion{1.0, {10.0, 20.0, 1.0}};
     parse_map(transform(bytes, "fuzz", {.motion = motion, .to = {}, .crs = {}}).bytes, "moved");
   } catch (const InputError&) {
