@@ -17,7 +17,10 @@ std::vector<std::uint64_t> lane_ids(const RoadMap& road_map, IdGiver& ids) {
   IdGiver kept;
   bool all_kept = true;
   for (const Lane& lane : road_map.lanes()) all_kept = all_kept && kept.keep(lane.name);
-  for (const Lane& lane : road_map.lanes()) given.push_back(ids.give(all_kept ? lane.name : ""));
+  for (const Lane& lane : road_map.lanes()) {
+    const bool has_use = lane.type != LaneType::none;
+    given.push_back(has_use ? ids.give(all_kept ? lane.name : "") : kNoLanelet);
+  }
   return given;
 }
 
@@ -26,6 +29,20 @@ std::string attribute_of(const Attributes& attributes, std::string_view key) {
     if (name == key) return value;
   }
   return {};
+}
+
+// The country whose signs the map has, of those that CommonRoad knows; of several the most
+// frequent.
+std::string country_of_signs(const RoadMap& road_map) {
+  std::map<std::string, std::size_t> counts;
+  for (const Signal& signal : road_map.signals()) {
+    const std::string country = known_country(signal.country);
+    if (!signal.dynamic && !country.empty()) ++counts[country];
+  }
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? "ZAM" : most->first;
 }
 
 std::vector<std::string> split(const std::string& words) {
@@ -73,7 +90,7 @@ class Planner {
     plan_.light_ids.resize(lanes);
     plan_.stop_lines.resize(lanes);
     plan_.benchmark_id = attribute_of(road_map.attributes(), "benchmarkID");
-    if (plan_.benchmark_id.empty()) plan_.benchmark_id = "ZAM_Roadbed-1";
+    if (plan_.benchmark_id.empty()) plan_.benchmark_id = country_of_signs(road_map) + "_Roadbed-1";
     country_ = country_of(plan_.benchmark_id);
   }
 

@@ -54,9 +54,12 @@ struct PlannedIntersection {
   std::vector<LaneId> crossings;
 };
 
+/// In place of the id of a lane that is not written: of type none, which CommonRoad cannot say.
+inline constexpr std::uint64_t kNoLanelet = 0;
+
 struct Plan {
   std::string benchmark_id;
-  std::vector<std::uint64_t> lane_ids;  ///< one per lane
+  std::vector<std::uint64_t> lane_ids;  ///< one per lane, or kNoLanelet
   std::vector<PlannedSign> signs;
   std::vector<PlannedLight> lights;
   std::vector<PlannedIntersection> intersections;

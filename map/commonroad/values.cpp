@@ -205,6 +205,23 @@ std::string country_of(std::string_view benchmark_id) {
   return std::string(benchmark_id.substr(0, 3));
 }
 
+std::string known_country(std::string_view code) {
+  constexpr Words<std::string_view, 11> kShort = {{{"DE", "DEU"},
+                                                   {"CN", "CHN"},
+                                                   {"IT", "ITA"},
+                                                   {"US", "USA"},
+                                                   {"PR", "PRI"},
+                                                   {"ES", "ESP"},
+                                                   {"RU", "RUS"},
+                                                   {"AR", "ARG"},
+                                                   {"BE", "BEL"},
+                                                   {"FR", "FRA"},
+                                                   {"HR", "HRV"}}};
+  if (code == "GRC" || code == "GR") return "GRC";
+  if (const std::string_view* country = find(kShort, code)) return std::string(*country);
+  return find(kSpeedLimitIds, code) ? std::string(code) : std::string();
+}
+
 std::string_view speed_limit_id(std::string_view country) {
   if (country == "GRC") return kGreekSpeedLimit;
   const std::string_view* id = find(kSpeedLimitIds, country);

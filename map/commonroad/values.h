@@ -40,6 +40,10 @@ std::string country_of(std::string_view benchmark_id);
 /// everywhere.
 bool is_speed_limit(std::string_view country, std::string_view sign_id);
 
+/// A country by its two or three letters, as CommonRoad names it ("DEU"); empty if CommonRoad has
+/// no signs of it.
+std::string known_country(std::string_view code);
+
 /// The `trafficSignID` of a speed limit in that country.
 std::string_view speed_limit_id(std::string_view country);
 

@@ -68,7 +68,9 @@ class FileWriter {
 
   std::string write() {
     add_header();
-    for (const Lane& lane : road_map_.lanes()) add_lanelet(lane);
+    for (const Lane& lane : road_map_.lanes()) {
+      if (is_written(lane.id)) add_lanelet(lane);
+    }
     for (const PlannedSign& sign : plan_.signs) add_sign(sign);
     for (const PlannedLight& light : plan_.lights) add_light(light);
     for (const PlannedIntersection& intersection : plan_.intersections) {
@@ -83,6 +85,8 @@ class FileWriter {
   void add(fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
   }
+
+  bool is_written(LaneId id) const { return plan_.lane_ids[id.index] != kNoLanelet; }
 
   std::string file_attribute(std::string_view key, const char* fallback) const {
     for (const auto& [name, value] : road_map_.attributes()) {
@@ -157,7 +161,9 @@ class FileWriter {
   }
 
   void add_references(const char* name, const std::vector<LaneId>& lanes) {
-    for (const LaneId id : lanes) add("  <{} ref=\"{}\"/>\n", name, plan_.lane_ids[id.index]);
+    for (const LaneId id : lanes) {
+      if (is_written(id)) add("  <{} ref=\"{}\"/>\n", name, plan_.lane_ids[id.index]);
+    }
   }
 
   void add_references(const char* name, const std::vector<std::uint64_t>& ids) {
@@ -165,7 +171,7 @@ class FileWriter {
   }
 
   void add_adjacent(const char* name, const std::optional<Neighbour>& beside) {
-    if (!beside) return;
+    if (!beside || !is_written(beside->lane)) return;
     add("  <{} ref=\"{}\" drivingDir=\"{}\"/>\n", name, plan_.lane_ids[beside->lane.index],
         beside->same_direction ? "same" : "opposite");
   }

@@ -12,7 +12,8 @@ namespace roadbed::map::commonroad {
 ///
 /// Ids are the source's where they are whole numbers, else counted from 1. A lane has one speed
 /// limit and one marking a side there: the least limit, and the marking along most of the lane.
-/// Signs that speak to no lane cannot be said in CommonRoad and are left out.
+/// Signs that speak to no lane and lanes of type none cannot be said in CommonRoad and are left
+/// out. Where the map names no scenario, its country is that of its signs.
 std::string write_common_road(const RoadMap& road_map);
 
 }  // namespace roadbed::map::commonroad

@@ -110,6 +110,31 @@ TEST(WriteCommonRoad, BordersThatDoNotPairGetPointsAtEachOthersStations) {
   EXPECT_THAT(back.lane(id).left.in_map.points(), SizeIs(3));
 }
 
+TEST(WriteCommonRoad, LanesOfTypeNoneAreLeftOutWithWhatLeadsToThem) {
+  tests::MadeMap made;
+  const auto road = made.add_road("1");
+  const LaneId driven = made.add_lane(road, "-1", {{0, 3}, {10, 3}}, {{0, 0}, {10, 0}});
+  const LaneId none = made.add_lane(road, "-2", {{0, 0}, {10, 0}}, {{0, -3}, {10, -3}});
+  made.lane(none).type = LaneType::none;
+  made.put_beside(driven, none, true);
+  const RoadMap back = there_and_back(made.build());
+  ASSERT_THAT(back.lanes(), SizeIs(1));
+  EXPECT_FALSE(back.graph().of(LaneId{0}).right.has_value());
+}
+
+TEST(WriteCommonRoad, TheCountryIsThatOfTheSigns) {
+  tests::MadeMap made = tests::straight_two_lane_road();
+  Signal sign;
+  sign.source_id = "5";
+  sign.type = "274.1";
+  sign.country = "DE";
+  sign.lanes = {LaneId{0}};
+  made.parts.signals = {sign};
+  EXPECT_THAT(commonroad::write_common_road(made.build()), HasSubstr("\"DEU_Roadbed-1\""));
+  made.parts.signals[0].country = "OpenDRIVE";
+  EXPECT_THAT(commonroad::write_common_road(made.build()), HasSubstr("\"ZAM_Roadbed-1\""));
+}
+
 TEST(WriteCommonRoad, NumbersHaveNoExponent) {
   tests::MadeMap made;
   made.add_lane(made.add_road("1"), "-1", {{1e-7, 3}, {10, 3}}, {{0, 0}, {10, 0}});
