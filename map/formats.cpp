@@ -12,6 +12,7 @@
 #include "roadbed/map/compiled/compiled_map.h"
 #include "roadbed/map/drawing/write_svg.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/files/xml_characters.h"
@@ -40,21 +41,40 @@ std::vector<Layer> placed_layers(const RoadMap& road_map, const SaveOptions& opt
   return layers;
 }
 
-std::string geojson_bytes(const RoadMap& road_map, const SaveOptions& options) {
+/// Without the system that the map names where PROJ cannot use it, which is noted. One that the
+/// user names is not left out.
+SaveOptions in_usable_system(const RoadMap& road_map, SaveOptions options) {
+  if (options.crs.empty() || options.crs != road_map.crs()) return options;
+  const std::string fault = projection_fault(options.crs);
+  if (fault.empty()) return options;
+  if (options.notes != nullptr) {
+    options.notes->push_back(fmt::format(
+        "PROJ cannot use the map's coordinate system \"{}\": {}; coordinates are the map's own, of "
+        "unknown system (name it with --crs)",
+        options.crs, fault));
+  }
+  options.crs.clear();
+  options.is_own_crs = false;
+  return options;
+}
+
+std::string geojson_bytes(const RoadMap& road_map, const SaveOptions& given) {
+  const SaveOptions options = in_usable_system(road_map, given);
   std::vector<Layer> layers = placed_layers(road_map, options);
   const bool lon_lat = !options.crs.empty();
   if (lon_lat) to_lon_lat(options.crs, layers);
   return write_geojson(layers, {lon_lat, road_map.format(), road_map.crs()});
 }
 
-std::string geopackage_bytes(const RoadMap& road_map, const SaveOptions& options) {
+std::string geopackage_bytes(const RoadMap& road_map, const SaveOptions& given) {
+  const SaveOptions options = in_usable_system(road_map, given);
   return write_geopackage(placed_layers(road_map, options), options.crs);
 }
 
 std::string flatgeobuf_bytes(const RoadMap& road_map, const SaveOptions& options) {
-  SaveOptions one = options;
+  SaveOptions one = in_usable_system(road_map, options);
   if (one.layers.empty()) one.layers = {"lanes"};
-  return write_flatgeobuf(placed_layers(road_map, one).front(), options.crs);
+  return write_flatgeobuf(placed_layers(road_map, one).front(), one.crs);
 }
 
 std::string lanelet2_bytes(const RoadMap& road_map, const SaveOptions& options) {

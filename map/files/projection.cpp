@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
@@ -49,6 +54,46 @@ void transform(const std::string& crs, bool to_lon_lat, std::span<Eigen::Vector2
   if (fault != 0) refuse_unknown(crs, message);
 }
 
+bool describe(const std::string& crs, std::vector<char>& wkt, Message& message) {
+  static auto& function = proj_function<RoadbedProjWkt>("roadbed_proj_wkt", crs);
+  return function(crs.c_str(), wkt.data(), wkt.size(), message.data(), message.size()) == 0;
+}
+
+/// What a word of a PROJ string says, as "32" of "+zone=32"; a word without a value says "".
+std::map<std::string, std::string, std::less<>> words_of_proj(const std::string& crs) {
+  std::map<std::string, std::string, std::less<>> words;
+  std::istringstream text(crs);
+  for (std::string word; text >> word;) {
+    const std::size_t sign = word.find('=');
+    words.emplace(word.substr(0, sign), sign == word.npos ? "" : word.substr(sign + 1));
+  }
+  return words;
+}
+
+std::optional<int> epsg_of_proj(const std::string& crs) {
+  const auto words = words_of_proj(crs);
+  const auto says = [&](std::string_view word, std::string_view value) {
+    const auto found = words.find(word);
+    return found != words.end() && found->second == value;
+  };
+  const auto is_zero = [](char c) { return c == '0' || c == ',' || c == '.'; };
+  const auto shift = words.find("+towgs84");
+  const bool is_shifted =
+      shift != words.end() && !std::all_of(shift->second.begin(), shift->second.end(), is_zero);
+  const bool is_wgs84 = says("+datum", "WGS84") ||
+                        (says("+ellps", "WGS84") && !words.contains("+datum") && !is_shifted);
+  const bool in_metres = !words.contains("+units") || says("+units", "m");
+  if (!is_wgs84 || words.contains("+nadgrids") || words.contains("+pm")) return {};
+  if (says("+proj", "longlat")) return 4326;
+  const auto zone = words.find("+zone");
+  if (!says("+proj", "utm") || !in_metres || zone == words.end()) return {};
+  int number = 0;
+  const char* end = zone->second.data() + zone->second.size();
+  const auto [rest, fault] = std::from_chars(zone->second.data(), end, number);
+  if (fault != std::errc() || rest != end || number < 1 || number > 60) return {};
+  return (words.contains("+south") ? 32700 : 32600) + number;
+}
+
 }  // namespace
 
 void to_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points) {
@@ -60,20 +105,23 @@ void from_lon_lat(const std::string& crs, std::span<Eigen::Vector2d> points) {
 }
 
 std::string well_known_text(const std::string& crs) {
-  static auto& describe = proj_function<RoadbedProjWkt>("roadbed_proj_wkt", crs);
-  Message message{};
   std::vector<char> wkt(1U << 16U);
-  if (describe(crs.c_str(), wkt.data(), wkt.size(), message.data(), message.size()) != 0) {
-    refuse_unknown(crs, message);
-  }
+  Message message{};
+  if (!describe(crs, wkt, message)) refuse_unknown(crs, message);
   return wkt.data();
+}
+
+std::string projection_fault(const std::string& crs) {
+  std::vector<char> wkt(1U << 16U);
+  Message message{};
+  return describe(crs, wkt, message) ? std::string() : message.data();
 }
 
 void open_projection_module() { function_of_module("libroadbed_proj", "roadbed_proj_wkt"); }
 
 std::optional<int> epsg_code(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
-  if (!crs.starts_with(kPrefix)) return std::nullopt;
+  if (!crs.starts_with(kPrefix)) return epsg_of_proj(crs);
   int code = 0;
   const char* end = crs.data() + crs.size();
   const auto [rest, fault] = std::from_chars(crs.data() + kPrefix.size(), end, code);

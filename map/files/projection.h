@@ -24,7 +24,11 @@ std::string well_known_text(const std::string& crs);
 /// Opens PROJ, where it is installed, as the first use of it does.
 void open_projection_module();
 
-/// The number of a system that names itself "EPSG:25832"; none otherwise.
+/// Why PROJ cannot use a system; empty if it can. Throws where there is no PROJ.
+std::string projection_fault(const std::string& crs);
+
+/// The number of a system that names itself "EPSG:25832", or is UTM on WGS 84 or longitude and
+/// latitude on it as a PROJ string; none otherwise.
 std::optional<int> epsg_code(const std::string& crs);
 
 /// A transverse Mercator system whose origin is at a place: coordinates of an unknown system taken

@@ -64,8 +64,9 @@ int add_systems(SqliteFile& file, const std::string& crs) {
   const std::optional<int> epsg = epsg_code(crs);
   if (epsg == 4326) return 4326;
   const int id = epsg.value_or(kOwnSystem);
-  add(epsg ? crs : "of the map's source", id, epsg ? "EPSG" : "NONE", id, well_known_text(crs),
-      crs);
+  const std::string code = epsg ? fmt::format("EPSG:{}", *epsg) : "";
+  add(epsg ? code : "of the map's source", id, epsg ? "EPSG" : "NONE", id,
+      well_known_text(epsg ? code : crs), crs);
   return id;
 }
 

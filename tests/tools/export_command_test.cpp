@@ -91,6 +91,22 @@ TEST(ExportCommand, PutsAMapOfUnknownSystemAtItsAnchor) {
   EXPECT_NEAR(first.at(1).get<double>(), 48.0 + 2001.75 / 111194.0, 2e-5);
 }
 
+TEST(ExportCommand, NotesASystemThatProjCannotUse) {
+  const TemporaryFolder folder;
+  std::string bytes = bytes_of(data_folder() / "town.xodr");
+  bytes.replace(bytes.find("+lat_0=48.5"), 11, "+lat_0=4..5");
+  const std::string broken = folder.write("broken.xodr", bytes);
+  for (const char* name : {"a.gpkg", "a.geojson", "a.fgb"}) {
+    const ProgramRun run = run_roadbed({"export", broken, "-o", folder / name});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("note: PROJ cannot use the map's coordinate system"), std::string::npos)
+        << run.err;
+  }
+  const ProgramRun named = run_roadbed(
+      {"export", broken, "-o", folder / "b.geojson", "--crs", "+proj=tmerc +lat_0=4..5"});
+  EXPECT_EQ(named.status, 3);  // what the user says has to be right
+}
+
 TEST(ExportCommand, RefusesAnAnchorWhereTheSystemIsKnown) {
   const TemporaryFolder folder;
   const ProgramRun run =

@@ -77,6 +77,24 @@ TEST(EpsgCode, IsReadFromItsName) {
   EXPECT_FALSE(epsg_code("+proj=utm +zone=32").has_value());
 }
 
+TEST(EpsgCode, IsThatOfUtmAsAProjString) {
+  EXPECT_EQ(epsg_code("+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs"), 32632);
+  EXPECT_EQ(epsg_code(" +proj=utm +zone=32 +datum=WGS84 +ellps=WGS84 +towgs84=0,0,0"), 32632);
+  EXPECT_EQ(epsg_code("+proj=utm +zone=55 +south +ellps=WGS84"), 32755);
+  EXPECT_EQ(epsg_code("+proj=longlat +datum=WGS84"), 4326);
+  for (const char* other : {"+proj=utm +zone=32 +ellps=GRS80", "+proj=utm +zone=61 +datum=WGS84",
+                            "+proj=utm +zone=32 +datum=WGS84 +units=us-ft",
+                            "+proj=utm +zone=32 +ellps=WGS84 +towgs84=598,73,418",
+                            "+proj=tmerc +lat_0=0 +lon_0=9 +datum=WGS84", "+proj=utm +zone="}) {
+    EXPECT_FALSE(epsg_code(other).has_value()) << other;
+  }
+}
+
+TEST(ProjectionFault, SaysWhyASystemCannotBeUsed) {
+  EXPECT_EQ(projection_fault("EPSG:25832"), "");
+  EXPECT_NE(projection_fault("+proj=tmerc +lat_0=4..9 +lon_0=9"), "");
+}
+
 TEST(SystemAnchoredAt, IsOnTheGlobe) {
   EXPECT_THROW(system_anchored_at(91.0, 0.0), std::invalid_argument);
   EXPECT_THROW(system_anchored_at(0.0, std::nan("")), std::invalid_argument);
