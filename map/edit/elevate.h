@@ -24,7 +24,7 @@ Edited elevate(std::string bytes, const std::string& name, const GroundHeights& 
 // Of one format.
 //
 // OpenDRIVE: a profile of elevation and one of superelevation in place of all that a road had of
-// these, of crossfall and of lateral shapes. Every 2 m (maps of over 400 km: farther apart) the
+// these, of crossfall and of lateral shapes. Every 2 m (maps of over 200 km: farther apart) the
 // line of least squares goes through the ground at five points between the outermost borders of the
 // carriageway; cubics go through these lines to within 2 mm of the outermost border. Ends of
 // reference lines that are at one place get one height, and one slope across if they point in one

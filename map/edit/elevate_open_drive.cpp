@@ -44,7 +44,7 @@ struct MeasuredRoad {
 class Elevator {
  public:
   explicit Elevator(const opendrive::Document& document) {
-    constexpr double kApartM = 2.0, kMostStations = 200'000.0;  // 60 MB
+    constexpr double kApartM = 2.0, kMostStations = 100'000.0;  // 100 MB
     double length_m = 0.0;
     for (const opendrive::RoadRecord& road : document.roads) length_m += road.length_m;
     const double apart_m = std::max(kApartM, length_m / kMostStations);

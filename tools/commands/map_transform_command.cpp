@@ -106,7 +106,7 @@ class TransformCommand : public Command {
     arguments.example(
         "  roadbed map transform town.xodr --turn 90deg --shift=1000,-500 -o moved.xodr\n"
         "  roadbed map transform town.xodr --to EPSG:25832 -o utm.xodr\n"
-        "  roadbed map transform town.xodr --elevation scan.pcd -o hilly.xodr");
+        "  roadbed map transform town.xodr --elevation street.bt -o hilly.xodr");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
