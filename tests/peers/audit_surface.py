@@ -5,7 +5,8 @@ Random drives of two rows near the edges of a map's drivable lanes, audited by `
 against Shapely: of a drive that is clear the body must be covered by the lanes' union at every
 millimetre of motion; one that is covered with 5 cm to spare must be clear. Then the same with the
 lanes pulled 1 µm apart everywhere, which must change no verdict. Gaps about as
-wide as the seam, 1 cm, are closed in the union. Prints counts; fails on any false answer.
+wide as the seam, 1 cm, are closed in the union. Prints counts; fails on any false
+"inside", on a changed verdict, and on more than one false alarm in 200 drives.
 """
 
 import argparse
@@ -115,7 +116,8 @@ def compare(program, road_map, count, folder):
     print(f"{pathlib.Path(road_map).name}: {count} drives, {clear} clear, {found.count('conflict')} "
           f"not, {found.count('undecided')} undecided; false inside {false_inside}, false outside "
           f"{false_outside}; changed by seams of 1 µm {changed}")
-    return clear > count // 20 and not (false_inside or false_outside or changed)
+    # Closing seams may open a hairline elsewhere: a false alarm now and then, never a false inside.
+    return clear > count // 20 and 200 * false_outside <= count and not (false_inside or changed)
 
 
 def main():
