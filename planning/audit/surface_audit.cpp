@@ -51,14 +51,9 @@ class PartOnSurface {
   void audit(const map::RoadMap* road_map, SurfaceReport& report) {
     const LeastClearance least = least_of_all();
     const double proven_m = std::max(0.0, least.proven_m - surface_.off_by_m);
-    const Edge edge = probe_.edge_near(part_.core_at(least.at.pose()));
     if (least.found_m < report.least_margin_m) {
-      report.least_margin_m = least.found_m;
-      report.least_margin_at_s = least.at.t_s;
+      take_least(least.at, least.found_m, report);
       report.beyond_horizon = !least.witness;
-      report.edge_in_source = edge.on_edge;
-      report.part = side_of(
-          least.at, least.found_m > 0.0 ? edge.on_edge : farthest(least.at, kPointsApart_m).point);
     }
     report.proven_margin_m = std::min(report.proven_margin_m, proven_m);
     if (proven_m < margin_m_ + kLeastTold_m) collect(road_map, report);
@@ -89,12 +84,25 @@ class PartOnSurface {
     return search.found();
   }
 
+  void take_least(const geometry::TrajectoryPoint& at, double margin_m,
+                  SurfaceReport& report) const {
+    const Edge edge = probe_.edge_near(part_.core_at(at.pose()));
+    report.least_margin_m = margin_m;
+    report.least_margin_at_s = at.t_s;
+    report.edge_in_source = edge.on_edge;
+    report.part = side_of(at, margin_m > 0.0 ? edge.on_edge : farthest(at, kPointsApart_m).point);
+  }
+
+  /// A stretch is looked at more closely than the whole: its least margin may be less.
   void collect(const map::RoadMap* road_map, SurfaceReport& report) const {
     NearStretchSearch search(probe_, margin_m_ + surface_.off_by_m, kTolerance_m);
     search.search(probe_.segments());
     const NearStretches found = search.found();
     report.undecided.insert(report.undecided.end(), found.undecided.begin(), found.undecided.end());
     for (const Conflict& near : found.near) {
+      if (near.least_clearance_m < report.least_margin_m) {
+        take_least(near.at, near.least_clearance_m, report);
+      }
       // Over the margin, but by less than closing seams may have moved the edge.
       if (near.least_clearance_m > 0.0 && near.least_clearance_m >= margin_m_) {
         report.undecided.push_back({near.from_s, near.to_s});

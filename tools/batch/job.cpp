@@ -176,6 +176,9 @@ std::vector<JobInput> inputs_of(const Job& job) {
   for (const auto& [name, value] : job.options.items()) {
     const ArgumentInfo& option = *job.kind->option(name);
     if (option.use == ArgumentInfo::Use::input) add_inputs(value, &option.named, inputs);
+    if (!option.file_in || !value.is_string()) continue;
+    const std::filesystem::path file = option.file_in(value.get<std::string>());
+    if (!file.empty()) inputs.push_back({file.string(), &option.named});
   }
   return inputs;
 }

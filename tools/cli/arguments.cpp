@@ -117,6 +117,11 @@ Argument& Argument::reads(FilesNamed named) {
   return *this;
 }
 
+Argument& Argument::may_read(FileInWords file_in) {
+  info_->file_in = std::move(file_in);
+  return *this;
+}
+
 Argument& Argument::writes(const std::string& suffix) {
   info_->use = ArgumentInfo::Use::output;
   info_->suffix = suffix;
@@ -228,6 +233,12 @@ std::vector<std::pair<std::string, fs::path>> Arguments::outputs() const {
 std::vector<fs::path> Arguments::input_files() const {
   std::vector<fs::path> files;
   for (const ArgumentInfo& argument : *declared_) {
+    if (argument.file_in) {
+      for (const std::string& words : argument.option->results()) {
+        if (fs::path file = argument.file_in(words); !file.empty())
+          files.push_back(std::move(file));
+      }
+    }
     if (argument.use != ArgumentInfo::Use::input) continue;
     for (const std::string& path : argument.option->results()) {
       if (map::is_standard_stream(path)) continue;

@@ -23,6 +23,9 @@ namespace roadbed::tools::inline cli {
 using FilesNamed =
     std::function<std::vector<std::filesystem::path>(const std::filesystem::path& file)>;
 
+/// The file that a text of words names, "area:town.geojson"; empty if it names none.
+using FileInWords = std::function<std::filesystem::path(const std::string& text)>;
+
 /// What is known of a declared argument beside its value.
 struct ArgumentInfo {
   enum class Kind { value, flag, path };
@@ -33,6 +36,7 @@ struct ArgumentInfo {
   bool is_positional = false, is_required = false;
   Use use = Use::none;                    ///< of a path; declared by `reads` and `writes`
   FilesNamed named = {};                  ///< of an input
+  FileInWords file_in = {};               ///< of a value that may name an input
   std::string suffix = {};                ///< of an output: see Argument::writes
   std::vector<std::string> choices = {};  ///< the only words that it takes; empty: any
   std::string_view endings = {};          ///< of a path: see Argument::ending
@@ -72,6 +76,8 @@ class Argument {
   bool given() const;
   /// Names a file or folder that the command reads, with those that `named` finds in it.
   Argument& reads(FilesNamed named = {});
+  /// Its words may name a file that the command reads.
+  Argument& may_read(FileInWords file_in);
   /// Names a file or folder that the command writes.
   /// @param suffix  what a name ends in that is chosen for the user: ".json", or "/" for a folder;
   ///                empty: what is written differs from run to run, and is not chosen for him.

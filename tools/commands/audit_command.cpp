@@ -183,7 +183,11 @@ class AuditCommand : public Command {
              "lanes), lanes (those that the drive is along in their direction, and those beside "
              "them), route:F.json (lanes that route --json printed), or area:F.geojson (polygons "
              "in the drive's coordinates). Needs no --occupancy")
-        .checked(surface_words_fault);
+        .checked(surface_words_fault)
+        .may_read([](const std::string& words) {
+          return surface_words_fault(words).empty() ? surface_words(words).file
+                                                    : std::filesystem::path();
+        });
     margin_argument_ =
         arguments.add("--margin", margin_m_, "Least distance from the body to the edge of --on [m]")
             .within(0.0, 0.5 * planning::kSurfaceHorizon_m)
@@ -434,12 +438,12 @@ class AuditCommand : public Command {
                      const Scene& scene) const {
     if (svg_.empty()) return;
     const planning::AuditReport whole = audited.whole();
-    map::write_output(
-        svg_,
-        audit_svg({audited.drive, question.inflated_parts(), whole,
-                   occupied_around(audited, question, scene),
-                   drawn_ground(audited, question, scene), question.moving_in_source}),
-        force_);
+    map::write_output(svg_,
+                      audit_svg({audited.drive, question.inflated_parts(), whole,
+                                 occupied_around(audited, question, scene),
+                                 drawn_ground(audited, question, scene), question.moving_in_source,
+                                 !scene.occupancy}),
+                      force_);
   }
 
   std::vector<map::Box2> occupied_around(const AuditedDrive& audited, const AuditQuestion& question,

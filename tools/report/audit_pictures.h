@@ -21,11 +21,12 @@ struct AuditPicture {
   std::vector<map::Box2> occupied;    ///< of the height band; what is out of sight is left out
   std::vector<geometry::Ring> lanes;  ///< drivable lanes of a map; may be empty
   std::vector<planning::ObstacleInSource> moving = {};
+  bool is_of_surface = false;  ///< distances are those to the edge of what the drive has to stay on
 };
 
 /// The drive's footprints among the occupied cells, conflicts with their witnesses in red, times
-/// over unknown space in violet; below them the clearance over time, up to 5 m, and a close-up of
-/// where it is least. 900 wide, with a scale bar. Same input, same bytes.
+/// over unknown space in violet; below them the clearance over time, up to 5 m, where the report
+/// has it, and a close-up of where it is least. 900 wide, with a scale bar. Same input, same bytes.
 std::string audit_svg(const AuditPicture& picture);
 
 /// What the close-ups of an audit show, all in source coordinates.

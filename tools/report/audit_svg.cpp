@@ -165,10 +165,13 @@ std::string conflicts_svg(const AuditPicture& picture, const map::PictureFrame& 
 
 std::string header_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
   const planning::AuditReport& report = picture.report;
-  const std::string text = fmt::format(
-      "{} · least clearance {}{:.2f} m at {:.2f} s · unknown {:.0f} %", to_string(report.verdict),
-      report.beyond_horizon ? "over " : "", report.least_clearance_m, report.least_clearance_at_s,
-      100.0 * report.unknown_fraction);
+  const std::string text =
+      fmt::format("{} · least {} {}{:.2f} m at {:.2f} s", to_string(report.verdict),
+                  picture.is_of_surface ? "margin to the edge" : "clearance",
+                  report.beyond_horizon ? "over " : "", report.least_clearance_m,
+                  report.least_clearance_at_s) +
+      (picture.is_of_surface ? ""
+                             : fmt::format(" · unknown {:.0f} %", 100.0 * report.unknown_fraction));
   const double bar_m = map::round_length_m(160.0 / frame.px_per_m);
   const double end_px = kAuditWidth_px - kMargin_px, start_px = end_px - bar_m * frame.px_per_m;
   return fmt::format("<rect class=\"head\" width=\"{}\" height=\"{}\"/>\n", kAuditWidth_px,
@@ -184,6 +187,7 @@ constexpr double kShownClearance_m = 5.0;
 // A gap in the plot where there is more room than it shows.
 std::string clearance_svg(const AuditPicture& picture, double top_px) {
   const planning::AuditReport& report = picture.report;
+  if (report.profile.empty()) return {};
   const double start_s = picture.drive.start_s();
   const double duration_s = std::max(1e-9, picture.drive.end_s() - start_s);
   const double left_px = kMargin_px + 24.0, base_px = top_px + kPanelHeight_px - 26.0;

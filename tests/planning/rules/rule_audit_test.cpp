@@ -74,7 +74,8 @@ TEST(RuleAudit, HoldsSpeedsAgainstTheLimitOfTheLane) {
 TEST(RuleAudit, SeesTheBodyOverSolidLinesOnly) {
   tests::MadeMap made = tests::straight_two_lane_road(100.0);
   const auto over_middle = [&](MarkType type, double y_m) {
-    for (std::uint32_t id : {0u, 1u}) made.lane(map::LaneId{id}).left_marks = {{.type = type}};
+    for (std::uint32_t id : {0u, 1u})
+      made.lane(map::LaneId{id}).left_marks = {{.type = type, .color = ""}};
     return audited(made, TrafficRule::markings, line(10, y_m, 60, y_m)).verdict;
   };
   const double touches_m = -kBody.left_m + 0.01, clear_m = -kBody.left_m - 0.01;
@@ -102,11 +103,13 @@ struct LitRoad {
                                   .phases = {{LightColour::green, 4.0}, {LightColour::red, 6.0}}}};
 
   LitRoad() {
-    made.parts.signals.push_back({.source_id = "7",
-                                  .in_map = {50.0, -4.0},
-                                  .dynamic = true,
-                                  .lanes = {map::LaneId{0}},
-                                  .lane_s_m = {50.0}});
+    map::Signal light;
+    light.source_id = "7";
+    light.in_map = {50.0, -4.0};
+    light.dynamic = true;
+    light.lanes = {map::LaneId{0}};
+    light.lane_s_m = {50.0};
+    made.parts.signals.push_back(std::move(light));
   }
 
   RuleReport passed_at(double t_s, bool is_known = true) const {

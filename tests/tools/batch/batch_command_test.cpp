@@ -141,6 +141,26 @@ TEST(BatchCommand, RunsAgainOnlyWhatChanged) {
   EXPECT_EQ(lines_below(folder / "journal"), runs + 1);
 }
 
+TEST(BatchCommand, RunsAgainWhereAFileThatWordsNameHasChanged) {
+  const TemporaryFolder inputs, folder;
+  const auto area = [](const char* edge_y_m) {
+    return std::string(R"({"type":"Polygon","coordinates":[[[100,190],[200,190],[200,)") +
+           edge_y_m + "],[100," + edge_y_m + "],[100,190]]]}";
+  };
+  const std::string file = inputs.write("area.geojson", area("210"));
+  const json job = {
+      {"job", "audit"},
+      {"options",
+       {{"on", "area:" + file}, {"trajectory", inputs.write("drive.csv", drive_csv(0.0))}}}};
+  const std::string jobs = inputs.write("jobs.jsonl", job.dump() + "\n");
+  batch(jobs, folder.path());
+  EXPECT_EQ(results_in(folder.path()).front()["exit"], 0);
+  EXPECT_THAT(batch(jobs, folder.path()).out, HasSubstr("1 were there already"));
+  inputs.write("area.geojson", area("198"));  // the drive's middle line
+  batch(jobs, folder.path());
+  EXPECT_EQ(results_in(folder.path()).front()["exit"], 1);
+}
+
 TEST(BatchCommand, RunsAgainAJobOneOfWhoseFilesIsGone) {
   const TemporaryFolder inputs, folder;
   const std::string jobs = inputs.write("jobs.jsonl", audit_jobs(inputs, 13));
