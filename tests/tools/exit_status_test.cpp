@@ -78,6 +78,7 @@ class ExitStatus : public testing::Test {
         {"reference", with(with({none}, places), {"-o", fresh(".csv")})},
         {"plan", {none, "-o", fresh("")}},
         {"simulate", {none, "-o", fresh("")}},
+        {"pilot", {none, "--goal", "0,0"}},
         {"occupancy build", {none, "-o", fresh(".bt")}},
         {"occupancy info", {none}},
         {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},

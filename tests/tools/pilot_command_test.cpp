@@ -21,7 +21,7 @@ const std::vector<std::string> kPilot{"pilot", kTown, "--goal", "lane:6/0/-1@100
 
 std::string line(double t_s) {
   return R"({"t_s":)" + std::to_string(t_s) +
-         R"(,"ego":{"x_m":60,"y_m":-1.75,"heading_rad":0,"speed_mps":0}})" + "\n";
+         R"(,"ego":{"x_m":270,"y_m":434.75,"heading_rad":0,"speed_mps":0}})" + "\n";
 }
 
 ProgramRun answers(const std::string& lines, const std::vector<std::string>& command = kPilot) {

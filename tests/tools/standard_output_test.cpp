@@ -109,6 +109,7 @@ class StandardOutput : public testing::Test {
         {"plan", scenario_, "-o", fresh()},
         {"control", "design"},
         {"simulate", scenario_, "-o", fresh()},
+        {"pilot", "--help"},
         {"occupancy", "info", octree_},
         {"audit", "--occupancy", octree_, "--trajectory", trajectory, "--json"},
         {"figures", "-o", fresh()},

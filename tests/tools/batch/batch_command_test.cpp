@@ -144,7 +144,8 @@ TEST(BatchCommand, RunsAgainOnlyWhatChanged) {
 TEST(BatchCommand, RunsAgainWhereAFileThatWordsNameHasChanged) {
   const TemporaryFolder inputs, folder;
   const auto area = [](const char* edge_y_m) {
-    return std::string(R"({"type":"Polygon","coordinates":[[[100,190],[200,190],[200,)") +
+    return std::string(
+               R"({"type":"Polygon","crs":null,"coordinates":[[[100,190],[200,190],[200,)") +
            edge_y_m + "],[100," + edge_y_m + "],[100,190]]]}";
   };
   const std::string file = inputs.write("area.geojson", area("210"));
