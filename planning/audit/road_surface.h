@@ -13,6 +13,7 @@ namespace roadbed::planning::inline audit {
 
 /// What a drive has to stay on.
 struct SurfaceRule {
+  /// What it is made of.
   enum class Kind {
     drivable,  ///< drivable lanes and road areas of the map
     surface,   ///< these, and shoulders, stops, parking, bus and taxi lanes: all a car may touch

@@ -29,6 +29,7 @@ struct ForecastMotion {
 /// Ways are kept from one time to the next: an object costs some 10 µs.
 class LaneForecast {
  public:
+  /// Refers to the map.
   explicit LaneForecast(const map::RoadMap& road_map) : road_map_(road_map) {}
 
   static constexpr std::size_t kMostMotions = 3;

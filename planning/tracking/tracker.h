@@ -36,6 +36,7 @@ struct Track {
   bool is_tentative() const { return !has_own_id && measured < 3; }
 };
 
+/// How objects are measured and tracked.
 struct TrackerOptions {
   ObjectNoise noise = {};
   double coasts_for_s = 1.0;   ///< an object that is not measured is believed to go on for so long
@@ -48,6 +49,7 @@ struct TrackerOptions {
 /// for as long as it lives, and for ten seconds more nobody else has it.
 class Tracker {
  public:
+  /// Without any track so far.
   explicit Tracker(const TrackerOptions& options = {}) : options_(options) {}
 
   /// Takes everything that is measured at a time.

@@ -72,7 +72,7 @@ class ExportCommand : public Command {
         "  roadbed export town.xodr -o town.html --route route.json\n"
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
-        "  roadbed export crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
+        "  roadbed export data/crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 

@@ -54,8 +54,8 @@ class PilotCommand : public Command {
         "Tell in each answer what is believed of the objects, too, and what they may do");
     arguments.says_no_if("a line could not be used");
     arguments.example(
-        "  roadbed simulate data/scenarios/pass_car.json -o drive \\\n"
-        "    --planner 'roadbed pilot data/town.xodr --goal lane:6/0/-1@100'\n"
+        "  roadbed simulate data/scenarios/pass_car.json -o drive "
+        "--planner 'roadbed pilot data/town.xodr --goal lane:6/0/-1@100'\n"
         "  roadbed pilot data/town.xodr --goal lane:6/0/-1@100 < data/seen.jsonl");
   }
 
