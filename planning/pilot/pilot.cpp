@@ -62,12 +62,28 @@ struct Found {
   std::string reason;  ///< why there is none
 };
 
-/// From the lane under the vehicle that fits it best of those from which there is a route.
+/// Lanes under the vehicle that it heads along; else the one that fits it best nearby, as on a
+/// driveway or across a lane.
+std::vector<RoutePlace> places_to_set_off(const map::RoadMap& road_map,
+                                          const geometry::Pose2& map_from_vehicle) {
+  constexpr double reach_m = 3.0;
+  std::vector<RoutePlace> places = places_under(road_map, map_from_vehicle);
+  if (!places.empty()) return places;
+  for (const PlaceCandidate& near :
+       match_place(road_map, map_from_vehicle.position(), map_from_vehicle.heading_rad,
+                   {.reach_m = reach_m})) {
+    if (near.verdict != MatchVerdict::chosen) continue;
+    places.push_back({near.place, near.sense == Sense::against ? Sense::against : Sense::along});
+  }
+  return places;
+}
+
+/// From the lane that fits the vehicle best of those from which there is a route.
 Found route_from(const map::RoadMap& road_map, const geometry::Pose2& map_from_vehicle,
                  const RoutePlace& goal) {
   Router router(road_map);
   Found found{.route = {}, .reason = "the vehicle stands along no lane"};
-  for (const RoutePlace& start : places_under(road_map, map_from_vehicle)) {
+  for (const RoutePlace& start : places_to_set_off(road_map, map_from_vehicle)) {
     RouteAnswer answer = router.find(start, goal);
     if (answer.route) return {std::move(answer.route), ""};
     found.reason = std::move(answer.reason);

@@ -105,6 +105,14 @@ TEST_F(Pilots, SayWhyThereIsNoRouteAndStop) {
   EXPECT_EQ(answer.trajectory.points().back().speed_mps, 0.0);
 }
 
+TEST_F(Pilots, SetOffFromBesideALaneAndAcrossIt) {
+  Pilot pilot(setup());
+  view_.ego.map_from_vehicle = place("31/0/-2", 20.0) * geometry::Pose2{0.0, -2.5, 0.6};
+  view_.ego.speed_mps = 0.0;
+  const PilotAnswer answer = pilot.step(view_);
+  EXPECT_EQ(answer.decision.reason.find("no route"), std::string::npos) << answer.decision.reason;
+}
+
 TEST_F(Pilots, FindAnotherRouteWhereTheVehicleIsPutElsewhere) {
   Pilot pilot(setup());
   pilot.step(view_);

@@ -72,6 +72,17 @@ TEST_F(LaneForecasts, FollowTheLanesMiddle) {
   EXPECT_GT(asked, 10u);
 }
 
+TEST_F(LaneForecasts, HeadTheWayThatTheyGo) {
+  const map::Lane& straight = road_map_.lane(*road_map_.find_lane("31/0/-2"));
+  const auto found = motions(straight.pose_at(10.0) * geometry::Pose2{0.0, 0.8, 0.0}, 8.0);
+  for (double t = 0.4; t < 6.0; t += 0.2) {
+    const Eigen::Vector2d before = found.front().motion.at(t - 0.2).pose().position();
+    const Eigen::Vector2d way = found.front().motion.at(t + 0.2).pose().position() - before;
+    const double turned_rad = found.front().motion.at(t).heading_rad - std::atan2(way.y(), way.x());
+    EXPECT_NEAR(turned_rad, 0.0, 0.004) << t << " s";
+  }
+}
+
 TEST_F(LaneForecasts, ABodyInATurnIsExpectedToTurn) {
   std::size_t turns = 0;
   for (std::uint32_t i = 0; i < road_map_.lanes().size(); ++i) {
