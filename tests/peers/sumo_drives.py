@@ -127,24 +127,39 @@ class Lights:
 
     def __init__(self):
         self.links = []  # (traffic light, link, signal)
+        self.by_lane = {}  # traffic light and link by the lane across the junction
         for light in libsumo.trafficlight.getIDList():
             for index in range(len(libsumo.trafficlight.getRedYellowGreenState(light))):
                 signal = libsumo.trafficlight.getParameter(light, f"linkSignalID:{index}")
                 for one in signal.split():
                     self.links.append((light, index, one))
+            for index, connections in enumerate(libsumo.trafficlight.getControlledLinks(light)):
+                for connection in connections:
+                    self.by_lane[connection[2]] = (light, index)
 
-    def now(self):
+    def now(self, way):
         """The link that the vehicle takes counts for the signals that it shares with others."""
         shown = {}
         for light, index, signal in self.links:
             state = libsumo.trafficlight.getRedYellowGreenState(light)[index]
             freer = ["red", "yellow", "green"]
             shown[signal] = max(shown.get(signal, "red"), colour_of(state), key=freer.index)
-        for light, own_index, _, state in libsumo.vehicle.getNextTLS("ego"):
-            for other, index, signal in self.links:
-                if (other, index) == (light, own_index):
-                    shown[signal] = colour_of(state)
+        own = self.by_lane.get(lane_across(way))
+        for light, index, signal in self.links:
+            if (light, index) == own:
+                shown[signal] = colour_of(libsumo.trafficlight.getRedYellowGreenState(light)[index])
         return [{"signal": signal, "colour": colour} for signal, colour in sorted(shown.items())]
+
+
+def lane_across(way):
+    """The lane across the next junction that a way of points follows; None if there is none."""
+    lane = libsumo.vehicle.getLaneID("ego")
+    if not lane or lane.startswith(":") or not way:
+        return None
+    across = [link[4] for link in libsumo.lane.getLinks(lane) if link[4]]
+    middle = {name: libsumo.lane.getShape(name) for name in across}
+    return min(across, default=None, key=lambda name: min(
+        math.dist(point, middle[name][len(middle[name]) // 2]) for point in way))
 
 
 class Pilot:
@@ -153,6 +168,7 @@ class Pilot:
     def __init__(self, roadbed, map_file, start, speed_mps, goal, log):
         x, y, heading = start
         self.state = [x, y, heading, speed_mps, 0.0, 0.0]
+        self.way = []
         self.log = open(log, "w", encoding="utf-8") if log else None
         self.process = subprocess.Popen(
             [roadbed, "pilot", str(map_file), "--goal", "{:.3f},{:.3f},{:.4f}".format(*goal)],
@@ -178,6 +194,7 @@ class Pilot:
         rows = answer["trajectory"]
         later = next((row for row in rows if row[0] >= t_s + STEP_S - 1e-6), rows[-1])
         self.state = later[1:7]
+        self.way = [row[1:3] for row in rows]
         return answer
 
     def close(self):
@@ -188,8 +205,9 @@ class Pilot:
 
 
 def lane_pose(net, edge_id, at_end):
-    """Of the rightmost lane that cars may use: where it begins or ends, 5 m within."""
-    lane = next(lane for lane in net.getEdge(edge_id).getLanes() if lane.allows("passenger"))
+    """Of the leftmost lane that cars may use, as parking lanes are right of others: where it begins
+    or ends, 5 m within."""
+    lane = [lane for lane in net.getEdge(edge_id).getLanes() if lane.allows("passenger")][-1]
     shape = lane.getShape()
     at_m = lane.getLength() - 5.0 if at_end else 5.0
     x, y = sumolib.geomhelper.positionAtShapeOffset(shape, at_m)
@@ -233,7 +251,7 @@ def run(options, net, map_file, density, seed, by_roadbed):
         if edges is None:
             return None
         libsumo.route.add("ego", edges)
-        libsumo.vehicle.add("ego", "ego", typeID="ego", departLane="first", departPos="9.0",
+        libsumo.vehicle.add("ego", "ego", typeID="ego", departLane="best", departPos="9.0",
                             departSpeed="0", arrivalPos="max")
         for _ in range(round(30.0 / STEP_S)):
             traffic.step()
@@ -280,7 +298,7 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
     try:
         while libsumo.simulation.getTime() - begin_s < options.limit:
             now_s = libsumo.simulation.getTime()
-            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now())
+            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now(pilot.way))
             lane = libsumo.vehicle.getLaneID("ego")
             links = links_ahead(lane)
             front = pilot.front()
