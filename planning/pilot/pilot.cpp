@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kTakenAway_m = 12.0;      // from its line, farther than planning leads
 constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
-constexpr double kYellow_s = 3.0;          // how long one lasts [§ 37 StVO's guideline: 3 s at 50]
+constexpr double kYellow_s = 3.0;          // how long one lasts [VwV-StVO to § 37: 3 s at 50 km/h]
 constexpr double kForLong_s = 1e6;
 constexpr double kAtGoal_m = 1.0;
 constexpr double kLikely = 0.15;  // of motions: what is less so is not planned for

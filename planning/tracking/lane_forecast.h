@@ -26,7 +26,7 @@ struct ForecastMotion {
 ///     ──●─────────────┼──▶ 0.6     times, at each fork, how little that lane turns
 ///                     ╰──▶ 0.1
 ///
-/// Ways are kept from one time to the next: an object costs some 10 µs.
+/// Ways are kept from one time to the next.
 class LaneForecast {
  public:
   /// Refers to the map.

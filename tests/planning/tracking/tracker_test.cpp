@@ -164,7 +164,7 @@ TEST(Tracker, KeepsCarsApartInDenseTraffic) {
     }
   }
   EXPECT_LE(swaps, 1);
-  EXPECT_LT(std::sqrt(squared_m2 / static_cast<double>(count)), 0.25 * std::sqrt(2.0));
+  EXPECT_LT(std::sqrt(squared_m2 / static_cast<double>(count)), 0.2);
 }
 
 }  // namespace
