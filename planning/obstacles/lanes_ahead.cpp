@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t kMostLanes = 10'000;  // lanes may run in a circle and be very short
 
-double turn_of(const map::Lane& lane) {
-  const double start = lane.pose_at(0.0).heading_rad;
-  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
-}
-
 /// The drivable lanes that follow on a lane, by how much they turn.
 std::vector<map::LaneId> successors_by_turn(const map::RoadMap& road_map, map::LaneId from) {
   std::vector<map::LaneId> next;
@@ -23,7 +18,7 @@ std::vector<map::LaneId> successors_by_turn(const map::RoadMap& road_map, map::L
     if (map::is_drivable(road_map.lane(lane).type)) next.push_back(lane);
   }
   std::ranges::stable_sort(next, {},
-                           [&](map::LaneId lane) { return turn_of(road_map.lane(lane)); });
+                           [&](map::LaneId lane) { return turned_along_rad(road_map.lane(lane)); });
   return next;
 }
 
@@ -58,6 +53,11 @@ struct Growing {
 };
 
 }  // namespace
+
+double turned_along_rad(const map::Lane& lane) {
+  const double start = lane.pose_at(0.0).heading_rad;
+  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - start));
+}
 
 geometry::Polyline centre_of(const map::RoadMap& road_map, const LanesAhead& ahead) {
   std::vector<Eigen::Vector2d> points;

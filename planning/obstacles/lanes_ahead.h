@@ -14,6 +14,9 @@ struct LanesAhead {
   double from_s_m = 0.0;
 };
 
+/// By how much a lane turns from its start to its end, whichever way [rad].
+double turned_along_rad(const map::Lane& lane);
+
 /// Their centres as one line; joints that are wider than rounding stay.
 geometry::Polyline centre_of(const map::RoadMap& road_map, const LanesAhead& ahead);
 

@@ -21,11 +21,6 @@ constexpr double kSpareWay_m = 100.0;  // that ways are longer than asked for
 
 bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
 
-double turn_of(const map::Lane& lane) {
-  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad -
-                                       lane.pose_at(0.0).heading_rad));
-}
-
 /// Past its end a way goes on straight.
 Pose2 pose_on(const geometry::Polyline& way, double s_m) {
   const Pose2 pose = way.pose_at(s_m);
@@ -142,9 +137,9 @@ double LaneForecast::fork_weight(const LanesAhead& ahead) const {
     double sum = 0.0;
     for (const map::LaneId next : road_map_.graph().of(ahead.lanes[i]).successors) {
       const map::Lane& lane = road_map_.lane(next);
-      if (map::is_drivable(lane.type)) sum += std::exp(-turn_of(lane) / kForkTurn_rad);
+      if (map::is_drivable(lane.type)) sum += std::exp(-turned_along_rad(lane) / kForkTurn_rad);
     }
-    weight *= std::exp(-turn_of(road_map_.lane(ahead.lanes[i + 1])) / kForkTurn_rad) / sum;
+    weight *= std::exp(-turned_along_rad(road_map_.lane(ahead.lanes[i + 1])) / kForkTurn_rad) / sum;
   }
   return weight;
 }
