@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/planning/plan.h"
 

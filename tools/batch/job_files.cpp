@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/sha256.h"
 
 namespace roadbed::tools::inline batch {
