@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "roadbed/geometry/polygons/polygon.h"
-#include "roadbed/map/edit/clip.h"
-#include "roadbed/map/edit/elevate.h"
-#include "roadbed/map/edit/merge.h"
-#include "roadbed/map/edit/transform.h"
+#include "roadbed/map/edit/clipping/clip.h"
+#include "roadbed/map/edit/elevation/elevate.h"
+#include "roadbed/map/edit/merging/merge.h"
+#include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/load_map.h"
 

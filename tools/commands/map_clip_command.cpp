@@ -1,4 +1,4 @@
-#include "roadbed/map/edit/clip.h"
+#include "roadbed/map/edit/clipping/clip.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "roadbed/map/edit/merge.h"
+#include "roadbed/map/edit/merging/merge.h"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "roadbed/geometry/polygons/polygon.h"
-#include "roadbed/map/edit/clip.h"
+#include "roadbed/map/edit/clipping/clip.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"

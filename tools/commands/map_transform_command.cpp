@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/map/edit/elevate.h"
-#include "roadbed/map/edit/transform.h"
+#include "roadbed/map/edit/elevation/elevate.h"
+#include "roadbed/map/edit/transforming/transform.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/commands/edit_output.h"
@@ -95,7 +95,8 @@ class TransformCommand : public Command {
                   "alone, what it is called");
     arguments
         .add("--elevation", ground_files_,
-             "Then take heights from the ground under it: point clouds (.pcd .ply .las .xyz) or "
+             "Then take heights from the ground under it: point clouds (.pcd .ply .las .laz .xyz) "
+             "or "
              "octrees (.bt .ot .tiles) in the coordinates that the map has then; may be given "
              "again. --lift is added to them")
         .one_each()

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/map/edit/region.h"
+#include "roadbed/map/edit/clipping/region.h"
 #include "roadbed/tools/cli/arguments.h"
 
 namespace roadbed::tools::inline commands {

@@ -9,8 +9,8 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/derived/map_diff.h"
-#include "roadbed/map/edit/clip.h"
-#include "roadbed/map/edit/merge.h"
+#include "roadbed/map/edit/clipping/clip.h"
+#include "roadbed/map/edit/merging/merge.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/route/router.h"

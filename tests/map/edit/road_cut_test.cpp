@@ -7,8 +7,8 @@
 #include <random>
 
 #include "roadbed/map/derived/map_diff.h"
+#include "roadbed/map/edit/merging/road_join.h"
 #include "roadbed/map/edit/plan_cut.h"
-#include "roadbed/map/edit/road_join.h"
 #include "roadbed/map/edit/xml_edit.h"
 #include "roadbed/map/files/xml.h"
 #include "roadbed/map/load_map.h"

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "roadbed/map/edit/clipping/region.h"
+#include "roadbed/map/edit/edited.h"
+
+namespace roadbed::map::inline edit::inline clipping {
+
+struct ClipOptions {
+  bool whole = false;  ///< roads and lanelets that the region touches stay whole
+};
+
+/// The part of a map inside a region, as a file of its own format; what of it roadbed does not use
+/// stays. Ids stay. What leads to something outside is taken off, and kept in the file under names
+/// of roadbed, so that parts of one map can be put together again (merge.h).
+/// @param name  stands for the file in messages.
+/// @throws InputError if the file is unusable, or of a format that cannot be clipped.
+Edited clip(std::string bytes, const std::string& name, const Region& region,
+            const ClipOptions& options = {});
+
+// Of one format.
+//
+// OpenDRIVE: a road is cut across its reference line, at the first and the last station at which
+// its cross-section, from border to border, touches the region. So everything inside is kept, and
+// where the region's edge runs slantwise to the road, the road reaches beyond it by less than its
+// width. A road that comes back in falls into parts; the first keeps the id.
+Edited clip_open_drive(std::string bytes, const std::string& name, const Region& region,
+                       const ClipOptions& options);
+
+// Lanelet2: a lanelet is cut where the region's edge crosses its borders, each exactly there, at
+// new points that lanelets beside it share. Where the edge does not cross both borders alike, the
+// lanelet stays whole, and so do those that share a border with it. Regulatory elements stay with
+// any of their lanelets, lines that they name stay whole.
+Edited clip_lanelet2(std::string bytes, const std::string& name, const Region& region,
+                     const ClipOptions& options);
+
+// CommonRoad: lanelets beside each other are cut together, across, at the first and the last row of
+// their points (or a place between two) at which any of them touches the region: everything inside
+// is kept. Obstacles and planning problems stay with where they begin.
+Edited clip_common_road(std::string bytes, const std::string& name, const Region& region,
+                        const ClipOptions& options);
+
+}  // namespace roadbed::map::edit::clipping

@@ -1,0 +1,344 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/map/edit/merging/coordinate_systems.h"
+#include "roadbed/map/edit/merging/link_ends.h"
+#include "roadbed/map/edit/merging/merge.h"
+#include "roadbed/map/edit/merging/road_join.h"
+#include "roadbed/map/edit/new_ids.h"
+#include "roadbed/map/edit/plan_cut.h"
+#include "roadbed/map/edit/road_cut.h"
+#include "roadbed/map/edit/road_references.h"
+#include "roadbed/map/edit/xml_edit.h"
+#include "roadbed/map/opendrive/read.h"
+
+namespace roadbed::map::inline edit::inline merging {
+namespace {
+
+bool is_clip_memory(pugi::xml_node node) { return text(node, "code") == "roadbed.clip"; }
+
+bool are_equal(pugi::xml_node a, pugi::xml_node b) { return say_the_same(a, b, is_clip_memory); }
+
+/// A file whose elements are merged.
+struct Source {
+  XmlDocument xml;
+  CoordinateSystem system;
+  std::string name;
+
+  pugi::xml_node root() const { return xml.root(); }
+};
+
+Source read_source(MergeInput input) {
+  XmlDocument xml(std::move(input.bytes), input.name);
+  opendrive::Document document = opendrive::read_document(xml);
+  if (document.refusal) throw *document.refusal;
+  const auto& offset = document.offset_in_crs;
+  return {std::move(xml), {document.crs, {offset.x_m, offset.y_m, offset.heading_rad}}, input.name};
+}
+
+constexpr std::array<const char*, 3> kKinds = {"road", "controller", "junction"};
+
+/// Whether the elements of each kind stand in order of their numbers.
+std::array<bool, 3> kinds_in_order(pugi::xml_node root) {
+  return {is_in_order(root, kKinds[0]), is_in_order(root, kKinds[1]), is_in_order(root, kKinds[2])};
+}
+
+class Merger {
+ public:
+  Merger(pugi::xml_node root, const MergeOptions& options)
+      : root_(root), options_(options), in_order_(kinds_in_order(root)) {
+    for (const auto road : root.children("road")) note_road(road);
+    for (const auto one : root.children("controller")) {
+      note(controllers_, one);
+      last_controller_ = one;
+    }
+    for (const auto one : root.children("junction")) {
+      note(junctions_, one);
+      last_junction_ = one;
+    }
+  }
+
+  void add(const Source& source, Merged& result) {
+    const std::array<bool, 3> in_order = kinds_in_order(source.root());
+    for (std::size_t i = 0; i < in_order.size(); ++i) in_order_[i] = in_order_[i] && in_order[i];
+    const NewIds names = new_names(source, result);
+    names.apply(source.root());
+    for (const auto road : source.root().children("road")) add_road(road);
+    for (const auto one : source.root().children("controller")) add_once(controllers_, one);
+    for (const auto one : source.root().children("junction")) add_once(junctions_, one);
+    add_others(source.root());
+    widen_header(source.root().child("header"));
+  }
+
+  void finish(const std::string& file, Merged& result) {
+    name_parts(file, result);
+    for (std::size_t i = 0; i < kKinds.size(); ++i) {
+      if (in_order_[i]) put_in_order(root_, kKinds[i]);
+    }
+    const SettledReferences settled = settle_references(root_);
+    result.count("roads taken once that several maps hold", repeated_);
+    result.count("roads put together of parts", joined_.size());
+    result.count("parts of roads whose neighbouring part is missing", open_parts_);
+    result.count("road links that lead nowhere", settled.links);
+    result.count("connections of junctions that lead nowhere", settled.connections);
+    result.seams.insert(result.seams.end(), seams_.begin(), seams_.end());
+    link_coinciding_ends(root_, origins_, options_.tolerance_m, result.seams);
+    const auto linked = std::count_if(result.seams.begin(), result.seams.end(),
+                                      [](const Seam& seam) { return seam.what == "linked"; });
+    result.count("ends of roads linked", static_cast<std::size_t>(linked));
+  }
+
+ private:
+  using ById = std::map<std::string, pugi::xml_node>;
+
+  static void note(ById& elements, pugi::xml_node one) { elements.emplace(text(one, "id"), one); }
+
+  void note_road(pugi::xml_node road) {
+    last_road_ = road;
+    parts_[road_cut(road).road].push_back(road);
+    origins_[text(road, "id")] = source_;
+    for (const auto signal : road.child("signals").children("signal")) {
+      signals_[text(signal, "id")] = road_cut(road).road;
+      signal_ids_.take(text(signal, "id"));
+    }
+    for (const auto object : road.child("objects").children("object")) {
+      objects_[text(object, "id")] = road_cut(road).road;
+      object_ids_.take(text(object, "id"));
+    }
+  }
+
+  // Roads, junctions, controllers and signals of the same id that are not the same.
+  NewIds new_names(const Source& source, Merged& result) {
+    ++source_;
+    NewIds names;
+    FreshIds roads, junctions, controllers;
+    for (const auto& [id, parts] : parts_) roads.take(id);
+    for (const auto& [id, one] : junctions_) junctions.take(id);
+    for (const auto& [id, one] : controllers_) controllers.take(id);
+    const auto give = [&](const char* kind, NameChanges& to, FreshIds& ids, const std::string& id) {
+      to[id] = ids.fresh();
+      result.renamed.push_back({source.name, kind, id, to[id]});
+    };
+    std::set<std::string> same;
+    for (const auto road : source.root().children("road")) roads.take(road_cut(road).road);
+    for (const auto road : source.root().children("road")) {
+      const std::string id = road_cut(road).road;
+      if (!parts_.contains(id) || names.roads.contains(id)) continue;
+      if (is_same_road(id, road)) {
+        same.insert(id);
+      } else {
+        give("road", names.roads, roads, id);
+      }
+    }
+    for (const auto road : source.root().children("road")) {
+      const std::string id = road_cut(road).road;
+      name_inside(road.child("signals"), "signal", signals_, same.contains(id) ? id : "",
+                  [&](const std::string& one) { give("signal", names.signals, signal_ids_, one); });
+      name_inside(road.child("objects"), "object", objects_, same.contains(id) ? id : "",
+                  [&](const std::string& one) { give("object", names.objects, object_ids_, one); });
+    }
+    // What names something renamed is another thing, too.
+    name_others(source, "junction", junctions_, names.junctions, junctions, result, names);
+    name_others(source, "controller", controllers_, names.controllers, controllers, result, names);
+    return names;
+  }
+
+  static void name_inside(pugi::xml_node list, const char* name,
+                          const std::map<std::string, std::string>& taken,
+                          const std::string& same_road,
+                          const std::function<void(const std::string&)>& give) {
+    for (const auto one : list.children(name)) {
+      const auto found = taken.find(text(one, "id"));
+      if (found != taken.end() && found->second != same_road) give(text(one, "id"));
+    }
+  }
+
+  static void name_others(const Source& source, const char* kind, const ById& own, NameChanges& to,
+                          FreshIds& ids, Merged& result, const NewIds& names) {
+    for (const auto one : source.root().children(kind)) ids.take(text(one, "id"));
+    for (const auto one : source.root().children(kind)) {
+      const std::string id = text(one, "id");
+      const auto found = own.find(id);
+      if (found == own.end()) continue;
+      if (are_equal(found->second, one) && !leads_to_renamed(one, names)) continue;
+      to[id] = ids.fresh();
+      result.renamed.push_back({source.name, kind, id, to[id]});
+    }
+  }
+
+  static bool leads_to_renamed(pugi::xml_node one, const NewIds& names) {
+    const auto parts = one.children();
+    return std::any_of(parts.begin(), parts.end(), [&](pugi::xml_node part) {
+      return names.roads.contains(text(part, "incomingRoad")) ||
+             names.roads.contains(text(part, "connectingRoad")) ||
+             names.signals.contains(text(part, "signalId"));
+    });
+  }
+
+  // Whether a road is one that is there already, or a part of the same.
+  bool is_same_road(const std::string& id, pugi::xml_node road) const {
+    const RoadCut cut = road_cut(road);
+    return std::any_of(parts_.at(id).begin(), parts_.at(id).end(), [&](pugi::xml_node part) {
+      const RoadCut own = road_cut(part);
+      if (std::abs(own.length_m - cut.length_m) > 1e-6) return false;
+      if (own.is_whole() && cut.is_whole()) {
+        return are_equal(part.child("planView"), road.child("planView")) &&
+               are_equal(part.child("lanes"), road.child("lanes"));
+      }
+      const double from_m = std::max(own.from_m, cut.from_m), to_m = std::min(own.to_m, cut.to_m);
+      if (from_m > to_m) return !own.is_whole() && !cut.is_whole();
+      const auto there = reference_pose(part, from_m - own.from_m).position();
+      return (there - reference_pose(road, from_m - cut.from_m).position()).norm() < 1e-3;
+    });
+  }
+
+  void add_road(pugi::xml_node road) {
+    std::vector<pugi::xml_node>& parts = parts_[road_cut(road).road];
+    const RoadCut cut = road_cut(road);
+    const bool is_there = std::any_of(parts.begin(), parts.end(), [&](pugi::xml_node part) {
+      const RoadCut own = road_cut(part);
+      return own.from_m <= cut.from_m && cut.to_m <= own.to_m;
+    });
+    if (is_there) {
+      ++repeated_;
+      return;
+    }
+    last_road_ = root_.insert_copy_after(road, last_road_);
+    parts.push_back(last_road_);
+    note_ids(last_road_);
+    join(parts);
+  }
+
+  void note_ids(pugi::xml_node road) {
+    const std::string id = road_cut(road).road;
+    origins_[text(road, "id")] = source_;
+    for (const auto one : road.child("signals").children("signal")) signals_[text(one, "id")] = id;
+    for (const auto one : road.child("objects").children("object")) objects_[text(one, "id")] = id;
+  }
+
+  // Parts in order of their stations; each is put to the one before that it goes on from.
+  void join(std::vector<pugi::xml_node>& parts) {
+    std::stable_sort(parts.begin(), parts.end(), [](pugi::xml_node a, pugi::xml_node b) {
+      return road_cut(a).from_m < road_cut(b).from_m;
+    });
+    for (std::size_t i = 0; i + 1 < parts.size();) {
+      if (!goes_on(parts[i], parts[i + 1])) {
+        ++i;
+        continue;
+      }
+      const RoadCut second = road_cut(parts[i + 1]), first = road_cut(parts[i]);
+      const double at_m = std::min(first.to_m, second.from_m);
+      const auto there = reference_pose(parts[i], at_m - first.from_m).position();
+      const auto here = reference_pose(parts[i + 1], at_m - second.from_m).position();
+      seams_.push_back({fmt::format("road {} up to {:.3f} m", first.road, first.to_m),
+                        fmt::format("road {} from {:.3f} m", first.road, second.from_m),
+                        (there - here).norm(), "joined", here.x(), here.y()});
+      join_roads(parts[i], parts[i + 1]);
+      if (parts[i + 1] == last_road_) last_road_ = last_road_.previous_sibling();
+      root_.remove_child(parts[i + 1]);
+      parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      joined_.insert(first.road);
+    }
+  }
+
+  void add_once(ById& elements, pugi::xml_node one) {
+    if (elements.contains(text(one, "id"))) return;
+    const bool follows = &elements == &junctions_ && last_controller_;
+    pugi::xml_node& behind = &elements == &junctions_ ? last_junction_ : last_controller_;
+    if (!behind) behind = follows ? last_controller_ : last_road_;
+    behind = root_.insert_copy_after(one, behind);
+    note(elements, behind);
+  }
+
+  // Whatever else is in the root, once.
+  void add_others(pugi::xml_node root) {
+    for (const auto one : root.children()) {
+      const std::string_view name = one.name();
+      if (one.type() != pugi::node_element || name == "header" || name == "road" ||
+          name == "junction" || name == "controller" || is_clip_memory(one)) {
+        continue;
+      }
+      const auto own = root_.children(one.name());
+      if (std::none_of(own.begin(), own.end(), [&](auto other) { return are_equal(one, other); })) {
+        root_.append_copy(one);
+      }
+    }
+  }
+
+  void widen_header(pugi::xml_node other) {
+    pugi::xml_node header = root_.child("header");
+    const auto widen = [&](const char* side, bool up) {
+      if (!header.attribute(side) || !other.attribute(side)) return;
+      const double own = number(header, side), its = number(other, side);
+      if (up ? its > own : its < own) set_text(header, side, other.attribute(side).value());
+    };
+    widen("north", true);
+    widen("east", true);
+    widen("south", false);
+    widen("west", false);
+  }
+
+  // The first part of a road has its id, the others have ids of their own.
+  void name_parts(const std::string& file, Merged& result) {
+    FreshIds ids;
+    for (const auto& [id, parts] : parts_) ids.take(id);
+    for (auto& [id, parts] : parts_) {
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const RoadCut cut = road_cut(parts[i]);
+        open_parts_ += cut.is_whole() ? 0 : 1;
+        const std::string before = text(parts[i], "id");
+        const std::size_t source = origins_[before];
+        const std::string now = i == 0 ? id : ids.fresh();
+        set_text(parts[i], "id", now);
+        origins_[now] = source;
+        if (i > 0) result.renamed.push_back({file, "part of road " + id, before, now});
+      }
+    }
+  }
+
+  pugi::xml_node root_;
+  const MergeOptions& options_;
+  std::array<bool, 3> in_order_;
+  std::size_t source_ = 0;                                      // which of the files is being added
+  std::map<std::string, std::vector<pugi::xml_node>> parts_;    // of each whole road
+  std::map<std::string, std::size_t> origins_;                  // file of each road
+  pugi::xml_node last_road_, last_controller_, last_junction_;  // behind which new ones stand
+  ById junctions_, controllers_;
+  std::map<std::string, std::string> signals_, objects_;  // and the whole road of each
+  FreshIds signal_ids_, object_ids_;
+  std::set<std::string> joined_;
+  std::vector<Seam> seams_;
+  std::size_t repeated_ = 0, open_parts_ = 0;
+};
+
+}  // namespace
+
+Merged merge_open_drive(std::vector<MergeInput> inputs, const MergeOptions& options) {
+  const std::string indent = indent_of(inputs.front().bytes);
+  const Source first = read_source(std::move(inputs.front()));
+  restore_references(first.root());
+  Merger merger(first.root(), options);
+  Merged result;
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    const Source source = read_source(std::move(inputs[i]));
+    if (!options.same_system) {
+      require_same_system(first.system, first.name, source.system, source.name);
+    }
+    restore_references(source.root());
+    merger.add(source, result);
+  }
+  merger.finish(first.name, result);
+  result.bytes = text_of(first.xml, indent);
+  return result;
+}
+
+}  // namespace roadbed::map::edit::merging

@@ -1,0 +1,115 @@
+#include "roadbed/map/edit/merging/osm_seams.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/map/edit/osm_edit.h"
+#include "roadbed/map/lanelet2/centreline.h"
+
+namespace roadbed::map::inline edit::inline merging {
+namespace {
+
+using lanelet2::Document;
+using Id = std::int64_t;
+
+/// Where a lanelet begins or ends.
+struct LaneletEnd {
+  std::size_t file;
+  Id lanelet, whole;  ///< itself, and what it is a part of
+  bool is_start;
+  std::uint32_t left, right;  ///< nodes of its file
+};
+
+const lanelet2::Way* border(const Document& file, const lanelet2::Relation& lanelet,
+                            std::string_view role) {
+  for (const lanelet2::Member& member : lanelet.members) {
+    if (member.role != role || member.kind != lanelet2::MemberKind::way) continue;
+    const auto way = file.way_index.find(member.id);
+    if (way && file.ways[*way].nodes.size() >= 2) return &file.ways[*way];
+  }
+  return nullptr;
+}
+
+void add_ends(const Document& file, std::size_t index, std::vector<LaneletEnd>& ends) {
+  for (const lanelet2::Relation& relation : file.relations) {
+    if (relation.type != "lanelet") continue;
+    const lanelet2::Way *left = border(file, relation, "left"),
+                        *right = border(file, relation, "right");
+    if (left == nullptr || right == nullptr) continue;
+    const Id whole = lanelet2::id_in(tag_value(relation.tags, kClipKey)).value_or(relation.id);
+    const auto alignment = lanelet2::align(file.points(*left), file.points(*right));
+    const auto end = [](const lanelet2::Way& way, bool first) {
+      return first ? way.nodes.front() : way.nodes.back();
+    };
+    for (const bool is_start : {true, false}) {
+      ends.push_back({index, relation.id, whole, is_start,
+                      end(*left, is_start != alignment.left_reversed),
+                      end(*right, is_start != alignment.right_reversed)});
+    }
+  }
+}
+
+Id root_of(Id node, const std::map<Id, Id>& one) {
+  for (auto next = one.find(node); next != one.end(); next = one.find(node)) node = next->second;
+  return node;
+}
+
+// The one of the lesser number stays.
+void unite(Id a, Id b, std::map<Id, Id>& one) {
+  a = root_of(a, one), b = root_of(b, one);
+  if (a != b) one.emplace(std::max(a, b), std::min(a, b));
+}
+
+}  // namespace
+
+std::map<Id, Id> nodes_to_join(const std::vector<Document>& files,
+                               const std::function<Id(std::size_t file, Id node)>& called,
+                               double tolerance_m, std::vector<Seam>& seams) {
+  std::vector<LaneletEnd> ends;
+  for (std::size_t f = 0; f < files.size(); ++f) add_ends(files[f], f, ends);
+  const auto place = [&](const LaneletEnd& end, std::uint32_t node) -> Eigen::Vector2d {
+    const Document& file = files[end.file];
+    return file.origin_in_source + file.nodes[node].in_map.head<2>();
+  };
+  const auto name = [&](const LaneletEnd& end, std::uint32_t node) {
+    return called(end.file, files[end.file].nodes[node].id);
+  };
+  std::vector<geometry::Box> boxes;
+  for (const LaneletEnd& end : ends) boxes.emplace_back(place(end, end.left));
+  const geometry::BoxTree tree(boxes);
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(tolerance_m);
+
+  std::map<Id, Id> one;
+  for (const LaneletEnd& end : ends) {
+    if (end.is_start) continue;
+    const Eigen::Vector2d left = place(end, end.left), right = place(end, end.right);
+    std::vector<std::size_t> near;
+    tree.visit(geometry::Box(left - reach, left + reach),
+               [&](std::size_t i) { near.push_back(i); });
+    std::sort(near.begin(), near.end());
+    for (const std::size_t i : near) {
+      const LaneletEnd& next = ends[i];
+      if (!next.is_start || next.file == end.file) continue;
+      const double gap_m = std::max((place(next, next.left) - left).norm(),
+                                    (place(next, next.right) - right).norm());
+      const Id from_left = name(end, end.left), from_right = name(end, end.right),
+               to_left = name(next, next.left), to_right = name(next, next.right);
+      if (gap_m > tolerance_m || (from_left == to_left && from_right == to_right)) continue;
+      const bool is_one = end.whole == next.whole;  // is put together anyhow
+      seams.push_back({fmt::format("end of lanelet {}", end.lanelet),
+                       fmt::format("start of lanelet {}", next.lanelet), gap_m,
+                       is_one ? "joined" : "linked", left.x(), left.y()});
+      if (is_one) continue;
+      if (from_left != to_left) unite(from_left, to_left, one);
+      if (from_right != to_right) unite(from_right, to_right, one);
+    }
+  }
+  for (auto& [from, to] : one) to = root_of(to, one);
+  return one;
+}
+
+}  // namespace roadbed::map::edit::merging

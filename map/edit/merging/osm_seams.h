@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "roadbed/map/edit/merging/merge.h"
+#include "roadbed/map/lanelet2/document.h"
+
+namespace roadbed::map::inline edit::inline merging {
+
+/// Nodes that become one where a lanelet of one file ends and one of another begins: both ends of
+/// its borders are at most the tolerance apart, and are not one already. Adds a seam for each pair.
+/// @param called  what a node of a file is called in the merged map.
+/// @returns for each node that goes, the one that stays, by these names.
+std::map<std::int64_t, std::int64_t> nodes_to_join(
+    const std::vector<lanelet2::Document>& files,
+    const std::function<std::int64_t(std::size_t file, std::int64_t node)>& called,
+    double tolerance_m, std::vector<Seam>& seams);
+
+}  // namespace roadbed::map::edit::merging

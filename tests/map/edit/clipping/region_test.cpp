@@ -1,0 +1,90 @@
+#include "roadbed/map/edit/clipping/region.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/geometry/primitives/polyline.h"
+
+namespace roadbed::map {
+namespace {
+
+using Eigen::Vector2d;
+
+geometry::Ring star() {
+  geometry::Ring ring;
+  for (int i = 0; i < 10; ++i) {
+    const double angle = 0.62831853 * i, radius = i % 2 == 0 ? 10.0 : 4.0;
+    ring.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return ring;
+}
+
+TEST(Region, ContainsWhatItsRingContains) {
+  const Region region({star()});
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-12.0, 12.0);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector2d point(place(random), place(random));
+    EXPECT_EQ(region.contains(point), geometry::contains(star(), point)) << point.transpose();
+  }
+}
+
+TEST(Region, IsNotWhereAHoleIs) {
+  const Region region({geometry::box_ring({0, 0}, {10, 10}), geometry::box_ring({4, 4}, {6, 6})});
+  EXPECT_TRUE(region.contains({1, 1}));
+  EXPECT_FALSE(region.contains({5, 5}));
+  EXPECT_TRUE(region.contains({4, 5})) << "edges are inside";
+}
+
+TEST(Region, IsCrossedWhereInsideBegins) {
+  const Region region({star()});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> place(-12.0, 12.0);
+  for (int i = 0; i < 500; ++i) {
+    const Vector2d from(place(random), place(random)), to(place(random), place(random));
+    bool inside = region.contains(from);
+    double before = 0.0;
+    for (const double at : region.crossings(from, to)) {
+      EXPECT_EQ(region.contains(from + 0.5 * (before + at) * (to - from)), inside);
+      inside = !inside;
+      before = at;
+    }
+    EXPECT_EQ(region.contains(to), inside);
+  }
+}
+
+TEST(Region, KnowsTheSideOfADiscOnlyWhereNoEdgeIsNear) {
+  const Region region({geometry::box_ring({0, 0}, {10, 10})});
+  EXPECT_EQ(region.side_of_disc({5, 5}, 4.9), Region::Side::inside);
+  EXPECT_EQ(region.side_of_disc({5, 5}, 5.1), Region::Side::border);
+  EXPECT_EQ(region.side_of_disc({15, 5}, 4.9), Region::Side::outside);
+  EXPECT_EQ(region.side_of_disc({15, 5}, 5.1), Region::Side::border);
+}
+
+TEST(Region, AroundALineHoldsWhatIsNearerAndNothingMuchFarther) {
+  const std::vector<Vector2d> line = {{0, 0}, {50, 0}, {50, 80}};
+  const Region region = region_around(line, 10.0);
+  const geometry::Polyline polyline(line);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-20.0, 100.0);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector2d point(place(random), place(random));
+    const double away_m = std::abs(polyline.project(point).d_m);
+    if (away_m > 9.99 && away_m < 10.04) continue;
+    EXPECT_EQ(region.contains(point), away_m < 10.0) << point.transpose();
+  }
+}
+
+TEST(Region, NeedsRingsOfThreePoints) {
+  EXPECT_THROW(Region(std::vector<geometry::Ring>{}), std::invalid_argument);
+  EXPECT_THROW(Region({{{0, 0}, {1, 1}}}), std::invalid_argument);
+  EXPECT_THROW(region_around({}, 1.0), std::invalid_argument);
+  EXPECT_THROW(region_around({{0, 0}, {1, 0}}, 0.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace roadbed::map

@@ -1,0 +1,165 @@
+#include "roadbed/map/edit/merging/merge.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/edit/clipping/clip.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::map {
+namespace {
+
+// One road of one lane along the x axis, with a signal and a controller.
+std::string road_at(double x, double y, const std::string& crs = "") {
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<OpenDRIVE>\n  <header revMajor=\"1\" revMinor=\"6\" west=\"{0}\" "
+      "east=\"{1}\">{3}</header>\n  <road id=\"1\" length=\"100\" junction=\"-1\"><planView>"
+      "<geometry s=\"0\" x=\"{0}\" y=\"{2}\" hdg=\"0\" length=\"100\"><line/></geometry></planView>"
+      "<lanes><laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right><lane "
+      "id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>"
+      "</right></laneSection></lanes><signals><signal id=\"7\" s=\"90\" t=\"-4\" dynamic=\"yes\" "
+      "orientation=\"+\" type=\"1000001\" subtype=\"-1\"/></signals></road>\n  <controller "
+      "id=\"3\">"
+      "<control signalId=\"7\"/></controller>\n</OpenDRIVE>\n",
+      x, x + 100, y, crs.empty() ? "" : "<geoReference>" + crs + "</geoReference>");
+}
+
+TEST(Merge, GivesOtherIdsToOtherThings) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(500, 40), "b.xodr"}});
+  const RoadMap road_map = parse_map(merged.bytes, "merged.xodr");
+  ASSERT_EQ(road_map.roads().size(), 2u);
+  EXPECT_EQ(road_map.signals().size(), 2u);
+  ASSERT_EQ(road_map.controllers().size(), 2u);
+  EXPECT_NE(road_map.controllers()[0].signals, road_map.controllers()[1].signals);
+  ASSERT_EQ(merged.renamed.size(), 3u);
+  EXPECT_EQ(merged.renamed[0].kind, "road");
+  EXPECT_EQ(merged.renamed[0].file, "b.xodr");
+  EXPECT_EQ(merged.renamed[0].from, "1");
+  EXPECT_EQ(merged.renamed[0].to, "2");
+}
+
+TEST(Merge, TakesOnceWhatIsTheSame) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(0, 0), "b.xodr"}});
+  EXPECT_EQ(parse_map(merged.bytes, "merged.xodr").roads().size(), 1u);
+  EXPECT_TRUE(merged.renamed.empty());
+}
+
+TEST(Merge, LinksEndsThatCoincide) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(100.02, 0.01), "b.xodr"}});
+  const RoadMap road_map = parse_map(merged.bytes, "merged.xodr");
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_EQ(merged.seams[0].first, "end of road 1");
+  EXPECT_EQ(merged.seams[0].second, "start of road 2");
+  EXPECT_EQ(merged.seams[0].what, "linked");
+  EXPECT_NEAR(merged.seams[0].gap_m, std::hypot(0.02, 0.01), 1e-9);
+  EXPECT_EQ(road_map.graph().of(LaneId{0}).successors, std::vector<LaneId>{LaneId{1}});
+}
+
+TEST(Merge, LinksNothingFartherThanTheTolerance) {
+  const Merged merged =
+      merge({{road_at(0, 0), "a.xodr"}, {road_at(100.02, 0), "b.xodr"}}, {.tolerance_m = 0.01});
+  EXPECT_TRUE(merged.seams.empty());
+  const RoadMap road_map = parse_map(merged.bytes, "merged.xodr");
+  EXPECT_TRUE(road_map.graph().of(LaneId{0}).successors.empty());
+}
+
+TEST(Merge, WidensTheHeader) {
+  const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(500, 0), "b.xodr"}});
+  EXPECT_NE(merged.bytes.find("west=\"0\" east=\"600\""), std::string::npos) << merged.bytes;
+}
+
+TEST(Merge, RefusesOtherSystemsUnlessToldHow) {
+  const auto maps = [] {
+    return std::vector<MergeInput>{{road_at(0, 0, "EPSG:32632"), "a.xodr"},
+                                   {road_at(500, 0, "EPSG:32633"), "b.xodr"}};
+  };
+  EXPECT_THROW(merge(maps()), InputError);
+  EXPECT_EQ(parse_map(merge(maps(), {.same_system = true}).bytes, "merged.xodr").roads().size(),
+            2u);
+}
+
+// Two lanelets end to end; the second begins a little beside where the first one ends.
+std::string lanelet_at(double x, std::int64_t id) {
+  std::string text = "<osm version=\"0.6\">\n";
+  const auto node = [&](int i, double east, double north) {
+    text += fmt::format(
+        "  <node id=\"{}\" lat=\"0\" lon=\"0\">\n    <tag k=\"local_x\" v=\"{}\" />\n    <tag "
+        "k=\"local_y\" v=\"{}\" />\n  </node>\n",
+        10 * id + i, east, north);
+  };
+  node(1, x, 2), node(2, x + 50, 2), node(3, x, -2), node(4, x + 50, -2);
+  for (const int side : {5, 6}) {
+    text +=
+        fmt::format("  <way id=\"{}\">\n    <nd ref=\"{}\" />\n    <nd ref=\"{}\" />\n  </way>\n",
+                    10 * id + side, 10 * id + 2 * side - 9, 10 * id + 2 * side - 8);
+  }
+  return text +
+         fmt::format(
+             "  <relation id=\"{}\">\n    <member type=\"way\" ref=\"{}\" role=\"left\" />\n"
+             "    <member type=\"way\" ref=\"{}\" role=\"right\" />\n    <tag k=\"type\" "
+             "v=\"lanelet\" />\n    <tag k=\"subtype\" v=\"road\" />\n  </relation>\n</osm>\n",
+             10 * id + 7, 10 * id + 5, 10 * id + 6);
+}
+
+TEST(MergeLanelet2, LinksEndsThatCoincide) {
+  const Merged merged = merge({{lanelet_at(0, 1), "a.osm"}, {lanelet_at(50.03, 2), "b.osm"}});
+  const RoadMap road_map = parse_map(merged.bytes, "merged.osm");
+  ASSERT_EQ(road_map.lanes().size(), 2u);
+  EXPECT_EQ(road_map.graph().of(LaneId{0}).successors, std::vector<LaneId>{LaneId{1}});
+  ASSERT_EQ(merged.seams.size(), 1u);
+  EXPECT_NEAR(merged.seams[0].gap_m, 0.03, 1e-9);
+}
+
+TEST(MergeLanelet2, GivesOtherIdsToOtherThings) {
+  const Merged merged = merge({{lanelet_at(0, 1), "a.osm"}, {lanelet_at(300, 1), "b.osm"}});
+  const RoadMap road_map = parse_map(merged.bytes, "merged.osm");
+  ASSERT_EQ(road_map.lanes().size(), 2u);
+  EXPECT_EQ(road_map.lanes()[0].name, "17");
+  EXPECT_EQ(merged.renamed.size(), 7u) << "four nodes, two ways, a lanelet";
+}
+
+// Bytes of parts changed at random: they are merged, or refused with a reason.
+TEST(Merge, TakesDamagedPartsOrRefusesThem) {
+  std::mt19937 random(31);
+  for (const char* name : {"town.xodr", "crossing.osm"}) {
+    const std::string bytes = read_file(tests::data_folder() / name);
+    const RoadMap whole = parse_map(bytes, name);
+    const Lane& lane = whole.lanes()[whole.lanes().size() / 2];
+    const Eigen::Vector2d at = whole.to_source(lane.centre.in_map.at(0.4 * lane.length_m()));
+    const auto half = [&](double from_x, double to_x) {
+      return clip(bytes, name, Region({geometry::box_ring({from_x, -1e7}, {to_x, 1e7})})).bytes;
+    };
+    const std::string left = half(-1e7, at.x()), right = half(at.x(), 1e7);
+    for (int i = 0; i < 60; ++i) {
+      std::string damaged = right;
+      // Numbers of clip memories above all.
+      const std::string word = i % 2 == 0 ? "roadbed" : " ";
+      for (int k = 0; k < 4; ++k) {
+        const std::size_t found = damaged.find(word, random() % damaged.size());
+        const std::size_t place = found == std::string::npos ? 0 : found + random() % 60;
+        if (place < damaged.size()) damaged[place] = "0123456789.-e\" <>"[random() % 17];
+      }
+      try {
+        const Merged merged = merge({{left, "left"}, {damaged, "right"}});
+        EXPECT_FALSE(merged.bytes.empty());
+      } catch (const InputError& error) {
+        EXPECT_STRNE(error.what(), "");
+      }
+    }
+  }
+}
+
+TEST(Merge, RefusesOtherFormats) {
+  EXPECT_THROW(merge({{road_at(0, 0), "a.xodr"}, {lanelet_at(0, 1), "b.osm"}}), InputError);
+}
+
+}  // namespace
+}  // namespace roadbed::map

@@ -1,0 +1,174 @@
+#include "roadbed/map/edit/transforming/transform.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/projection.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/made_open_drive.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::map {
+namespace {
+
+using Eigen::Vector2d;
+
+const RigidMotion kMotion{.turn_rad = 0.7, .shift_m = {120.0, -45.5, 3.25}};
+
+// Every vertex of every border is where the motion takes it.
+void expect_moved(const RoadMap& before, const RoadMap& after, double within_m) {
+  ASSERT_EQ(before.lanes().size(), after.lanes().size());
+  for (const Lane& lane : before.lanes()) {
+    const Lane& moved = after.lane(lane.id);
+    for (const auto line : {&Lane::left, &Lane::right}) {
+      for (std::size_t i = 0; i < (lane.*line).z_m.size(); ++i) {
+        const Vector2d there = kMotion(before.to_source((lane.*line).in_map.points()[i]));
+        const double off_m = (moved.*line).in_map.project(after.to_map(there)).d_m;
+        EXPECT_NEAR(off_m, 0.0, within_m) << lane.name;
+      }
+      EXPECT_NEAR((lane.*line).z_m.front() + 3.25, (moved.*line).z_m.front(), 1e-9);
+    }
+  }
+}
+
+TEST(Transform, MovesEveryBorderOfARoad) {
+  const std::string bytes = tests::curved_road_xml();
+  const Edited moved = transform(bytes, "curved.xodr", {.motion = kMotion, .to = {}, .crs = {}});
+  expect_moved(parse_map(bytes, "a.xodr"), parse_map(moved.bytes, "b.xodr"), 1e-6);
+}
+
+TEST(Transform, MovesEveryBorderOfALanelet) {
+  const std::string bytes = read_file(tests::data_folder() / "crossing.osm");
+  const Edited moved = transform(bytes, "crossing.osm", {.motion = kMotion, .to = {}, .crs = {}});
+  expect_moved(parse_map(bytes, "a.osm"), parse_map(moved.bytes, "b.osm"), 1e-4);
+}
+
+TEST(Transform, MovesAScenarioWithAllThatIsInIt) {
+  const std::string state =
+      "<initialState><position><point><x>10</x><y>2</y></point></position><orientation><exact>3"
+      "</exact></orientation></initialState>";
+  const std::string bytes =
+      "<commonRoad commonRoadVersion=\"2020a\" benchmarkID=\"ZAM_Made-1\" timeStepSize=\"0.1\">"
+      "<lanelet id=\"1\"><leftBound><point><x>0</x><y>4</y><z>1</z></point><point><x>50</x><y>4</y>"
+      "<z>1</z></point></leftBound><rightBound><point><x>0</x><y>0</y><z>1</z></point><point><x>50"
+      "</x><y>0</y><z>1</z></point></rightBound><laneletType>urban</laneletType></lanelet>"
+      "<dynamicObstacle id=\"2\"><type>car</type><shape><circle><radius>1</radius><center><x>0.5"
+      "</x><y>0</y></center></circle></shape>" +
+      state + "</dynamicObstacle><planningProblem id=\"3\">" + state +
+      "<goalState><position><rectangle><length>4</length><width>2</width><orientation>-0.25"
+      "</orientation><center><x>40</x><y>2</y></center></rectangle></position><orientation>"
+      "<intervalStart>2.5</intervalStart><intervalEnd>3.5</intervalEnd></orientation></goalState>"
+      "</planningProblem></commonRoad>";
+  const Edited moved = transform(bytes, "a.xml", {.motion = kMotion, .to = {}, .crs = {}});
+  expect_moved(parse_map(bytes, "a.xml"), parse_map(moved.bytes, "b.xml"), 1e-6);
+  const auto has = [&](const std::string& part) {
+    EXPECT_NE(moved.bytes.find(part), std::string::npos) << part << "\n" << moved.bytes;
+  };
+  const Vector2d car = kMotion({10, 2}), goal = kMotion({40, 2});
+  has(fmt::format("<x>{:.7g}", car.x()).substr(0, 8));
+  has(fmt::format("<x>{:.7g}", goal.x()).substr(0, 8));
+  has("<x>0.5</x>");  // of the car's own shape, from its middle
+  has(fmt::format("<exact>{:.5f}", 3.7 - 2.0 * 3.14159265359).substr(0, 14));
+  has("<orientation>0.45</orientation>");
+  has("<intervalStart>-3.0831853</intervalStart>");
+  has("<intervalEnd>-2.0831853</intervalEnd>");
+}
+
+TEST(Transform, BackAgainIsWhereItWas) {
+  const RigidMotion back{-0.7, {0, 0, 0}};
+  RigidMotion undo = back;
+  undo.shift_m.head<2>() = -back(kMotion.shift_m.head<2>());
+  for (const Vector2d& point : {Vector2d(3, 4), Vector2d(-1e5, 2e5)}) {
+    EXPECT_NEAR((undo(kMotion(point)) - point).norm(), 0.0, 1e-9);
+  }
+}
+
+// In another system each border is where PROJ puts it; both systems have scales of their own.
+TEST(Transform, BringsBordersWhereProjDoes) {
+  const std::string from =
+      "+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m";
+  std::string bytes = tests::curved_road_xml();
+  const std::size_t header = bytes.find("<header"), end = bytes.find('>', header);
+  const bool empty = bytes[end - 1] == '/';
+  const std::string reference = "<geoReference><![CDATA[" + from + "]]></geoReference>";
+  bytes.replace(end - (empty ? 1 : 0), empty ? 2 : 1, ">" + reference + (empty ? "</header>" : ""));
+  const RoadMap before = parse_map(bytes, "a.xodr");
+  ASSERT_EQ(before.crs(), from);
+  const Edited moved = transform(bytes, "a.xodr", {.motion = {}, .to = "EPSG:32632", .crs = {}});
+  const RoadMap after = parse_map(moved.bytes, "b.xodr");
+  EXPECT_EQ(after.crs(), "EPSG:32632");
+  for (const Lane& lane : before.lanes()) {
+    std::vector<Vector2d> points;
+    for (const Vector2d& point : lane.left.in_map.points())
+      points.push_back(before.to_source(point));
+    to_lon_lat(from, points);
+    from_lon_lat("EPSG:32632", points);
+    for (const Vector2d& point : points) {
+      const auto place = after.lane(lane.id).left.in_map.project(after.to_map(point));
+      EXPECT_NEAR(place.d_m, 0.0, 0.0015) << lane.name;
+    }
+  }
+}
+
+TEST(Transform, NeedsAKnownSystemForAnother) {
+  const TransformOptions unknown{.motion = {}, .to = "EPSG:32632", .crs = ""};
+  EXPECT_THROW(transform(tests::curved_road_xml(), "a.xodr", unknown), InputError);
+}
+
+TEST(Align, FindsTheMotionOfPairs) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-500.0, 500.0);
+  std::vector<PointPair> pairs;
+  for (int i = 0; i < 8; ++i) {
+    const Vector2d from(place(random), place(random));
+    pairs.push_back({from, kMotion(from)});
+  }
+  const Alignment found = align(pairs);
+  EXPECT_NEAR(found.motion.turn_rad, 0.7, 1e-12);
+  EXPECT_NEAR((found.motion.shift_m - Eigen::Vector3d(120.0, -45.5, 0.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(found.worst_m, 0.0, 1e-9);
+}
+
+// No motion nearby leaves less.
+TEST(Align, LeavesTheLeastSquares) {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> place(-50.0, 50.0), error(-0.5, 0.5);
+  std::vector<PointPair> pairs;
+  for (int i = 0; i < 12; ++i) {
+    const Vector2d from(place(random), place(random));
+    pairs.push_back({from, kMotion(from) + Vector2d(error(random), error(random))});
+  }
+  const Alignment best = align(pairs);
+  const auto rms = [&](const RigidMotion& motion) {
+    double sum = 0.0;
+    for (const PointPair& pair : pairs) sum += (motion(pair.from) - pair.to).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(pairs.size()));
+  };
+  EXPECT_NEAR(rms(best.motion), best.rms_m, 1e-12);
+  for (const double turn : {-1e-3, 1e-3}) {
+    RigidMotion other = best.motion;
+    other.turn_rad += turn;
+    EXPECT_GT(rms(other), best.rms_m);
+  }
+  for (const double shift : {-1e-2, 1e-2}) {
+    RigidMotion other = best.motion;
+    other.shift_m.x() += shift;
+    EXPECT_GT(rms(other), best.rms_m);
+  }
+}
+
+TEST(Align, NeedsTwoPlaces) {
+  EXPECT_THROW(align(std::vector<PointPair>{{{0, 0}, {1, 1}}}), std::invalid_argument);
+  EXPECT_THROW(align(std::vector<PointPair>{{{0, 0}, {1, 1}}, {{0, 0}, {2, 1}}}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace roadbed::map
