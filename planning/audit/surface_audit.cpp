@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "roadbed/planning/audit/edge_probe.h"
+#include "roadbed/planning/audit/farthest_off.h"
 #include "roadbed/planning/audit/least_clearance.h"
 #include "roadbed/planning/audit/near_stretches.h"
 #include "roadbed/planning/audit/proven_cover.h"
@@ -28,11 +29,9 @@ void check(const geometry::Trajectory& drive, double margin_m) {
   throw std::invalid_argument(fmt::format("audit: the margin is out of range, got {} m", margin_m));
 }
 
-/// A point of the body, and how far it is off the surface.
-struct FarthestOut {
-  double depth_m = 0.0;
+/// How far a body is off the surface at a time.
+struct FarthestOut : FarthestOff {
   geometry::TrajectoryPoint at = {};
-  Eigen::Vector2d point{0, 0}, edge{0, 0};
 };
 
 /// One part of a vehicle on a surface.
@@ -173,45 +172,8 @@ class PartOnSurface {
     return best;
   }
 
-  // Of the corners and points between them.
   FarthestOut farthest(const geometry::TrajectoryPoint& at, double apart_m) const {
-    constexpr double most = 200.0;
-    const geometry::Rectangle core = part_.core_at(at.pose());
-    const Eigen::Vector2d left(-core.axis.y(), core.axis.x());
-    const auto steps = [&](double half_m) {
-      return std::clamp(std::ceil(2.0 * half_m / apart_m), 1.0, most);
-    };
-    FarthestOut best{.at = at, .point = core.centre, .edge = core.centre};
-    const double along = steps(core.half_length_m), across = steps(core.half_width_m);
-    for (double i = 0.0; i <= along; ++i) {
-      for (double k = 0.0; k <= across; ++k) {
-        const Eigen::Vector2d point = core.centre +
-                                      (2.0 * i / along - 1.0) * core.half_length_m * core.axis +
-                                      (2.0 * k / across - 1.0) * core.half_width_m * left;
-        take(point, best);
-      }
-    }
-    return best;
-  }
-
-  // A circle's points lie around its middle: the farthest one off is opposite to the nearest edge.
-  void take(const Eigen::Vector2d& middle, FarthestOut& best) const {
-    const auto edge = surface_.edges.nearest(middle, kSurfaceHorizon_m);
-    if (!edge) {
-      if (surface_.edges.contains(middle) || best.depth_m >= kSurfaceHorizon_m) return;
-      best.depth_m = kSurfaceHorizon_m;
-      best.point = best.edge = middle;
-      return;
-    }
-    const double depth_m =
-        (edge->is_inside ? -edge->distance_m : edge->distance_m) + part_.radius_m;
-    if (!(depth_m > best.depth_m)) return;
-    best.depth_m = depth_m;
-    const double turn = edge->is_inside ? 1.0 : -1.0;
-    const Eigen::Vector2d out = turn * (edge->on_edge - middle);
-    best.point =
-        out.norm() > 0.0 ? Eigen::Vector2d(middle + part_.radius_m * out.normalized()) : middle;
-    best.edge = edge->on_edge;
+    return {farthest_off(surface_.edges, part_, at.pose(), apart_m), at};
   }
 
   std::string side_of(const geometry::TrajectoryPoint& at, const Eigen::Vector2d& towards) const {

@@ -17,6 +17,7 @@
 #include "roadbed/tools/simulation/goal_misses.h"
 #include "roadbed/tools/simulation/ground_truth_monitor.h"
 #include "roadbed/tools/simulation/pedal_model.h"
+#include "roadbed/tools/simulation/road_departure.h"
 #include "roadbed/tools/simulation/sensors.h"
 #include "roadbed/tools/simulation/trajectory_follower.h"
 
@@ -301,14 +302,7 @@ class ClosedLoop {
     const bool is_step = std::abs(step - std::round(step)) * goal.step_s < 0.5 * kControlStep_s;
     if (is_step && goal.is_reached(world_.road_map, truth_.map_from_vehicle, truth_.speed_mps,
                                    t_s(), scenario_.vehicle)) {
-      look_at_road();
-      if (!left_road_) {
-        end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s", t_s()));
-      } else {
-        end(Outcome::left_road,
-            fmt::format("goal reached after {:.2f} s, but {:.2f} m off the road after {:.2f} s",
-                        t_s(), left_road_->off_m, left_road_->at_s));
-      }
+      end(Outcome::goal_reached, fmt::format("goal reached after {:.2f} s", t_s()));
     } else if (truth_.speed_mps <= 0.0 && t_s() > goal.latest_s().value_or(0.0)) {
       end(Outcome::stopped, why_goal_is_missed(goal));
     } else if (is_step) {
@@ -325,16 +319,6 @@ class ClosedLoop {
                        t_s(), *goal.latest_s(), best.empty() ? "" : "; ", best);
   }
 
-  /// What begins beside the road has left it only after it has been on it.
-  double look_at_road() {
-    const double off_m = observer_.off_road_m(truth_);
-    was_on_road_ = was_on_road_ || off_m == 0.0;
-    if (was_on_road_ && off_m > (left_road_ ? left_road_->off_m : 0.0)) {
-      left_road_ = OffRoad{off_m, t_s()};
-    }
-    return off_m;
-  }
-
   void end(Outcome outcome, std::string text) {
     drive_.verdict = {outcome, t_s(), std::move(text)};
     is_over_ = true;
@@ -347,6 +331,7 @@ class ClosedLoop {
           static_cast<double>(saturated_) / static_cast<double>(drive_.cycles.size());
     }
     drive_.trajectory = geometry::Trajectory(std::move(rows_));
+    take_road(judge_road(world_.road_map, scenario_.vehicle, drive_));
     if (is_over_) return;
     const double left_m = world_.line.goal_s_m() - true_s_m();
     const bool stands = truth_.speed_mps <= 0.0;
@@ -354,6 +339,18 @@ class ClosedLoop {
         fmt::format("{} {:.1f} m before the goal after {:.1f} s: {}",
                     stands ? "stands" : "still drives", left_m, t_s(),
                     drive_.cycles.back().reason));
+  }
+
+  /// A goal that is reached off the road does not count.
+  void take_road(const std::optional<RoadDeparture>& departure) {
+    if (!departure) return;
+    const std::string off = fmt::format("{:.2f} m off the road", departure->off_m);
+    const auto later =
+        std::ranges::upper_bound(drive_.events, departure->at_s, {}, &DriveEvent::t_s);
+    drive_.events.insert(later, {departure->at_s, EventLevel::fault, off});
+    if (drive_.verdict.outcome != Outcome::goal_reached || !is_over_) return;
+    drive_.verdict.outcome = Outcome::left_road;
+    drive_.verdict.text += fmt::format(", but {} after {:.2f} s", off, departure->at_s);
   }
 
   void record() {
@@ -370,8 +367,7 @@ class ClosedLoop {
                               .heading_error_rad = error.heading_rad,
                               .clearance_m = observer_.take_clearance_m(),
                               .throttle = foot_ ? foot_->pedals().throttle : 0.0,
-                              .brake = foot_ ? foot_->pedals().brake : 0.0,
-                              .off_road_m = look_at_road()});
+                              .brake = foot_ ? foot_->pedals().brake : 0.0});
   }
 
   const Scenario& scenario_;
@@ -391,11 +387,6 @@ class ClosedLoop {
   double front_s_m_ = 0.0;  ///< station of the front axle's nearest place on the path
   planning::PlannerCommand command_;
   int saturated_ = 0;
-  struct OffRoad {
-    double off_m, at_s;
-  };
-  std::optional<OffRoad> left_road_;  ///< where it was farthest off, after it had been on it
-  bool was_on_road_ = false;
   GoalMisses misses_;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;

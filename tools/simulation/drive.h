@@ -55,7 +55,7 @@ struct DriveSample {
   double heading_error_rad = 0.0;      ///< θ_e
   double clearance_m = 0.0;            ///< to the nearest obstacle; infinite without any
   double throttle = 0.0, brake = 0.0;  ///< pedals, 0 to 1; 0 where the scenario has none
-  double off_road_m = 0.0;             ///< of the body's worst corner; 0 on the road
+  double off_road_m = 0.0;  ///< of the body's farthest point, until the next row; 0 on the road
 };
 
 enum class EventLevel { info, warning, fault };

@@ -11,25 +11,6 @@ namespace roadbed::tools::inline simulation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Lanes of real files do not meet exactly: a corner over a gap of up to twice this is on the road.
-// Town04 has gaps of 6 mm between connecting lanes.
-constexpr double kSurfaceGap_m = 0.01;
-constexpr double kFarthestOff_m = 500.0, kOffRoadWithin_m = 1e-3;
-
-double off_surface_m(const map::RoadMap& road_map, const Eigen::Vector2d& point) {
-  if (road_map.on_surface(point, kSurfaceGap_m)) return 0.0;
-  double less_m = kSurfaceGap_m, more_m = 2.0 * less_m;
-  while (!road_map.on_surface(point, more_m)) {
-    less_m = more_m;
-    more_m *= 2.0;
-    if (less_m > kFarthestOff_m) return kFarthestOff_m;
-  }
-  while (more_m - less_m > kOffRoadWithin_m) {
-    const double middle_m = 0.5 * (less_m + more_m);
-    (road_map.on_surface(point, middle_m) ? more_m : less_m) = middle_m;
-  }
-  return std::min(less_m, kFarthestOff_m);
-}
 
 }  // namespace
 
@@ -51,15 +32,6 @@ void GroundTruthMonitor::look(double t_s, const planning::VehicleState& truth) {
 }
 
 double GroundTruthMonitor::take_clearance_m() { return std::exchange(clearance_m_, kInfinity); }
-
-double GroundTruthMonitor::off_road_m(const planning::VehicleState& truth) const {
-  double worst_m = 0.0;
-  for (const Eigen::Vector2d& corner_in_vehicle : vehicle_.corners_in_vehicle()) {
-    const Eigen::Vector2d corner = truth.map_from_vehicle * corner_in_vehicle;
-    worst_m = std::max(worst_m, off_surface_m(world_.road_map, corner));
-  }
-  return worst_m;
-}
 
 geometry::TrajectoryPoint GroundTruthMonitor::row(double t_s,
                                                   const planning::VehicleState& truth) const {

@@ -8,8 +8,8 @@
 
 namespace roadbed::tools::inline simulation {
 
-/// Looks at the true state of a drive: distances to obstacles, the road under the body, and the
-/// rows of the trajectory.
+/// Looks at the true state of a drive: distances to obstacles, and the rows of the
+/// trajectory.
 class GroundTruthMonitor {
  public:
   GroundTruthMonitor(const World& world, const geometry::VehicleShape& vehicle);
@@ -23,10 +23,6 @@ class GroundTruthMonitor {
 
   /// Least clearance since the last row; starts anew.
   double take_clearance_m();
-
-  /// How far the body's worst corner is off the road surface, within 1 mm and up to 500 m; 0 over
-  /// the gaps of up to 0.02 m between lanes of real files.
-  double off_road_m(const planning::VehicleState& truth) const;
 
   /// Row of the trajectory, in source coordinates.
   geometry::TrajectoryPoint row(double t_s, const planning::VehicleState& truth) const;
