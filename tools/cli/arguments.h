@@ -46,7 +46,7 @@ struct ArgumentInfo {
 /// What files of a kind end in, for Argument::ending.
 inline constexpr std::string_view kMapEndings = ".xodr .osm .xml .geojson .rbm",
                                   kScenarioEndings = ".json .xml",
-                                  kCloudEndings = ".pcd .ply .las .xyz .bt .ot",
+                                  kCloudEndings = ".pcd .ply .las .laz .xyz .bt .ot",
                                   kOctreeEndings = ".bt .ot";
 
 /// One option or positional argument of a command; its functions narrow what is accepted.

@@ -32,7 +32,7 @@ class OccupancyBuildCommand : public Command {
         "through its cell; space that no ray crossed stays unknown");
     arguments
         .add("CLOUD", clouds_,
-             "Point clouds (.pcd .ply .las .xyz .csv) in one frame, in metres; or one octree "
+             "Point clouds (.pcd .ply .las .laz .xyz .csv) in one frame, in metres; or one octree "
              "(.bt .ot) to convert")
         .required()
         .reads()

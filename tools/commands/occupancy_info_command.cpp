@@ -151,7 +151,7 @@ class OccupancyInfoCommand : public Command {
     arguments.description("Say what an octree or a point cloud holds: counts, bounds, frame");
     arguments
         .add("F", input_,
-             "Octree (.bt .ot), folder of tiles, or point cloud (.pcd .ply .las .xyz .csv)")
+             "Octree (.bt .ot), folder of tiles, or point cloud (.pcd .ply .las .laz .xyz .csv)")
         .required()
         .ending(kCloudEndings);
     arguments.flag("-j,--json", json_, "Print one JSON document");

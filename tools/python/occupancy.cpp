@@ -218,7 +218,7 @@ void bind_building(nb::class_<Occupancy>& bound) {
           nb::sig("def from_files(paths: collections.abc.Iterable[str | os.PathLike[str]], *, "
                   "resolution_m: float = 0.1, carve_range_m: float = float('inf'), sticky_hits: "
                   "bool = True, remove_seen_through: int = 0) -> Occupancy"),
-          "From point clouds (.pcd .ply .las .xyz .csv), with the sensor positions that they "
+          "From point clouds (.pcd .ply .las .laz .xyz .csv), with the sensor positions that they "
           "name.")
       .def_static(
           "open",

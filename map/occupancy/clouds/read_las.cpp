@@ -1,10 +1,13 @@
-// LAS 1.0 to 1.4: ASPRS, "LAS Specification 1.4 - R15", 2019. GeoTIFF keys: OGC 19-008r4.
+// LAS 1.0 to 1.4: ASPRS, "LAS Specification 1.4 - R15", 2019. GeoTIFF keys: OGC 19-008r4. LAZ is
+// the same with its points packed.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
+#include "roadbed/map/occupancy/laz/laz_points.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
@@ -20,6 +23,9 @@ constexpr std::size_t minor_version = 25, header_size = 94, points = 96, records
 }  // namespace at
 
 constexpr std::size_t kLeastHeader = 227, kHeader14 = 375, kRecordHeader = 54;
+constexpr std::uint64_t kPackedFlag = 0x80, kOldPackedFlag = 0x40;
+// Packed points take more than half a byte each; of fewer, memory is no concern.
+constexpr std::uint64_t kMostPointsPerByte = 2, kFewPoints = 5'000'000;
 
 struct GeoKeys {
   unsigned projected_crs = 0, geographic_crs = 0, linear_unit = 0;
@@ -34,7 +40,8 @@ class LasParser {
     check_header();
     read_variable_records();
     name_crs();
-    read_points();
+    read_scale();
+    is_packed_ ? read_packed_points() : read_plain_points();
     return std::move(cloud_);
   }
 
@@ -72,11 +79,13 @@ class LasParser {
   }
 
   void check_records() {
-    const auto format = number(at::format, 1);
-    if ((format & 0xc0) != 0) {
-      refuse(at::format, "points", "are compressed (LAZ)", "plain LAS",
-             "uncompress it first, for instance with: laszip -i FILE.laz -o FILE.las");
+    const auto flags = number(at::format, 1);
+    is_packed_ = (flags & kPackedFlag) != 0;
+    if ((flags & kOldPackedFlag) != 0) {
+      refuse(at::format, "points", "are packed by a trial version of LASzip", "LAS or LAZ",
+             "unpack the file with the program that made it");
     }
+    const auto format = flags & ~kPackedFlag;
     record_length_ = number(at::record_length, 2);
     if (format >= kRecordBytes.size() || record_length_ < kRecordBytes[format]) {
       refuse(at::format, "point data format",
@@ -93,11 +102,14 @@ class LasParser {
       refuse(at::points, "offset to the points", fmt::format("{}", body_offset_),
              fmt::format("{} to {}", kLeastHeader, bytes_.size()), "get the whole file");
     }
-    const std::size_t fit = (bytes_.size() - body_offset_) / record_length_;
+    const std::size_t body = bytes_.size() - body_offset_;
+    const std::size_t fit =
+        is_packed_ ? kFewPoints + kMostPointsPerByte * body : body / record_length_;
     if (count_ > fit) {
       refuse(at::legacy_count, "number of points",
-             fmt::format("{}, but the file ends after {}", count_, fit), "all of them",
-             "get the whole file");
+             is_packed_ ? fmt::format("{} in {} bytes", count_, body)
+                        : fmt::format("{}, but the file ends after {}", count_, fit),
+             is_packed_ ? fmt::format("at most {}", fit) : "all of them", "get the whole file");
     }
   }
 
@@ -110,6 +122,8 @@ class LasParser {
       if (length > body_offset_ - begin) return note_cut_records();
       if (bytes_.substr(offset + 2, 15) == "LASF_Projection") {
         read_projection(number(offset + 18, 2), bytes_.substr(begin, length));
+      } else if (is_packed_ && bytes_.substr(offset + 2, 14) == "laszip encoded") {
+        layout_ = parse_laz_layout(bytes_.substr(begin, length), name_);
       }
       offset = begin + length;
     }
@@ -166,21 +180,41 @@ class LasParser {
     if (!projected && geographic) cloud_.unit = LengthUnit::degree;
   }
 
-  void read_points() {
-    const Eigen::Vector3d scale(real(at::scale), real(at::scale + 8), real(at::scale + 16));
-    const Eigen::Vector3d offset(real(at::offset), real(at::offset + 8), real(at::offset + 16));
-    if (!scale.allFinite() || !offset.allFinite() || (scale.array() == 0.0).any()) {
+  void read_scale() {
+    scale_ = {real(at::scale), real(at::scale + 8), real(at::scale + 16)};
+    offset_ = {real(at::offset), real(at::offset + 8), real(at::offset + 16)};
+    if (!scale_.allFinite() || !offset_.allFinite() || (scale_.array() == 0.0).any()) {
       refuse(at::scale, "scale and offset", "a value is 0 or not finite", "finite scales, not 0",
              "save the cloud again");
     }
+  }
+
+  void add(const PointSteps& steps) {
+    const Eigen::Vector3d at(steps[0], steps[1], steps[2]);
+    cloud_.add(at.cwiseProduct(scale_) + offset_);
+  }
+
+  void read_plain_points() {
     cloud_.points_in_source.reserve(count_);
     for (std::uint64_t i = 0; i < count_; ++i) {
-      const char* record = bytes_.data() + body_offset_ + i * record_length_;
-      const Eigen::Vector3d steps(read_scalar(record, ScalarType::i32),
-                                  read_scalar(record + 4, ScalarType::i32),
-                                  read_scalar(record + 8, ScalarType::i32));
-      cloud_.add(steps.cwiseProduct(scale) + offset);
+      add(steps_at(bytes_.substr(body_offset_ + i * record_length_, 3 * sizeof(std::int32_t))));
     }
+  }
+
+  void read_packed_points() {
+    if (!layout_ || layout_->point_bytes() != record_length_) {
+      refuse(at::record_length, "packed points",
+             layout_ ? fmt::format("of {} bytes in records of {}", layout_->point_bytes(),
+                                   record_length_)
+                     : "without a record \"laszip encoded\"",
+             "how they are packed", "get the whole file");
+    }
+    cloud_.format += ", packed (LAZ)";
+    cloud_.points_in_source.reserve(count_);
+    unpack_laz(bytes_, body_offset_, count_, *layout_, name_,
+               [&](std::span<const PointSteps> some) {
+                 for (const PointSteps& steps : some) add(steps);
+               });
   }
 
   std::string_view bytes_;
@@ -188,6 +222,9 @@ class LasParser {
   std::size_t record_length_ = 0;
   std::size_t body_offset_ = 0;
   std::uint64_t count_ = 0;
+  bool is_packed_ = false;
+  std::optional<LazLayout> layout_;  // of packed points
+  Eigen::Vector3d scale_{0, 0, 0}, offset_{0, 0, 0};
   GeoKeys geo_;
   RawCloud cloud_;
 };

@@ -41,8 +41,8 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
   if (begins_as_pcd(bytes)) return parse_pcd;
   if (const Parser parser = parser_by_suffix(name)) return parser;
   if (begins_as_xyz(bytes)) return parse_xyz;
-  refuse_cloud(name, "", "", "is of no known point cloud format", ".pcd, .ply, .las, .xyz or .csv",
-               "convert it, or rename it to what it is");
+  refuse_cloud(name, "", "", "is of no known point cloud format",
+               ".pcd, .ply, .las, .laz, .xyz or .csv", "convert it, or rename it to what it is");
 }
 
 }  // namespace

@@ -250,10 +250,10 @@ TEST(Las, AppliesScaleAndOffsetInEveryVersion) {
   }
 }
 
-TEST(Las, NamesWhatToDoWithCompressedPointsAndRefusesCutFiles) {
+TEST(Las, RefusesPointsPackedWithoutARecordOfItAndCutFiles) {
   std::string laz = las(2, 1);
-  put(laz, 104, std::uint8_t{0x80 | 1});
-  EXPECT_THAT(refusal(laz, "a.laz"), HasSubstr("laszip"));
+  put(laz, 104, std::uint8_t{0x80});
+  EXPECT_THAT(refusal(laz, "a.laz"), HasSubstr("laszip encoded"));
   EXPECT_THAT(refusal(las(2, 3).substr(0, 270), "a.las"), HasSubstr("ends after 2"));
   EXPECT_THAT(refusal("LASF", "a.las"), HasSubstr("header"));
   std::string wild = las(2, 1);

@@ -1,0 +1,110 @@
+#include "roadbed/map/occupancy/laz/laz_points.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::map {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kPoints = 300;
+constexpr double kScale_m = 0.001;
+
+/// Of tests/peers/check_laz.py, which laspy and LASzip packed.
+PointSteps formula(std::int64_t i) {
+  return {static_cast<std::int32_t>(37 * i - i * i % 101),
+          static_cast<std::int32_t>(5000 - 11 * i + i % 7 * 13),
+          static_cast<std::int32_t>(i * i * i % 997 - (i % 50 == 0 ? 200'000 : 0))};
+}
+
+std::string packed(int format) {
+  return tests::bytes_of(tests::tests_folder() / "map/occupancy/laz" /
+                         fmt::format("format_{}.laz", format));
+}
+
+std::string refusal(const std::string& bytes) {
+  try {
+    parse_point_cloud(bytes, "a.laz");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+class LazFormats : public testing::TestWithParam<int> {};
+
+TEST_P(LazFormats, AreUnpackedToEachPoint) {
+  const PointCloud cloud = parse_point_cloud(packed(GetParam()), "a.laz");
+  ASSERT_EQ(cloud.points.size(), kPoints);
+  for (std::int64_t i = 0; i < kPoints; ++i) {
+    const PointSteps steps = formula(i);
+    const Eigen::Vector3d expected(steps[0], steps[1], steps[2]);
+    const Eigen::Vector3d found = cloud.in_source(static_cast<std::size_t>(i));
+    // Points are floats: 200 m to 2⁻²⁴ of it.
+    EXPECT_LT((found - kScale_m * expected).cwiseAbs().maxCoeff(), 2e-5) << "point " << i;
+  }
+}
+
+TEST_P(LazFormats, AreRefusedWhereTheyEnd) {
+  const std::string bytes = packed(GetParam());
+  const auto table = bytes.size() - 20;  // of chunks, which nobody needs
+  for (std::size_t size = 0; size < table; size += 97) {
+    EXPECT_NE(refusal(bytes.substr(0, size)), "accepted") << size;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, LazFormats, testing::Values(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10));
+
+TEST(Laz, RefusesMorePointsThanItsBytesCanHold) {
+  std::string bytes = packed(3);
+  ASSERT_GT(bytes.size(), 200u);
+  const std::uint32_t many = 4'000'000'000u;
+  for (std::size_t i = 0; i < 4; ++i) bytes[107 + i] = static_cast<char>(many >> 8 * i);
+  EXPECT_THAT(refusal(bytes), HasSubstr("4000000000 in"));
+}
+
+TEST(Laz, RefusesWhatLaszipDoesNotKnow) {
+  const std::string bytes = packed(0);
+  const std::size_t record = bytes.find("laszip encoded") - 2 + 54;
+  for (const auto& [offset, value] : {std::pair{0, 9}, {2, 1}, {32, 77}, {36, 21}, {38, 3}}) {
+    std::string wrong = bytes;
+    wrong[record + static_cast<std::size_t>(offset)] = static_cast<char>(value);
+    EXPECT_THAT(refusal(wrong), HasSubstr("laszip encoded")) << offset;
+  }
+}
+
+TEST(Laz, OfOneCloudInFourPackingsIsOneCloud) {
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  const PointCloud plain = read_point_cloud(folder / "occupancy/libLAS+libLAS/1.2-with-color.las");
+  for (const char* file :
+       {"simple.laz", "laszip-generated.laz", "simple-laszip-compressor-version-1.2r0.laz"}) {
+    const PointCloud cloud = read_point_cloud(folder / "occupancy/PDAL+PDAL" / file);
+    EXPECT_EQ(cloud.points, plain.points) << file;
+    EXPECT_EQ(cloud.origin_in_source, plain.origin_in_source) << file;
+  }
+  // COPC orders them anew.
+  const PointCloud copc = read_point_cloud(folder / "occupancy/PDAL+PDAL/1.2-with-color.copc.laz");
+  const auto places = [](const PointCloud& cloud) {
+    std::multiset<std::array<double, 3>> all;
+    for (const auto& point : cloud.points) {
+      const Eigen::Vector3d at = point.cast<double>() + cloud.origin_in_source;
+      all.insert({std::round(100 * at.x()), std::round(100 * at.y()), std::round(100 * at.z())});
+    }
+    return all;
+  };
+  EXPECT_EQ(places(copc), places(plain));
+}
+
+}  // namespace
+}  // namespace roadbed::map
