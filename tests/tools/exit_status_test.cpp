@@ -81,6 +81,8 @@ class ExitStatus : public testing::Test {
         {"pilot", {none, "--goal", "0,0"}},
         {"occupancy build", {none, "-o", fresh(".bt")}},
         {"occupancy info", {none}},
+        {"occupancy export", {none, "-o", fresh(".pgm")}},
+        {"occupancy diff", {none, none}},
         {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},
         {"figures", {"-o", folder_.path()}},
         {"report compare", {none, none}},
@@ -119,8 +121,8 @@ TEST_F(ExitStatus, OfAWrongCommandLineComesWithOneLineThatNamesWhatWasMeant) {
             "roadbed occupancy: there is no command bild; did you mean build? see: roadbed "
             "occupancy --help\n");
   EXPECT_EQ(said({"occupancy"}),
-            "roadbed occupancy: a command is required: build, info; see: roadbed occupancy "
-            "--help\n");
+            "roadbed occupancy: a command is required: build, info, export, diff; see: roadbed "
+            "occupancy --help\n");
   EXPECT_EQ(said({"route", town_, "--frm", "0,0"}),
             "roadbed route: there is no option --frm; did you mean --from? see: roadbed route "
             "--help\n");
@@ -214,6 +216,8 @@ TEST_F(ExitStatus, QuietSilencesNotesAndNoErrorOfEveryCommand) {
            {"simulate", scenario, "-o", drive},
            {"occupancy", "build", post_, "-o", octree},
            {"occupancy", "info", octree},
+           {"occupancy", "export", octree, "-o", fresh(".pgm")},
+           {"occupancy", "diff", octree, octree},
            {"audit", "--occupancy", octree, "--trajectory", drive_, "--unknown", "free"},
            {"report", "compare", a_, b_},
            {"batch", jobs_, "-o", fresh("")},

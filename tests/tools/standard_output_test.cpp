@@ -111,6 +111,8 @@ class StandardOutput : public testing::Test {
         {"simulate", scenario_, "-o", fresh()},
         {"pilot", "--help"},
         {"occupancy", "info", octree_},
+        {"occupancy", "export", "--help"},
+        {"occupancy", "diff", octree_, octree_},
         {"audit", "--occupancy", octree_, "--trajectory", trajectory, "--json"},
         {"figures", "-o", fresh()},
         {"report", "compare", drive_, drive_},

@@ -9,7 +9,9 @@ namespace {
 class OccupancyCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Make obstacle occupancy from point clouds, or say what one holds");
+    arguments.description(
+        "Make obstacle occupancy from point clouds, say what one holds, write it for others, "
+        "compare");
     arguments.example(
         "  roadbed occupancy build scan.pcd -o scan.bt\n"
         "  roadbed occupancy info scan.bt");
@@ -32,8 +34,9 @@ class OccupancyCommand : public Command {
     std::unique_ptr<Command> command;
     std::optional<Arguments> arguments = {};
   };
-  std::array<Part, 2> parts_{Part{"build", make_occupancy_build_command()},
-                             Part{"info", make_occupancy_info_command()}};
+  std::array<Part, 4> parts_{
+      Part{"build", make_occupancy_build_command()}, Part{"info", make_occupancy_info_command()},
+      Part{"export", make_occupancy_export_command()}, Part{"diff", make_occupancy_diff_command()}};
 };
 
 }  // namespace

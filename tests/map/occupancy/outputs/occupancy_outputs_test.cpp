@@ -1,0 +1,150 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <vector>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/outputs/cell_centres.h"
+#include "roadbed/map/occupancy/outputs/occupancy_changes.h"
+#include "roadbed/map/occupancy/outputs/occupancy_grid.h"
+
+namespace roadbed::map {
+namespace {
+
+using testing::HasSubstr;
+using Places = std::set<std::array<double, 3>>;
+
+constexpr double kCell_m = 0.5;
+
+PointCloud cloud_of(const std::vector<Eigen::Vector3d>& points) {
+  std::string text;
+  for (const Eigen::Vector3d& point : points) {
+    text += std::to_string(point.x()) + " " + std::to_string(point.y()) + " " +
+            std::to_string(point.z()) + "\n";
+  }
+  return parse_point_cloud(text, "a.xyz");
+}
+
+/// Hits only, or seen from a sensor.
+OccupancyMap octree_of(const std::vector<Eigen::Vector3d>& points,
+                       std::optional<Eigen::Vector3d> sensor = {}) {
+  PointCloud cloud = cloud_of(points);
+  cloud.sensor_in_source = sensor;
+  return OccupancyMap::build({&cloud, 1}, {.resolution_m = kCell_m});
+}
+
+Places places_of(const std::vector<Eigen::Vector3d>& points) {
+  Places places;
+  for (const Eigen::Vector3d& point : points) places.insert({point.x(), point.y(), point.z()});
+  return places;
+}
+
+/// A wall at x 4, with a block of 4 x 4 x 4 cells, which an octree keeps as one leaf.
+std::vector<Eigen::Vector3d> block_and_post() {
+  std::vector<Eigen::Vector3d> points{{-3.1, 0.9, 1.1}};
+  for (double x = 4.25; x < 6.0; x += kCell_m) {
+    for (double y = 2.25; y < 4.0; y += kCell_m) {
+      for (double z = 0.25; z < 2.0; z += kCell_m) points.emplace_back(x, y, z);
+    }
+  }
+  return points;
+}
+
+TEST(CellCentres, AreThoseOfTheCellsThatHavePoints) {
+  Places expected;
+  for (const Eigen::Vector3d& point : block_and_post()) {
+    std::array<double, 3> centre{};
+    for (int i = 0; i < 3; ++i) {
+      centre[static_cast<std::size_t>(i)] = (std::floor(point[i] / kCell_m) + 0.5) * kCell_m;
+    }
+    expected.insert(centre);
+  }
+  const std::vector<Eigen::Vector3d> found = occupied_centres(octree_of(block_and_post()), "a.bt");
+  EXPECT_EQ(found.size(), expected.size());
+  EXPECT_EQ(places_of(found), expected);
+}
+
+TEST(CellCentres, ComeBackFromTheFilesThatHoldThem) {
+  for (const double east_m : {0.0, 500'000.0}) {
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector3d& point : block_and_post()) {
+      points.emplace_back(point.x() + east_m, point.y(), point.z());
+    }
+    EXPECT_EQ(fit_in_floats(points), east_m == 0.0);
+    for (const auto& [bytes, name] :
+         {std::pair{points_as_pcd(points), "a.pcd"}, {points_as_ply(points), "a.ply"}}) {
+      const PointCloud cloud = parse_point_cloud(bytes, name);
+      ASSERT_EQ(cloud.points.size(), points.size()) << name;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_LT((cloud.in_source(i) - points[i]).cwiseAbs().maxCoeff(), 1e-4) << name;
+      }
+    }
+  }
+}
+
+TEST(OccupancyGrid, IsWhatIsOccupiedOrFreeInAColumnOfItsHeights) {
+  const OccupancyMap octree =
+      octree_of({{4.25, 0.25, 0.25}, {4.25, 1.25, 5.25}}, Eigen::Vector3d(0.25, 0.25, 0.25));
+  for (const GridHeights heights : {GridHeights{}, GridHeights{0.0, 1.0}, GridHeights{5.0, 6.0}}) {
+    const OccupancyGrid grid = grid_from_above(octree, heights, "a.bt");
+    std::size_t known = 0;
+    for (std::size_t row = 0; row < grid.rows; ++row) {
+      for (std::size_t column = 0; column < grid.columns; ++column) {
+        CellState expected = CellState::unknown;
+        for (double z = -2.25; z < 8.0; z += kCell_m) {
+          if (z + 0.25 <= heights.from_m || z - 0.25 >= heights.to_m) continue;
+          const Eigen::Vector3d at(
+              grid.corner_in_source.x() + (static_cast<double>(column) + 0.5) * kCell_m,
+              grid.corner_in_source.y() + (static_cast<double>(row) + 0.5) * kCell_m, z);
+          expected = std::max(expected, octree.at(at));
+        }
+        EXPECT_EQ(grid.at(column, row), expected) << column << ", " << row;
+        known += expected == CellState::unknown ? 0 : 1;
+      }
+    }
+    EXPECT_GT(known, 0u);
+  }
+  EXPECT_THROW(grid_from_above(octree, {50.0, 60.0}, "a.bt"), InputError);
+}
+
+TEST(OccupancyGrid, IsAnImageWhoseFirstRowIsTheNorth) {
+  const OccupancyGrid grid{.resolution_m = 0.5,
+                           .corner_in_source = {-1.5, 20},
+                           .columns = 3,
+                           .rows = 2,
+                           .squares = {CellState::occupied, CellState::free, CellState::unknown,
+                                       CellState::unknown, CellState::free, CellState::free}};
+  EXPECT_EQ(grid_as_pgm(grid),
+            std::string("P5\n3 2\n255\n") + "\xCD\xFE\xFE" + std::string("\0\xFE\xCD", 3));
+  EXPECT_EQ(grid_yaml(grid, "a.pgm"),
+            "image: a.pgm\nmode: trinary\nresolution: 0.5\norigin: [-1.5, 20, 0]\nnegate: 0\n"
+            "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+TEST(OccupancyChanges, TellWhatIsFreeNowFromWhatNobodyLookedAt) {
+  const Eigen::Vector3d sensor(0.25, 0.25, 0.25), near(4.25, 0.25, 0.25), far(9.25, 0.25, 0.25),
+      aside(4.25, 6.25, 0.25);
+  const OccupancyMap before = octree_of({near, aside}, sensor), now = octree_of({far}, sensor);
+  const OccupancyChanges changes = changes_between(before, now);
+  EXPECT_EQ(places_of(changes.appeared), places_of({far}));
+  EXPECT_EQ(places_of(changes.vanished), places_of({near}));
+  EXPECT_EQ(changes.not_seen_again, 1u);
+  EXPECT_EQ(changes.stayed, 0u);
+  const OccupancyChanges none = changes_between(before, before);
+  EXPECT_FALSE(none.any());
+  EXPECT_EQ(none.stayed, 2u);
+}
+
+TEST(OccupancyChanges, AreRefusedBetweenCellsOfDifferentSize) {
+  PointCloud cloud = cloud_of({{0.25, 0.25, 0.25}});
+  const OccupancyMap fine = OccupancyMap::build({&cloud, 1}, {.resolution_m = 0.25});
+  EXPECT_THROW(changes_between(fine, octree_of({{0.25, 0.25, 0.25}})), InputError);
+}
+
+}  // namespace
+}  // namespace roadbed::map
