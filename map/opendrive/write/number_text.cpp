@@ -7,10 +7,20 @@
 #include <iterator>
 
 namespace roadbed::map::opendrive {
+namespace {
 
-std::string short_number(double value) {
-  const double rounded = std::round(value * 1e9) / 1e9;
-  return fmt::format("{}", rounded == 0.0 ? 0.0 : rounded);
+constexpr double kLength_m = 5e-7;
+
+}  // namespace
+
+std::string short_number(double value) { return number_within(value, kLength_m); }
+
+std::string number_within(double value, double tolerance) {
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(2.0 * tolerance))), 0, 15);
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
 }
 
 void add_records(const geometry::PiecewiseCubic& cubic, double from_m, double to_m, double zero_m,
@@ -22,10 +32,16 @@ void add_records(const geometry::PiecewiseCubic& cubic, double from_m, double to
     if (next_m <= from_m + least_m || records[i].s_m >= to_m - least_m) continue;
     const double s_m = std::max(from_m, records[i].s_m);
     const geometry::CubicValue at = geometry::cubic_at(records[i], s_m);
+    // Each digit that changes nothing by more than a micrometre over the record's length is left
+    // out.
+    const double length_m = std::max(0.1, std::min(next_m, to_m) - s_m);
+    const auto coefficient = [&](double value, int power) {
+      return number_within(value, kLength_m / std::pow(length_m, power));
+    };
     fmt::format_to(std::back_inserter(text),
-                   "<{} {}=\"{}\" a=\"{}\" b=\"{:.9g}\" c=\"{:.9g}\" d=\"{:.9g}\"/>\n", name,
-                   station, short_number(s_m - zero_m), short_number(at.value), at.d1, 0.5 * at.d2,
-                   records[i].d);
+                   "<{} {}=\"{}\" a=\"{}\" b=\"{}\" c=\"{}\" d=\"{}\"/>\n", name, station,
+                   short_number(s_m - zero_m), short_number(at.value), coefficient(at.d1, 1),
+                   coefficient(0.5 * at.d2, 2), coefficient(records[i].d, 3));
   }
 }
 

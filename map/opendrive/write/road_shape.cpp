@@ -16,8 +16,6 @@ class RoadShaper {
       : road_map_(road_map), road_(road), placed_(placed), view_(placed.plan_view) {
     shape_.plan_view = placed.plan_view;
     shape_.length_m = view_.end_s_m();
-    shape_.error_m =
-        std::max({placed.faults.back_m, placed.faults.missing_m, placed.faults.crossing_m});
   }
 
   RoadShape shape() {
@@ -105,23 +103,15 @@ class RoadShaper {
                   std::abs(samples.back().value) > 1e-4;
       const auto fitted = fit_cubics(samples, kBorderTolerance_m, -1e300);
       records.insert(records.end(), fitted.begin(), fitted.end());
-      const geometry::PiecewiseCubic cubic(fitted);
-      note_error(samples, [&](double s_m) { return cubic.at(s_m).value; });
     }
     if (is_needed) shape_.lane_offset = geometry::PiecewiseCubic(std::move(records));
-  }
-
-  template <typename Fitted>
-  void note_error(const std::vector<Sample>& samples, const Fitted& fitted) {
-    for (const Sample& sample : samples) {
-      shape_.error_m = std::max(shape_.error_m, std::abs(fitted(sample.s_m) - sample.value));
-    }
   }
 
   void fit_widths(std::size_t index) {
     const PlannedSection& section = road_.sections[index];
     SectionShape& made = shape_.sections.emplace_back();
     made.s_m = placed_.section_from_m[index];
+    made.left_lanes = section.left_lanes;
     made.widths.resize(section.lanes.size());
     const double from_m = made.s_m;
     for (const int side : {1, -1}) {
@@ -166,14 +156,9 @@ class RoadShaper {
       // At a section's end its own records count, not those of the next one.
       const double record_m = std::min(at_m, outer.back().s_m - 1e-6);
       const double width_m = side * (value_at(outer, at_m, hint) - inside(at_m, record_m));
-      shape_.error_m = std::max(shape_.error_m, -width_m);
       widths.push_back({at_m, width_m < 1e-6 ? 0.0 : width_m});
     }
-    const geometry::PiecewiseCubic fitted(fit_cubics(widths, kBorderTolerance_m, -1e-9));
-    note_error(widths, [&](double at_m) {
-      return fitted.at(at_m, std::min(at_m, outer.back().s_m - 1e-6)).value;
-    });
-    return fitted;
+    return geometry::PiecewiseCubic(fit_cubics(widths, kBorderTolerance_m, -1e-9));
   }
 
   // The road's s by a lane's stations, from its left border's points.

@@ -18,6 +18,7 @@ inline constexpr double kBorderTolerance_m = 0.006;
 /// own stations.
 struct SectionShape {
   double s_m = 0.0;
+  std::size_t left_lanes = 0;
   std::vector<geometry::PiecewiseCubic> widths;
   std::vector<std::vector<Sample>> s_of_station;
 
@@ -34,8 +35,7 @@ struct RoadShape {
   double length_m = 0.0;
   geometry::PiecewiseCubic elevation, superelevation, lane_offset;
   std::vector<SectionShape> sections;
-  double error_m = 0.0;         ///< largest distance of a border to the map's, in plan
-  double height_error_m = 0.0;  ///< the same in height
+  double height_error_m = 0.0;  ///< largest of a border's elevation
 };
 
 /// The section that a road has just before s.

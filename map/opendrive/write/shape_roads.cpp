@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "roadbed/map/opendrive/write/close_joints.h"
 #include "roadbed/map/opendrive/write/end_lines.h"
 #include "roadbed/map/opendrive/write/reference_borders.h"
 #include "roadbed/map/opendrive/write/road_network.h"
@@ -110,8 +111,9 @@ ShapedRoads shape_roads(const RoadMap& road_map) {
   std::vector<Company> company(road_map.lanes().size(), Company::any);
   for (int round = 0;; ++round) {
     ShapedRoads roads{plan_network_roads(road_map, company), {}};
-    const auto placed = RoadsPlacer(road_map, roads.plan).place_all();
+    auto placed = RoadsPlacer(road_map, roads.plan).place_all();
     if (round < kMostPlans && part_lanes(roads.plan, placed, company)) continue;
+    close_joints(road_map, roads.plan, placed);
     for (std::size_t i = 0; i < placed.size(); ++i) {
       roads.shapes.push_back(shape_road(road_map, roads.plan.roads[i], placed[i]));
     }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/map/opendrive/write/border_errors.h"
 #include "roadbed/map/opendrive/write/furniture_text.h"
 #include "roadbed/map/opendrive/write/lane_text.h"
 #include "roadbed/map/opendrive/write/number_text.h"
@@ -18,7 +19,8 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-constexpr double kAim_m = 0.01;  // borders that are farther off are named
+constexpr double kHeading_rad = 5e-10;  // written within
+constexpr double kAim_m = 0.01;         // borders that are farther off are named
 
 // The system as a PROJ string, which other programs ask for, where it is an EPSG code of UTM.
 std::string proj_string(const std::string& crs) {
@@ -42,7 +44,8 @@ class FileWriter {
     ShapedRoads roads = shape_roads(road_map);
     plan_ = std::move(roads.plan);
     shapes_ = std::move(roads.shapes);
-    for (std::size_t i = 0; i < plan_.roads.size(); ++i) measure(i);
+    const std::vector<double> errors_m = border_errors_m(road_map, plan_, shapes_);
+    for (std::size_t i = 0; i < plan_.roads.size(); ++i) measure(i, errors_m[i]);
     network_ = join_roads(road_map, plan_, shapes_);
     furniture_ = furniture_text(road_map, plan_, shapes_, network_, options.minor);
   }
@@ -65,15 +68,15 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), words, std::forward<Values>(values)...);
   }
 
-  void measure(std::size_t road) {
-    const RoadShape& shape = shapes_[road];
-    file_.largest_error_m = std::max(file_.largest_error_m, shape.error_m);
-    file_.largest_height_error_m = std::max(file_.largest_height_error_m, shape.height_error_m);
-    if (shape.error_m <= kAim_m) return;
+  void measure(std::size_t road, double error_m) {
+    file_.largest_error_m = std::max(file_.largest_error_m, error_m);
+    file_.largest_height_error_m =
+        std::max(file_.largest_height_error_m, shapes_[road].height_error_m);
+    if (error_m <= kAim_m) return;
     const PlannedLane& first = plan_.roads[road].sections.front().lanes.front();
     file_.notes.push_back(fmt::format(
         "the road of lane {} has borders up to {:.3f} m off: they end askew, or turn too sharply",
-        road_map_.lane(first.lane).name, shape.error_m));
+        road_map_.lane(first.lane).name, error_m));
   }
 
   void add_header() {
@@ -158,16 +161,19 @@ class FileWriter {
       if (to_m - from_m < 1e-6) continue;
       const geometry::PlanPoint start = geometry::plan_point(piece, from_m);
       const Eigen::Vector2d at = road_map_.to_source(start.pose.position());
-      add("<geometry s=\"{}\" x=\"{}\" y=\"{}\" hdg=\"{:.12g}\" length=\"{}\">",
+      add("<geometry s=\"{}\" x=\"{}\" y=\"{}\" hdg=\"{}\" length=\"{}\">",
           short_number(from_m - part.from_m), short_number(at.x()), short_number(at.y()),
-          start.pose.heading_rad, short_number(to_m - from_m));
+          number_within(start.pose.heading_rad, kHeading_rad), short_number(to_m - from_m));
+      const auto curvature = [&](double value_per_m) {
+        return number_within(value_per_m, kHeading_rad / std::max(1.0, to_m - from_m));
+      };
       if (std::holds_alternative<geometry::LineCurve>(piece.curve)) {
         text_ += "<line/>";
       } else if (const auto* arc = std::get_if<geometry::ArcCurve>(&piece.curve)) {
-        add("<arc curvature=\"{:.12g}\"/>", arc->curvature_per_m);
+        add("<arc curvature=\"{}\"/>", curvature(arc->curvature_per_m));
       } else {
-        add("<spiral curvStart=\"{:.12g}\" curvEnd=\"{:.12g}\"/>", start.curvature_per_m,
-            geometry::plan_point(piece, to_m).curvature_per_m);
+        add("<spiral curvStart=\"{}\" curvEnd=\"{}\"/>", curvature(start.curvature_per_m),
+            curvature(geometry::plan_point(piece, to_m).curvature_per_m));
       }
       text_ += "</geometry>\n";
     }

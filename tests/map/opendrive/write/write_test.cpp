@@ -173,6 +173,61 @@ TEST(WriteOpenDrive, LanesWhoseBordersEndAtDifferentPlacesComeBack) {
   }
 }
 
+// Two lanes of 40 m side by side whose borders end `late_m` after 40 m.
+RoadMap ending_lanes(const std::vector<double>& late_m) {
+  tests::MadeLanelet2 made;
+  std::vector<std::int64_t> ways;
+  for (std::size_t i = 0; i < late_m.size(); ++i) {
+    const double y_m = 4.0 * static_cast<double>(i);
+    ways.push_back(made.line({{0, y_m}, {20, y_m}, {40 + late_m[i], y_m}}));
+  }
+  for (std::size_t i = 0; i + 1 < ways.size(); ++i) made.lanelet(ways[i + 1], ways[i]);
+  return parse_map(made.text(), "made.osm");
+}
+
+TEST(WriteOpenDrive, TellsHowFarBordersEndFromTheMaps) {
+  for (const std::vector<double>& late_m :
+       {std::vector{0.0, 0.0, 0.0}, {0.0, 0.12, 0.0}, {0.1, 0.0, 0.1}, {0.0, 0.2, 0.4}}) {
+    const RoadMap before = ending_lanes(late_m);
+    ASSERT_EQ(before.lanes().size(), 2u);
+    const opendrive::OpenDriveFile file = file_of(before);
+    const RoadMap after = parse_map(file.bytes, "written.xodr");
+    const double apart_m = std::max(borders_apart_m(before, after), borders_apart_m(after, before));
+    EXPECT_NEAR(file.largest_error_m, apart_m, 1e-3);
+    // What is out of line is not in the straight line across a road's end.
+    const double bent_m = std::abs(late_m[0] - 2.0 * late_m[1] + late_m[2]);
+    EXPECT_GE(file.largest_error_m, 0.25 * bent_m - 1e-3);
+    EXPECT_EQ(file.notes.size(), bent_m > 0.05 ? 1u : 0u);
+  }
+}
+
+TEST(WriteOpenDrive, LanesMeetWhereTheMapLeavesAGap) {
+  for (const double gap_m : {0.05, 0.15, 0.25}) {
+    tests::MadeLanelet2 made;
+    const auto line = [&](double from_m, double to_m, double y_m) {
+      return made.line({{from_m, y_m}, {0.5 * (from_m + to_m), y_m}, {to_m, y_m}});
+    };
+    const std::int64_t right = made.node({0, 0}), joint = made.node({30, 0});
+    const std::int64_t end = made.node({60, 0});
+    made.lanelet(line(0, 30, 4), made.way({right, joint}));
+    made.lanelet(line(30, 60, 4 + gap_m), made.way({joint, end}));
+    const RoadMap before = parse_map(made.text(), "made.osm");
+    const opendrive::OpenDriveFile file = file_of(before);
+    EXPECT_LE(file.largest_error_m, gap_m + 0.01);
+    const RoadMap after = parse_map(file.bytes, "written.xodr");
+    ASSERT_EQ(after.lanes().size(), 2u);
+    for (const Lane& lane : after.lanes()) {
+      for (const LaneId next : after.graph().of(lane.id).successors) {
+        for (const auto border : {&Lane::left, &Lane::right}) {
+          const Eigen::Vector2d& from = (lane.*border).in_map.points().back();
+          const Eigen::Vector2d& to = (after.lane(next).*border).in_map.points().front();
+          EXPECT_LE((to - from).norm(), 1e-3);
+        }
+      }
+    }
+  }
+}
+
 TEST(WriteOpenDrive, RealMapsAreWrittenWithoutErrors) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   const std::filesystem::path autoware = folder / "lanelet2/autowarefoundation+autoware_core";

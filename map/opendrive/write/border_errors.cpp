@@ -1,0 +1,143 @@
+#include "roadbed/map/opendrive/write/border_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/map/opendrive/write/road_lines.h"
+#include "roadbed/map/opendrive/write/written_borders.h"
+
+namespace roadbed::map::opendrive {
+namespace {
+
+using LineSpan = std::span<const Eigen::Vector2d>;
+
+double distance_to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
+                             const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double square = along.squaredNorm();
+  const double share = square > 0.0 ? std::clamp((point - a).dot(along) / square, 0.0, 1.0) : 0.0;
+  return (point - a - share * along).norm();
+}
+
+/// Lines, and how far a point is from the nearest one.
+class NearestLine {
+ public:
+  explicit NearestLine(const std::vector<LineSpan>& lines) {
+    constexpr std::size_t together = 8;  // segments to a box
+    std::vector<geometry::Box> boxes;
+    for (const LineSpan& line : lines) {
+      for (std::size_t i = 0; i + 1 < line.size(); i += together) {
+        chains_.push_back(line.subspan(i, std::min(together + 1, line.size() - i)));
+        boxes.push_back(geometry::box_around(chains_.back()));
+      }
+    }
+    tree_ = geometry::BoxTree(boxes);
+  }
+
+  double distance_m(const Eigen::Vector2d& point, double most_m) const {
+    double least_m = most_m;
+    tree_.nearest(point, most_m, [&](std::size_t index) {
+      double nearest_m = 1e300;
+      const LineSpan& chain = chains_[index];
+      for (std::size_t i = 1; i < chain.size(); ++i) {
+        nearest_m = std::min(nearest_m, distance_to_segment_m(point, chain[i - 1], chain[i]));
+      }
+      least_m = std::min(least_m, nearest_m);
+      return nearest_m;
+    });
+    return least_m;
+  }
+
+ private:
+  std::vector<LineSpan> chains_;
+  geometry::BoxTree tree_;
+};
+
+/// The largest distance of a line's points to the nearest of all others. The one that it stands for
+/// runs beside it, mostly near enough to make any other needless.
+class LineError {
+ public:
+  explicit LineError(const NearestLine& others) : others_(others) {}
+
+  void add(const LineSpan& line, const LineSpan& beside) {
+    std::size_t at = 1;
+    for (const Eigen::Vector2d& point : line) {
+      const double near_m = distance_beside_m(point, beside, at);
+      if (near_m > largest_m_) largest_m_ = std::max(largest_m_, others_.distance_m(point, near_m));
+    }
+  }
+
+  double largest_m() const { return largest_m_; }
+
+ private:
+  // Over the segments ahead, as long as one comes nearer.
+  static double distance_beside_m(const Eigen::Vector2d& point, const LineSpan& beside,
+                                  std::size_t& at) {
+    constexpr std::size_t ahead = 4;
+    double least_m = 1e300;
+    std::size_t best = at;
+    for (std::size_t i = at; i < beside.size() && i <= best + ahead; ++i) {
+      const double off_m = distance_to_segment_m(point, beside[i - 1], beside[i]);
+      if (off_m < least_m) {
+        least_m = off_m;
+        best = i;
+      }
+    }
+    at = best;
+    return least_m;
+  }
+
+  const NearestLine& others_;
+  double largest_m_ = 0.0;
+};
+
+std::vector<Eigen::Vector2d> own_part(const RoadBorder& border) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = border.own_from; i <= border.own_to; ++i) {
+    points.emplace_back(border.points[i].head<2>());
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<double> border_errors_m(const RoadMap& road_map, const RoadPlan& plan,
+                                    const std::vector<RoadShape>& shapes) {
+  std::vector<std::vector<std::vector<WrittenLine>>> written;  // by road, section, border
+  std::vector<LineSpan> all_written, all_source;
+  for (const RoadShape& shape : shapes) {
+    for (const auto& section : written.emplace_back(written_borders(shape))) {
+      all_written.insert(all_written.end(), section.begin(), section.end());
+    }
+  }
+  for (const Lane& lane : road_map.lanes()) {
+    for (const LaneLine* line : {&lane.left, &lane.right}) {
+      all_source.emplace_back(line->in_map.points());
+    }
+  }
+  const NearestLine nearest_written(all_written), nearest_source(all_source);
+  std::vector<double> errors_m;
+  for (std::size_t road = 0; road < shapes.size(); ++road) {
+    LineError there(nearest_source), back(nearest_written);
+    for (std::size_t i = 0; i < plan.roads[road].sections.size(); ++i) {
+      const PlannedSection& section = plan.roads[road].sections[i];
+      for (std::size_t border = 0; border <= section.lanes.size(); ++border) {
+        const auto own = own_part(border_along(road_map, section, border));
+        there.add(written[road][i][border], own);
+        back.add(own, written[road][i][border]);
+        // The lane on the other side may have its own idea of the border.
+        if (border == 0 || border == section.lanes.size()) continue;
+        const PlannedLane& planned = section.lanes[border - 1];
+        const Lane& lane = road_map.lane(planned.lane);
+        back.add((planned.forward ? lane.right : lane.left).in_map.points(),
+                 written[road][i][border]);
+      }
+    }
+    errors_m.push_back(std::max(there.largest_m(), back.largest_m()));
+  }
+  return errors_m;
+}
+
+}  // namespace roadbed::map::opendrive
