@@ -2,6 +2,7 @@
 // the same with its points packed.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -210,7 +211,8 @@ class LasParser {
              "how they are packed", "get the whole file");
     }
     cloud_.format += ", packed (LAZ)";
-    cloud_.points_in_source.reserve(count_);
+    // No more than the file can pay for: the count is its own word.
+    cloud_.points_in_source.reserve(std::min<std::uint64_t>(count_, bytes_.size()));
     unpack_laz(bytes_, body_offset_, count_, *layout_, name_,
                [&](std::span<const PointSteps> some) {
                  for (const PointSteps& steps : some) add(steps);
