@@ -162,7 +162,8 @@ TEST_F(Share, HasManualPagesThatMandocFindsNoFaultIn) {
 
 TEST_F(Share, LetsBashCompleteEveryCommandAndOption) {
   EXPECT_THAT(offered_by_bash({"roadbed", ""}), IsSupersetOf(commands_in(help_lines({}))));
-  EXPECT_THAT(offered_by_bash({"roadbed", "occupancy", ""}), UnorderedElementsAre("build", "info"));
+  EXPECT_THAT(offered_by_bash({"roadbed", "occupancy", ""}),
+              UnorderedElementsAre("build", "diff", "export", "info"));
   for (const Words& command : all_commands()) {
     Words words = command;
     words.insert(words.begin(), "roadbed");
@@ -191,7 +192,8 @@ TEST_F(Share, LetsFishComplete) {
   folder_.write("town.xodr", "");
   folder_.write("town.txt", "");
   EXPECT_THAT(offered_by_fish("roadbed "), IsSupersetOf(commands_in(help_lines({}))));
-  EXPECT_THAT(offered_by_fish("roadbed occupancy "), UnorderedElementsAre("build", "info"));
+  EXPECT_THAT(offered_by_fish("roadbed occupancy "),
+              UnorderedElementsAre("build", "diff", "export", "info"));
   for (const Words& command : all_commands()) {
     const Words offered = offered_by_fish("roadbed " + joined(command, " ") + " --");
     for (const std::string& name : options_of(command)) {

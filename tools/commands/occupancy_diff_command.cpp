@@ -42,7 +42,7 @@ class OccupancyDiffCommand : public Command {
     arguments.flag("-f,--force", force_, "Replace outputs that exist");
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.says_no_if("something appeared or vanished");
-    arguments.example("  roadbed occupancy diff monday.bt friday.bt --appeared new.pcd");
+    arguments.example("  roadbed occupancy diff town.bt street.bt --appeared new.pcd");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
