@@ -56,6 +56,8 @@ class MarkWriter {
     std::string text, last;
     for (const double s_m : stations(from_m, to_m)) {
       const BorderMark mark = mark_at(s_m + kSame_m);
+      const bool is_bare = mark.type == MarkType::none && mark.width_m <= 0.0;
+      if (is_bare && !between && text.empty()) continue;  // where no record holds, no mark is
       std::string words =
           fmt::format("type=\"{}\" color=\"{}\"", word_of(mark.type, minor), color_of(mark.color));
       if (mark.width_m > 0.0) words += fmt::format(" width=\"{}\"", short_number(mark.width_m));

@@ -81,7 +81,7 @@ class LanesWriter {
       for (std::size_t i = 0; i < section.left_lanes; ++i) add_lane(index, i);
       text_ += "</left>\n";
     }
-    add("<center><lane id=\"0\" type=\"none\" level=\"false\">{}</lane></center>\n",
+    add("<center><lane id=\"0\" type=\"none\">{}</lane></center>\n",
         marks(index, section.left_lanes));
     if (section.left_lanes < section.lanes.size()) {
       text_ += "<right>\n";
@@ -100,8 +100,8 @@ class LanesWriter {
     const PlannedSection& planned = road_.sections[section];
     const bool is_left = place < planned.left_lanes;
     const Lane& lane = road_map_.lane(planned.lanes[place].lane);
-    add("<lane id=\"{}\" type=\"{}\" level=\"false\"{}>", lane_id(planned, place),
-        type_word(lane, minor_), direction(lane, planned.lanes[place].forward, is_left));
+    add("<lane id=\"{}\" type=\"{}\"{}>", lane_id(planned, place), type_word(lane, minor_),
+        direction(lane, planned.lanes[place].forward, is_left));
     add_links(section, place);
     add_records(shape_.sections[section].widths[place], begin_m(section), end_m(section),
                 begin_m(section), "width", "sOffset", text_);

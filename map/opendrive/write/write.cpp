@@ -115,10 +115,11 @@ class FileWriter {
     const RoadShape& shape = shapes_[part.road];
     const std::string name = planned.source ? road_map_.road(*planned.source).name : "";
     const double length_m = part.to_m - part.from_m;
-    add("<road name=\"{}\" length=\"{}\" id=\"{}\" junction=\"{}\"", xml_text(name),
-        short_number(length_m), part.id,
+    text_ += "<road";
+    if (!name.empty()) add(" name=\"{}\"", xml_text(name));
+    add(" length=\"{}\" id=\"{}\" junction=\"{}\"", short_number(length_m), part.id,
         part.junction ? network_.junctions[*part.junction].id : "-1");
-    if (options_.minor >= 6) add(" rule=\"{}\"", plan_.left_hand_traffic ? "LHT" : "RHT");
+    if (options_.minor >= 6 && plan_.left_hand_traffic) text_ += " rule=\"LHT\"";
     text_ += ">\n";
     add_links(part);
     add_plan_view(shape, part);
