@@ -72,7 +72,7 @@ class RoadPlacer {
     double least_m = 1e300;
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       for (const double scale_m : kScales_m) {
-        try_reference(targets_[i], scale_m);
+        try_reference(targets_[i], scale_m, least_m);
         if (placed_.fault_m < least_m) {
           least_m = placed_.fault_m;
           best = {i, scale_m};
@@ -80,7 +80,7 @@ class RoadPlacer {
         if (least_m <= 0.0) return;
       }
     }
-    try_reference(targets_[best.first], best.second);
+    try_reference(targets_[best.first], best.second, 1e300);
   }
 
   // Midway between the outer borders of a road with one section, by shares of their length.
@@ -115,15 +115,21 @@ class RoadPlacer {
     return target;
   }
 
-  void try_reference(const ReferenceTarget& target, double scale_m) {
+  // Stops where there are as many faults as may be.
+  void try_reference(const ReferenceTarget& target, double scale_m, double most_m) {
     placed_.plan_view = fit_reference_line(target, scale_m, kReferenceTolerance_m);
     view_.emplace(placed_.plan_view);
     placed_.faults = {};
-    place_borders();
+    placed_.fault_m = 0.0;
+    if (!place_borders(most_m)) return;
     for (const auto& lines : placed_.borders) {
       for (std::size_t i = 1; i < lines.size(); ++i) note_crossing(lines[i - 1], lines[i]);
     }
     note_folds();
+    sum_faults();
+  }
+
+  void sum_faults() {
     const auto over = [](double fault, double allowed) { return std::max(0.0, fault - allowed); };
     placed_.fault_m =
         over(kLeastBend, placed_.faults.least_bend) + over(placed_.faults.back_m, kBack_m) +
@@ -139,10 +145,13 @@ class RoadPlacer {
         std::size_t hint = 0;
         for (const geometry::PlanPiece& piece : placed_.plan_view) {
           const double steps = std::ceil(piece.length_m / step_m);
+          const double from_per_m = geometry::plan_point(piece, piece.s_m).curvature_per_m;
+          const double to_per_m =
+              geometry::plan_point(piece, piece.s_m + piece.length_m).curvature_per_m;
           for (double k = 0.0; k <= steps; k += 1.0) {
             const double s_m = piece.s_m + k / steps * piece.length_m;
             if (s_m < placed_.section_from_m[i] || s_m > placed_.section_from_m[i + 1]) continue;
-            const double curvature_per_m = geometry::plan_point(piece, s_m).curvature_per_m;
+            const double curvature_per_m = from_per_m + k / steps * (to_per_m - from_per_m);
             placed_.faults.least_bend = std::min(
                 placed_.faults.least_bend, 1.0 - curvature_per_m * point_at(*edge, s_m, hint).t_m);
           }
@@ -162,7 +171,7 @@ class RoadPlacer {
     for (const BesidePoint& point : right) note(point.s_m);
   }
 
-  void place_borders() {
+  bool place_borders(double most_m) {
     placed_.borders.clear();
     placed_.section_from_m.clear();
     double hint_m = 0.0;
@@ -176,8 +185,11 @@ class RoadPlacer {
       for (const RoadBorder& border : borders_[i]) {
         lines.push_back(line_beside(*view_, border, placed_.section_from_m[i],
                                     placed_.section_from_m[i + 1], placed_.faults));
+        sum_faults();
+        if (placed_.fault_m >= most_m) return false;
       }
     }
+    return true;
   }
 
   // Where a section begins: at the foot of its middle border's first point.

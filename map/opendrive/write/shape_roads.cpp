@@ -1,6 +1,7 @@
 #include "roadbed/map/opendrive/write/shape_roads.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "roadbed/map/opendrive/write/close_joints.h"
@@ -16,11 +17,22 @@ constexpr double kParting_m = 0.2;   // fault of a road with several lanes that 
 constexpr double kHopeless_m = 1.0;  // of one with a single lane
 constexpr double kGain_m = 1e-3;     // that makes another line worth while
 
+/// Lanes with the border that a reference line follows and the lines across their ends: all that a
+/// road's shape depends on.
+using PlaceKey = std::vector<double>;
+
+/// What earlier plans and rounds found.
+struct Memory {
+  std::map<PlaceKey, PlacedRoad> placed;
+  std::map<PlaceKey, double> faults_m;
+};
+
 class RoadsPlacer {
  public:
-  RoadsPlacer(const RoadMap& road_map, const RoadPlan& plan)
+  RoadsPlacer(const RoadMap& road_map, const RoadPlan& plan, Memory& memory)
       : road_map_(road_map),
         plan_(plan),
+        memory_(memory),
         borders_(reference_borders(road_map, plan)),
         lines_(end_lines(road_map, plan)),
         chosen_(lines_.choices.size(), 0),
@@ -45,13 +57,46 @@ class RoadsPlacer {
     return std::move(roads_);
   }
 
+  // For the next plan, most of whose roads are the same.
+  void remember(std::vector<PlacedRoad> roads) {
+    memory_.placed.clear();
+    for (std::uint32_t road = 0; road < roads.size(); ++road) {
+      memory_.placed.emplace(key(road), std::move(roads[road]));
+    }
+  }
+
  private:
+  EndLine line(std::uint32_t end) const {
+    return lines_.at(end, chosen_[lines_.group_of_end[end]]);
+  }
+
+  PlaceKey key(std::uint32_t road) const {
+    PlaceKey key{double(borders_[road])};
+    for (const EndLine& across : {line(2 * road), line(2 * road + 1)}) {
+      key.insert(key.end(), {across.in_map.x(), across.in_map.y(), across.heading_rad});
+    }
+    for (const PlannedSection& section : plan_.roads[road].sections) {
+      key.insert(key.end(), {-1.0, double(section.left_lanes)});
+      for (const PlannedLane& lane : section.lanes) {
+        key.push_back(2.0 * lane.lane.index + (lane.forward ? 1.0 : 0.0));
+      }
+    }
+    return key;
+  }
+
   PlacedRoad place(std::uint32_t road) const {
-    const auto line = [&](std::uint32_t end) {
-      return lines_.at(end, chosen_[lines_.group_of_end[end]]);
-    };
-    return place_road(road_map_, plan_.roads[road], borders_[road],
-                      {line(2 * road), line(2 * road + 1)});
+    PlaceKey wanted = key(road);
+    const auto known = memory_.placed.find(wanted);
+    if (known != memory_.placed.end()) return known->second;
+    PlacedRoad placed = place_road(road_map_, plan_.roads[road], borders_[road],
+                                   {line(2 * road), line(2 * road + 1)});
+    memory_.faults_m.emplace(std::move(wanted), placed.fault_m);
+    return placed;
+  }
+
+  double fault_m(std::uint32_t road) const {
+    const auto known = memory_.faults_m.find(key(road));
+    return known != memory_.faults_m.end() ? known->second : place(road).fault_m;
   }
 
   bool improve(std::size_t group) {
@@ -64,23 +109,23 @@ class RoadsPlacer {
       if (i == before) continue;
       chosen_[group] = i;
       double sum_m = 0.0;
-      std::vector<PlacedRoad> placed;
       for (const std::uint32_t road : roads) {
         if (sum_m > least_m - kGain_m) break;
-        placed.push_back(place(road));
-        sum_m += placed.back().fault_m;
+        sum_m += fault_m(road);
       }
       if (sum_m > least_m - kGain_m) continue;
       least_m = sum_m;
       best = i;
-      for (std::size_t k = 0; k < roads.size(); ++k) roads_[roads[k]] = std::move(placed[k]);
     }
     chosen_[group] = best;
-    return best != before;
+    if (best == before) return false;
+    for (const std::uint32_t road : roads) roads_[road] = place(road);
+    return true;
   }
 
   const RoadMap& road_map_;
   const RoadPlan& plan_;
+  Memory& memory_;
   std::vector<std::size_t> borders_;
   EndLines lines_;
   std::vector<std::size_t> chosen_;                   // by group of ends
@@ -109,10 +154,15 @@ bool part_lanes(const RoadPlan& plan, const std::vector<PlacedRoad>& placed,
 
 ShapedRoads shape_roads(const RoadMap& road_map) {
   std::vector<Company> company(road_map.lanes().size(), Company::any);
+  Memory memory;
   for (int round = 0;; ++round) {
     ShapedRoads roads{plan_network_roads(road_map, company), {}};
-    auto placed = RoadsPlacer(road_map, roads.plan).place_all();
-    if (round < kMostPlans && part_lanes(roads.plan, placed, company)) continue;
+    RoadsPlacer placer(road_map, roads.plan, memory);
+    auto placed = placer.place_all();
+    if (round < kMostPlans && part_lanes(roads.plan, placed, company)) {
+      placer.remember(std::move(placed));
+      continue;
+    }
     close_joints(road_map, roads.plan, placed);
     for (std::size_t i = 0; i < placed.size(); ++i) {
       roads.shapes.push_back(shape_road(road_map, roads.plan.roads[i], placed[i]));
