@@ -60,16 +60,16 @@ class RoadPlacer {
     if (!road.source) targets_.push_back(middle(ends));
   }
 
-  PlacedRoad place() {
-    choose_reference();
+  PlacedRoad place(double most_m) {
+    choose_reference(most_m);
     return std::move(placed_);
   }
 
  private:
   // The first sound one of: along the border, along the middle, both ever smoother.
-  void choose_reference() {
+  void choose_reference(double most_m) {
     std::pair<std::size_t, double> best{0, 0.0};
-    double least_m = 1e300;
+    double least_m = most_m;
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       for (const double scale_m : kScales_m) {
         try_reference(targets_[i], scale_m, least_m);
@@ -80,7 +80,8 @@ class RoadPlacer {
         if (least_m <= 0.0) return;
       }
     }
-    try_reference(targets_[best.first], best.second, 1e300);
+    placed_.fault_m = most_m;
+    if (least_m < most_m) try_reference(targets_[best.first], best.second, 1e300);
   }
 
   // Midway between the outer borders of a road with one section, by shares of their length.
@@ -218,8 +219,8 @@ class RoadPlacer {
 }  // namespace
 
 PlacedRoad place_road(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
-                      const std::array<EndLine, 2>& ends) {
-  return RoadPlacer(road_map, road, border, ends).place();
+                      const std::array<EndLine, 2>& ends, double most_m) {
+  return RoadPlacer(road_map, road, border, ends).place(most_m);
 }
 
 }  // namespace roadbed::map::opendrive

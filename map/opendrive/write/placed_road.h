@@ -23,7 +23,8 @@ struct PlacedRoad {
 /// smoother; else the one with the least faults.
 /// @param border  of the first section, which the reference line follows; of a road of the map it
 ///                follows that road's own.
+/// @param most_m  faults that make it useless: is the fault then, and nothing else is told.
 PlacedRoad place_road(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
-                      const std::array<EndLine, 2>& ends);
+                      const std::array<EndLine, 2>& ends, double most_m = 1e300);
 
 }  // namespace roadbed::map::opendrive

@@ -24,7 +24,7 @@ using PlaceKey = std::vector<double>;
 /// What earlier plans and rounds found.
 struct Memory {
   std::map<PlaceKey, PlacedRoad> placed;
-  std::map<PlaceKey, double> faults_m;
+  std::map<PlaceKey, double> faults_m, at_least_m;  // known, and what is known to be exceeded
 };
 
 class RoadsPlacer {
@@ -94,9 +94,19 @@ class RoadsPlacer {
     return placed;
   }
 
-  double fault_m(std::uint32_t road) const {
-    const auto known = memory_.faults_m.find(key(road));
-    return known != memory_.faults_m.end() ? known->second : place(road).fault_m;
+  // The fault of a road, or some that is `most_m` or more.
+  double fault_m(std::uint32_t road, double most_m) const {
+    const PlaceKey wanted = key(road);
+    const auto known = memory_.faults_m.find(wanted);
+    if (known != memory_.faults_m.end()) return known->second;
+    double& at_least_m = memory_.at_least_m[wanted];
+    if (at_least_m >= most_m) return at_least_m;
+    const double fault_m = place_road(road_map_, plan_.roads[road], borders_[road],
+                                      {line(2 * road), line(2 * road + 1)}, most_m)
+                               .fault_m;
+    if (fault_m < most_m) memory_.faults_m.emplace(wanted, fault_m);
+    at_least_m = fault_m;
+    return fault_m;
   }
 
   bool improve(std::size_t group) {
@@ -111,7 +121,7 @@ class RoadsPlacer {
       double sum_m = 0.0;
       for (const std::uint32_t road : roads) {
         if (sum_m > least_m - kGain_m) break;
-        sum_m += fault_m(road);
+        sum_m += fault_m(road, least_m - kGain_m - sum_m + 1e-9);
       }
       if (sum_m > least_m - kGain_m) continue;
       least_m = sum_m;
