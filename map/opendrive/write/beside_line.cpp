@@ -135,8 +135,11 @@ RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::V
     position = {s_m, geometry::cross(along, off), 1.0};
     if (on_m == s_m) position.bend -= point.curvature_per_m * position.t_m;
     const double ahead_m = along.dot(off) / std::max(0.05, position.bend);
-    if (std::abs(ahead_m) < 1e-10) break;
     s_m += std::clamp(ahead_m, -5.0, 5.0);
+    if (std::abs(ahead_m) < 1e-6) {  // what is left is smaller by as much again
+      position.s_m = s_m;
+      break;
+    }
   }
   return position;
 }
