@@ -12,10 +12,10 @@ from pathlib import Path
 from same_outputs_places import PAIRS, on_map, through_cloud
 
 COMMANDS = ("import", "info", "validate", "export", "map", "locate", "route", "reach", "reference",
-            "plan", "control", "simulate", "occupancy", "audit", "figures", "report", "batch",
+            "plan", "control", "drive", "simulate", "occupancy", "audit", "figures", "report", "batch",
             "jobs")
 PARTS = ("map diff", "map clip", "map merge", "map transform", "map tile", "control design",
-         "occupancy build", "occupancy info", "report compare",
+         "drive info", "occupancy build", "occupancy info", "report compare",
          *(f"jobs {kind}" for kind in ("import", "validate", "route", "simulate", "audit")))
 FORMATS = ("geojson", "gpkg", "fgb", "svg", "csv", "osm", "xml")
 MAPS = (".xodr", ".osm", ".xml", ".geojson")
@@ -198,6 +198,7 @@ def own_cases():
                               "info b.rbm", "export a.rbm -o a.geojson"])
     yield Case("map/diff", [f"map diff {TOWN} data/country.xodr",
                             f"map diff {TOWN} data/crossing.osm --json --tolerance 0.5"])
+    yield Case("drive/info", ["drive info t.csv", "drive info t.csv --json"], {"t.csv": STRAIGHT})
     yield Case("control/design",
                ["control design", "control design --json",
                 "control design --weights 1 2 0.5 --input-weight 5 --delay 3 --json",

@@ -45,6 +45,7 @@ constexpr Entry kCommands[] = {
     {"reference", make_reference_command},
     {"plan", make_plan_command},
     {"control", make_control_command},
+    {"drive", make_drive_command},
     {"simulate", make_simulate_command},
     {"pilot", make_pilot_command},
     {"occupancy", make_occupancy_command},

@@ -161,6 +161,7 @@ TEST(FormatVersions, OfEveryDocumentThatACommandPrintsStandFirst) {
       {"reach", {"reach", town, "--from", from, "--within", "60s"}},
       {"plan", {"plan", scene, "-o", folder / "plan"}},
       {"control_design", {"control", "design"}},
+      {"drive_info", {"drive", "info", drive}},
       {"metrics", {"simulate", scene, "-o", run}},
       {"plan", {"plan", run + "@1", "-o", folder / "again"}},
       {"comparison", {"report", "compare", run, run}},

@@ -108,6 +108,7 @@ class StandardOutput : public testing::Test {
         {"reference", "--help"},
         {"plan", scenario_, "-o", fresh()},
         {"control", "design"},
+        {"drive", "info", trajectory},
         {"simulate", scenario_, "-o", fresh()},
         {"pilot", "--help"},
         {"occupancy", "info", octree_},

@@ -10,13 +10,13 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/visible_text.h"
+#include "roadbed/map/logs/log.h"
 #include "roadbed/planning/audit/swept_drive.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/files/obstacles_csv.h"
-#include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
 
@@ -57,7 +57,7 @@ std::vector<ObstacleInSource> of_scenario(const std::filesystem::path& file, con
 }  // namespace
 
 geometry::Trajectory AuditSubject::drive() const {
-  return file.empty() ? swept : read_trajectory_csv(file);
+  return file.empty() ? swept : read_drive(file, options);
 }
 
 std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
@@ -65,9 +65,13 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
   Argument trajectory =
       arguments
           .add("--trajectory", trajectory_,
-               "Drive to audit (.csv), poses of the rear axle, linear between rows; every point of "
-               "the body is covered. Or a folder: its .csv files, and each trajectory.csv below")
+               "Drive to audit, linear between its rows; every point of the body is covered: .csv "
+               "with "
+               "poses of the rear axle, a log (rosbag2, MCAP), a CommonRoad solution, poses of "
+               "Argoverse 2, TUM or KITTI. Or a folder: its .csv files, and each trajectory.csv "
+               "below")
           .reads();
+  const std::vector<Argument> of_files = of_drive_.declare(arguments);
   std::vector<Argument> of_sweeps = question_.declare(arguments, true);
   Argument lane = arguments.add(
       "--lane", lane_, "Audit a lane of --map from its start, or S, to its end: lane:NAME[@S]");
@@ -85,7 +89,10 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
                "Of the rear axle from the route's line or the lane's centre, to the left [m]")
           .within(-1000.0, 1000.0)
           .with_default());
-  for (const Argument& other : of_sweeps) trajectory.excludes(other);
+  for (const Argument& other : of_sweeps) {
+    trajectory.excludes(other);
+    for (Argument rule : of_files) rule.excludes(other);
+  }
   return of_sweeps;
 }
 
@@ -99,9 +106,18 @@ std::string AuditSubjects::fault(bool has_map) const {
   return has_map ? "" : "--map is required";
 }
 
-std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map) const {
+bool AuditSubjects::is_folder() const {
+  return fs::is_directory(trajectory_) && !map::is_log(trajectory_);
+}
+
+std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map,
+                                              const geometry::VehicleShape& shape) const {
   if (is_folder()) return in_folder();
-  if (!is_swept()) return {{.name = map::one_line(trajectory_.string()), .file = trajectory_}};
+  if (!is_swept()) {
+    return {{.name = map::one_line(trajectory_.string()),
+             .file = trajectory_,
+             .options = of_drive_.options(shape)}};
+  }
   return {lane_.empty() ? route(*road_map) : lane(*road_map)};
 }
 

@@ -8,6 +8,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/drive_arguments.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/cli/route_question.h"
 
@@ -18,6 +19,7 @@ struct AuditSubject {
   std::string name;                 ///< of the file, within its folder where that was given
   std::filesystem::path file = {};  ///< empty: swept
   geometry::Trajectory swept = {};
+  DriveOptions options = {};  ///< of the file
 
   /// @throws InputError if the file is unusable.
   geometry::Trajectory drive() const;
@@ -41,11 +43,13 @@ class AuditSubjects {
   /// All files that end in .csv in the folder, and the trajectory.csv of folders below it, by name;
   /// one subject otherwise.
   /// @param road_map  null unless it is swept.
+  /// @param shape     of the vehicle, for poses of its centre.
   /// @throws InputError if the folder holds none, or there is no such route or lane.
-  std::vector<AuditSubject> list(const map::RoadMap* road_map) const;
+  std::vector<AuditSubject> list(const map::RoadMap* road_map,
+                                 const geometry::VehicleShape& shape) const;
 
-  /// Whether a folder was given, whose drives are listed in a table.
-  bool is_folder() const { return std::filesystem::is_directory(trajectory_); }
+  /// Whether a folder was given, whose drives are listed in a table; a bag's is one drive.
+  bool is_folder() const;
 
  private:
   std::vector<AuditSubject> in_folder() const;
@@ -54,6 +58,7 @@ class AuditSubjects {
   std::string suffix() const;
 
   std::filesystem::path trajectory_;
+  DriveArguments of_drive_;
   RouteQuestion question_;
   std::string lane_;
   double speed_kmh_ = 30.0, offset_m_ = 0.0;

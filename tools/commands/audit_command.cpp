@@ -28,6 +28,7 @@
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_output.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/files/drive_file.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/vehicle_file.h"
@@ -85,6 +86,8 @@ class AuditCommand : public Command {
         "--certificate proof.json\n"
         "  roadbed audit --check proof.json --vehicle car.json --clearance 0.3\n"
         "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
+        "  roadbed audit --occupancy street.bt --trajectory poses.txt --pose-frame rear-axle "
+        "--save-drive poses.csv\n"
         "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3\n"
         "  roadbed audit --map town.xodr --on drivable --margin 0.1 --trajectory "
         "drive/trajectory.csv");
@@ -100,13 +103,14 @@ class AuditCommand : public Command {
       if (!output.empty()) map::check_writable(output, force_);
     }
     if (!certificate_.empty()) refuse_certificate_of_streams();
+    if (!certificate_.empty()) refuse_certificate_of_logs();
     const Vehicle vehicle = vehicle_.empty() ? Vehicle{} : read_vehicle(vehicle_);
     AuditQuestion question = asked(vehicle);
     std::shared_ptr<const map::RoadMap> road_map;
     if (!map_.empty()) road_map = inputs_->road_map(map_);
     question.ground = ground_rule(ground_, road_map.get());
     const RoadQuestion road = on_.empty() ? RoadQuestion{} : road_question(road_map.get());
-    const std::vector<AuditSubject> subjects = subjects_.list(road_map.get());
+    const std::vector<AuditSubject> subjects = subjects_.list(road_map.get(), vehicle.shape);
     Scene scene = make_scene(road_map.get(), vehicle.shape, streams, common);
     if (!on_.empty()) scene.road = &road;
     return subjects_.is_folder() ? run_folder(subjects, question, scene, streams, common)
@@ -284,7 +288,9 @@ class AuditCommand : public Command {
                  "coordinates")
             .writes(".geojson");
     const Argument saved =
-        arguments.add("--save-drive", saved_drive_, "Write the drive along a route or lane (.csv)")
+        arguments
+            .add("--save-drive", saved_drive_,
+                 "Write the drive that was audited, poses of the rear axle (.csv)")
             .writes(".csv");
     Argument check =
         arguments
@@ -312,9 +318,7 @@ class AuditCommand : public Command {
     if (!rules_.empty() && map_.empty()) return "--rules needs --map";
     if (occupancy_.empty() && !ground_.empty()) return "--ground needs --occupancy";
     if (std::string fault = subjects_.fault(!map_.empty()); !fault.empty()) return fault;
-    if (!subjects_.is_swept()) {
-      return saved_drive_.empty() ? "" : "--save-drive needs --lane, or --from and --to";
-    }
+    if (!subjects_.is_swept()) return {};
     const bool proves_nothing = !certificate_.empty() && saved_drive_.empty();
     return proves_nothing ? "--certificate needs --save-drive here, as it is about a file" : "";
   }
@@ -351,8 +355,8 @@ class AuditCommand : public Command {
 
   Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditQuestion& question,
                   const Scene& scene, const Streams& streams, const CommonOptions& common) const {
-    if (!svg_.empty() || !certificate_.empty()) {
-      throw map::InputError({.file = "--svg or --certificate",
+    if (!svg_.empty() || !certificate_.empty() || !saved_drive_.empty()) {
+      throw map::InputError({.file = "--svg, --certificate or --save-drive",
                              .found = "is about one drive, and --trajectory is a folder",
                              .remedy = "give one file"});
     }
@@ -499,7 +503,7 @@ class AuditCommand : public Command {
       if (!map_.empty()) page.sources.push_back(source("map", hashed_once(map_)));
     }
     if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
-    if (!subjects_.is_swept()) {
+    if (!subjects_.is_swept() && !std::filesystem::is_directory(subjects_.file())) {
       page.sources.push_back(source("trajectory", hashed_input(subjects_.file())));
     }
     map::write_output(
@@ -555,10 +559,22 @@ class AuditCommand : public Command {
     }
   }
 
+  // Who checks it gets the drive as it was audited, and needs no options to read it.
+  void refuse_certificate_of_logs() const {
+    if (subjects_.is_swept() || subjects_.is_folder() || !saved_drive_.empty() ||
+        is_drive_table(subjects_.file())) {
+      return;
+    }
+    throw map::InputError({.file = map::input_name(subjects_.file()),
+                           .found = "is no .csv of a drive, which certificates are about",
+                           .needed = "--save-drive beside --certificate",
+                           .remedy = "give it"});
+  }
+
   void write_certificate(const AuditedDrive& audited, const AuditQuestion& question,
                          const Scene& scene) const {
     if (certificate_.empty()) return;
-    const std::filesystem::path& drive = subjects_.is_swept() ? saved_drive_ : subjects_.file();
+    const std::filesystem::path& drive = saved_drive_.empty() ? subjects_.file() : saved_drive_;
     CertificateFile file{.program = name_and_version(),
                          .trajectory = certified_file(drive),
                          .underside_m = from_height_m_,

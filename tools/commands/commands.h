@@ -28,6 +28,7 @@ std::unique_ptr<Command> make_reach_command();
 std::unique_ptr<Command> make_reference_command();
 std::unique_ptr<Command> make_plan_command();
 std::unique_ptr<Command> make_control_command();
+std::unique_ptr<Command> make_drive_command();
 std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_pilot_command();
 std::unique_ptr<Command> make_occupancy_command();

@@ -6,8 +6,8 @@
 
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
+#include "roadbed/tools/files/drive_file.h"
 #include "roadbed/tools/files/json.h"
-#include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/surroundings.h"
 
 namespace roadbed::tools::inline commands {
@@ -79,8 +79,9 @@ map::PageOverlay reach_of(const map::RoadMap& road_map, const std::filesystem::p
   return overlay;
 }
 
-map::PageOverlay drive_of(const map::RoadMap& road_map, const std::filesystem::path& file) {
-  const geometry::Trajectory drive = read_trajectory_csv(file);
+map::PageOverlay drive_of(const map::RoadMap& road_map, const std::filesystem::path& file,
+                          const DriveOptions& options) {
+  const geometry::Trajectory drive = read_drive(file, options);
   map::PageOverlay overlay = overlay_of("drive", "Drive " + file.stem().string());
   overlay.lines_in_map.emplace_back();
   for (const geometry::TrajectoryPoint& point : drive.points()) {
@@ -135,7 +136,8 @@ void PageOverlays::declare(Arguments& arguments) {
   const std::string heading = arguments.heading("Shown on a page (.html)");
   arguments.add("--route", routes_, "What `route --json` printed, with its alternatives").reads();
   arguments.add("--reach", reached_, "What `reach --json` printed").reads();
-  arguments.add("--trajectory", trajectories_, "A drive's trajectory.csv").reads();
+  arguments.add("--trajectory", trajectories_, "A drive: .csv, or what audit reads").reads();
+  of_drive_.declare(arguments);
   arguments.add("--occupancy", occupancy_, "An octree, or a folder of tiles: what is occupied")
       .reads();
   arguments.add("--slice", slice_m_, "Heights between which occupied space is shown [m]")
@@ -161,7 +163,8 @@ void PageOverlays::add_to(map::MapPageOptions& page, const map::RoadMap& road_ma
   }
   for (const auto& file : reached_) page.overlays.push_back(reach_of(road_map, file));
   for (const auto& file : routes_) add_routes(road_map, file, page.overlays);
-  for (const auto& file : trajectories_) page.overlays.push_back(drive_of(road_map, file));
+  for (const auto& file : trajectories_)
+    page.overlays.push_back(drive_of(road_map, file, of_drive_.options({})));
   if (!findings_.empty()) page.remarks = findings_in(road_map, findings_);
 }
 

@@ -6,6 +6,7 @@
 
 #include "roadbed/map/page/map_page.h"
 #include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/drive_arguments.h"
 
 namespace roadbed::tools::inline commands {
 
@@ -23,6 +24,7 @@ class PageOverlays {
   std::vector<std::filesystem::path> routes_, trajectories_, reached_;
   std::filesystem::path occupancy_, findings_;
   std::vector<double> slice_m_ = {0.2, 1.5};
+  DriveArguments of_drive_;
 };
 
 }  // namespace roadbed::tools::commands

@@ -66,6 +66,6 @@ endif()
 
 # What the archives are linked with: the packages of library.cmake's and roadbedConfig.cmake's names.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libgeographic-dev | \
-libgeographiclib-dev, libgmp-dev, liblzf-dev, libmpfr-dev, liboctomap-dev, libpugixml-dev, \
+libgeographiclib-dev, libgmp-dev, liblz4-dev, liblzf-dev, libmpfr-dev, liboctomap-dev, libpugixml-dev, \
 libsqlite3-dev, libxxhash-dev, libzstd-dev, nettle-dev, zlib1g-dev")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "roadbed (= ${CPACK_PACKAGE_VERSION})")

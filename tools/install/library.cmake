@@ -47,7 +47,7 @@ find_package(octomap REQUIRED)
 roadbed_add_module(geometry FOLDERS "^geometry/" OBJECTS roadbed_geometry_exact
   PRIVATE fmt::fmt gmp mpfr)
 roadbed_add_module(map FOLDERS "^map(/|$)(([^o]|op).*)?$" USES geometry
-  PRIVATE fmt::fmt pugixml::pugixml SQLite::SQLite3 nettle xxhash z zstd GeographicLib
+  PRIVATE fmt::fmt pugixml::pugixml SQLite::SQLite3 nettle xxhash z lz4 zstd GeographicLib
           ${CMAKE_DL_LIBS})
 roadbed_add_module(occupancy FOLDERS "^map/occupancy/" USES map
   PRIVATE fmt::fmt octomap octomath lzf ${CMAKE_DL_LIBS})

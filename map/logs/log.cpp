@@ -1,0 +1,53 @@
+#include "roadbed/map/logs/log.h"
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/files/unpack.h"
+#include "roadbed/map/logs/containers.h"
+
+namespace roadbed::map::inline logs {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool begins_as_log(std::string_view bytes) {
+  return bytes.starts_with(kMcapStart) || bytes.starts_with(kSqliteStart);
+}
+
+void read_log_file(const fs::path& file, const LogVisitor& visitor) {
+  const std::string stored = stored_start(file, kSqliteStart.size());
+  if (stored.starts_with(kSqliteStart)) return read_bag_file(file, visitor);
+  if (stored.starts_with(kMcapStart)) {
+    LogBytes bytes(file);
+    return read_mcap(bytes, visitor);
+  }
+  parse_log(read_file(file), input_name(file), visitor);
+}
+
+}  // namespace
+
+bool is_log(const fs::path& path) {
+  std::error_code unreadable;
+  if (fs::is_directory(path, unreadable)) return fs::exists(path / "metadata.yaml", unreadable);
+  return begins_as_log(read_file_start(path, kSqliteStart.size()));
+}
+
+void read_log(const fs::path& path, const LogVisitor& visitor) {
+  std::error_code unreadable;
+  if (!fs::is_directory(path, unreadable)) return read_log_file(path, visitor);
+  for (const fs::path& file : files_of_bag(path)) read_log_file(file, visitor);
+}
+
+void parse_log(std::string_view bytes, const std::string& name, const LogVisitor& visitor) {
+  if (bytes.starts_with(kSqliteStart)) return parse_bag(bytes, name, visitor);
+  if (!bytes.starts_with(kMcapStart)) {
+    throw InputError({.file = name,
+                      .found = "is no log",
+                      .needed = "MCAP, or SQLite of rosbag2",
+                      .remedy = "name another file"});
+  }
+  LogBytes file(bytes, name);
+  read_mcap(file, visitor);
+}
+
+}  // namespace roadbed::map::logs

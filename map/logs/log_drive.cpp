@@ -1,0 +1,178 @@
+#include "roadbed/map/logs/log_drive.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/logs/transform_tree.h"
+
+namespace roadbed::map::inline logs {
+namespace {
+
+constexpr const char* kBody = "base_link";
+
+/// "/planning/trajectory#3"
+struct AskedTopic {
+  std::string name;
+  std::size_t number = 0;  ///< of the message, from 1; 0: the only one
+};
+
+AskedTopic asked_topic(const std::string& text) {
+  const std::size_t sign = text.rfind('#');
+  AskedTopic asked{text};
+  if (sign == std::string::npos) return asked;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + sign + 1, end, asked.number);
+  if (error == std::errc() && stop == end) asked.name = text.substr(0, sign);
+  return asked;
+}
+
+/// What a topic may be a drive of.
+struct Candidate {
+  std::vector<TimedPose> poses;
+  std::size_t planned = 0;  ///< trajectories, of which one is kept
+  std::string frame;
+};
+
+class DriveSearch {
+ public:
+  DriveSearch(std::string file, const std::string& topic)
+      : file_(std::move(file)), asked_(asked_topic(topic)) {}
+
+  LogVisitor visitor() {
+    return {
+        .wants = [this](const LogTopic& topic) { return wants(topic); },
+        .take = [this](const LogTopic& topic, const LogMessage& message) { take(topic, message); }};
+  }
+
+  LogDrive result() {
+    add_transforms();
+    std::erase_if(candidates_, [](const auto& entry) { return entry.second.poses.empty(); });
+    if (candidates_.empty()) {
+      refuse(fmt::format("holds no drive{}: topics {}",
+                         asked_.name.empty() ? "" : " of topic " + asked_.name,
+                         fmt::join(topics_, ", ")),
+             "poses, transforms of base_link, or a planned trajectory", "name another log");
+    }
+    if (candidates_.size() > 1) {
+      std::vector<std::string> names;
+      for (const auto& [name, candidate] : candidates_) names.push_back(name);
+      refuse(fmt::format("holds several drives: {}", fmt::join(names, ", ")), "one",
+             "choose it by --topic");
+    }
+    auto& [name, candidate] = *candidates_.begin();
+    if (candidate.planned > 1 && asked_.number == 0) {
+      refuse(fmt::format("{} holds {} trajectories", name, candidate.planned), "one",
+             fmt::format("choose it by its number: --topic {}#{}", name, candidate.planned));
+    }
+    if (candidate.planned == 0) sort_by_stamp(candidate.poses);
+    return {name, std::move(candidate.poses)};
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& found, const std::string& needed,
+                           const std::string& remedy) const {
+    throw InputError({.file = file_, .found = found, .needed = needed, .remedy = remedy});
+  }
+
+  bool wants(const LogTopic& topic) {
+    topics_.push_back(fmt::format("{} ({})", topic.name, topic.type));
+    const bool is_known =
+        is_pose_type(topic.type) || is_transform_type(topic.type) || is_trajectory_type(topic.type);
+    if (!is_known) return false;
+    // Static transforms have a topic of their own, which belongs to the one that is asked for.
+    if (!asked_.name.empty() && asked_.name != topic.name && !is_transform_type(topic.type)) {
+      return false;
+    }
+    if (topic.encoding == "cdr") return true;
+    refuse(fmt::format("{} is encoded as {}", topic.name, topic.encoding), "cdr",
+           "convert the log to ROS 2");
+  }
+
+  void take(const LogTopic& topic, const LogMessage& message) {
+    if (is_transform_type(topic.type)) return take_transforms(topic, message);
+    Candidate& candidate = candidates_[topic.name];
+    if (is_trajectory_type(topic.type)) {
+      ++candidate.planned;
+      const std::size_t kept = asked_.number == 0 ? 1 : asked_.number;
+      if (candidate.planned == kept) candidate.poses = timed(parse_planned(message, file_).points);
+      return;
+    }
+    PoseMessage read = parse_pose(topic, message, file_);
+    if (!candidate.frame.empty() && candidate.frame != read.frame) {
+      refuse(fmt::format("{} is in the frames {} and {}", topic.name, candidate.frame, read.frame),
+             "one", "record it anew");
+    }
+    candidate.frame = read.frame;
+    candidate.poses.push_back(read.at);
+  }
+
+  void take_transforms(const LogTopic& topic, const LogMessage& message) {
+    const bool is_static = topic.name.ends_with("tf_static");
+    if (!is_static) transforms_topic_ = topic.name;
+    for (const FrameTransform& transform : parse_transforms(message, file_)) {
+      tree_.add(transform, is_static, file_);
+    }
+  }
+
+  void add_transforms() {
+    const bool is_asked = asked_.name.empty() || asked_.name == transforms_topic_;
+    if (!is_asked || transforms_topic_.empty()) return;
+    tree_.sort();
+    if (tree_.has(kBody)) {
+      candidates_[transforms_topic_].poses = tree_.poses(tree_.way_up(kBody, file_));
+    } else if (!asked_.name.empty()) {
+      refuse(fmt::format("{} has the frames {}", asked_.name, fmt::join(tree_.children(), ", ")),
+             kBody, "name a topic of poses");
+    }
+  }
+
+  // Planners often leave the times 0: they follow from the way and the speeds.
+  static std::vector<TimedPose> timed(std::vector<TimedPose> points) {
+    if (points.size() < 2 || points.back().stamp_ns != points.front().stamp_ns) return points;
+    double t_s = 0.0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Eigen::Vector3d step = points[i].pose.translation() - points[i - 1].pose.translation();
+      const double both_mps =
+          std::abs(points[i].speed_mps.value_or(0)) + std::abs(points[i - 1].speed_mps.value_or(0));
+      constexpr double stands_mps = 1e-3;
+      if (!(both_mps > stands_mps)) {  // it stands from here on
+        points.resize(i);
+        break;
+      }
+      t_s += 2.0 * step.norm() / both_mps;
+      points[i].stamp_ns = std::llround(1e9 * t_s);
+    }
+    sort_by_stamp(points);
+    return points;
+  }
+
+  std::string file_;
+  AskedTopic asked_;
+  std::vector<std::string> topics_;
+  std::map<std::string, Candidate> candidates_;
+  TransformTree tree_;
+  std::string transforms_topic_;
+};
+
+}  // namespace
+
+LogDrive drive_of_log(const GoThrough& go_through, const std::string& file,
+                      const std::string& topic) {
+  DriveSearch search(file, topic);
+  go_through(search.visitor());
+  return search.result();
+}
+
+LogDrive drive_of_log(const std::filesystem::path& path, const std::string& topic) {
+  return drive_of_log([&](const LogVisitor& visitor) { read_log(path, visitor); }, input_name(path),
+                      topic);
+}
+
+}  // namespace roadbed::map::logs

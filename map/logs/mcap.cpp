@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <map>
+#include <optional>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/visible_text.h"
+#include "roadbed/map/logs/containers.h"
+#include "roadbed/map/logs/unpack_block.h"
+
+namespace roadbed::map::inline logs {
+namespace {
+
+enum Opcode : unsigned char {
+  kHeader = 1,
+  kFooter = 2,
+  kSchema = 3,
+  kChannel = 4,
+  kMessage = 5,
+  kChunk = 6,
+  kDataEnd = 15
+};
+constexpr std::uint64_t kRecordHead = 9;
+
+/// Fields of a record, in turn.
+class Fields {
+ public:
+  Fields(std::string_view bytes, const std::string& file, std::string place)
+      : rest_(bytes), file_(file), place_(std::move(place)) {}
+
+  [[noreturn]] void refuse(const std::string& found, const std::string& needed) const {
+    throw InputError({.file = file_,
+                      .place = place_,
+                      .found = found,
+                      .needed = needed,
+                      .remedy = "copy or record the log anew"});
+  }
+
+  std::string_view take(std::uint64_t count) {
+    if (count > rest_.size()) {
+      refuse(fmt::format("the record has {} bytes left", rest_.size()),
+             fmt::format("{} as it says", count));
+    }
+    const std::string_view taken = rest_.substr(0, count);
+    rest_.remove_prefix(count);
+    return taken;
+  }
+
+  template <class Number>
+  Number number() {
+    std::uint64_t value = 0;
+    const std::string_view bytes = take(sizeof(Number));
+    for (std::size_t i = bytes.size(); i-- > 0;) {
+      value = (value << 8) | static_cast<unsigned char>(bytes[i]);
+    }
+    return static_cast<Number>(value);
+  }
+
+  std::string_view text() { return take(number<std::uint32_t>()); }
+  std::string_view rest() const { return rest_; }
+  const std::string& place() const { return place_; }
+
+ private:
+  std::string_view rest_;
+  const std::string& file_;
+  std::string place_;
+};
+
+struct Channel {
+  LogTopic topic;
+  bool is_wanted = false;
+};
+
+std::uint32_t crc_of(std::string_view bytes, std::uint32_t so_far = 0) {
+  return static_cast<std::uint32_t>(
+      crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+class McapReader {
+ public:
+  McapReader(LogBytes& file, const LogVisitor& visitor) : file_(file), visitor_(visitor) {}
+
+  void run() {
+    take_bytes(kMcapStart.size());
+    for (;;) {
+      const std::uint64_t at = offset_;
+      Fields head(file_.read(offset_, kRecordHead), file_.name(), fmt::format("byte {}", at));
+      const auto opcode = head.number<unsigned char>();
+      const auto length = head.number<std::uint64_t>();
+      if (opcode == kDataEnd) return end_data(at, length);
+      take_bytes(kRecordHead);
+      Fields fields(take_bytes(length), file_.name(), fmt::format("byte {}", at));
+      if (opcode == kChunk) {
+        chunk(fields);
+      } else {
+        record(opcode, fields);
+      }
+    }
+  }
+
+ private:
+  std::string_view take_bytes(std::uint64_t count) {
+    const std::string_view bytes = file_.read(offset_, count);
+    offset_ += count;
+    crc_ = crc_of(bytes, crc_);
+    return bytes;
+  }
+
+  void end_data(std::uint64_t at, std::uint64_t length) {
+    const std::string_view content = file_.read(at + kRecordHead, length);
+    Fields end(content, file_.name(), fmt::format("byte {}", at));
+    const auto written = end.number<std::uint32_t>();
+    if (written != 0 && written != crc_) {
+      end.refuse("the checksum of the data is another than the one written", "the same");
+    }
+  }
+
+  void record(unsigned char opcode, Fields& fields) {
+    if (opcode == kSchema) return schema(fields);
+    if (opcode == kChannel) return channel(fields);
+    if (opcode == kMessage) return message(fields);
+    if (opcode == kFooter) fields.refuse("the footer", "the end of the data before it");
+    if (opcode == 0) fields.refuse("a record of kind 0", "a kind that MCAP has");
+  }
+
+  void schema(Fields& fields) {
+    const auto id = fields.number<std::uint16_t>();
+    types_[id] = one_line(std::string(fields.text()));
+  }
+
+  void channel(Fields& fields) {
+    const auto id = fields.number<std::uint16_t>();
+    const auto schema = fields.number<std::uint16_t>();
+    const auto type = types_.find(schema);
+    if (schema != 0 && type == types_.end()) {
+      fields.refuse(fmt::format("a channel of schema {}", schema), "that schema before it");
+    }
+    LogTopic topic{.name = one_line(std::string(fields.text())),
+                   .type = schema == 0 ? std::string() : type->second,
+                   .encoding = one_line(std::string(fields.text()))};
+    const auto known = channels_.find(id);
+    if (known != channels_.end()) {  // told again in each chunk
+      if (known->second.topic.name != topic.name || known->second.topic.type != topic.type) {
+        fields.refuse(
+            fmt::format("channel {} is {} and {}", id, known->second.topic.name, topic.name),
+            "one topic");
+      }
+      return;
+    }
+    const bool is_wanted = visitor_.wants(topic);
+    channels_.emplace(id, Channel{std::move(topic), is_wanted});
+  }
+
+  void message(Fields& fields) {
+    const auto id = fields.number<std::uint16_t>();
+    const auto found = channels_.find(id);
+    if (found == channels_.end()) {
+      fields.refuse(fmt::format("a message of channel {}", id), "that channel before it");
+    }
+    fields.take(4);  // sequence
+    const auto received_ns = fields.number<std::int64_t>();
+    fields.take(8);  // published
+    if (!found->second.is_wanted) return;
+    visitor_.take(found->second.topic, {received_ns, fields.rest(), fields.place()});
+  }
+
+  void chunk(Fields& fields) {
+    fields.take(16);  // first and last time
+    const auto size = fields.number<std::uint64_t>();
+    const auto crc = fields.number<std::uint32_t>();
+    const std::string packing(fields.text());
+    const std::string_view packed = fields.take(fields.number<std::uint64_t>());
+    const std::string_view records = unpacked_chunk(fields, packed, packing, size);
+    if (crc != 0 && crc_of(records) != crc) {
+      fields.refuse("the checksum of the chunk is another than the one written", "the same");
+    }
+    Fields rest(records, file_.name(), fields.place());
+    while (!rest.rest().empty()) {
+      const auto opcode = rest.number<unsigned char>();
+      Fields inner(rest.take(rest.number<std::uint64_t>()), file_.name(), fields.place());
+      record(opcode, inner);
+    }
+  }
+
+  std::string_view unpacked_chunk(const Fields& fields, std::string_view packed,
+                                  const std::string& packing, std::uint64_t size) {
+    if (packing.empty()) {
+      if (packed.size() != size) fields.refuse("a chunk not of its size", "the size it says");
+      return packed;
+    }
+    if (packing != "lz4" && packing != "zstd") {
+      fields.refuse("a chunk packed by " + one_line(packing), "none, lz4 or zstd");
+    }
+    if (size > most_unpacked(file_.size())) {
+      fields.refuse(fmt::format("a chunk of {} bytes, packed in {}", size, packed.size()),
+                    fmt::format("at most {}", most_unpacked(file_.size())));
+    }
+    const auto kind = packing == "lz4" ? BlockPacking::lz4 : BlockPacking::zstandard;
+    if (const std::string fault = unpack_block(packed, kind, size, chunk_); !fault.empty()) {
+      fields.refuse(fmt::format("a chunk that cannot be unpacked as {}: {}", packing, fault),
+                    "whole data");
+    }
+    return chunk_;
+  }
+
+  LogBytes& file_;
+  const LogVisitor& visitor_;
+  std::uint64_t offset_ = 0;
+  std::uint32_t crc_ = 0;
+  std::string chunk_;
+  std::map<std::uint16_t, std::string> types_;
+  std::map<std::uint16_t, Channel> channels_;
+};
+
+}  // namespace
+
+void read_mcap(LogBytes& file, const LogVisitor& visitor) { McapReader(file, visitor).run(); }
+
+}  // namespace roadbed::map::logs

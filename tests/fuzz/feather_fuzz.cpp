@@ -1,0 +1,16 @@
+// Feather in, columns of an ego's poses or InputError out.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/logs/feather.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    roadbed::map::parse_feather(bytes, "fuzz.feather", {"timestamp_ns", "tx_m", "qw"});
+  } catch (const roadbed::map::InputError&) {
+  }
+  return 0;
+}

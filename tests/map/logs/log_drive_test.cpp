@@ -1,0 +1,163 @@
+#include "roadbed/map/logs/log_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/log_bytes.h"
+
+namespace roadbed::map {
+namespace {
+
+using tests::bag_bytes;
+using tests::CdrWriter;
+using tests::mcap_bytes;
+using tests::McapMessage;
+using tests::odometry_message;
+
+constexpr const char* kOdometry = "nav_msgs/msg/Odometry";
+constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
+
+std::vector<McapMessage> odometry(bool is_big_endian = false) {
+  std::vector<McapMessage> messages;
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t t_ns = kStart_ns + 100'000'000 * i;
+    messages.push_back(
+        {t_ns + 5, odometry_message(t_ns, 0.1 * i + 1e6, -0.2 * i, 0.05 * i, 1.5, is_big_endian)});
+  }
+  return messages;
+}
+
+LogDrive drive_in(const std::string& bytes, const std::string& topic = {}) {
+  return drive_of_log([&](const LogVisitor& visitor) { parse_log(bytes, "a log", visitor); },
+                      "a log", topic);
+}
+
+void expect_is_the_drive(const LogDrive& drive) {
+  ASSERT_EQ(drive.poses.size(), 20u);
+  for (int i = 0; i < 20; ++i) {
+    const TimedPose& at = drive.poses[static_cast<std::size_t>(i)];
+    EXPECT_EQ(at.stamp_ns, kStart_ns + 100'000'000 * i);
+    EXPECT_EQ(at.pose.translation().x(), 0.1 * i + 1e6);
+    EXPECT_EQ(at.pose.translation().y(), -0.2 * i);
+    EXPECT_EQ(at.speed_mps, 1.5);
+    EXPECT_NEAR(std::atan2(at.pose.linear()(1, 0), at.pose.linear()(0, 0)), 0.05 * i, 1e-12);
+  }
+}
+
+std::string fault_of(const std::string& bytes, const std::string& topic = {}) {
+  try {
+    drive_in(bytes, topic);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LogDrive, IsTheSameFromEveryContainerAndPacking) {
+  for (const char* packing : {"", "lz4", "zstd"}) {
+    SCOPED_TRACE(packing);
+    expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(), packing)));
+  }
+  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(), "", false)));
+  expect_is_the_drive(drive_in(bag_bytes("/odom", kOdometry, odometry())));
+}
+
+TEST(LogDrive, IsTheSameFromEitherByteOrder) {
+  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, odometry(true), "zstd")));
+}
+
+TEST(LogDrive, IsInOrderOfTime) {
+  std::vector<McapMessage> messages = odometry();
+  std::swap(messages[3], messages[15]);
+  messages.push_back(messages[7]);
+  expect_is_the_drive(drive_in(mcap_bytes("/odom", kOdometry, messages, "")));
+}
+
+TEST(LogDrive, RefusesWhatIsCutOffAnywhere) {
+  for (const char* packing : {"", "lz4", "zstd"}) {
+    const std::string bytes = mcap_bytes("/odom", kOdometry, odometry(), packing);
+    const std::size_t data = bytes.size() - 8 - 9 - 20;  // the footer is not looked at
+    for (std::size_t size = 0; size < data; size += 7) {
+      EXPECT_NE(fault_of(bytes.substr(0, size)), "") << size;
+    }
+  }
+}
+
+TEST(LogDrive, RefusesDamagedChunks) {
+  std::string bytes = mcap_bytes("/odom", kOdometry, odometry(), "");
+  bytes[bytes.size() / 2] ^= 1;
+  EXPECT_NE(fault_of(bytes).find("checksum"), std::string::npos) << fault_of(bytes);
+}
+
+TEST(LogDrive, RefusesChunksThatClaimToBeHuge) {
+  std::string bytes = mcap_bytes("/odom", kOdometry, odometry(), "zstd");
+  const std::size_t size_at = bytes.find("zstd") - 4 - 4 - 8;
+  bytes[size_at + 5] = 1;  // a terabyte
+  EXPECT_NE(fault_of(bytes).find("at most"), std::string::npos) << fault_of(bytes);
+}
+
+TEST(LogDrive, RefusesMessagesThatEndEarly) {
+  std::vector<McapMessage> messages = odometry();
+  messages[4].bytes.resize(60);
+  EXPECT_NE(fault_of(bag_bytes("/odom", kOdometry, messages)).find("message 5"), std::string::npos);
+}
+
+TEST(LogDrive, ListsTopicsWhereNoneIsADrive) {
+  const std::string fault = fault_of(bag_bytes("/chatter", "std_msgs/msg/String", {}));
+  EXPECT_NE(fault.find("/chatter (std_msgs/msg/String)"), std::string::npos) << fault;
+}
+
+/// One of `/tf`: a frame in its parent at a time.
+std::string transform_message(std::int64_t stamp_ns, const char* parent, const char* child,
+                              double x_m, double heading_rad) {
+  CdrWriter cdr;
+  cdr.put(std::uint32_t{1}).put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000));
+  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)).text(parent).text(child);
+  cdr.put(x_m).put(0.0).put(0.0);
+  cdr.put(0.0).put(0.0).put(std::sin(0.5 * heading_rad)).put(std::cos(0.5 * heading_rad));
+  return cdr.bytes();
+}
+
+TEST(LogDrive, ChainsTransformsBetweenStamps) {
+  std::vector<McapMessage> messages;
+  for (int i = 0; i <= 10; ++i) {
+    const std::int64_t t_ns = kStart_ns + 100'000'000 * i;
+    messages.push_back({t_ns, transform_message(t_ns, "odom", "base_link", 1.0 * i, 0.0)});
+  }
+  messages.push_back({0, transform_message(kStart_ns, "map", "odom", 100.0, 0.0)});
+  messages.push_back({0, transform_message(kStart_ns + 500'000'000, "map", "odom", 200.0, 0.0)});
+  const LogDrive drive = drive_in(bag_bytes("/tf", "tf2_msgs/msg/TFMessage", messages));
+  ASSERT_EQ(drive.poses.size(), 6u) << "odom is known in the map for half a second";
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_NEAR(drive.poses[static_cast<std::size_t>(i)].pose.translation().x(),
+                100.0 + 20.0 * i + 1.0 * i, 1e-9);
+  }
+}
+
+std::string planned_message(int points, bool has_times) {
+  CdrWriter cdr;
+  cdr.put(std::int32_t{5}).put(std::uint32_t{0}).text("map");
+  cdr.put(static_cast<std::uint32_t>(points));
+  for (int i = 0; i < points; ++i) {
+    cdr.put(std::int32_t{0}).put(static_cast<std::uint32_t>(has_times ? 1'000'000 * i : 0));
+    cdr.put(2.0 * i).put(0.0).put(0.0).put(0.0).put(0.0).put(0.0).put(1.0);
+    for (const float value : {4.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F}) cdr.put(value);
+  }
+  return cdr.bytes();
+}
+
+TEST(LogDrive, TakesThePlannedTrajectoryThatIsNumbered) {
+  const std::string bytes =
+      bag_bytes("/planning/trajectory", "autoware_planning_msgs/msg/Trajectory",
+                {{1, planned_message(5, true)}, {2, planned_message(7, false)}});
+  EXPECT_NE(fault_of(bytes).find("--topic /planning/trajectory#2"), std::string::npos);
+  EXPECT_EQ(drive_in(bytes, "/planning/trajectory#1").poses.back().stamp_ns, 4'000'000);
+  const LogDrive without_times = drive_in(bytes, "/planning/trajectory#2");
+  ASSERT_EQ(without_times.poses.size(), 7u);
+  EXPECT_EQ(without_times.poses.back().stamp_ns, 3'000'000'000) << "12 m at 4 m/s";
+}
+
+}  // namespace
+}  // namespace roadbed::map

@@ -1,0 +1,120 @@
+#include "roadbed/tools/files/drive_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/tests/support/log_bytes.h"
+#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+
+namespace roadbed::tools {
+namespace {
+
+using geometry::Pose2;
+
+std::string fault_of(const std::string& bytes, const DriveOptions& options) {
+  try {
+    parse_drive(bytes, "a drive", options);
+  } catch (const map::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// On a circle of 20 m, as somebody saw it who sits `seen` in the vehicle.
+std::string circle_as_tum(const Pose2& seen) {
+  std::string text = "# t x y z qx qy qz qw\n";
+  for (int i = 0; i < 50; ++i) {
+    const double heading_rad = 0.02 * i;
+    const Pose2 axle{20.0 * std::sin(heading_rad), -20.0 * std::cos(heading_rad), heading_rad};
+    const Eigen::Vector2d at = axle * Eigen::Vector2d(seen.x_m, seen.y_m);
+    const double half_rad = 0.5 * (heading_rad + seen.heading_rad);
+    text += fmt::format("{} {} {} 0.3 0 0 {} {}\n", 0.1 * i, at.x(), at.y(), std::sin(half_rad),
+                        std::cos(half_rad));
+  }
+  return text;
+}
+
+TEST(DriveFile, IsOfTheRearAxleWhereverThePoseIs) {
+  for (const Pose2 seen : {Pose2{0, 0, 0}, Pose2{1.4, 0, 0}, Pose2{-0.5, 0.7, 0.4}}) {
+    const auto drive =
+        parse_drive(circle_as_tum(seen), "a drive", {.pose_in_vehicle = seen, .rate_hz = {}});
+    ASSERT_EQ(drive.points().size(), 50u);
+    for (int i = 0; i < 50; ++i) {
+      const auto& row = drive.points()[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(row.t_s, 0.1 * i, 1e-12);
+      EXPECT_NEAR(row.x_m, 20.0 * std::sin(0.02 * i), 1e-9);
+      EXPECT_NEAR(row.y_m, -20.0 * std::cos(0.02 * i), 1e-9);
+      EXPECT_NEAR(row.heading_rad, 0.02 * i, 1e-9);
+      EXPECT_NEAR(row.speed_mps, 4.0, 0.01) << i;
+    }
+  }
+}
+
+TEST(DriveFile, AsksForWhatTheFileDoesNotSay) {
+  const std::string tum = circle_as_tum({});
+  EXPECT_NE(fault_of(tum, {}).find("--pose-frame"), std::string::npos);
+  const std::string kitti = "1 0 0 5 0 1 0 6 0 0 1 0\n1 0 0 5.5 0 1 0 6 0 0 1 0\n";
+  EXPECT_NE(fault_of(kitti, {.pose_in_vehicle = Pose2{}, .rate_hz = {}}).find("--rate"),
+            std::string::npos);
+  const auto drive = parse_drive(kitti, "a drive", {.pose_in_vehicle = Pose2{}, .rate_hz = 10.0});
+  EXPECT_EQ(drive.points()[1].x_m, 5.5);
+  EXPECT_NEAR(drive.points()[1].t_s, 0.1, 1e-15);
+}
+
+TEST(DriveFile, NamesTheLineThatIsNoPose) {
+  const DriveOptions options{.pose_in_vehicle = Pose2{}, .rate_hz = 10.0};
+  EXPECT_NE(fault_of("0 1 2 0 0 0 0 1\n1 1 2 0 0 0 0 2\n", options).find("a drive:2:"),
+            std::string::npos);
+  EXPECT_NE(fault_of("0 1 2 0 0 0 0 1\n0 1 2 0 0 0 0 1\n", options).find("a drive:2: time"),
+            std::string::npos);
+  EXPECT_NE(fault_of("0 1 2 0 0 0 0 1\n1 99999 2 0 0 0 0 1\n", options).find("a drive:2:"),
+            std::string::npos);
+  EXPECT_NE(fault_of("1 0 0 5 0 1 0 6 0 0 2 0\n", options).find("rotation"), std::string::npos);
+}
+
+TEST(DriveFile, OfASolutionHasThePlaceOfTheBodysCentre) {
+  const std::string solution =
+      "<?xml version=\"1.0\"?>\n<CommonRoadSolution benchmark_id=\"KS2:SM1:A-1:2020a\">\n"
+      "<ksTrajectory planningProblem=\"1\">\n"
+      "<ksState><x>1</x><y>2</y><velocity>3</velocity><orientation>0</orientation><time>4</time>"
+      "</ksState>\n</ksTrajectory></CommonRoadSolution>";
+  EXPECT_NE(fault_of(solution, {}).find("--rate"), std::string::npos);
+  const auto row = parse_drive(solution, "a drive", {.rate_hz = 10.0}).points().front();
+  EXPECT_NEAR(row.t_s, 0.4, 1e-15);
+  EXPECT_NEAR(row.x_m, 1.0 - (0.5 * 4.508 - 0.8312829), 1e-6);
+  EXPECT_EQ(row.y_m, 2.0);
+  EXPECT_EQ(row.speed_mps, 3.0);
+}
+
+TEST(DriveFile, IsStillATableWhereItIsOne) {
+  const std::string table = "t_s,x_m,y_m,heading_rad\n0,1,2,0.5\n";
+  EXPECT_EQ(parse_drive(table, "a drive", {}).points().front().heading_rad, 0.5);
+}
+
+TEST(PoseFrame, TakesWordsAndPlaces) {
+  EXPECT_EQ(pose_frame("rear-axle", {})->x_m, 0.0);
+  EXPECT_NEAR(pose_frame("centre", {})->x_m, 0.5 * 4.508 - 0.8312829, 1e-12);
+  EXPECT_EQ(pose_frame("1.5,-2,0.25", {})->heading_rad, 0.25);
+  for (const char* words : {"", "middle", "1", "1,2,3,4", "1,2,", "nan,0"}) {
+    EXPECT_FALSE(pose_frame(words, {})) << words;
+  }
+}
+
+TEST(DriveFile, OfArgoverseIsWhatTheLogSays) {
+  ROADBED_REAL_DATA_OR_SKIP(real);
+  const auto file = real / "argoverse2/argoverse+av2-api/7fab2350/city_SE3_egovehicle.feather";
+  const auto drive = read_drive(file, {});
+  // What pyarrow reads.
+  EXPECT_EQ(drive.points().size(), 2706u);
+  EXPECT_EQ(drive.points().front().x_m, 5172.668216028519);
+  EXPECT_EQ(drive.points().back().x_m, 5236.291551457049);
+  EXPECT_NEAR(drive.end_s(), 15.949999993, 1e-12);
+}
+
+}  // namespace
+}  // namespace roadbed::tools

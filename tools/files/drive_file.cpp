@@ -1,0 +1,198 @@
+#include "roadbed/tools/files/drive_file.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/logs/feather.h"
+#include "roadbed/map/logs/log.h"
+#include "roadbed/map/logs/log_drive.h"
+#include "roadbed/tools/files/drive_formats.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+
+namespace roadbed::tools::inline files {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::Pose2;
+using geometry::TrajectoryPoint;
+
+/// A format of drives that are no tables: how it begins, and who reads it.
+struct DriveFormat {
+  bool (*begins)(std::string_view bytes);
+  DrivePoses (*parse)(std::string_view bytes, const std::string& name, const DriveOptions& options);
+};
+
+constexpr DriveFormat kFormats[] = {
+    {map::is_feather, parse_argoverse_poses},
+    {begins_as_solution, parse_solution},
+    {begins_as_pose_lines, parse_pose_lines},
+};
+
+const DriveFormat* format_of(std::string_view bytes) {
+  for (const DriveFormat& format : kFormats) {
+    if (format.begins(bytes)) return &format;
+  }
+  return nullptr;
+}
+
+TrajectoryPoint rear_axle(const DrivePose& pose, const Pose2& pose_in_vehicle) {
+  const double heading_rad = pose.heading_rad - pose_in_vehicle.heading_rad;
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  return {.t_s = pose.t_s,
+          .x_m = pose.x_m - (c * pose_in_vehicle.x_m - s * pose_in_vehicle.y_m),
+          .y_m = pose.y_m - (s * pose_in_vehicle.x_m + c * pose_in_vehicle.y_m),
+          .heading_rad = heading_rad,
+          .speed_mps = pose.speed_mps.value_or(0.0)};
+}
+
+// Along the body, over the steps before and behind.
+double speed_at(const std::vector<TrajectoryPoint>& rows, std::size_t i) {
+  const TrajectoryPoint& from = rows[i == 0 ? 0 : i - 1];
+  const TrajectoryPoint& to = rows[std::min(i + 1, rows.size() - 1)];
+  if (!(to.t_s > from.t_s)) return 0.0;
+  return ((to.x_m - from.x_m) * std::cos(rows[i].heading_rad) +
+          (to.y_m - from.y_m) * std::sin(rows[i].heading_rad)) /
+         (to.t_s - from.t_s);
+}
+
+class DriveOfPoses {
+ public:
+  DriveOfPoses(const DrivePoses& read, const std::string& name) : read_(read), name_(name) {}
+
+  geometry::Trajectory drive(const Pose2& pose_in_vehicle) const {
+    if (read_.poses.empty()) refuse(0, "", "holds no pose", "at least one", "give another file");
+    std::vector<TrajectoryPoint> rows;
+    for (const DrivePose& pose : read_.poses) {
+      check(pose, rows);
+      rows.push_back(rear_axle(pose, pose_in_vehicle));
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!read_.poses[i].speed_mps) rows[i].speed_mps = speed_at(rows, i);
+    }
+    if (const auto fault = implausible_row(rows)) {
+      refuse(fault->row, "", fault->found, fault->needed, fault->remedy);
+    }
+    return geometry::Trajectory(std::move(rows));
+  }
+
+ private:
+  [[noreturn]] void refuse(std::size_t i, const std::string& element, const std::string& found,
+                           const std::string& needed, const std::string& remedy) const {
+    std::string place;
+    if (i < read_.places.size()) {
+      place = std::to_string(read_.places[i]);
+      if (read_.unit != "line") place = read_.unit + " " + place;
+    }
+    throw map::InputError({.file = name_,
+                           .place = place,
+                           .element = element,
+                           .found = found,
+                           .needed = needed,
+                           .remedy = remedy});
+  }
+
+  void check(const DrivePose& pose, const std::vector<TrajectoryPoint>& before) const {
+    constexpr double earth_m = 1e9;
+    const std::size_t i = before.size();
+    const double sum = pose.t_s + pose.heading_rad + pose.speed_mps.value_or(0.0);
+    if (!std::isfinite(sum) || !(std::abs(pose.x_m) < earth_m && std::abs(pose.y_m) < earth_m)) {
+      refuse(i, "", fmt::format("is at {}, {} at {} s", pose.x_m, pose.y_m, pose.t_s),
+             "a place on Earth at a time", "remove the pose");
+    }
+    if (i > 0 && !(pose.t_s > before.back().t_s)) {
+      refuse(i, "time", fmt::format("{} s does not come after {} s", pose.t_s, before.back().t_s),
+             "increasing times", "sort the poses and remove doubles");
+    }
+  }
+
+  const DrivePoses& read_;
+  const std::string& name_;
+};
+
+DrivePoses of_log(const map::LogDrive& log) {
+  DrivePoses read{.unit = "pose", .pose_in_vehicle = Pose2{}};
+  for (const map::TimedPose& at : log.poses) {
+    const std::int64_t since_ns = at.stamp_ns - log.poses.front().stamp_ns;
+    read.poses.push_back(flat_pose(1e-9 * static_cast<double>(since_ns), at.pose));
+    read.poses.back().speed_mps = at.speed_mps;
+    read.places.push_back(read.poses.size());
+  }
+  return read;
+}
+
+geometry::Trajectory drive_of(const DrivePoses& read, const std::string& name,
+                              const DriveOptions& options) {
+  const std::optional<Pose2> frame =
+      options.pose_in_vehicle ? options.pose_in_vehicle : read.pose_in_vehicle;
+  if (!frame) {
+    throw map::InputError({.file = name,
+                           .found = "does not say which point of the vehicle its poses are",
+                           .needed = "--pose-frame rear-axle, centre or X,Y[,HEADING]",
+                           .remedy = "give it"});
+  }
+  return DriveOfPoses(read, name).drive(*frame);
+}
+
+}  // namespace
+
+DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d ahead = pose.linear().col(0);
+  return {.t_s = t_s,
+          .x_m = pose.translation().x(),
+          .y_m = pose.translation().y(),
+          .heading_rad = std::atan2(ahead.y(), ahead.x())};
+}
+
+double needed_step_s(const DriveOptions& options, const std::string& name,
+                     const std::string& format) {
+  if (options.rate_hz) return 1.0 / *options.rate_hz;
+  throw map::InputError({.file = name,
+                         .found = "is " + format + ", which has no times",
+                         .needed = "--rate HZ, how many poses there are in a second",
+                         .remedy = "give it"});
+}
+
+std::optional<Pose2> pose_frame(const std::string& words, const geometry::VehicleShape& shape) {
+  if (words == "rear-axle") return Pose2{};
+  if (words == "centre") return Pose2{0.5 * shape.length_m - shape.rear_overhang_m, 0.0, 0.0};
+  std::vector<double> numbers;
+  const char* at = words.data();
+  const char* const end = at + words.size();
+  for (;;) {
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !(std::abs(value) <= 100.0)) return std::nullopt;
+    numbers.push_back(value);
+    if (stop == end) break;
+    if (*stop != ',') return std::nullopt;
+    at = stop + 1;
+  }
+  if (numbers.size() < 2 || numbers.size() > 3) return std::nullopt;
+  return Pose2{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0.0};
+}
+
+geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& options) {
+  const std::string name = map::input_name(file);
+  if (map::is_log(file))
+    return drive_of(of_log(map::drive_of_log(file, options.topic)), name, options);
+  return parse_drive(map::read_file(file), name, options);
+}
+
+geometry::Trajectory parse_drive(std::string_view bytes, const std::string& name,
+                                 const DriveOptions& options) {
+  const DriveFormat* format = format_of(bytes);
+  if (format == nullptr) return parse_trajectory_csv(bytes, name);
+  return drive_of(format->parse(bytes, name, options), name, options);
+}
+
+bool is_drive_table(const fs::path& file) {
+  constexpr std::size_t start = 4096;
+  return !map::is_log(file) && format_of(map::read_file_start(file, start)) == nullptr;
+}
+
+}  // namespace roadbed::tools::files

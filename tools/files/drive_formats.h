@@ -1,0 +1,47 @@
+#pragma once
+
+// Private to tools/files: readers of the single formats of drives.
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "roadbed/tools/files/drive_file.h"
+
+namespace roadbed::tools::inline files {
+
+/// A pose as a file has it.
+struct DrivePose {
+  double t_s;
+  double x_m, y_m, heading_rad;
+  std::optional<double> speed_mps = {};
+};
+
+/// What a file holds.
+struct DrivePoses {
+  std::vector<DrivePose> poses = {};
+  std::string unit;  ///< what a place in messages counts: "pose", "line"
+  std::vector<std::size_t> places = {};
+  std::optional<geometry::Pose2> pose_in_vehicle = {};  ///< what the format says of it
+};
+
+/// Of an upright body; heading is that of its x axis in the plane.
+DrivePose flat_pose(double t_s, const Eigen::Isometry3d& pose);
+
+// One file each.
+bool begins_as_pose_lines(std::string_view bytes);
+DrivePoses parse_pose_lines(std::string_view bytes, const std::string& name,
+                            const DriveOptions& options);
+bool begins_as_solution(std::string_view bytes);
+DrivePoses parse_solution(std::string_view bytes, const std::string& name,
+                          const DriveOptions& options);
+DrivePoses parse_argoverse_poses(std::string_view bytes, const std::string& name,
+                                 const DriveOptions& options);
+
+/// The time between poses. @throws InputError if it was not said.
+double needed_step_s(const DriveOptions& options, const std::string& name,
+                     const std::string& format);
+
+}  // namespace roadbed::tools::files
