@@ -263,7 +263,12 @@ TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
   expect(audit({}), 2, "just one of --trajectory, --lane, and --from with --to");
   expect(audit({"--trajectory", one, "--lane", "lane:1"}), 2, "just one of");
   expect(audit({"--lane", "lane:1/0/-1"}), 2, "--map");
-  expect(audit({"--trajectory", one, "--save-drive", folder_ / "x.csv"}), 2, "--save-drive");
+  expect(audit({"--trajectory", drives_, "--save-drive", folder_ / "x.csv"}), 3, "one drive");
+  const std::string poses = folder_.write("poses.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  expect(audit({"--trajectory", poses}), 3, "--pose-frame");
+  expect(audit({"--trajectory", poses, "--pose-frame", "rear-axle", "--certificate",
+                folder_ / "c.json"}),
+         3, "--save-drive beside --certificate");
   const std::string map = data_folder() / "town.xodr";
   expect(audit({"--trajectory", one, "--offset", "3"}), 2, "--offset");
   expect(audit({"--trajectory", one, "--speed", "80"}), 2, "--speed");
