@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/map/logs/log.h"
 #include "roadbed/map/logs/log_bytes.h"
+#include "roadbed/map/logs/log_messages.h"
 
 namespace roadbed::map::inline logs {
 

@@ -1,34 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/logs/log_messages.h"
+
 namespace roadbed::map::inline logs {
-
-/// A stream of messages of one type.
-struct LogTopic {
-  std::string name;      ///< "/localization/kinematic_state"
-  std::string type;      ///< "nav_msgs/msg/Odometry"
-  std::string encoding;  ///< of the messages: "cdr"
-};
-
-/// A message as it was recorded.
-struct LogMessage {
-  std::int64_t received_ns;  ///< when it was recorded
-  std::string_view bytes;    ///< valid until the next message
-  std::string place;         ///< in the file, for messages
-};
-
-/// Who looks at a log. Topics of one name and type are asked for once.
-struct LogVisitor {
-  /// Whether messages of the topic are to be read; also asked for topics without any.
-  std::function<bool(const LogTopic&)> wants;
-  /// Takes them, in the order of the file.
-  std::function<void(const LogTopic&, const LogMessage&)> take;
-};
 
 /// Whether the input is a log, by content: rosbag2 (an SQLite file, or a folder with a
 /// metadata.yaml) or MCAP, also packed as files by Zstandard or gzip.

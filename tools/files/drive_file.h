@@ -8,16 +8,9 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/tools/files/drive_options.h"
 
 namespace roadbed::tools::inline files {
-
-/// What has to be said of drives whose files do not say it.
-struct DriveOptions {
-  std::string topic = {};  ///< of a log; empty: the only one that is a drive
-  /// Which pose of the vehicle is in the file, in the vehicle's frame (rear axle's centre).
-  std::optional<geometry::Pose2> pose_in_vehicle = {};
-  std::optional<double> rate_hz = {};  ///< of poses without time
-};
 
 /// The words of `--pose-frame`: rear-axle, centre, or X,Y[,HEADING] in metres ahead and to the left
 /// of the rear axle's centre and radians. None if they are something else.
@@ -31,9 +24,9 @@ std::optional<geometry::Pose2> pose_frame(const std::string& words,
 /// | CSV, as trajectory_csv.h | rear axle, always | as they stand |
 /// | log: rosbag2, MCAP (map/logs) | rear axle | from the first pose on |
 /// | Argoverse 2, `city_SE3_egovehicle.feather` | rear axle | from the first pose on |
-/// | CommonRoad solution, of the states KS, ST, MB, PM | centre of the body of its vehicle | steps;
-/// needs `rate_hz` | | TUM: `t x y z qx qy qz qw` a line | has to be said | as they stand | |
-/// KITTI: the upper three rows of the matrix | has to be said | needs `rate_hz` |
+/// | CommonRoad solution (KS, ST, MB, PM) | middle of its vehicle's body | steps; `rate_hz` |
+/// | TUM: `t x y z qx qy qz qw` a line | has to be said | as they stand |
+/// | KITTI: the upper three rows of the matrix | has to be said | `rate_hz` |
 ///
 /// z points up in all of them. Speeds follow from the poses where the file has none.
 /// @throws InputError with file and place; also where rows cannot be a drive (`implausible_row`).

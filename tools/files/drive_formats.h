@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/tools/files/drive_file.h"
+#include "roadbed/tools/files/drive_options.h"
 
 namespace roadbed::tools::inline files {
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace roadbed::map::inline logs {
+
+/// A stream of messages of one type.
+struct LogTopic {
+  std::string name;      ///< "/localization/kinematic_state"
+  std::string type;      ///< "nav_msgs/msg/Odometry"
+  std::string encoding;  ///< of the messages: "cdr"
+};
+
+/// A message as it was recorded.
+struct LogMessage {
+  std::int64_t received_ns;  ///< when it was recorded
+  std::string_view bytes;    ///< valid until the next message
+  std::string place;         ///< in the file, for messages
+};
+
+/// Who looks at a log. Topics of one name and type are asked for once.
+struct LogVisitor {
+  /// Whether messages of the topic are to be read; also asked for topics without any.
+  std::function<bool(const LogTopic&)> wants;
+  /// Takes them, in the order of the file.
+  std::function<void(const LogTopic&, const LogMessage&)> take;
+};
+
+}  // namespace roadbed::map::logs
