@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -155,25 +154,6 @@ double needed_step_s(const DriveOptions& options, const std::string& name,
                          .found = "is " + format + ", which has no times",
                          .needed = "--rate HZ, how many poses there are in a second",
                          .remedy = "give it"});
-}
-
-std::optional<Pose2> pose_frame(const std::string& words, const geometry::VehicleShape& shape) {
-  if (words == "rear-axle") return Pose2{};
-  if (words == "centre") return Pose2{0.5 * shape.length_m - shape.rear_overhang_m, 0.0, 0.0};
-  std::vector<double> numbers;
-  const char* at = words.data();
-  const char* const end = at + words.size();
-  for (;;) {
-    double value = 0.0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !(std::abs(value) <= 100.0)) return std::nullopt;
-    numbers.push_back(value);
-    if (stop == end) break;
-    if (*stop != ',') return std::nullopt;
-    at = stop + 1;
-  }
-  if (numbers.size() < 2 || numbers.size() > 3) return std::nullopt;
-  return Pose2{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0.0};
 }
 
 geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& options) {

@@ -1,21 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "roadbed/geometry/motion/trajectory.h"
-#include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/tools/files/drive_options.h"
 
 namespace roadbed::tools::inline files {
-
-/// The words of `--pose-frame`: rear-axle, centre, or X,Y[,HEADING] in metres ahead and to the left
-/// of the rear axle's centre and radians. None if they are something else.
-std::optional<geometry::Pose2> pose_frame(const std::string& words,
-                                          const geometry::VehicleShape& shape);
 
 /// Reads a drive, its format told by content:
 ///

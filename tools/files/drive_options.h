@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 
 namespace roadbed::tools::inline files {
@@ -14,5 +15,10 @@ struct DriveOptions {
   std::optional<geometry::Pose2> pose_in_vehicle = {};
   std::optional<double> rate_hz = {};  ///< of poses without time
 };
+
+/// The words of `--pose-frame`: rear-axle, centre, or X,Y[,HEADING] in metres ahead and to the left
+/// of the rear axle's centre and radians. None if they are something else.
+std::optional<geometry::Pose2> pose_frame(const std::string& words,
+                                          const geometry::VehicleShape& shape);
 
 }  // namespace roadbed::tools::files
