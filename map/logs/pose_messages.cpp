@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "roadbed/map/logs/cdr.h"
 
@@ -16,19 +17,9 @@ constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry",
                            kTrajectory = "autoware_planning_msgs/msg/Trajectory",
                            kOldTrajectory = "autoware_auto_planning_msgs/msg/Trajectory";
 
-struct Header {
-  std::int64_t stamp_ns;
-  std::string frame;
-};
-
 std::int64_t read_time(Cdr& cdr) {
   const auto seconds = static_cast<std::int64_t>(cdr.number<std::int32_t>());
   return seconds * 1'000'000'000 + static_cast<std::int64_t>(cdr.number<std::uint32_t>());
-}
-
-Header read_header(Cdr& cdr, std::int64_t received_ns) {
-  const std::int64_t stamp_ns = read_time(cdr);
-  return {stamp_ns == 0 ? received_ns : stamp_ns, cdr.text()};
 }
 
 Eigen::Isometry3d read_isometry(Cdr& cdr) {
@@ -60,11 +51,16 @@ bool is_trajectory_type(std::string_view type) {
   return type == kTrajectory || type == kOldTrajectory;
 }
 
+MessageHeader read_header(Cdr& cdr, std::int64_t received_ns) {
+  const std::int64_t stamp_ns = read_time(cdr);
+  return {stamp_ns == 0 ? received_ns : stamp_ns, cdr.text()};
+}
+
 PoseMessage parse_pose(const LogTopic& topic, const LogMessage& message, const std::string& file) {
   Cdr cdr(message.bytes, file, topic.name + ", " + message.place);
-  const Header header = read_header(cdr, message.received_ns);
-  if (topic.type == kOdometry) cdr.text();  // the child's frame
-  PoseMessage read{{header.stamp_ns, read_isometry(cdr)}, header.frame};
+  const MessageHeader header = read_header(cdr, message.received_ns);
+  std::string child = topic.type == kOdometry ? cdr.text() : std::string();
+  PoseMessage read{{header.stamp_ns, read_isometry(cdr)}, header.frame, std::move(child)};
   if (topic.type == kOdometry) {
     for (int i = 0; i < 36; ++i) cdr.number<double>();
     const auto ahead_mps = cdr.number<double>();
@@ -78,7 +74,7 @@ std::vector<FrameTransform> parse_transforms(const LogMessage& message, const st
   Cdr cdr(message.bytes, file, message.place);
   std::vector<FrameTransform> transforms(cdr.count(least_bytes));
   for (FrameTransform& transform : transforms) {
-    const Header header = read_header(cdr, message.received_ns);
+    const MessageHeader header = read_header(cdr, message.received_ns);
     transform.parent = header.frame;
     transform.child = cdr.text();
     transform.child_in_parent = {header.stamp_ns, read_isometry(cdr)};

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/logs/cdr.h"
 #include "roadbed/map/logs/log.h"
 
 namespace roadbed::map::inline logs {
@@ -18,10 +19,17 @@ struct TimedPose {
   std::optional<double> speed_mps = {};  ///< ahead
 };
 
+/// std_msgs/msg/Header.
+struct MessageHeader {
+  std::int64_t stamp_ns;  ///< where that is 0, when the message was recorded
+  std::string frame;
+};
+
 /// A message that says one pose.
 struct PoseMessage {
   TimedPose at;
   std::string frame;
+  std::string child;  ///< the frame whose pose it is, where the message says so
 };
 
 /// A transform of `/tf`.
@@ -43,6 +51,9 @@ bool is_pose_type(std::string_view type);
 bool is_transform_type(std::string_view type);
 /// Trajectory of autoware_planning_msgs and autoware_auto_planning_msgs.
 bool is_trajectory_type(std::string_view type);
+
+/// Takes the header off a message.
+MessageHeader read_header(Cdr& cdr, std::int64_t received_ns);
 
 /// Reads one. @param file  for messages.
 /// @throws InputError if it is cut off, or a quaternion is no rotation to within 1 %.

@@ -67,6 +67,18 @@ std::vector<TimedPose> TransformTree::poses(const std::vector<std::string>& way)
   return found;
 }
 
+bool TransformTree::leads_to_world(const std::vector<std::string>& way) const {
+  if (way.empty()) return false;
+  return edges_.at(way.back()).parent == "map" ||
+         std::ranges::any_of(way, [&](const auto& child) { return !edges_.at(child).is_static; });
+}
+
+void TransformTree::add_static_of(const TransformTree& other) {
+  for (const auto& [child, edge] : other.edges_) {
+    if (edge.is_static) edges_.try_emplace(child, edge);
+  }
+}
+
 std::vector<std::string> TransformTree::children() const {
   std::vector<std::string> names;
   for (const auto& [child, edge] : edges_) names.push_back(child);

@@ -37,6 +37,13 @@ class TransformTree {
   /// The poses of the lowest frame that moves, at its own stamps, where all others are known.
   std::vector<TimedPose> poses(const std::vector<std::string>& way) const;
 
+  /// Whether a way leads to where points may be put together: a frame on it moves, or it ends in
+  /// `map`.
+  bool leads_to_world(const std::vector<std::string>& way) const;
+
+  /// Takes the transforms that hold for all times from another one.
+  void add_static_of(const TransformTree& other);
+
   std::vector<std::string> children() const;
 
  private:

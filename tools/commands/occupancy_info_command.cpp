@@ -7,9 +7,12 @@
 
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/logs/log.h"
+#include "roadbed/map/occupancy/clouds/log_clouds.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
+#include "roadbed/tools/commands/cloud_inputs.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
 
@@ -95,6 +98,27 @@ Json tiles_info(const map::TiledOccupancy& tiles) {
   return info;
 }
 
+Json log_info(const map::LogClouds& log) {
+  std::size_t points = 0;
+  std::optional<map::Box3> box;
+  const map::LogCloudCounts counts = log.for_each([&](const map::PointCloud& cloud) {
+    points += cloud.points.size();
+    const map::Box3 around = bounds(cloud);
+    if (!box) box = around;
+    box->extend(around);
+  });
+  return {{"kind", "clouds"},
+          {"format", "PointCloud2"},
+          {"topic", log.topic()},
+          {"crs", Json()},
+          {"unit", std::string(to_string(map::LengthUnit::metre))},
+          {"clouds", counts.clouds},
+          {"points", points},
+          {"not_finite", counts.not_finite},
+          {"bounds", bounds_json(*box)},
+          {"notes", log.notes(counts)}};
+}
+
 Json cloud_info(const map::PointCloud& cloud) {
   Json info;
   info["kind"] = "cloud";
@@ -151,11 +175,15 @@ class OccupancyInfoCommand : public Command {
     arguments.description("Say what an octree or a point cloud holds: counts, bounds, frame");
     arguments
         .add("F", input_,
-             "Octree (.bt .ot), folder of tiles, or point cloud (.pcd .ply .las .laz .xyz .csv)")
+             "Octree (.bt .ot), folder of tiles, point cloud (.pcd .ply .las .laz .xyz .csv), or "
+             "log with clouds (a bag's folder, .db3 .mcap)")
         .required()
-        .ending(kCloudEndings);
+        .ending(kCloudInputEndings);
+    declare_cloud_topics(arguments, topics_);
     arguments.flag("-j,--json", json_, "Print one JSON document");
-    arguments.example("  roadbed occupancy info street.bt --json");
+    arguments.example(
+        "  roadbed occupancy info street.bt --json\n"
+        "  roadbed occupancy info drive.mcap --topic /points --json");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
@@ -173,6 +201,7 @@ class OccupancyInfoCommand : public Command {
  private:
   Json info_of_input() const {
     if (map::is_tiled_occupancy(input_)) return tiles_info(map::TiledOccupancy(input_));
+    if (map::is_log(input_)) return log_info(map::LogClouds(input_, topics_));
     const std::string bytes = map::read_file(input_);
     return map::is_occupancy_file(bytes)
                ? octree_info(map::OccupancyMap::parse(bytes, map::input_name(input_)))
@@ -180,6 +209,7 @@ class OccupancyInfoCommand : public Command {
   }
 
   std::filesystem::path input_;
+  map::LogCloudTopics topics_;
   bool json_ = false;
 };
 

@@ -50,6 +50,9 @@ struct FloatRecords {
 /// at a time: copied, then judged all together.
 void add_float_points(const FloatRecords& records, RawCloud& cloud);
 
+/// The local origin that `PointCloud` names, for points in a box.
+Eigen::Vector3d local_origin(const Box3& box);
+
 /// The cloud of what a file holds, with the local origin that `PointCloud` names; its own name is
 /// not set. @pre there is a point.
 PointCloud relative_to_origin(RawCloud raw);

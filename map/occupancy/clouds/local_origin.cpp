@@ -49,18 +49,9 @@ Box3 box_around(const std::vector<Eigen::Vector3d>& points) {
   return box;
 }
 
-Eigen::Vector3d choose_origin(const Box3& box) {
-  Eigen::Vector3d origin(0, 0, 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double least = box.min_in_source[axis], most = box.max_in_source[axis];
-    if (std::max(-least, most) > kNearZero) origin[axis] = std::round(0.5 * (least + most));
-  }
-  return origin;
-}
-
 // Where floats stay near zero they are kept as they are.
 void take_floats(std::vector<Eigen::Vector3f> points, PointCloud& cloud) {
-  cloud.origin_in_source = choose_origin(box_around(points));
+  cloud.origin_in_source = local_origin(box_around(points));
   cloud.points = std::move(points);
   if (cloud.origin_in_source.isZero(0.0)) return;
   for (Eigen::Vector3f& point : cloud.points) {
@@ -69,7 +60,7 @@ void take_floats(std::vector<Eigen::Vector3f> points, PointCloud& cloud) {
 }
 
 void take_doubles(const std::vector<Eigen::Vector3d>& points, PointCloud& cloud) {
-  cloud.origin_in_source = choose_origin(box_around(points));
+  cloud.origin_in_source = local_origin(box_around(points));
   cloud.points.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
     cloud.points.emplace_back((point - cloud.origin_in_source).cast<float>());
@@ -95,6 +86,15 @@ void take_sensors(RawCloud& raw, PointCloud& cloud) {
 }
 
 }  // namespace
+
+Eigen::Vector3d local_origin(const Box3& box) {
+  Eigen::Vector3d origin(0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double least = box.min_in_source[axis], most = box.max_in_source[axis];
+    if (std::max(-least, most) > kNearZero) origin[axis] = std::round(0.5 * (least + most));
+  }
+  return origin;
+}
 
 PointCloud relative_to_origin(RawCloud raw) {
   PointCloud cloud;

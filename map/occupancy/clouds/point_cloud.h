@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,9 +45,17 @@ struct PointCloud {
   }
 };
 
+/// Clouds that come one after the other, so that not all are in memory; the same each time.
+using CloudsInTurn = std::function<void(const std::function<void(const PointCloud& cloud)>& use)>;
+
 /// An axis-aligned box in source coordinates.
 struct Box3 {
   Eigen::Vector3d min_in_source, max_in_source;
+
+  void extend(const Box3& other) {
+    min_in_source = min_in_source.cwiseMin(other.min_in_source);
+    max_in_source = max_in_source.cwiseMax(other.max_in_source);
+  }
 };
 
 /// Smallest box around all points. The cloud must hold one.

@@ -79,6 +79,6 @@ struct MeasuredClouds {
 };
 
 /// @throws as `OccupancyMap::build`, and if the clouds have more than one CRS.
-MeasuredClouds measure_clouds(std::span<const PointCloud> clouds, const OccupancyOptions& options);
+MeasuredClouds measure_clouds(const CloudsInTurn& clouds, const OccupancyOptions& options);
 
 }  // namespace roadbed::map::occupancy::octree

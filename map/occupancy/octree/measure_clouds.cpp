@@ -11,17 +11,7 @@
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
 
-Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds, double resolution_m) {
-  Box3 all = bounds(clouds.front());
-  for (const PointCloud& cloud : clouds.subspan(1)) {
-    const Box3 box = bounds(cloud);
-    all.min_in_source = all.min_in_source.cwiseMin(box.min_in_source);
-    all.max_in_source = all.max_in_source.cwiseMax(box.max_in_source);
-  }
-  return tree_origin(all, resolution_m);
-}
-
-void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
+void check(const OccupancyOptions& options) {
   if (!(options.resolution_m > 0.0) || !std::isfinite(options.resolution_m)) {
     throw std::invalid_argument(
         fmt::format("OccupancyMap: resolution must be positive, got {} m", options.resolution_m));
@@ -37,26 +27,33 @@ void check(std::span<const PointCloud> clouds, const OccupancyOptions& options) 
         "OccupancyMap: 0 to {} clouds may see through sticky hits to take them away, got {}",
         BlockCounts::kMost, least));
   }
-  const bool all_hold_points = std::all_of(clouds.begin(), clouds.end(),
-                                           [](const PointCloud& c) { return !c.points.empty(); });
-  if (clouds.empty() || !all_hold_points) {
-    throw std::invalid_argument("OccupancyMap: every cloud needs at least 1 point");
-  }
 }
 
-std::string common_crs(std::span<const PointCloud> clouds) {
-  for (const PointCloud& cloud : clouds) {
-    if (cloud.crs != clouds.front().crs) {
-      throw InputError(
-          {.file = cloud.name,
-           .element = "CRS",
-           .found = fmt::format("\"{}\"", cloud.crs),
-           .needed = fmt::format("\"{}\" as {} has", clouds.front().crs, clouds.front().name),
-           .remedy = "bring the clouds into one frame first"});
-    }
+/// What there is to know of all clouds before the first cell.
+struct Survey {
+  std::size_t clouds = 0, points = 0;
+  std::string name, crs;  // of the first
+  Box3 box;
+
+  void add(const PointCloud& cloud) {
+    if (cloud.points.empty()) refuse_empty();
+    const Box3 around = bounds(cloud);
+    if (clouds == 0) *this = {0, 0, cloud.name, cloud.crs, around};
+    ++clouds;
+    points += cloud.points.size();
+    box.extend(around);
+    if (cloud.crs == crs) return;
+    throw InputError({.file = cloud.name,
+                      .element = "CRS",
+                      .found = fmt::format("\"{}\"", cloud.crs),
+                      .needed = fmt::format("\"{}\" as {} has", crs, name),
+                      .remedy = "bring the clouds into one frame first"});
   }
-  return clouds.front().crs;
-}
+
+  [[noreturn]] static void refuse_empty() {
+    throw std::invalid_argument("OccupancyMap: every cloud needs at least 1 point");
+  }
+};
 
 }  // namespace
 
@@ -71,15 +68,16 @@ Eigen::Vector3d tree_origin(const Box3& bounds, double resolution_m) {
   return origin;
 }
 
-MeasuredClouds measure_clouds(std::span<const PointCloud> clouds, const OccupancyOptions& options) {
-  check(clouds, options);
-  std::size_t points = 0;
-  for (const PointCloud& cloud : clouds) points += cloud.points.size();
-  std::string crs = common_crs(clouds);
-  const Eigen::Vector3d origin = choose_origin(clouds, options.resolution_m);
-  MeasuredClouds measured{origin, std::move(crs),
-                          CloudMeasurements(origin, options, ScanAccumulator(options), points)};
-  for (const PointCloud& cloud : clouds) measured.cells.add(cloud);
+MeasuredClouds measure_clouds(const CloudsInTurn& clouds, const OccupancyOptions& options) {
+  check(options);
+  Survey survey;
+  clouds([&](const PointCloud& cloud) { survey.add(cloud); });
+  if (survey.clouds == 0) Survey::refuse_empty();
+  const Eigen::Vector3d origin = tree_origin(survey.box, options.resolution_m);
+  MeasuredClouds measured{
+      origin, survey.crs,
+      CloudMeasurements(origin, options, ScanAccumulator(options), survey.points)};
+  clouds([&](const PointCloud& cloud) { measured.cells.add(cloud); });
   return measured;
 }
 

@@ -62,6 +62,12 @@ std::optional<SeeThroughRemoval> seen_through_of(const OccupancyOptions& options
   return SeeThroughRemoval{options.remove_seen_through, cells.removed()};
 }
 
+CloudsInTurn in_turn(std::span<const PointCloud> clouds) {
+  return [clouds](const std::function<void(const PointCloud&)>& use) {
+    for (const PointCloud& cloud : clouds) use(cloud);
+  };
+}
+
 CompactOctree octree_of(OctreeForm form, std::string_view data, std::size_t nodes) {
   if (nodes == 0) return {};
   return form == OctreeForm::bt ? CompactOctree::of_bt(data) : CompactOctree::of_ot(data);
@@ -76,6 +82,10 @@ OccupancyMap& OccupancyMap::operator=(OccupancyMap&&) noexcept = default;
 
 OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
                                  const OccupancyOptions& options) {
+  return build(in_turn(clouds), options);
+}
+
+OccupancyMap OccupancyMap::build(const CloudsInTurn& clouds, const OccupancyOptions& options) {
   MeasuredClouds measured = measure_clouds(clouds, options);
   auto tree = std::make_unique<Tree>(options.resolution_m);
   tree->crs = measured.crs;
@@ -90,6 +100,11 @@ OccupancyMap OccupancyMap::build(std::span<const PointCloud> clouds,
 }
 
 OccupancyMap::File OccupancyMap::build_bt(std::span<const PointCloud> clouds,
+                                          const OccupancyOptions& options) {
+  return build_bt(in_turn(clouds), options);
+}
+
+OccupancyMap::File OccupancyMap::build_bt(const CloudsInTurn& clouds,
                                           const OccupancyOptions& options) {
   MeasuredClouds measured = measure_clouds(clouds, options);
   const OctreeBytes bytes = measured.cells.bt();

@@ -28,6 +28,9 @@ class OccupancyMap final : public OccupancySource {
   ///         `remove_seen_through` is not 0 to 255 or comes with hits that are not sticky.
   static OccupancyMap build(std::span<const PointCloud> clouds, const OccupancyOptions& options);
 
+  /// The same of clouds that are gone through twice, for bounds and for cells.
+  static OccupancyMap build(const CloudsInTurn& clouds, const OccupancyOptions& options);
+
   struct File {
     std::string bytes;
     std::size_t nodes;
@@ -38,6 +41,7 @@ class OccupancyMap final : public OccupancySource {
   /// memory.
   /// @throws as `build`.
   static File build_bt(std::span<const PointCloud> clouds, const OccupancyOptions& options);
+  static File build_bt(const CloudsInTurn& clouds, const OccupancyOptions& options);
 
   /// Reads `.bt` or `.ot`; the header, depth and node count are checked before a node is made.
   /// @throws InputError if the file is unusable.

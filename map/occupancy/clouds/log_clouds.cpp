@@ -1,0 +1,141 @@
+#include "roadbed/map/occupancy/clouds/log_clouds.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/message_points.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+namespace {
+
+/// Clouds of one log, and from where each is placed.
+class CloudMessages {
+ public:
+  CloudMessages(const std::string& file, const LogPoses& poses,
+                const std::function<void(PointCloud)>& use)
+      : file_(file), poses_(poses), use_(use) {}
+
+  void take(const LogTopic& topic, const LogMessage& message) {
+    const CloudMessage cloud = parse_cloud(topic, message, file_);
+    MessagePoints read =
+        points_of_message(cloud, pose_of(cloud.frame), file_, topic.name + ", " + message.place);
+    counts_.points_without_pose += read.without_pose;
+    counts_.points_with_unlikely_times += read.with_unlikely_times;
+    counts_.not_finite += read.cloud.dropped_not_finite;
+    if (!read.cloud.points.empty()) {
+      ++counts_.clouds;
+      read.cloud.name = file_;
+      use_(std::move(read.cloud));
+    } else {
+      ++(read.without_pose > 0 ? counts_.without_pose : counts_.without_point);
+    }
+  }
+
+  const LogCloudCounts& counts() const { return counts_; }
+
+ private:
+  const PoseAt& pose_of(const std::string& frame) {
+    const auto known = pose_of_.find(frame);
+    if (known != pose_of_.end()) return known->second;
+    PoseAt pose_at = poses_.of(frame);
+    if (!pose_at) counts_.frames_as_they_stand.push_back(frame);
+    return pose_of_.emplace(frame, std::move(pose_at)).first->second;
+  }
+
+  const std::string& file_;
+  const LogPoses& poses_;
+  const std::function<void(PointCloud)>& use_;
+  std::map<std::string, PoseAt> pose_of_;
+  LogCloudCounts counts_;
+};
+
+// Streams and packed files are in memory; what is plain is read piece by piece.
+GoThrough through(const std::filesystem::path& log) {
+  return [log](const LogVisitor& visitor) { read_log(log, visitor); };
+}
+
+}  // namespace
+
+LogClouds::LogClouds(const std::filesystem::path& log, LogCloudTopics topics)
+    : LogClouds(through(log), input_name(log), std::move(topics)) {}
+
+LogClouds::LogClouds(GoThrough go_through, const std::string& file, LogCloudTopics topics)
+    : go_through_(std::move(go_through)), file_(file), poses_(file, topics.poses) {
+  look_through(topics.clouds);
+}
+
+void LogClouds::look_through(const std::string& asked) {
+  std::vector<std::string> names;
+  go_through_({.wants =
+                   [&](const LogTopic& topic) {
+                     const bool is_cloud = is_cloud_type(topic.type) && topic.encoding == "cdr";
+                     if (is_cloud && std::ranges::find(names, topic.name) == names.end()) {
+                       names.push_back(topic.name);
+                     }
+                     return poses_.wants(topic);
+                   },
+               .take = [&](const LogTopic& topic,
+                           const LogMessage& message) { poses_.take(topic, message); }});
+  poses_.finish();
+  const auto refuse = [&](const std::string& found, const std::string& remedy) {
+    throw InputError({.file = file_,
+                      .found = found,
+                      .needed = "one topic of sensor_msgs/msg/PointCloud2",
+                      .remedy = remedy});
+  };
+  const std::string listed = fmt::format("{}", fmt::join(names, ", "));
+  if (names.empty()) refuse("holds no clouds", "name another log; drive info lists its topics");
+  if (asked.empty() && names.size() > 1) {
+    refuse("holds clouds of several topics: " + listed, "choose it by --topic");
+  }
+  topic_ = asked.empty() ? names.front() : asked;
+  if (std::ranges::find(names, topic_) == names.end()) {
+    refuse(fmt::format("holds no clouds of topic {}, but of {}", topic_, listed),
+           "choose it by --topic");
+  }
+}
+
+LogCloudCounts LogClouds::for_each(const std::function<void(PointCloud cloud)>& use) const {
+  CloudMessages messages(file_, poses_, use);
+  go_through_({.wants =
+                   [&](const LogTopic& topic) {
+                     return topic.name == topic_ && is_cloud_type(topic.type) &&
+                            topic.encoding == "cdr";
+                   },
+               .take = [&](const LogTopic& topic,
+                           const LogMessage& message) { messages.take(topic, message); }});
+  const LogCloudCounts& counts = messages.counts();
+  if (counts.clouds > 0) return counts;
+  throw InputError({.file = file_,
+                    .element = topic_,
+                    .found = fmt::format("{} messages hold no point, {} lie outside of the poses",
+                                         counts.without_point, counts.without_pose),
+                    .needed = "at least one finite point",
+                    .remedy = "check how the log was recorded"});
+}
+
+std::vector<std::string> LogClouds::notes(const LogCloudCounts& counts) const {
+  std::vector<std::string> notes;
+  const auto note = [&](std::size_t count, const char* text) {
+    if (count > 0) notes.push_back(fmt::format("{}: {} {}", topic_, count, text));
+  };
+  if (!counts.frames_as_they_stand.empty()) {
+    notes.push_back(fmt::format("{}: points stand as they are, the log has no poses of {}", topic_,
+                                fmt::join(counts.frames_as_they_stand, ", ")));
+  }
+  note(counts.without_point, "messages hold no finite point");
+  note(counts.without_pose, "messages lie before the first or after the last pose: left out");
+  note(counts.points_without_pose, "points lie before the first or after the last pose: left out");
+  note(counts.points_with_unlikely_times,
+       "points say a time more than 1 s from their message's: taken to be measured at its stamp");
+  return notes;
+}
+
+}  // namespace roadbed::map::occupancy::clouds

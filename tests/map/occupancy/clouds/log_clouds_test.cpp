@@ -1,0 +1,336 @@
+#include "roadbed/map/occupancy/clouds/log_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/logs/log.h"
+#include "roadbed/tests/support/cloud_message.h"
+#include "roadbed/tests/support/log_bytes.h"
+
+namespace roadbed::map {
+namespace {
+
+using tests::CdrWriter;
+using tests::MadeCloud;
+
+constexpr const char* kCloud = "sensor_msgs/msg/PointCloud2";
+constexpr const char* kOdometry = "nav_msgs/msg/Odometry";
+constexpr const char* kTransforms = "tf2_msgs/msg/TFMessage";
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+
+/// A message of a topic, as it stands in a log.
+struct Recorded {
+  std::string topic, type, bytes;
+};
+
+GoThrough through(const std::vector<Recorded>& log) {
+  return [log](const LogVisitor& visitor) {
+    for (const Recorded& recorded : log) {
+      const LogTopic topic{recorded.topic, recorded.type, "cdr"};
+      if (visitor.wants(topic)) visitor.take(topic, {kStart_ns, recorded.bytes, "message"});
+    }
+  };
+}
+
+std::vector<PointCloud> clouds_of(const std::vector<Recorded>& log,
+                                  const LogCloudTopics& topics = {},
+                                  LogCloudCounts* counts = nullptr) {
+  std::vector<PointCloud> clouds;
+  const LogClouds read(through(log), "a log", topics);
+  const LogCloudCounts found =
+      read.for_each([&](PointCloud cloud) { clouds.push_back(std::move(cloud)); });
+  if (counts != nullptr) *counts = found;
+  return clouds;
+}
+
+std::string fault_of(const std::vector<Recorded>& log, const LogCloudTopics& topics = {}) {
+  try {
+    clouds_of(log, topics);
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+std::string fault_of(const MadeCloud& cloud) {
+  return fault_of({{"/points", kCloud, cloud.message()}});
+}
+
+MadeCloud two_points() {
+  MadeCloud cloud{.stamp_ns = kStart_ns, .width = 2, .row_step = 24};
+  cloud.put(1.5f).put(-2.25f).put(3.0f).put(0.1f).put(1e3f).put(-7.0f);
+  return cloud;
+}
+
+void expect_are_the_two(const std::vector<PointCloud>& clouds) {
+  ASSERT_EQ(clouds.size(), 1u);
+  ASSERT_EQ(clouds[0].points.size(), 2u);
+  EXPECT_EQ(clouds[0].in_source(0), Eigen::Vector3d(1.5, -2.25, 3.0));
+  EXPECT_EQ(clouds[0].in_source(1), Eigen::Vector3d(0.1f, 1e3, -7.0));
+  EXPECT_FALSE(clouds[0].has_sensor());
+}
+
+TEST(LogClouds, AreTheSameFromEveryContainerAndByteOrderOfMessages) {
+  const tests::McapMessage little{kStart_ns, two_points().message()};
+  const tests::McapMessage big{kStart_ns, two_points().message(true)};
+  for (const auto& message : {little, big}) {
+    for (const std::string& log : {tests::bag_bytes("/points", kCloud, {message}),
+                                   tests::mcap_bytes("/points", kCloud, {message}, "zstd")}) {
+      std::vector<PointCloud> clouds;
+      LogClouds([&](const LogVisitor& visitor) { parse_log(log, "a log", visitor); }, "a log", {})
+          .for_each([&](PointCloud cloud) { clouds.push_back(std::move(cloud)); });
+      expect_are_the_two(clouds);
+    }
+  }
+}
+
+TEST(LogClouds, AreTheSameFromEveryLayout) {
+  for (const bool is_big : {false, true}) {
+    MadeCloud cloud{.stamp_ns = kStart_ns, .height = 2, .width = 1, .is_big_endian = is_big};
+    cloud.fields = {{"z", 1, 7}, {"ring", 0, 2}, {"x", 9, 7}, {"y", 5, 7}};
+    cloud.point_step = 15;
+    cloud.row_step = 20;
+    cloud.pad(1).put(3.0f).put(-2.25f).put(1.5f).pad(7);
+    cloud.pad(1).put(-7.0f).put(1e3f).put(0.1f).pad(2);  // the last row need not be padded
+    expect_are_the_two(clouds_of({{"/points", kCloud, cloud.message()}}));
+  }
+}
+
+TEST(LogClouds, KeepDoublesFarFromTheOrigin) {
+  for (const bool is_big : {false, true}) {
+    MadeCloud cloud{.stamp_ns = kStart_ns, .width = 2, .is_big_endian = is_big};
+    cloud.fields = {{"x", 0, 8}, {"y", 8, 8}, {"z", 16, 8}};
+    cloud.point_step = 24;
+    cloud.put(500'000.125).put(5'400'000.5).put(1.0).put(500'010.25).put(5'400'000.0).put(2.0);
+    const auto clouds = clouds_of({{"/points", kCloud, cloud.message()}});
+    ASSERT_EQ(clouds.size(), 1u);
+    EXPECT_EQ(clouds[0].in_source(0), Eigen::Vector3d(500'000.125, 5'400'000.5, 1.0));
+    EXPECT_EQ(clouds[0].in_source(1), Eigen::Vector3d(500'010.25, 5'400'000.0, 2.0));
+  }
+}
+
+TEST(LogClouds, LeaveOutAndCountWhatIsNotFinite) {
+  for (const bool is_big : {false, true}) {
+    MadeCloud cloud{.stamp_ns = kStart_ns, .width = 3, .is_big_endian = is_big};
+    cloud.put(NAN).put(0.0f).put(0.0f).put(1.0f).put(2.0f).put(3.0f);
+    cloud.put(1.0f).put(-INFINITY).put(3.0f);
+    LogCloudCounts counts;
+    const auto clouds = clouds_of({{"/points", kCloud, cloud.message()}}, {}, &counts);
+    ASSERT_EQ(clouds.size(), 1u);
+    EXPECT_EQ(clouds[0].points.size(), 1u);
+    EXPECT_EQ(counts.not_finite, 2u);
+  }
+}
+
+TEST(LogClouds, RefuseWhatTheyClaimAndDoNotHold) {
+  const auto expect_refused = [](MadeCloud cloud, const char* text) {
+    EXPECT_NE(fault_of(cloud).find(text), std::string::npos) << fault_of(cloud);
+  };
+  MadeCloud cloud = two_points();
+  cloud.width = 0xFFFFFFFF;
+  expect_refused(cloud, "has 1 rows of 4294967295 points in 24 bytes");
+  cloud.height = 0xFFFFFFFF;
+  cloud.row_step = 0xFFFFFFFF;
+  expect_refused(cloud, "rows of 4294967295 points");
+  cloud = two_points();
+  cloud.height = 2;
+  expect_refused(cloud, "has 2 rows of 2 points in 24 bytes");
+  cloud.row_step = 23;
+  expect_refused(cloud, "has rows of 2 points of 12 bytes in 23");
+  cloud = two_points();
+  cloud.point_step = 0;
+  expect_refused(cloud, "ends at byte 4");
+  cloud = two_points();
+  cloud.fields[2].offset = 0xFFFFFFFF;
+  expect_refused(cloud, "field z that ends at byte");
+  cloud = two_points();
+  cloud.fields[2].offset = 6;
+  expect_refused(cloud, "overlap");
+  cloud = two_points();
+  cloud.fields[2].type = 9;
+  expect_refused(cloud, "type 9");
+  cloud = two_points();
+  cloud.fields[2].type = 5;
+  expect_refused(cloud, "several types");
+  cloud = two_points();
+  cloud.fields.pop_back();
+  expect_refused(cloud, "not all of x, y and z");
+}
+
+TEST(LogClouds, RefuseMessagesCutOffAnywhere) {
+  const std::string whole = two_points().message();
+  for (std::size_t size = 0; size + 1 < whole.size(); ++size) {  // is_dense is not looked at
+    EXPECT_NE(fault_of({{"/points", kCloud, whole.substr(0, size)}}), "") << size;
+  }
+}
+
+TEST(LogClouds, RefuseMessagesWithoutAnyPoint) {
+  EXPECT_NE(fault_of(MadeCloud{}).find("1 messages hold no point"), std::string::npos);
+}
+
+TEST(LogClouds, NameTheTopicsWhereThereAreSeveral) {
+  const std::vector<Recorded> log{{"/front", kCloud, two_points().message()},
+                                  {"/rear", kCloud, two_points().message()}};
+  EXPECT_NE(fault_of(log).find("/front, /rear"), std::string::npos) << fault_of(log);
+  EXPECT_NE(fault_of(log, {"/side", ""}).find("/front, /rear"), std::string::npos);
+  expect_are_the_two(clouds_of(log, {"/rear", ""}));
+  EXPECT_NE(fault_of({{"/odom", kOdometry, ""}}), "");
+}
+
+std::string transform(std::int64_t stamp_ns, const char* parent, const char* child, double x_m,
+                      double heading_rad) {
+  CdrWriter cdr;
+  cdr.put(std::uint32_t{1}).put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000));
+  cdr.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)).text(parent).text(child);
+  cdr.put(x_m).put(0.0).put(0.0);
+  cdr.put(0.0).put(0.0).put(std::sin(0.5 * heading_rad)).put(std::cos(0.5 * heading_rad));
+  return cdr.bytes();
+}
+
+std::string odometry(double at_s, double x_m, double heading_rad = 0.0) {
+  const std::int64_t stamp_ns = kStart_ns + std::llround(1e9 * at_s);
+  return tests::odometry_message(stamp_ns, x_m, 0.0, heading_rad, 10.0);
+}
+
+/// One point 5 m ahead, half a second after the start.
+MadeCloud one_ahead() {
+  MadeCloud cloud{.stamp_ns = kStart_ns + 500'000'000, .width = 1};
+  return cloud.put(5.0f).put(0.0f).put(0.0f);
+}
+
+std::vector<Recorded> with_odometry(const MadeCloud& cloud) {
+  return {{"/tf_static", kTransforms, transform(0, "base_link", "lidar", 2.0, M_PI_2)},
+          {"/odom", kOdometry, odometry(0.0, 1000.0)},
+          {"/points", kCloud, cloud.message()},
+          {"/odom", kOdometry, odometry(1.0, 1010.0)}};
+}
+
+TEST(LogClouds, StandWhereTheSensorWasBetweenTwoPoses) {
+  std::vector<Recorded> log = with_odometry(one_ahead());
+  const auto expect_placed = [](const std::vector<PointCloud>& clouds) {
+    ASSERT_EQ(clouds.size(), 1u);
+    ASSERT_TRUE(clouds[0].sensor_in_source);
+    EXPECT_NEAR((*clouds[0].sensor_in_source - Eigen::Vector3d(1007, 0, 0.5)).norm(), 0, 1e-9);
+    EXPECT_NEAR((clouds[0].in_source(0) - Eigen::Vector3d(1007, 5, 0.5)).norm(), 0, 1e-4);
+  };
+  expect_placed(clouds_of(log));
+  const auto second = [](double at_s, double x_m) {
+    return transform(kStart_ns + std::llround(1e9 * at_s), "map", "base_link", x_m, 0.0);
+  };
+  // Transforms are taken before odometry, which may drift.
+  log[1].bytes = odometry(0.0, 0.0);
+  log.push_back({"/tf", kTransforms, second(0.0, 1000.0)});
+  log.push_back({"/tf", kTransforms, second(1.0, 1010.0)});
+  const auto clouds = clouds_of(log);
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_NEAR((clouds[0].in_source(0) - Eigen::Vector3d(1007, 5, 0)).norm(), 0, 1e-4);
+  log[1].bytes = odometry(0.0, 1000.0);
+  expect_placed(clouds_of(log, {"", "/odom"}));
+}
+
+TEST(LogClouds, AskForATopicWhereSeveralSayWhereTheSensorWas) {
+  std::vector<Recorded> log = with_odometry(one_ahead());
+  log.push_back({"/other", kOdometry, odometry(0.0, 0.0)});
+  EXPECT_NE(fault_of(log).find("/odom, /other"), std::string::npos) << fault_of(log);
+  EXPECT_EQ(fault_of(log, {"", "/odom"}), "");
+}
+
+TEST(LogClouds, StandAsTheyAreInFramesWithoutPoses) {
+  MadeCloud cloud = two_points();
+  cloud.frame = "elsewhere";
+  LogCloudCounts counts;
+  expect_are_the_two(clouds_of(with_odometry(cloud), {}, &counts));
+  EXPECT_EQ(counts.frames_as_they_stand, std::vector<std::string>{"elsewhere"});
+  cloud.frame = "map";
+  expect_are_the_two(clouds_of(with_odometry(cloud)));
+}
+
+TEST(LogClouds, LeaveOutMessagesBeforeTheFirstAndAfterTheLastPose) {
+  std::vector<Recorded> log = with_odometry(one_ahead());
+  for (const std::int64_t beyond_ns : {-1, 1'000'000'001}) {
+    MadeCloud cloud = one_ahead();
+    cloud.stamp_ns = kStart_ns + beyond_ns;
+    log.push_back({"/points", kCloud, cloud.message()});
+  }
+  LogCloudCounts counts;
+  EXPECT_EQ(clouds_of(log, {}, &counts).size(), 1u);
+  EXPECT_EQ(counts.without_pose, 2u);
+}
+
+/// Points 5 m ahead of a lidar on the rear axle at times from 0 to 0.1 s, one every 0.1 ms, with a
+/// field of times.
+template <class Time>
+MadeCloud sweep(const char* field, std::uint8_t type, bool is_big, Time (*time_of)(int i)) {
+  MadeCloud cloud{.stamp_ns = kStart_ns + 500'000'000, .frame = "base_link", .width = 1000};
+  cloud.is_big_endian = is_big;
+  cloud.fields.push_back({field, 12, type});
+  cloud.point_step = 12 + sizeof(Time);
+  for (int i = 0; i < 1000; ++i) cloud.put(5.0f).put(0.0f).put(0.0f).put(time_of(i));
+  return cloud;
+}
+
+TEST(LogClouds, PlaceEachPointWhereTheSensorWasThen) {
+  for (const bool is_big : {false, true}) {
+    const MadeCloud sweeps[] = {
+        sweep<std::uint32_t>("t", 6, is_big,
+                             [](int i) { return 100'000u * static_cast<unsigned>(i); }),
+        sweep<float>("time", 7, is_big, [](int i) { return 1e-4f * static_cast<float>(i); }),
+        sweep<double>("timestamp", 8, is_big, [](int i) { return 1.7e9 + 0.5 + 1e-4 * i; }),
+        sweep<double>("timestamp", 8, is_big, [](int i) { return 1.7e18 + 5e8 + 1e5 * i; })};
+    for (const MadeCloud& cloud : sweeps) {
+      SCOPED_TRACE(cloud.fields.back().name);
+      const auto turning = [](double at_s) { return 0.8 * at_s; };
+      std::vector<Recorded> log{{"/points", kCloud, cloud.message()}};
+      for (double at_s : {0.0, 0.55, 1.0}) {
+        log.push_back({"/odom", kOdometry, odometry(at_s, 20.0 * at_s, turning(at_s))});
+      }
+      const auto clouds = clouds_of(log);
+      ASSERT_EQ(clouds.size(), 1u);
+      ASSERT_EQ(clouds[0].points.size(), 1000u);
+      for (int i = 0; i < 1000; ++i) {
+        const double at_s = 0.5 + 1e-4 * i;
+        const Eigen::Vector3d expected(20.0 * at_s + 5.0 * std::cos(turning(at_s)),
+                                       5.0 * std::sin(turning(at_s)), 0.5);
+        const auto k = static_cast<std::size_t>(i);
+        EXPECT_NEAR((clouds[0].in_source(k) - expected).norm(), 0, 1e-5) << i;
+      }
+      // 2 m of way, at most 2 cm from one position of the sensor to the next.
+      EXPECT_NEAR(static_cast<double>(clouds[0].scans.size()), 100.0, 10.0);
+      for (const ScanStart& scan : clouds[0].scans) {
+        const double at_s = 0.5 + 1e-4 * static_cast<double>(scan.first);
+        EXPECT_NEAR(scan.sensor_in_source->x(), 20.0 * at_s, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(LogClouds, TakeTheStampWhereTimesAreUnlikely) {
+  MadeCloud cloud = sweep<float>("time", 7, false, [](int i) { return i == 3 ? 1e5f : 0.0f; });
+  std::vector<Recorded> log{{"/points", kCloud, cloud.message()},
+                            {"/odom", kOdometry, odometry(0.0, 0.0)},
+                            {"/odom", kOdometry, odometry(1.0, 10.0)}};
+  LogCloudCounts counts;
+  const auto clouds = clouds_of(log, {}, &counts);
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_EQ(counts.points_with_unlikely_times, 1u);
+  EXPECT_NEAR(clouds[0].in_source(3).x(), 10.0, 1e-5);
+}
+
+TEST(LogClouds, LeaveOutPointsOfASweepPastTheLastPose) {
+  MadeCloud cloud =
+      sweep<float>("time", 7, false, [](int i) { return 1e-4f * static_cast<float>(i); });
+  std::vector<Recorded> log{{"/points", kCloud, cloud.message()},
+                            {"/odom", kOdometry, odometry(0.0, 0.0)},
+                            {"/odom", kOdometry, odometry(0.55, 5.5)}};
+  LogCloudCounts counts;
+  const auto clouds = clouds_of(log, {}, &counts);
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_NEAR(static_cast<double>(clouds[0].points.size()), 500.0, 1.0);
+  EXPECT_EQ(clouds[0].points.size() + counts.points_without_pose, 1000u);
+}
+
+}  // namespace
+}  // namespace roadbed::map
