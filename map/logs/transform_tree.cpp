@@ -104,8 +104,10 @@ std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses,
 
 void sort_by_stamp(std::vector<TimedPose>& poses) {
   std::ranges::stable_sort(poses, {}, &TimedPose::stamp_ns);
-  const auto doubles = std::ranges::unique(poses, {}, &TimedPose::stamp_ns);
-  poses.erase(doubles.begin(), doubles.end());
+  const auto is_at_one_time = [](const TimedPose& a, const TimedPose& b) {
+    return a.stamp_ns == b.stamp_ns;
+  };
+  poses.erase(std::unique(poses.begin(), poses.end(), is_at_one_time), poses.end());
 }
 
 }  // namespace roadbed::map::logs

@@ -62,7 +62,8 @@ void declare_cloud_topics(Arguments& arguments, map::LogCloudTopics& topics) {
 void CloudInputs::declare(Arguments& arguments) {
   arguments
       .add("CLOUD", files_,
-           "Point clouds (.pcd .ply .las .laz .xyz .csv) in one frame, in metres; logs (a bag's "
+           "Point clouds (.pcd .ply .las .laz .xyz .csv .bin .feather) in one frame, in metres; "
+           "logs (a bag's "
            "folder, .db3 or .mcap), whose PointCloud2 messages are placed by the poses of the same "
            "log, or stand as they are without any; or one octree (.bt .ot) to convert")
       .required()
@@ -164,7 +165,8 @@ map::PointCloud CloudInputs::cloud_of(std::size_t i,
                                       const std::vector<Eigen::Isometry3d>& poses) const {
   const std::string bytes = map::read_file(files_[i]);
   if (map::is_occupancy_file(bytes)) refuse_octree(files_[i]);
-  map::PointCloud cloud = map::parse_point_cloud(bytes, map::input_name(files_[i]));
+  map::PointCloud cloud = poses.empty() ? map::point_cloud_of(files_[i], bytes)
+                                        : map::parse_point_cloud(bytes, map::input_name(files_[i]));
   if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
   if (!poses.empty()) cloud = map::placed(cloud, poses[i]);
   return prepared(std::move(cloud));

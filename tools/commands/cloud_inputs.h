@@ -17,7 +17,7 @@ namespace roadbed::tools::inline commands {
 
 /// What the names of clouds, octrees and logs end in, for Argument::ending.
 inline constexpr std::string_view kCloudInputEndings =
-    ".pcd .ply .las .laz .xyz .bt .ot .db3 .mcap";
+    ".pcd .ply .las .laz .xyz .bin .feather .bt .ot .db3 .mcap";
 
 /// Declares `--topic` and `--pose-topic`.
 void declare_cloud_topics(Arguments& arguments, map::LogCloudTopics& topics);

@@ -64,7 +64,7 @@ Heights measured_ground(const std::vector<std::filesystem::path>& files,
       if (const auto box = octrees.back()->bounds()) extend(*box);
       continue;
     }
-    clouds.push_back(map::parse_point_cloud(bytes, map::input_name(file)));
+    clouds.push_back(map::point_cloud_of(file, bytes));
     map::check_is_in_metres(clouds.back());
     extend(map::bounds(clouds.back()));
   }

@@ -175,7 +175,8 @@ class OccupancyInfoCommand : public Command {
     arguments.description("Say what an octree or a point cloud holds: counts, bounds, frame");
     arguments
         .add("F", input_,
-             "Octree (.bt .ot), folder of tiles, point cloud (.pcd .ply .las .laz .xyz .csv), or "
+             "Octree (.bt .ot), folder of tiles, point cloud (.pcd .ply .las .laz .xyz .csv .bin "
+             ".feather), or "
              "log with clouds (a bag's folder, .db3 .mcap)")
         .required()
         .ending(kCloudInputEndings);
@@ -205,7 +206,7 @@ class OccupancyInfoCommand : public Command {
     const std::string bytes = map::read_file(input_);
     return map::is_occupancy_file(bytes)
                ? octree_info(map::OccupancyMap::parse(bytes, map::input_name(input_)))
-               : cloud_info(map::parse_point_cloud(bytes, map::input_name(input_)));
+               : cloud_info(map::point_cloud_of(input_, bytes));
   }
 
   std::filesystem::path input_;

@@ -81,6 +81,7 @@ RawCloud parse_pcd(std::string_view bytes, const std::string& name);
 RawCloud parse_ply(std::string_view bytes, const std::string& name);
 RawCloud parse_las(std::string_view bytes, const std::string& name);
 RawCloud parse_xyz(std::string_view bytes, const std::string& name);
+RawCloud parse_kitti(std::string_view bytes, const std::string& name);
 
 /// Whether the first line that is no comment begins with three numbers, or names x, y and z.
 bool begins_as_xyz(std::string_view bytes);

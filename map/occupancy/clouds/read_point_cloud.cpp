@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/logs/feather.h"
+#include "roadbed/map/occupancy/clouds/argoverse_sweeps.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -29,6 +31,7 @@ Parser parser_by_suffix(const std::string& name) {
   if (suffix == ".pcd") return parse_pcd;
   if (suffix == ".ply") return parse_ply;
   if (suffix == ".las" || suffix == ".laz") return parse_las;
+  if (suffix == ".bin") return parse_kitti;
   for (const char* text : {".xyz", ".csv", ".txt", ".asc", ".pts"}) {
     if (suffix == text) return parse_xyz;
   }
@@ -39,10 +42,12 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("LASF")) return parse_las;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply;
   if (begins_as_pcd(bytes)) return parse_pcd;
+  if (is_feather(bytes)) return parse_sweep;
   if (const Parser parser = parser_by_suffix(name)) return parser;
   if (begins_as_xyz(bytes)) return parse_xyz;
   refuse_cloud(name, "", "", "is of no known point cloud format",
-               ".pcd, .ply, .las, .laz, .xyz or .csv", "convert it, or rename it to what it is");
+               ".pcd, .ply, .las, .laz, .xyz, .csv, .bin or .feather",
+               "convert it, or rename it to what it is");
 }
 
 }  // namespace
@@ -61,8 +66,13 @@ PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
   return cloud;
 }
 
+PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes) {
+  PointCloud cloud = parse_point_cloud(bytes, input_name(file));
+  return is_feather(bytes) ? in_city(std::move(cloud), file) : cloud;
+}
+
 PointCloud read_point_cloud(const std::filesystem::path& file) {
-  return parse_point_cloud(read_file(file), input_name(file));
+  return point_cloud_of(file, read_file(file));
 }
 
 }  // namespace roadbed::map::occupancy::clouds

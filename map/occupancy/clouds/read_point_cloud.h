@@ -8,13 +8,18 @@
 
 namespace roadbed::map::inline occupancy::inline clouds {
 
-/// Reads .pcd (ascii, binary, compressed), .ply, .las, .xyz/.csv; the format is told by content,
-/// and by suffix where content does not tell. No library sees the bytes, and no header makes the
-/// reader allocate more than a small multiple of the file.
+/// Reads .pcd (ascii, binary, compressed), .ply, .las, .laz, .xyz/.csv, .bin (KITTI) and .feather
+/// (sweeps of Argoverse 2, placed in the city by the poses beside them); the format is told by
+/// content, and by suffix where content does not tell. No library sees the bytes, and no header
+/// makes the reader allocate more than a small multiple of the file.
 /// @throws InputError if the file is unusable or has no finite point.
 PointCloud read_point_cloud(const std::filesystem::path& file);
 
-/// The same from bytes; `name` stands for the file in messages, its suffix counts.
+/// The same of a file whose bytes have been read.
+PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes);
+
+/// The same from bytes, without what stands beside them; `name` stands for the file in messages,
+/// its suffix counts.
 PointCloud parse_point_cloud(std::string_view bytes, const std::string& name);
 
 }  // namespace roadbed::map::occupancy::clouds

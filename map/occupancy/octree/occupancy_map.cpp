@@ -194,7 +194,7 @@ OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
   for (const std::filesystem::path& file : files) {
     const std::string bytes = read_file(file);
     if (!is_occupancy_file(bytes)) {
-      clouds.push_back(parse_point_cloud(bytes, input_name(file)));
+      clouds.push_back(point_cloud_of(file, bytes));
       check_is_in_metres(clouds.back());
     } else if (files.size() == 1) {
       return OccupancyMap::parse(bytes, input_name(file));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -278,7 +279,26 @@ TEST(Xyz, ReadsCommasSpacesCommentsCountsAndNamedColumns) {
   EXPECT_THAT(refusal("1 2 3\n1 2\n", "a.xyz"), HasSubstr("a.xyz:2: point: has 2 values"));
   EXPECT_THAT(refusal("1,2,3\n1,,3\n", "a.xyz"), HasSubstr("not a number"));
   EXPECT_THAT(refusal("hello world again\n", "a.xyz"), HasSubstr("\"hello\""));
-  EXPECT_THAT(refusal("\x7f\x45\x4c\x46", "a.bin"), HasSubstr("no known point cloud format"));
+  EXPECT_THAT(refusal("\x7f\x45\x4c\x46", "a.out"), HasSubstr("no known point cloud format"));
+}
+
+TEST(Kitti, ReadsFourFloatsAPointAndFiveOfNuScenes) {
+  for (const bool has_ring : {false, true}) {
+    std::string bytes;
+    for (const float value : {1.5f, -2.25f, 0.1f, 0.9f}) append(bytes, value);
+    if (has_ring) append(bytes, 7.0f);
+    for (const float value : {-80.0f, NAN, 3.0f, 0.0f}) append(bytes, value);
+    if (has_ring) append(bytes, 8.0f);
+    const PointCloud cloud = parse_point_cloud(bytes, has_ring ? "a.pcd.bin" : "a.bin");
+    ASSERT_EQ(cloud.points.size(), 1u);
+    EXPECT_EQ(cloud.in_source(0), Eigen::Vector3d(1.5, -2.25, 0.1f));
+    EXPECT_EQ(cloud.dropped_not_finite, 1u);
+  }
+}
+
+TEST(Kitti, RefusesWhatIsNoScan) {
+  EXPECT_THAT(refusal(std::string(15, '\0'), "a.bin"), HasSubstr("15 bytes, needs 16"));
+  EXPECT_THAT(refusal(std::string(64, 'A') + std::string(64, 'z'), "a.bin"), HasSubstr("km"));
 }
 
 }  // namespace
