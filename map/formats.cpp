@@ -21,7 +21,7 @@
 #include "roadbed/map/gis/layers.h"
 #include "roadbed/map/gis/write.h"
 #include "roadbed/map/lanelet2/read.h"
-#include "roadbed/map/lanelet2/write.h"
+#include "roadbed/map/lanelet2/write/write.h"
 #include "roadbed/map/opendrive/read.h"
 #include "roadbed/map/opendrive/write/write.h"
 

@@ -8,6 +8,8 @@
 #include <map>
 #include <string>
 
+#include "roadbed/map/files/mgrs.h"
+
 namespace roadbed::map::lanelet2 {
 namespace {
 
@@ -26,22 +28,6 @@ GeographicPoint geographic(const NodePlace& node) {
 
 std::string epsg_of_utm(int zone, bool south) {
   return fmt::format("EPSG:{}", (south ? 32700 : 32600) + zone);
-}
-
-// The grid as a PROJ string, its shift in whole millimetres; as an EPSG code if it has none.
-std::string text_of(const TransverseMercator& grid) {
-  const double longitude_deg = grid.central_meridian_deg;
-  const int zone = static_cast<int>((longitude_deg + 183.0) / 6.0);
-  for (const bool south : {false, true}) {
-    const TransverseMercator whole = utm_grid(zone, south);
-    if (grid.false_easting_m == whole.false_easting_m &&
-        grid.false_northing_m == whole.false_northing_m) {
-      return epsg_of_utm(zone, south);
-    }
-  }
-  return fmt::format(
-      "+proj=tmerc +lat_0=0 +lon_0={} +k=0.9996 +x_0={} +y_0={} +datum=WGS84 +units=m +no_defs",
-      longitude_deg, grid.false_easting_m, grid.false_northing_m);
 }
 
 // "+key=value +flag …" as keys and values; a flag has an empty value.
@@ -94,6 +80,21 @@ std::optional<TransverseMercator> grid_of_epsg(std::string_view digits) {
 }
 
 }  // namespace
+
+std::string crs_text(const TransverseMercator& grid) {
+  const double longitude_deg = grid.central_meridian_deg;
+  const int zone = static_cast<int>((longitude_deg + 183.0) / 6.0);
+  for (const bool south : {false, true}) {
+    const TransverseMercator whole = utm_grid(zone, south);
+    if (grid.false_easting_m == whole.false_easting_m &&
+        grid.false_northing_m == whole.false_northing_m) {
+      return epsg_of_utm(zone, south);
+    }
+  }
+  return fmt::format(
+      "+proj=tmerc +lat_0=0 +lon_0={} +k=0.9996 +x_0={} +y_0={} +datum=WGS84 +units=m +no_defs",
+      longitude_deg, grid.false_easting_m, grid.false_northing_m);
+}
 
 bool NodePlace::is_local() const {
   return std::abs(local_x_m) <= kFarthest_m && std::abs(local_y_m) <= kFarthest_m;
@@ -153,7 +154,7 @@ void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view m
     }
   }
   grid_ = grid;
-  crs_ = text_of(grid);
+  crs_ = crs_text(grid);
 }
 
 std::optional<Eigen::Vector2d> Frame::place(const NodePlace& node) const {
@@ -163,31 +164,6 @@ std::optional<Eigen::Vector2d> Frame::place(const NodePlace& node) const {
       std::remainder(node.longitude_deg - grid_->central_meridian_deg, 360.0);
   if (std::abs(from_meridian_deg) > 60.0) return {};
   return grid_->forward(geographic(node));
-}
-
-std::optional<MgrsSquare> mgrs_square(std::string_view code) {
-  constexpr std::string_view bands = "CDEFGHJKLMNPQRSTUVWX";  // 8° each from 80° S
-  constexpr std::string_view rows = "ABCDEFGHJKLMNPQRSTUV";   // 100 km each, every 2,000 km again
-  constexpr std::string_view columns[] = {"STUVWXYZ", "ABCDEFGH", "JKLMNPQR"};  // by zone mod 3
-  std::size_t digits = 0;
-  int zone = 0;
-  while (digits < code.size() && digits < 2 && code[digits] >= '0' && code[digits] <= '9') {
-    zone = 10 * zone + (code[digits++] - '0');
-  }
-  if (digits == 0 || zone < 1 || zone > 60 || code.size() < digits + 3) return {};
-  const std::size_t band = bands.find(code[digits]);
-  const std::size_t column = columns[zone % 3].find(code[digits + 1]);
-  std::size_t row = rows.find(code[digits + 2]);
-  if (band == bands.npos || column == columns[0].npos || row == rows.npos) return {};
-  if (zone % 2 == 0) row = (row + 15) % 20;  // even zones begin with F
-  const bool south = band < 10;
-  // The row's letter repeats; the band says which of its squares is meant.
-  const TransverseMercator grid = utm_grid(zone, south);
-  const double middle_deg = -80.0 + 8.0 * static_cast<double>(band) + 4.0;
-  const double middle_m = grid.forward({middle_deg, grid.central_meridian_deg}).y();
-  const double first_m = 1e5 * static_cast<double>(row);
-  const double turns = std::round((middle_m - first_m - 5e4) / 2e6);
-  return MgrsSquare{zone, south, {1e5 * static_cast<double>(column + 1), first_m + 2e6 * turns}};
 }
 
 std::optional<TransverseMercator> transverse_mercator_of(std::string_view crs) {

@@ -46,13 +46,9 @@ class Frame {
   std::string crs_, doubt_;
 };
 
-/// South-west corner of the 100 km square that an MGRS code ("54SUE815501") names, and its zone.
-struct MgrsSquare {
-  int zone = 0;
-  bool south = false;
-  Eigen::Vector2d corner_m{0, 0};
-};
-std::optional<MgrsSquare> mgrs_square(std::string_view code);
+/// A grid as text: an EPSG code where it is a zone of UTM, else a PROJ string, its shift in whole
+/// millimetres.
+std::string crs_text(const TransverseMercator& grid);
 
 /// The grid that a CRS text names, where it is a transverse Mercator one on WGS 84 or GRS 80 (their
 /// grids differ by less than 0.1 mm): "EPSG:326zz", "EPSG:327zz", "+proj=utm …", "+proj=tmerc …".

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/lanelet2/write.h"
+#include "roadbed/map/lanelet2/write/write.h"
 #include "roadbed/map/load_map.h"
 
 // What can be read can be written, too, and read again.

@@ -7,7 +7,7 @@
 
 #include "roadbed/map/commonroad/write.h"
 #include "roadbed/map/files/transverse_mercator.h"
-#include "roadbed/map/lanelet2/write.h"
+#include "roadbed/map/lanelet2/write/write.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tests/support/made_maps.h"

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Routes the same pairs on maps and on the OpenDRIVE that is written of them.
+"""Routes the same pairs on maps and on the OpenDRIVE or Autoware map that is written of them.
 
-Usage: check_written_routes.py ROADBED [--pairs N] MAP...
+Usage: check_written_routes.py ROADBED [--autoware] [--pairs N] MAP...
 
 Pairs are midpoints of random lanes, with headings, between which there is a route on the map; an
-OpenDRIVE map is compiled first, as it would come back as it stands otherwise. On the written map
+OpenDRIVE map is compiled first, as it would come back as it stands otherwise. An Autoware map is
+written in the source's own coordinates. On the written map
 there must be a route as well, as long within 0.5 % and 1 m. Prints a row per map; exit status 1 if
 routes differ.
 """
@@ -56,15 +57,17 @@ def has_route(row):
     return row["found"] in ("1", "true", "yes")
 
 
-def check(roadbed, path, wanted, scratch):
+def check(roadbed, path, wanted, autoware, scratch):
     def run(*words):
         subprocess.run([roadbed, *words, "--force"], check=True, capture_output=True)
 
-    source, out, listed = path, f"{scratch}/map.xodr", f"{scratch}/map.csv"
+    source, listed = path, f"{scratch}/map.csv"
+    out = f"{scratch}/lanelet2_map.osm" if autoware else f"{scratch}/map.xodr"
     if path.endswith(".xodr"):
         source = f"{scratch}/map.rbm"
         run("import", path, "-o", source)
-    run("export", source, "-o", out)
+    run("export", source, "-o", out,
+        *(["--profile", "autoware", "--crs", "unknown"] if autoware else []))
     run("export", source, "-o", listed)
     places, draw = midpoints(listed), random.Random(20261126)
     pairs, before = [], []
@@ -93,11 +96,13 @@ def check(roadbed, path, wanted, scratch):
 def main():
     options = argparse.ArgumentParser()
     options.add_argument("roadbed")
+    options.add_argument("--autoware", action="store_true")
     options.add_argument("--pairs", type=int, default=300)
     options.add_argument("maps", nargs="+")
     options = options.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
-        fine = [check(options.roadbed, path, options.pairs, scratch) for path in options.maps]
+        fine = [check(options.roadbed, path, options.pairs, options.autoware, scratch)
+                for path in options.maps]
     return 0 if all(fine) else 1
 
 

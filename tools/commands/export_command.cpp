@@ -15,6 +15,7 @@
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/gis/layers.h"
+#include "roadbed/map/lanelet2/write/autoware/write.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/opendrive/write/write.h"
 #include "roadbed/map/storage/output_file.h"
@@ -73,6 +74,7 @@ class ExportCommand : public Command {
         "  roadbed export town.xodr -o town.gpkg\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
         "  roadbed export data/crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
+        "  roadbed export town.xodr -o lanelet2_map.osm --profile autoware\n"
         "  roadbed export town.xodr -o town.geojson --crs unknown --anchor 48.78,9.18");
   }
 
@@ -93,6 +95,10 @@ class ExportCommand : public Command {
              "Version of an OpenDRIVE output, 1.8 if none is given; an OpenDRIVE file itself is "
              "written as it stands, unless its version or its system is to change")
         .one_of({"1.4", "1.8"});
+    arguments
+        .add("--profile", profile_,
+             "Who takes the Lanelet2 output: autoware, with map_projector_info.yaml beside it")
+        .one_of({"autoware"});
     arguments.flag("-f,--force", force_, "Replace the output if it exists");
     arguments.flag("-j,--json", json_,
                    "Print one JSON document: what was written, how near it is to the map, what is "
@@ -104,11 +110,13 @@ class ExportCommand : public Command {
     const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
+    if (!profile_.empty()) map::check_writable(projector_info(), force_);
     const std::string file = input_.filename().string();
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
     const Written written = write(format, road_map, std::move(page));
+    if (!profile_.empty()) map::write_output(projector_info(), written.projector_info, force_);
     map::write_output(output_, written.bytes, force_);
     if (json_) print_json(streams.out, format, road_map, written);
     if (!common.quiet) print_text(streams.err, road_map, written);
@@ -121,7 +129,15 @@ class ExportCommand : public Command {
   std::string output_fault() const {
     std::string fault = standard_output_fault(output_, true, format_, json_ ? "--json" : "");
     if (fault.empty()) fault = anchor_fault();
+    if (fault.empty()) fault = profile_fault();
     return fault.empty() ? overlay_fault() : fault;
+  }
+
+  std::string profile_fault() const {
+    if (profile_.empty()) return {};
+    if (suffix() != ".osm") return "--profile is for .osm";
+    if (map::is_standard_stream(output_)) return "--profile writes two files; give -o a name";
+    return {};
   }
 
   std::string anchor_fault() const {
@@ -151,11 +167,13 @@ class ExportCommand : public Command {
     std::vector<std::string> notes = {};
     std::vector<std::pair<std::string, std::size_t>> lost = {};
     std::optional<double> largest_error_m = {}, largest_height_error_m = {};
+    std::string projector_info = {};
   };
 
   Written write(const map::Format& format, const map::RoadMap& road_map,
                 map::MapPageOptions page) const {
     if (format.name == "OpenDRIVE") return write_open_drive(format, road_map);
+    if (!profile_.empty()) return write_autoware(format, road_map);
     Written written;
     written.bytes = format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map),
                                             &written.notes, std::move(page)});
@@ -175,6 +193,20 @@ class ExportCommand : public Command {
     }
     return {std::move(file.bytes), std::move(file.notes), std::move(file.lost),
             file.largest_error_m, file.largest_height_error_m};
+  }
+
+  Written write_autoware(const map::Format& format, const map::RoadMap& road_map) const {
+    map::lanelet2::AutowareOptions options;
+    options.crs = system_of(road_map);
+    if (is_own_system(road_map)) options.offset_in_crs = road_map.offset_in_crs();
+    if (map::format_of(input_) == &format) {
+      options.source = map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes;
+    }
+    map::lanelet2::AutowareFiles files = map::lanelet2::write_autoware(road_map, options);
+    return {.bytes = std::move(files.vector_map),
+            .notes = std::move(files.notes),
+            .lost = std::move(files.lost),
+            .projector_info = std::move(files.projector_info)};
   }
 
   bool asks_for_another(const map::RoadMap& road_map) const {
@@ -211,6 +243,10 @@ class ExportCommand : public Command {
     out << map::json_text(versioned("export", document), 2) << '\n';
   }
 
+  std::filesystem::path projector_info() const {
+    return output_.parent_path() / "map_projector_info.yaml";
+  }
+
   std::string system_of(const map::RoadMap& road_map) const {
     const std::string own = crs_.empty() ? road_map.crs() : crs_ == "unknown" ? "" : crs_;
     if (anchor_deg_.empty()) return own;
@@ -228,7 +264,7 @@ class ExportCommand : public Command {
   std::filesystem::path input_, output_;
   std::vector<std::string> layers_;
   std::vector<double> anchor_deg_;
-  std::string crs_, format_, open_drive_;
+  std::string crs_, format_, open_drive_, profile_;
   PageOverlays overlays_;
   bool force_ = false, json_ = false;
 };
@@ -267,9 +303,10 @@ class ConvertCommand : public ExportCommand {
   std::string fault() {
     if (output_.empty()) output_ = positional_output_;
     if (output_.empty()) return "B or -o is required: the output";
-    const bool is_plain = layers_.empty() && anchor_deg_.empty() && open_drive_.empty() && !json_;
+    const bool is_plain =
+        layers_.empty() && anchor_deg_.empty() && open_drive_.empty() && profile_.empty() && !json_;
     if (is_compiled() && !is_plain) {
-      return "--layer, --anchor, --opendrive and --json are for outputs other than .rbm";
+      return "--layer, --anchor, --opendrive, --profile and --json are for outputs other than .rbm";
     }
     return output_fault();
   }

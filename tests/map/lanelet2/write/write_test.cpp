@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/write.h"
+#include "roadbed/map/lanelet2/write/write.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/lanelet2/shared_borders.h"
+#include "roadbed/map/lanelet2/write/shared_borders.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/tests/support/made_maps.h"
 #include "roadbed/tests/support/made_open_drive.h"
@@ -150,7 +150,26 @@ TEST(WriteLanelet2, EndsAreJoinedByLinksAndNotByTouching) {
   EXPECT_EQ(after.graph().of(first).successors, std::vector{next});
   EXPECT_TRUE(after.graph().of(apart).predecessors.empty());
   EXPECT_NEAR(lanelet2::share_borders(before).largest_move_m, 0.1, 1e-9);
-  EXPECT_EQ(lanelet2::share_borders(before, {.join_m = 0.05}).lost_links, 1u);
+  EXPECT_EQ(lanelet2::share_borders(before, {.join_m = 0.05, .step_m = 0.05}).lost_links, 1u);
+}
+
+TEST(WriteLanelet2, WhereAWidthJumpsTheBorderGoesOnByAStep) {
+  tests::MadeMap made;
+  const RoadId road = made.add_road("1");
+  const LaneId first = made.add_lane(road, "-1", {{0, 3}, {50, 3}}, {{0, 0}, {50, 0}});
+  const LaneId next = made.add_lane(road, "-2", {{50, 4.5}, {90, 4.5}}, {{50, 0}, {90, 0}});
+  made.link(first, next);
+  const RoadMap before = made.build(), after = written(before);
+  EXPECT_EQ(after.graph().of(first).successors, std::vector{next});
+  std::vector<Eigen::Vector2d> left;
+  for (const Eigen::Vector2d& point : after.lane(next).left.in_map.points()) {
+    left.push_back(after.to_source(point));
+  }
+  ASSERT_EQ(left.size(), 3U);
+  EXPECT_NEAR((left[0] - Eigen::Vector2d(50, 3)).norm(), 0.0, 2e-6);
+  EXPECT_NEAR((left[1] - Eigen::Vector2d(50, 4.5)).norm(), 0.0, 2e-6);
+  EXPECT_NEAR(lanelet2::share_borders(before).largest_step_m, 1.5, 1e-9);
+  EXPECT_EQ(lanelet2::share_borders(before).largest_move_m, 0.0);
 }
 
 TEST(WriteLanelet2, LimitsDirectionsAndNamesAreTags) {

@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/tags.h"
+#include "roadbed/map/lanelet2/write/tags.h"
 
 #include <fmt/format.h>
 
@@ -33,30 +33,11 @@ std::string_view subtype_of(LaneType type) {
 
 // participant tags, where the subtype does not already say the same. A shoulder or parking lane
 // open to vehicles would become a lane to drive on.
-void add_participants(const Lane& lane, Attributes& tags) {
+void add_missing_participants(const Lane& lane, Attributes& tags) {
   const bool beside_traffic = lane.type == LaneType::shoulder || lane.type == LaneType::stop ||
                               lane.type == LaneType::parking;
   if (beside_traffic || participants(views_of(tags)) == lane.participants) return;
-  using enum Participant;
-  const Participants vehicles = Participants::vehicles();
-  const bool all_vehicles = (lane.participants.bits() & vehicles.bits()) == vehicles.bits();
-  const auto add = [&](Participant kind, const char* name) {
-    if (lane.participants.has(kind)) tags.emplace_back(fmt::format("participant:{}", name), "yes");
-  };
-  if (all_vehicles) {
-    tags.emplace_back("participant:vehicle", "yes");
-  } else {
-    add(motorcycle, "vehicle:motorcycle");
-    add(car, "vehicle:car");
-    add(taxi, "vehicle:taxi");
-    add(bus, "vehicle:bus");
-    add(truck, "vehicle:truck");
-    add(emergency, "vehicle:emergency");
-  }
-  add(bicycle, "bicycle");
-  add(pedestrian, "pedestrian");
-  add(tram, "tram");
-  add(train, "train");
+  add_participants(lane.participants, tags);
 }
 
 Attributes line(const char* type, const char* subtype) {
@@ -107,6 +88,29 @@ bool is_writable(const Lane& lane) {
   return !lane.participants.empty() || lane.type == LaneType::shoulder;
 }
 
+void add_participants(const Participants& users, Attributes& tags) {
+  using enum Participant;
+  const Participants vehicles = Participants::vehicles();
+  const bool all_vehicles = (users.bits() & vehicles.bits()) == vehicles.bits();
+  const auto add = [&](Participant kind, const char* name) {
+    if (users.has(kind)) tags.emplace_back(fmt::format("participant:{}", name), "yes");
+  };
+  if (all_vehicles) {
+    tags.emplace_back("participant:vehicle", "yes");
+  } else {
+    add(motorcycle, "vehicle:motorcycle");
+    add(car, "vehicle:car");
+    add(taxi, "vehicle:taxi");
+    add(bus, "vehicle:bus");
+    add(truck, "vehicle:truck");
+    add(emergency, "vehicle:emergency");
+  }
+  add(bicycle, "bicycle");
+  add(pedestrian, "pedestrian");
+  add(tram, "tram");
+  add(train, "train");
+}
+
 Attributes lanelet_tags(const Lane& lane, bool from_lanelet2) {
   Attributes tags{{"type", "lanelet"}};
   if (from_lanelet2) {
@@ -116,7 +120,7 @@ Attributes lanelet_tags(const Lane& lane, bool from_lanelet2) {
     return tags;
   }
   tags.emplace_back("subtype", subtype_of(lane.type));
-  add_participants(lane, tags);
+  add_missing_participants(lane, tags);
   tags.emplace_back("one_way", lane.one_way ? "yes" : "no");
   if (const auto limit_mps = lane.least_speed_limit_mps()) {
     tags.emplace_back("speed_limit", fmt::format("{:.6g}", *limit_mps * 3.6));

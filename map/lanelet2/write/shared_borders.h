@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "roadbed/map/model/road_map.h"
@@ -29,6 +30,7 @@ struct SharedBorders {
   std::vector<std::array<Side, 2>> lanes;         ///< left and right, by LaneId
 
   double largest_move_m = 0.0;     ///< of an end that was joined to another one
+  double largest_step_m = 0.0;     ///< from a joint to the end that a line keeps behind it
   std::size_t lost_links = 0;      ///< successors whose ends are too far apart, or cannot be joined
   std::size_t unwanted_links = 0;  ///< lanes that now follow each other and did not before
 };
@@ -36,6 +38,15 @@ struct SharedBorders {
 struct SharingOptions {
   double same_line_m = 0.01;  ///< lines of neighbours that are nowhere farther apart are one
   double join_m = 0.5;        ///< ends of linked lanes that are no farther apart are joined
+  /// Ends that are farther apart, up to this, are joined by a step if it leads forward or aside, as
+  /// where a lane's width jumps:
+  ///
+  ///     ────────●
+  ///             │ step
+  ///             ●────────
+  double step_m = 5.0;
+  double move_m = 2.0;  ///< and where it would lead back, they are joined up to this
+  std::function<bool(const Lane&)> counts = {};  ///< lanes whose links are counted; none: all
 };
 
 /// Lines are joined where they are equal, or where neighbours' lines nearly are; ends only where a

@@ -1,4 +1,4 @@
-#include "roadbed/map/lanelet2/shared_borders.h"
+#include "roadbed/map/lanelet2/write/shared_borders.h"
 
 #include <algorithm>
 #include <cmath>
@@ -181,6 +181,29 @@ class Sharer {
     return end % 2 == 0 ? line.front() : line.back();
   }
 
+  /// The direction from a line's end into the line; zero if it has none.
+  Eigen::Vector2d inwards(std::uint32_t end) const {
+    const Line3& line = lines_[kept_[end / 2]];
+    const std::size_t last = line.size() - 1;
+    const Eigen::Vector3d& next = end % 2 == 0 ? line[1] : line[last - 1];
+    return (next - end_point(end)).head<2>().normalized();
+  }
+
+  /// Whether the way from a joint to an end of a line leads into the line or aside.
+  bool leads_on(std::uint32_t joint, std::uint32_t end) const {
+    constexpr double kBack_m = 0.1;
+    return (end_point(end) - end_point(joint)).head<2>().dot(inwards(end)) >= -kBack_m;
+  }
+
+  /// The same of both lines that meet.
+  bool is_step(std::uint32_t end, std::uint32_t start) const {
+    return leads_on(start, end) && leads_on(end, start);
+  }
+
+  double apart_m(std::uint32_t end, std::uint32_t other) const {
+    return (end_point(other) - end_point(end)).head<2>().norm();
+  }
+
   void join_ends() {
     Classes ends(2 * kept_.size());
     for (const Lane& from : road_map_.lanes()) {
@@ -190,11 +213,11 @@ class Sharer {
         const std::array<std::pair<std::uint32_t, std::uint32_t>, 2> pairs = {
             std::pair(end_of(a[0], true), end_of(b[0], false)),
             std::pair(end_of(a[1], true), end_of(b[1], false))};
-        const bool near = std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-          const Eigen::Vector3d step = end_point(pair.first) - end_point(pair.second);
-          return std::hypot(step.x(), step.y()) <= options_.join_m;
+        const bool can_join = std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+          const auto [end, start] = pair;
+          return apart_m(end, start) <= (is_step(end, start) ? options_.step_m : options_.move_m);
         });
-        if (!near) continue;
+        if (!can_join) continue;
         for (const auto& [x, y] : pairs) ends.unite(x, y, false);
       }
     }
@@ -212,16 +235,26 @@ class Sharer {
     for (std::uint32_t end = 0; end < end_names_.size(); ++end) {
       const std::uint32_t name = end_names_[end];  // never larger than `end`
       point_of_end[end] = name == end ? lay(end_point(end)) : point_of_end[name];
-      const Eigen::Vector3d moved = end_point(name) - end_point(end);
-      shared_.largest_move_m = std::max(shared_.largest_move_m, moved.head<2>().norm());
     }
     for (std::uint32_t i = 0; i < kept_.size(); ++i) {
       const Line3& line = lines_[kept_[i]];
       std::vector<std::uint32_t> points{point_of_end[2 * i]};
+      if (keeps_own_end(2 * i)) points.push_back(lay(line.front()));
       for (std::size_t k = 1; k + 1 < line.size(); ++k) points.push_back(lay(line[k]));
+      if (keeps_own_end(2 * i + 1)) points.push_back(lay(line.back()));
       points.push_back(point_of_end[2 * i + 1]);
       shared_.lines.push_back(std::move(points));
     }
+  }
+
+  /// Whether a line has its own end behind the joint; else its end moves there.
+  bool keeps_own_end(std::uint32_t end) {
+    const std::uint32_t joint = end_names_[end];
+    const double from_joint_m = apart_m(joint, end);
+    const bool keeps = from_joint_m > options_.join_m && leads_on(joint, end);
+    double& largest_m = keeps ? shared_.largest_step_m : shared_.largest_move_m;
+    largest_m = std::max(largest_m, from_joint_m);
+    return keeps;
   }
 
   void count_links() {
@@ -231,9 +264,13 @@ class Sharer {
       return Gate(end_names_[end_of(sides[0], at_end)], end_names_[end_of(sides[1], at_end)]);
     };
     std::vector<std::pair<Gate, LaneId>> starts;
-    for (const Lane& lane : road_map_.lanes()) starts.emplace_back(gate(lane.id, false), lane.id);
+    const auto counts = [&](const Lane& lane) { return !options_.counts || options_.counts(lane); };
+    for (const Lane& lane : road_map_.lanes()) {
+      if (counts(lane)) starts.emplace_back(gate(lane.id, false), lane.id);
+    }
     std::sort(starts.begin(), starts.end());
     for (const Lane& lane : road_map_.lanes()) {
+      if (!counts(lane)) continue;
       const std::vector<LaneId>& list = road_map_.graph().of(lane.id).successors;
       std::set<LaneId> wanted(list.begin(), list.end());
       const Gate end = gate(lane.id, true);
@@ -241,7 +278,8 @@ class Sharer {
       for (; at != starts.end() && at->first == end; ++at) {
         if (wanted.erase(at->second) == 0 && at->second != lane.id) ++shared_.unwanted_links;
       }
-      shared_.lost_links += wanted.size();
+      shared_.lost_links += static_cast<std::size_t>(
+          std::ranges::count_if(wanted, [&](LaneId to) { return counts(road_map_.lane(to)); }));
     }
   }
 

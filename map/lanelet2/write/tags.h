@@ -11,6 +11,9 @@ namespace roadbed::map::lanelet2 {
 /// Whether a lane has a place in a Lanelet2 map: somebody may use it, or it is a shoulder.
 bool is_writable(const Lane& lane);
 
+/// Adds `participant:*` tags that name these users.
+void add_participants(const Participants& users, Attributes& tags);
+
 /// The tags of a lanelet, `type` first: its own where the map comes from a Lanelet2 file, else what
 /// its type, users, directions and limit say.
 Attributes lanelet_tags(const Lane& lane, bool from_lanelet2);

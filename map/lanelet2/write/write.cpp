@@ -1,0 +1,49 @@
+#include "roadbed/map/lanelet2/write/write.h"
+
+#include <fmt/format.h>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/lanelet2/frame.h"
+#include "roadbed/map/lanelet2/write/lanelet_map.h"
+
+namespace roadbed::map::lanelet2 {
+namespace {
+
+TransverseMercator grid_of(const std::string& crs) {
+  if (const auto grid = transverse_mercator_of(crs)) return *grid;
+  throw InputError(
+      {.file = "Lanelet2",
+       .found = crs.empty()
+                    ? "the map's CRS is unknown"
+                    : fmt::format("the map's CRS \"{}\" is no transverse Mercator one", crs),
+       .needed = "latitude and longitude of its nodes",
+       .remedy = "give --anchor LAT,LON: where its coordinates 0,0 are"});
+}
+
+OsmPlaces places_of(const RoadMap& road_map, const OsmMap& osm, const Lanelet2Options& options,
+                    const TransverseMercator& grid) {
+  const CrsOffset& offset = options.offset_in_crs;
+  const geometry::Pose2 crs_from_source{offset.x_m, offset.y_m, offset.heading_rad};
+  OsmPlaces places;
+  for (const OsmNode& node : osm.nodes) {
+    places.local.push_back(road_map.to_source(node.in_map.head<2>()));
+    places.on_earth.push_back(grid.inverse(crs_from_source * places.local.back()));
+  }
+  places.z_offset_m = offset.z_m;
+  if (offset == CrsOffset{}) places.crs = options.crs;
+  return places;
+}
+
+}  // namespace
+
+Lanelet2File write_lanelet2(const RoadMap& road_map, const Lanelet2Options& options) {
+  const TransverseMercator grid = grid_of(options.crs);
+  const LaneletMap made = lanelet_map(road_map);
+  return {osm_text(made.osm, places_of(road_map, made.osm, options, grid)), notes_of(made)};
+}
+
+Lanelet2File write_lanelet2(const RoadMap& road_map) {
+  return write_lanelet2(road_map, {road_map.crs(), road_map.offset_in_crs()});
+}
+
+}  // namespace roadbed::map::lanelet2
