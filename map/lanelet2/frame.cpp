@@ -75,7 +75,9 @@ std::optional<TransverseMercator> grid_of_epsg(std::string_view digits) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code);
   if (error != std::errc() || end != digits.data() + digits.size()) return {};
   const int zone = code % 100;
-  if ((code / 100 != 326 && code / 100 != 327) || zone < 1 || zone > 60) return {};
+  const bool on_wgs84 = (code / 100 == 326 || code / 100 == 327) && zone >= 1 && zone <= 60;
+  const bool on_etrs89 = code / 100 == 258 && zone >= 28 && zone <= 38;
+  if (!on_wgs84 && !on_etrs89) return {};
   return utm_grid(zone, code / 100 == 327);
 }
 

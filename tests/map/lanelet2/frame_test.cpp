@@ -12,6 +12,9 @@ TEST(CrsText, UtmIsTheSameByCodeAndByProjString) {
   const auto point = GeographicPoint{49.0, 8.4};
   EXPECT_EQ(code.forward(point), text.forward(point));
   EXPECT_NEAR(code.forward(point).x(), 456114.59586, 1e-4);
+  const auto etrs89 = lanelet2::transverse_mercator_of("EPSG:25832").value();
+  EXPECT_EQ(etrs89.central_meridian_deg, code.central_meridian_deg);
+  EXPECT_EQ(etrs89.false_easting_m, code.false_easting_m);
   const auto south = lanelet2::transverse_mercator_of("EPSG:32756").value();
   EXPECT_EQ(south.false_northing_m, 1e7);
   EXPECT_EQ(south.false_northing_m,
