@@ -24,6 +24,8 @@
 #include "roadbed/map/lanelet2/write/write.h"
 #include "roadbed/map/opendrive/read.h"
 #include "roadbed/map/opendrive/write/write.h"
+#include "roadbed/map/sumo/netconvert.h"
+#include "roadbed/map/sumo/write.h"
 
 namespace roadbed::map {
 namespace {
@@ -91,6 +93,35 @@ std::string open_drive_bytes(const RoadMap& road_map, const SaveOptions& options
   return std::move(file.bytes);
 }
 
+sumo::SumoFiles sumo_files(const RoadMap& road_map, const SaveOptions& given,
+                           const std::string& name) {
+  const SaveOptions options = in_usable_system(road_map, given);
+  const auto offset = options.is_own_crs ? road_map.offset_in_crs() : CrsOffset{};
+  sumo::SumoFiles files = sumo::write_sumo(road_map, {name, options.crs, offset});
+  if (given.notes != nullptr) {
+    given.notes->insert(given.notes->end(), files.notes.begin(), files.notes.end());
+  }
+  if (given.lost != nullptr) *given.lost = std::move(files.lost);
+  return files;
+}
+
+std::vector<OutputPart> sumo_parts(const RoadMap& road_map, const SaveOptions& options) {
+  sumo::SumoFiles files = sumo_files(road_map, options, options.name);
+  return {{".nod.xml", std::move(files.nodes)},
+          {".edg.xml", std::move(files.edges)},
+          {".con.xml", std::move(files.connections)},
+          {".tll.xml", std::move(files.traffic_lights)},
+          {".netccfg", std::move(files.configuration)}};
+}
+
+std::string sumo_net(const RoadMap& road_map, const SaveOptions& options) {
+  sumo::ConvertedNet net = sumo::run_netconvert(sumo_files(road_map, options, "net"));
+  if (options.notes != nullptr) {
+    for (const std::string& line : net.warnings) options.notes->push_back("netconvert: " + line);
+  }
+  return std::move(net.bytes);
+}
+
 std::string page_bytes(const RoadMap& road_map, const SaveOptions& options) {
   MapPageOptions page = options.page;
   page.crs = options.crs;
@@ -99,7 +130,7 @@ std::string page_bytes(const RoadMap& road_map, const SaveOptions& options) {
   return write_map_page(road_map, page);
 }
 
-constexpr std::array<Format, 11> kFormats = {{
+constexpr std::array<Format, 13> kFormats = {{
     {.name = "compiled map",
      .sniff = [](const FileContent& content) { return is_compiled_map(content.bytes); },
      .read = [](std::string bytes, const std::string& name,
@@ -170,6 +201,14 @@ constexpr std::array<Format, 11> kFormats = {{
      .write = [](const RoadMap& road_map,
                  const SaveOptions&) { return commonroad::write_common_road(road_map); },
      .what = "lanes, links and rules (CommonRoad 2020a)"},
+    {.name = "SUMO net",
+     .suffix = ".net.xml",
+     .write = sumo_net,
+     .what = "a net for SUMO, by its netconvert"},
+    {.name = "SUMO plain files",
+     .suffix = ".nod.xml",
+     .write_parts = sumo_parts,
+     .what = "what netconvert makes a net of: .edg.xml .con.xml .tll.xml .netccfg beside it"},
 }};
 
 template <typename Fits>
@@ -201,13 +240,30 @@ const Format* format_of(const RoadMap& road_map) {
       [&](const Format& format) { return road_map.format().starts_with(format.name); });
 }
 
+std::vector<OutputPart> Format::output(const RoadMap& road_map, const SaveOptions& options) const {
+  if (write_parts != nullptr) return write_parts(road_map, options);
+  std::vector<OutputPart> one;
+  one.push_back({std::string(suffix), write(road_map, options)});
+  return one;
+}
+
+std::string format_suffix(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  std::string longest = file.extension().string();
+  for (const Format& one : kFormats) {
+    const bool fits = name.size() > one.suffix.size() && name.ends_with(one.suffix);
+    if (fits && one.suffix.size() > longest.size()) longest = one.suffix;
+  }
+  return longest;
+}
+
 const Format& format_to_write(const std::filesystem::path& file, const std::string& suffix) {
   const Format* format =
-      find_format([&](const Format& one) { return one.write != nullptr && one.suffix == suffix; });
+      find_format([&](const Format& one) { return one.is_written() && one.suffix == suffix; });
   if (format != nullptr) return *format;
   std::string known;
   for (const Format& one : kFormats) {
-    if (one.write != nullptr) known += fmt::format("{}{}", known.empty() ? "" : ", ", one.suffix);
+    if (one.is_written()) known += fmt::format("{}{}", known.empty() ? "" : ", ", one.suffix);
   }
   throw InputError({.file = file.string(),
                     .found = fmt::format("the suffix \"{}\" names no format", suffix),

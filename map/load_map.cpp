@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
 #include "roadbed/map/compiled/compiled_map.h"
@@ -53,7 +54,23 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) 
 
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options) {
-  write_output(file, format_to_write(file).write(road_map, options), true);
+  write_output_parts(file, format_to_write(file).output(road_map, options), true);
+}
+
+void write_output_parts(const std::filesystem::path& file, const std::vector<OutputPart>& parts,
+                        bool force) {
+  if (parts.size() == 1) return write_output(file, parts.front().bytes, force);
+  std::string stem = file.string();
+  const std::string& own = parts.front().suffix;
+  stem.resize(stem.size() - (stem.ends_with(own) ? own : file.extension().string()).size());
+  std::vector<std::unique_ptr<OutputFile>> files;
+  for (const OutputPart& part : parts) {
+    const std::filesystem::path name = &part == &parts.front() ? file.string() : stem + part.suffix;
+    check_writable(name, force);
+    files.push_back(std::make_unique<OutputFile>(name, force));
+    files.back()->write(0, part.bytes);
+  }
+  for (const auto& one : files) one->commit();
 }
 
 }  // namespace roadbed::map

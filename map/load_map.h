@@ -23,6 +23,12 @@ RoadMap parse_map(std::string bytes, const std::string& name, const LoadOptions&
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options = {});
 
+/// Writes the files of an output beside each other: none is put in place before all are written.
+/// @param file  that of the first part; its suffix is the first's, or its own.
+/// @throws OutputError if one of them cannot be written, or is there without `force`.
+void write_output_parts(const std::filesystem::path& file, const std::vector<OutputPart>& parts,
+                        bool force);
+
 /// A map file's bytes, XML in UTF-16 as UTF-8, and their format.
 struct MapBytes {
   std::string bytes;

@@ -84,4 +84,17 @@ std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane) {
   return sorted(std::move(others));
 }
 
+bool drives_on_the_left(const RoadMap& road_map) {
+  std::ptrdiff_t left = 0;
+  for (const Lane& lane : road_map.lanes()) {
+    const LaneLinks& links = road_map.graph().of(lane.id);
+    if (!is_drivable(lane.type)) continue;
+    const auto meets = [&](const std::optional<Neighbour>& beside) {
+      return beside && !beside->same_direction && is_drivable(road_map.lane(beside->lane).type);
+    };
+    left += (meets(links.right) ? 1 : 0) - (meets(links.left) ? 1 : 0);
+  }
+  return left > 0;
+}
+
 }  // namespace roadbed::map::derived

@@ -24,4 +24,8 @@ std::vector<Merge> merges(const LaneGraph& graph);
 /// In order of id.
 std::vector<LaneId> merging_lanes(const LaneGraph& graph, LaneId lane);
 
+/// Whether the map drives on the left: more of its opposite lanes have each other to their right
+/// than to their left. O(lanes).
+bool drives_on_the_left(const RoadMap& road_map);
+
 }  // namespace roadbed::map::derived

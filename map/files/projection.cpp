@@ -129,6 +129,15 @@ std::optional<int> epsg_code(const std::string& crs) {
   return code;
 }
 
+std::string proj_string(const std::string& crs) {
+  const int code = epsg_code(crs).value_or(0);
+  const int zone = code % 100;
+  const bool north = code / 100 == 326, south = code / 100 == 327;
+  if (!crs.starts_with("EPSG:") || zone < 1 || zone > 60 || !(north || south)) return crs;
+  return fmt::format("+proj=utm +zone={}{} +datum=WGS84 +units=m +no_defs", zone,
+                     south ? " +south" : "");
+}
+
 std::string system_anchored_at(double latitude_deg, double longitude_deg) {
   if (!(std::abs(latitude_deg) <= 90.0) || !(std::abs(longitude_deg) <= 180.0)) {
     throw std::invalid_argument(

@@ -31,6 +31,10 @@ std::string projection_fault(const std::string& crs);
 /// latitude on it as a PROJ string; none otherwise.
 std::optional<int> epsg_code(const std::string& crs);
 
+/// The system as a PROJ string, which other programs ask for, where it is an EPSG code of UTM on
+/// WGS 84; else as it stands.
+std::string proj_string(const std::string& crs);
+
 /// A transverse Mercator system whose origin is at a place: coordinates of an unknown system taken
 /// as metres east and north of there.
 /// @throws std::invalid_argument if the place is not on the globe.

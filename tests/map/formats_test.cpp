@@ -35,10 +35,10 @@ TEST(Formats, NamesAndSuffixesAreTheirOwn) {
   std::set<std::string_view> names, suffixes;
   for (const Format& format : formats()) {
     EXPECT_TRUE(names.insert(format.name).second) << format.name;
-    EXPECT_EQ(format.suffix.empty(), format.write == nullptr) << format.name;
+    EXPECT_EQ(format.suffix.empty(), !format.is_written()) << format.name;
     EXPECT_EQ(format.sniff == nullptr, format.read == nullptr) << format.name;
     EXPECT_EQ(format.judge == nullptr, format.rules == nullptr) << format.name;
-    if (format.write == nullptr) continue;
+    if (!format.is_written()) continue;
     EXPECT_TRUE(suffixes.insert(format.suffix).second) << format.name;
   }
 }

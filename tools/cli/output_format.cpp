@@ -1,6 +1,7 @@
 #include "roadbed/tools/cli/output_format.h"
 
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/formats.h"
 
 namespace roadbed::tools::inline cli {
 
@@ -15,7 +16,7 @@ Argument declare_format(Arguments& arguments, std::string& format,
 }
 
 std::string suffix_of_output(const std::filesystem::path& output, const std::string& format) {
-  return format.empty() ? output.extension().string() : "." + format;
+  return format.empty() ? map::format_suffix(output) : "." + format;
 }
 
 std::string standard_output_fault(const std::filesystem::path& output, bool needs_format,

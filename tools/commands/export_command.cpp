@@ -31,7 +31,7 @@ namespace {
 std::string suffixes_with_meaning() {
   std::string list;
   for (const map::Format& format : map::formats()) {
-    if (format.write == nullptr) continue;
+    if (!format.is_written()) continue;
     list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", format.suffix, format.what);
   }
   return list;
@@ -40,7 +40,7 @@ std::string suffixes_with_meaning() {
 std::vector<std::string> written_suffixes() {
   std::vector<std::string> suffixes;
   for (const map::Format& format : map::formats()) {
-    if (format.write != nullptr) suffixes.emplace_back(format.suffix);
+    if (format.is_written()) suffixes.emplace_back(format.suffix);
   }
   return suffixes;
 }
@@ -72,6 +72,7 @@ class ExportCommand : public Command {
         "  roadbed export town.xodr -o town.svg\n"
         "  roadbed export town.xodr -o town.html --route route.json\n"
         "  roadbed export town.xodr -o town.gpkg\n"
+        "  roadbed export town.xodr -o town.nod.xml\n"
         "  roadbed export town.xodr -o - --format csv > lines.csv\n"
         "  roadbed export data/crossing.osm -o crossing.xodr --opendrive 1.4 --json\n"
         "  roadbed export town.xodr -o lanelet2_map.osm --profile autoware\n"
@@ -117,7 +118,7 @@ class ExportCommand : public Command {
     overlays_.add_to(page, road_map);
     const Written written = write(format, road_map, std::move(page));
     if (!profile_.empty()) map::write_output(projector_info(), written.projector_info, force_);
-    map::write_output(output_, written.bytes, force_);
+    map::write_output_parts(output_, written.parts, force_);
     if (json_) print_json(streams.out, format, road_map, written);
     if (!common.quiet) print_text(streams.err, road_map, written);
     return Exit::ok;
@@ -130,6 +131,9 @@ class ExportCommand : public Command {
     std::string fault = standard_output_fault(output_, true, format_, json_ ? "--json" : "");
     if (fault.empty()) fault = anchor_fault();
     if (fault.empty()) fault = profile_fault();
+    if (fault.empty() && suffix() == ".nod.xml" && map::is_standard_stream(output_)) {
+      fault = "-o - holds one file, and .nod.xml is several";
+    }
     return fault.empty() ? overlay_fault() : fault;
   }
 
@@ -163,11 +167,17 @@ class ExportCommand : public Command {
 
   /// What an output holds, and what there is to say of it.
   struct Written {
-    std::string bytes;
+    std::vector<map::OutputPart> parts;
     std::vector<std::string> notes = {};
-    std::vector<std::pair<std::string, std::size_t>> lost = {};
+    map::Losses lost = {};
     std::optional<double> largest_error_m = {}, largest_height_error_m = {};
     std::string projector_info = {};
+
+    std::size_t bytes() const {
+      std::size_t sum = 0;
+      for (const map::OutputPart& part : parts) sum += part.bytes.size();
+      return sum;
+    }
   };
 
   Written write(const map::Format& format, const map::RoadMap& road_map,
@@ -175,15 +185,19 @@ class ExportCommand : public Command {
     if (format.name == "OpenDRIVE") return write_open_drive(format, road_map);
     if (!profile_.empty()) return write_autoware(format, road_map);
     Written written;
-    written.bytes = format.write(road_map, {layers_, system_of(road_map), is_own_system(road_map),
-                                            &written.notes, std::move(page)});
+    const std::string file = output_.filename().string();
+    written.parts = format.output(
+        road_map,
+        {layers_, system_of(road_map), is_own_system(road_map), &written.notes, &written.lost,
+         file.substr(0, file.size() - map::format_suffix(file).size()), std::move(page)});
     return written;
   }
 
   Written write_open_drive(const map::Format& format, const map::RoadMap& road_map) const {
     const bool is_own = map::format_of(input_) == &format;
     if (is_own && !asks_for_another(road_map)) {
-      return {map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes};
+      return {
+          one_file(format, map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes)};
     }
     const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
     map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
@@ -191,7 +205,7 @@ class ExportCommand : public Command {
     if (is_own) {
       file.notes.emplace_back("the document is made anew, as its version or its system changes");
     }
-    return {std::move(file.bytes), std::move(file.notes), std::move(file.lost),
+    return {one_file(format, std::move(file.bytes)), std::move(file.notes), std::move(file.lost),
             file.largest_error_m, file.largest_height_error_m};
   }
 
@@ -203,10 +217,16 @@ class ExportCommand : public Command {
       options.source = map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes;
     }
     map::lanelet2::AutowareFiles files = map::lanelet2::write_autoware(road_map, options);
-    return {.bytes = std::move(files.vector_map),
+    return {.parts = one_file(format, std::move(files.vector_map)),
             .notes = std::move(files.notes),
             .lost = std::move(files.lost),
             .projector_info = std::move(files.projector_info)};
+  }
+
+  static std::vector<map::OutputPart> one_file(const map::Format& format, std::string bytes) {
+    std::vector<map::OutputPart> parts;
+    parts.push_back({std::string(format.suffix), std::move(bytes)});
+    return parts;
   }
 
   bool asks_for_another(const map::RoadMap& road_map) const {
@@ -216,7 +236,7 @@ class ExportCommand : public Command {
 
   void print_text(std::ostream& err, const map::RoadMap& road_map, const Written& written) const {
     fmt::print(err, "{}: {} lanes, {} bytes\n", output_name(output_), road_map.lanes().size(),
-               written.bytes.size());
+               written.bytes());
     if (written.largest_error_m) {
       fmt::print(err, "borders within {:.4f} m of the map's, their heights within {:.3f} m\n",
                  *written.largest_error_m, *written.largest_height_error_m);
@@ -230,7 +250,7 @@ class ExportCommand : public Command {
     Json document{{"output", output_name(output_)},
                   {"format", format.name},
                   {"lanes", road_map.lanes().size()},
-                  {"bytes", written.bytes.size()}};
+                  {"bytes", written.bytes()}};
     if (written.largest_error_m) {
       document["largest_error_m"] = *written.largest_error_m;
       document["largest_height_error_m"] = *written.largest_height_error_m;

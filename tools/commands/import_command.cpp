@@ -129,9 +129,9 @@ class ImportCommand : public Command {
 
   // Nobody wants a compiled map under the name of another format.
   void refuse_other_formats() const {
-    const std::string suffix = output_.extension().string();
+    const std::string suffix = map::format_suffix(output_);
     for (const map::Format& format : map::formats()) {
-      if (format.write == nullptr || format.suffix != suffix) continue;
+      if (!format.is_written() || format.suffix != suffix) continue;
       throw map::OutputError({.file = output_.string(),
                               .found = "a compiled map is not " + std::string(format.name),
                               .needed = ".rbm",

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/map/derived/crossings.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/opendrive/write/number_text.h"
 

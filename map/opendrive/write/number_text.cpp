@@ -13,16 +13,6 @@ constexpr double kLength_m = 5e-7;
 
 }  // namespace
 
-std::string short_number(double value) { return number_within(value, kLength_m); }
-
-std::string number_within(double value, double tolerance) {
-  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(2.0 * tolerance))), 0, 15);
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text == "-0" ? "0" : text;
-}
-
 void add_records(const geometry::PiecewiseCubic& cubic, double from_m, double to_m, double zero_m,
                  const char* name, const char* station, std::string& text) {
   constexpr double least_m = 1e-6;

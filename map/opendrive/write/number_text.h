@@ -3,14 +3,9 @@
 #include <string>
 
 #include "roadbed/geometry/curves/piecewise_cubic.h"
+#include "roadbed/map/files/short_number.h"
 
 namespace roadbed::map::opendrive {
-
-/// A length or coordinate, as short as it can be within half a micrometre.
-std::string short_number(double value);
-
-/// A number as short as it can be within a tolerance.
-std::string number_within(double value, double tolerance);
 
 /// The records of a profile that hold in [from, to], as elements; stations counted from `zero_m`.
 /// @param name  of the element. @param station  of its attribute: "s" or "sOffset".

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <string_view>
 #include <utility>
+
+#include "roadbed/map/derived/crossings.h"
+#include "roadbed/map/derived/lane_relations.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -14,11 +16,6 @@ namespace {
 constexpr double kLeastLength_m = 0.05;  // of a lane
 constexpr double kLeastWidth_m = 0.02;   // on average
 constexpr double kSameBorder_m = 0.3;    // how far apart neighbours' ends may be
-
-bool says(const Lane& lane, std::string_view word) {
-  return std::any_of(lane.attributes.begin(), lane.attributes.end(),
-                     [&](const auto& tag) { return tag.second == word; });
-}
 
 // Whether there is a strip between the borders at all.
 bool is_strip(const Lane& lane) {
@@ -57,8 +54,8 @@ class Planner {
   }
 
   RoadPlan plan() {
-    plan_.left_hand_traffic = drives_on_the_left();
-    name_crossings();
+    plan_.left_hand_traffic = drives_on_the_left(road_map_);
+    crossing_of_ = crossings_of_lanes(road_map_, usable_);
     for (const Road& road : road_map_.roads()) add_source_road(road);
     for (const Lane& lane : road_map_.lanes()) {
       if (usable_[lane.id.index] && !plan_.places[lane.id.index]) add_strip(lane.id);
@@ -69,80 +66,13 @@ class Planner {
  private:
   Company company_of(LaneId lane) const { return company_[lane.index]; }
 
-  // Opposite lanes beside each other: in right-hand traffic each has the other to its left.
-  bool drives_on_the_left() const {
-    std::ptrdiff_t left = 0;
-    for (const Lane& lane : road_map_.lanes()) {
-      const LaneLinks& links = road_map_.graph().of(lane.id);
-      if (!is_drivable(lane.type)) continue;
-      const auto meets = [&](const std::optional<Neighbour>& beside) {
-        return beside && !beside->same_direction && is_drivable(road_map_.lane(beside->lane).type);
-      };
-      left += (meets(links.right) ? 1 : 0) - (meets(links.left) ? 1 : 0);
-    }
-    return left > 0;
-  }
-
-  // Crossings that the map names, each with a number: junctions, then regulations.
-  void name_crossings() {
-    crossing_of_.resize(road_map_.lanes().size());
-    auto next = static_cast<std::uint32_t>(road_map_.junctions().size());
-    for (const Regulation& regulation : road_map_.regulations()) {
-      if (regulation.type != "intersection") continue;
-      for (const RegulationMember& member : regulation.members) {
-        if (member.lane && member.role.starts_with("successors")) {
-          crossing_of_[member.lane->index] = next;
-        }
-      }
-      ++next;
-    }
-    name_turns(next);
-  }
-
-  // Lanes that turn, as Lanelet2 says it, and lie over each other are in one crossing.
-  void name_turns(std::uint32_t next) {
-    std::map<LaneId, LaneId> leader;
-    for (const Lane& lane : road_map_.lanes()) {
-      const bool turns = std::any_of(lane.attributes.begin(), lane.attributes.end(),
-                                     [](const auto& tag) { return tag.first == "turn_direction"; });
-      if (turns && usable_[lane.id.index]) leader.emplace(lane.id, lane.id);
-    }
-    const auto find = [&](LaneId lane) {
-      while (leader.at(lane) != lane) lane = leader.at(lane) = leader.at(leader.at(lane));
-      return lane;
-    };
-    constexpr double step_m = 2.0, inside_m = 0.01;
-    for (const auto& [id, first] : leader) {
-      const Lane& lane = road_map_.lane(id);
-      for (double s_m = 0.5 * step_m; s_m < lane.length_m(); s_m += step_m) {
-        for (const LaneMatch& match :
-             road_map_.locate(lane.centre.in_map.at(s_m), inside_m, false)) {
-          if (!leader.contains(match.place.lane)) continue;
-          const LaneId a = find(id), b = find(match.place.lane);
-          leader.at(std::max(a, b)) = std::min(a, b);
-        }
-      }
-    }
-    std::map<LaneId, std::uint32_t> numbers;
-    for (const auto& [id, first] : leader) {
-      const auto [found, is_new] = numbers.emplace(find(id), next);
-      next += is_new ? 1 : 0;
-      crossing_of_[id.index] = found->second;
-    }
-  }
-
-  std::optional<std::uint32_t> crossing(const Lane& lane) const {
-    if (lane.junction) return lane.junction->index;
-    return crossing_of_[lane.id.index];
-  }
-
   void add_road(PlannedRoad road) {
     const auto index = static_cast<std::uint32_t>(plan_.roads.size());
     for (std::uint32_t section = 0; section < road.sections.size(); ++section) {
       const auto& lanes = road.sections[section].lanes;
       for (std::uint32_t i = 0; i < lanes.size(); ++i) {
         plan_.places[lanes[i].lane.index] = {index, section, i};
-        if (!road.crossing) road.crossing = crossing(road_map_.lane(lanes[i].lane));
+        if (!road.crossing) road.crossing = crossing_of_[lanes[i].lane.index];
       }
     }
     plan_.roads.push_back(std::move(road));
@@ -306,8 +236,6 @@ bool PlannedRoad::has_both_ways() const {
   }
   return ways[0] && ways[1];
 }
-
-bool is_crosswalk(const Lane& lane) { return says(lane, "crosswalk"); }
 
 RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company) {
   return Planner(road_map, company).plan();

@@ -53,7 +53,4 @@ enum class Company : std::uint8_t { any, of_its_direction, none, left_out };
 /// @param company  by LaneId.
 RoadPlan plan_roads(const RoadMap& road_map, const std::vector<Company>& company);
 
-/// Whether the lane is a crosswalk, which OpenDRIVE has as an object.
-bool is_crosswalk(const Lane& lane);
-
 }  // namespace roadbed::map::opendrive

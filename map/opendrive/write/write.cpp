@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <stdexcept>
 
+#include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/opendrive/write/border_errors.h"
 #include "roadbed/map/opendrive/write/furniture_text.h"
@@ -21,17 +21,6 @@ namespace {
 
 constexpr double kHeading_rad = 5e-10;  // written within
 constexpr double kAim_m = 0.01;         // borders that are farther off are named
-
-// The system as a PROJ string, which other programs ask for, where it is an EPSG code of UTM.
-std::string proj_string(const std::string& crs) {
-  int code = 0;
-  if (std::sscanf(crs.c_str(), "EPSG:%d", &code) != 1) return crs;
-  const int zone = code % 100;
-  const bool north = code / 100 == 326, south = code / 100 == 327;
-  if (zone < 1 || zone > 60 || !(north || south)) return crs;
-  return fmt::format("+proj=utm +zone={}{} +datum=WGS84 +units=m +no_defs", zone,
-                     south ? " +south" : "");
-}
 
 struct Bounds {
   Eigen::Vector2d low{1e300, 1e300}, high{-1e300, -1e300};
