@@ -54,7 +54,10 @@ RoadMap load_map(const std::filesystem::path& file, const LoadOptions& options) 
 
 void save_map(const RoadMap& road_map, const std::filesystem::path& file,
               const SaveOptions& options) {
-  write_output_parts(file, format_to_write(file).output(road_map, options), true);
+  SaveOptions named = options;
+  named.name = file.filename().string();
+  named.name.resize(named.name.size() - format_suffix(file).size());
+  write_output_parts(file, format_to_write(file).output(road_map, named), true);
 }
 
 void write_output_parts(const std::filesystem::path& file, const std::vector<OutputPart>& parts,
