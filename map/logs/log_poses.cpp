@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
 
 namespace roadbed::map::inline logs {
 namespace {
+
+constexpr const char* kVehicle = "base_link";
 
 bool is_static(const LogTopic& topic) { return topic.name.ends_with("tf_static"); }
 
@@ -36,7 +39,7 @@ void LogPoses::take(const LogTopic& topic, const LogMessage& message) {
     return;
   }
   const PoseMessage read = parse_pose(topic, message, file_);
-  by_topic_[topic.name].add({read.frame, read.child.empty() ? "base_link" : read.child, read.at},
+  by_topic_[topic.name].add({read.frame, read.child.empty() ? kVehicle : read.child, read.at},
                             false, file_);
 }
 
@@ -65,6 +68,17 @@ PoseAt LogPoses::of(const std::string& frame) const {
                     .found = fmt::format("{} say where it was", fmt::join(names, ", ")),
                     .needed = "one topic",
                     .remedy = "choose it by --pose-topic"});
+}
+
+PoseAt LogPoses::in_vehicle(const std::string& frame) const {
+  std::vector<std::string> way = transforms_.way_up(frame, file_);
+  const auto vehicle = std::ranges::find(way, kVehicle);
+  if (vehicle == way.begin()) return {};  // it is that frame itself
+  if (vehicle == way.end() && (way.empty() || transforms_.parent_of(way.back()) != kVehicle)) {
+    return {};
+  }
+  way.erase(vehicle, way.end());
+  return along(transforms_, std::move(way));
 }
 
 }  // namespace roadbed::map::logs

@@ -32,6 +32,10 @@ class LogPoses {
   /// @throws InputError if several topics say it.
   PoseAt of(const std::string& frame) const;
 
+  /// Where a frame was in base_link, by transforms; valid as long as this is. None: they do not
+  /// say.
+  PoseAt in_vehicle(const std::string& frame) const;
+
  private:
   std::string file_, topic_;
   TransformTree transforms_;

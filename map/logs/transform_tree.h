@@ -44,6 +44,9 @@ class TransformTree {
   /// Takes the transforms that hold for all times from another one.
   void add_static_of(const TransformTree& other);
 
+  /// @pre has(child).
+  const std::string& parent_of(const std::string& child) const { return edges_.at(child).parent; }
+
   std::vector<std::string> children() const;
 
  private:

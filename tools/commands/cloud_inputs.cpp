@@ -25,9 +25,14 @@ void note_left_out(const CloudInputs::Note& note, const std::string& name, std::
        fmt::format("{} of {} points are not finite and were left out", dropped, dropped + kept));
 }
 
+void note_filtered(const CloudInputs::Note& note, const std::string& name, std::size_t count) {
+  if (count > 0) note(name, fmt::format("{} points do not count, as the filter says", count));
+}
+
 void note_all(const CloudInputs::Note& note, const map::PointCloud& cloud) {
   for (const std::string& text : cloud.notes) note(cloud.name, text);
   note_left_out(note, cloud.name, cloud.dropped_not_finite, cloud.points.size());
+  note_filtered(note, cloud.name, cloud.filtered_out);
   if (!cloud.has_sensor()) note(cloud.name, kNoSensor);
 }
 
@@ -91,14 +96,15 @@ void CloudInputs::declare_sensor(Arguments& arguments) {
 }
 
 void CloudInputs::declare_changes(Arguments& arguments) {
-  arguments.add("--voxel", filter_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
+  filter_.declare(arguments);
+  arguments.add("--voxel", of_neighbours_.voxel_m, "Thin each cloud to a point per cube [m] (PCL)")
       .within(1e-3, 1e3);
   arguments
-      .add("--outlier-neighbours", filter_.outlier_neighbours,
+      .add("--outlier-neighbours", of_neighbours_.outlier_neighbours,
            "Leave out points far from this many neighbours, as compared to the rest (PCL)")
       .within(1, 1000);
   arguments
-      .add("--outlier-deviations", filter_.outlier_deviations,
+      .add("--outlier-deviations", of_neighbours_.outlier_deviations,
            "Far is this many standard deviations over the mean distance")
       .positive()
       .with_default();
@@ -124,15 +130,29 @@ bool CloudInputs::hold_logs() const { return std::ranges::any_of(files_, map::is
 void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
                            const Note& note) const {
   const std::vector<Eigen::Isometry3d> world_from_sensor = poses();
+  bool is_any_left = false;
+  const auto take = [&](map::PointCloud cloud) {
+    is_any_left = true;
+    use(std::move(cloud));
+  };
   for (std::size_t i = 0; i < files_.size(); ++i) {
     if (map::is_log(files_[i])) {
-      take_log(files_[i], use, note);
-      continue;
+      take_log(files_[i], take, note);
+    } else {
+      pass_on(cloud_of(i, world_from_sensor), take, note);
     }
-    map::PointCloud cloud = cloud_of(i, world_from_sensor);
-    if (note) note_all(note, cloud);
-    use(std::move(cloud));
   }
+  if (is_any_left) return;
+  throw map::InputError({.file = first_name(),
+                         .found = "no point of the clouds is left",
+                         .needed = "at least one",
+                         .remedy = "filter less"});
+}
+
+void CloudInputs::pass_on(map::PointCloud cloud, const std::function<void(map::PointCloud)>& use,
+                          const Note& note) const {
+  if (note) note_all(note, cloud);
+  if (!cloud.points.empty()) use(std::move(cloud));
 }
 
 void CloudInputs::take_log(const std::filesystem::path& log,
@@ -146,16 +166,21 @@ void CloudInputs::take_log(const std::filesystem::path& log,
                            .remedy = "leave --poses out"});
   }
   const map::LogClouds clouds(log, topics_);
-  std::size_t points = 0;
+  std::size_t points = 0, filtered_out = 0;
   bool have_sensor = true;
-  const map::LogCloudCounts counts = clouds.for_each([&](map::PointCloud cloud) {
-    points += cloud.points.size();
-    if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
-    cloud = prepared(std::move(cloud));
-    have_sensor &= cloud.has_sensor();
-    use(std::move(cloud));
-  });
+  const map::LogCloudCounts counts = clouds.for_each(
+      [&](map::PointCloud cloud) {
+        points += cloud.points.size();
+        cloud.filtered_out = 0;
+        if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
+        cloud = prepared(std::move(cloud));
+        filtered_out += cloud.filtered_out;
+        have_sensor &= cloud.has_sensor();
+        if (!cloud.points.empty()) use(std::move(cloud));
+      },
+      filter_.filter());
   if (!note) return;
+  note_filtered(note, map::input_name(log), counts.filtered_out + filtered_out);
   for (const std::string& text : clouds.notes(counts)) note(map::input_name(log), text);
   note_left_out(note, map::input_name(log), counts.not_finite, points);
   if (!have_sensor) note(map::input_name(log), kNoSensor);
@@ -184,14 +209,20 @@ std::vector<Eigen::Isometry3d> CloudInputs::poses() const {
 
 map::PointCloud CloudInputs::prepared(map::PointCloud cloud) const {
   map::check_is_in_metres(cloud);
-  if (no_carving_ || !sensor_.empty()) cloud.scans.clear();
-  if (filter_.does_something()) {
+  if (!sensor_.empty()) {
+    cloud.scans.clear();
+    cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
+  }
+  cloud = map::within_reach(std::move(cloud), filter_.filter());
+  if (no_carving_) {
+    cloud.scans.clear();
+    cloud.sensor_in_source.reset();
+  }
+  if (of_neighbours_.looks_at_neighbours() && !cloud.points.empty()) {
     check_is_one_scan(cloud);
-    cloud = map::filtered(cloud, filter_);
+    cloud = map::filtered(cloud, of_neighbours_);
   }
   if (!crs_.empty()) cloud.crs = crs_;
-  if (!sensor_.empty()) cloud.sensor_in_source = {sensor_[0], sensor_[1], sensor_[2]};
-  if (no_carving_) cloud.sensor_in_source.reset();
   return cloud;
 }
 

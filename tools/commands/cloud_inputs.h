@@ -12,6 +12,7 @@
 #include "roadbed/map/occupancy/clouds/log_clouds.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 #include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/commands/filter_arguments.h"
 
 namespace roadbed::tools::inline commands {
 
@@ -50,6 +51,8 @@ class CloudInputs {
   void for_each(const std::function<void(map::PointCloud)>& use, const Note& note) const;
 
  private:
+  void pass_on(map::PointCloud cloud, const std::function<void(map::PointCloud)>& use,
+               const Note& note) const;
   void take_log(const std::filesystem::path& log, const std::function<void(map::PointCloud)>& use,
                 const Note& note) const;
   map::PointCloud cloud_of(std::size_t i, const std::vector<Eigen::Isometry3d>& poses) const;
@@ -61,7 +64,8 @@ class CloudInputs {
   map::LogCloudTopics topics_;
   std::vector<double> sensor_;
   std::optional<double> scale_;
-  map::CloudFilter filter_;
+  FilterArguments filter_;
+  map::CloudFilter of_neighbours_;  // what needs PCL
   std::string crs_;
   bool no_carving_ = false;
 };

@@ -77,7 +77,8 @@ class OccupancyBuildCommand : public Command {
         "  roadbed occupancy build scan_1.pcd scan_2.pcd -o street.bt\n"
         "  roadbed occupancy build scans/*.pcd --poses poses.txt -o mapped.bt\n"
         "  roadbed occupancy build scans/*.pcd --tiles 100 -o city.tiles\n"
-        "  roadbed occupancy build drive.mcap --topic /points -o driven.bt");
+        "  roadbed occupancy build drive.mcap --topic /points -o driven.bt\n"
+        "  roadbed occupancy build drive.mcap --range 1,60 --vehicle-box=-1,-1,0,4,1,2 -o near.bt");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

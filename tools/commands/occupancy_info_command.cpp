@@ -98,15 +98,21 @@ Json tiles_info(const map::TiledOccupancy& tiles) {
   return info;
 }
 
-Json log_info(const map::LogClouds& log) {
-  std::size_t points = 0;
+Json log_info(const map::LogClouds& log, const map::CloudFilter& filter) {
+  std::size_t points = 0, filtered_out = 0;
   std::optional<map::Box3> box;
-  const map::LogCloudCounts counts = log.for_each([&](const map::PointCloud& cloud) {
-    points += cloud.points.size();
-    const map::Box3 around = bounds(cloud);
-    if (!box) box = around;
-    box->extend(around);
-  });
+  const map::LogCloudCounts counts = log.for_each(
+      [&](map::PointCloud cloud) {
+        cloud.filtered_out = 0;
+        cloud = map::within_reach(std::move(cloud), filter);
+        filtered_out += cloud.filtered_out;
+        points += cloud.points.size();
+        if (cloud.points.empty()) return;
+        const map::Box3 around = bounds(cloud);
+        if (!box) box = around;
+        box->extend(around);
+      },
+      filter);
   return {{"kind", "clouds"},
           {"format", "PointCloud2"},
           {"topic", log.topic()},
@@ -115,7 +121,8 @@ Json log_info(const map::LogClouds& log) {
           {"clouds", counts.clouds},
           {"points", points},
           {"not_finite", counts.not_finite},
-          {"bounds", bounds_json(*box)},
+          {"filtered_out", counts.filtered_out + filtered_out},
+          {"bounds", box ? bounds_json(*box) : Json()},
           {"notes", log.notes(counts)}};
 }
 
@@ -127,7 +134,8 @@ Json cloud_info(const map::PointCloud& cloud) {
   info["unit"] = std::string(to_string(cloud.unit));
   info["points"] = cloud.points.size();
   info["not_finite"] = cloud.dropped_not_finite;
-  info["bounds"] = bounds_json(bounds(cloud));
+  info["filtered_out"] = cloud.filtered_out;
+  info["bounds"] = cloud.points.empty() ? Json() : bounds_json(bounds(cloud));
   info["sensor"] = Json();
   if (cloud.sensor_in_source) {
     const Eigen::Vector3d& at = *cloud.sensor_in_source;
@@ -181,6 +189,7 @@ class OccupancyInfoCommand : public Command {
         .required()
         .ending(kCloudInputEndings);
     declare_cloud_topics(arguments, topics_);
+    filter_.declare(arguments);
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.example(
         "  roadbed occupancy info street.bt --json\n"
@@ -202,15 +211,17 @@ class OccupancyInfoCommand : public Command {
  private:
   Json info_of_input() const {
     if (map::is_tiled_occupancy(input_)) return tiles_info(map::TiledOccupancy(input_));
-    if (map::is_log(input_)) return log_info(map::LogClouds(input_, topics_));
+    if (map::is_log(input_)) return log_info(map::LogClouds(input_, topics_), filter_.filter());
     const std::string bytes = map::read_file(input_);
     return map::is_occupancy_file(bytes)
                ? octree_info(map::OccupancyMap::parse(bytes, map::input_name(input_)))
-               : cloud_info(map::point_cloud_of(input_, bytes));
+               : cloud_info(map::within_reach(map::point_cloud_of(input_, bytes, filter_.filter()),
+                                              filter_.filter()));
   }
 
   std::filesystem::path input_;
   map::LogCloudTopics topics_;
+  FilterArguments filter_;
   bool json_ = false;
 };
 

@@ -11,6 +11,7 @@
 #include "roadbed/map/logs/argoverse_poses.h"
 #include "roadbed/map/logs/feather.h"
 #include "roadbed/map/logs/transform_tree.h"
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -24,15 +25,23 @@ double value_at(const FeatherColumn& column, std::size_t row) {
 
 }  // namespace
 
-RawCloud parse_sweep(std::string_view bytes, const std::string& name) {
-  const std::vector<FeatherColumn> columns = parse_feather(bytes, name, {"x", "y", "z"});
+RawCloud parse_sweep(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
+  std::vector<std::string> names{"x", "y", "z"};
+  if (filter.looks_at_attributes()) names.emplace_back("intensity");
+  const AttributeFilter attributes(filter, names, name);
+  const std::vector<FeatherColumn> columns = parse_feather(bytes, name, names);
   RawCloud cloud;
   cloud.format = "Feather (Argoverse 2)";
   cloud.unit = LengthUnit::metre;
   const std::size_t rows = columns[0].is_whole ? columns[0].wholes.size() : columns[0].reals.size();
   cloud.points_in_source.reserve(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    cloud.add({value_at(columns[0], row), value_at(columns[1], row), value_at(columns[2], row)});
+    const auto value = [&](std::size_t column) { return value_at(columns[column], row); };
+    if (attributes.keeps(value)) {
+      cloud.add({value(0), value(1), value(2)});
+    } else {
+      ++cloud.filtered_out;
+    }
   }
   return cloud;
 }
@@ -57,6 +66,7 @@ PointCloud in_city(PointCloud sweep, const std::filesystem::path& file) {
                  fmt::format("one between the first and the last of {}", poses_file.string()),
                  "get the poses of the same log");
   }
+  if (sweep.points.empty()) return sweep;
   PointCloud moved = placed(sweep, *pose);
   moved.sensor_in_source.reset();  // it is somewhere on the vehicle
   return moved;

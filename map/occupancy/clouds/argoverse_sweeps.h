@@ -13,7 +13,7 @@ namespace roadbed::map::inline occupancy::inline clouds {
 
 /// A sweep of Argoverse 2, Feather with columns x, y and z: points in the vehicle's frame at the
 /// time that its name says, whatever times they were measured at.
-RawCloud parse_sweep(std::string_view bytes, const std::string& name);
+RawCloud parse_sweep(std::string_view bytes, const std::string& name, const CloudFilter& filter);
 
 /// A sweep LOG/sensors/lidar/TIME.feather in the city's frame, by the pose at that time of
 /// LOG/city_SE3_egovehicle.feather; as it is where there is no such file.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -22,6 +23,7 @@ struct RawCloud {
   /// Instead of these, where the file holds floats.
   std::vector<Eigen::Vector3f> float_points_in_source = {};
   std::size_t dropped_not_finite = 0;
+  std::size_t filtered_out = 0;
   std::string format;
   std::string crs;
   LengthUnit unit = LengthUnit::unknown;
@@ -54,7 +56,7 @@ void add_float_points(const FloatRecords& records, RawCloud& cloud);
 Eigen::Vector3d local_origin(const Box3& box);
 
 /// The cloud of what a file holds, with the local origin that `PointCloud` names; its own name is
-/// not set. @pre there is a point.
+/// not set.
 PointCloud relative_to_origin(RawCloud raw);
 
 /// Places of three fields in a point.
@@ -77,11 +79,11 @@ std::optional<FieldColumns> sensor_columns(const std::vector<std::string>& field
                                const std::string& needed, const std::string& remedy);
 
 // One file each: read_NAME.cpp.
-RawCloud parse_pcd(std::string_view bytes, const std::string& name);
-RawCloud parse_ply(std::string_view bytes, const std::string& name);
-RawCloud parse_las(std::string_view bytes, const std::string& name);
-RawCloud parse_xyz(std::string_view bytes, const std::string& name);
-RawCloud parse_kitti(std::string_view bytes, const std::string& name);
+RawCloud parse_pcd(std::string_view bytes, const std::string& name, const CloudFilter& filter);
+RawCloud parse_ply(std::string_view bytes, const std::string& name, const CloudFilter& filter);
+RawCloud parse_las(std::string_view bytes, const std::string& name, const CloudFilter& filter);
+RawCloud parse_xyz(std::string_view bytes, const std::string& name, const CloudFilter& filter);
+RawCloud parse_kitti(std::string_view bytes, const std::string& name, const CloudFilter& filter);
 
 /// Whether the first line that is no comment begins with three numbers, or names x, y and z.
 bool begins_as_xyz(std::string_view bytes);

@@ -1,7 +1,5 @@
 #include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,26 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/open_module.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
-#include "roadbed/map/occupancy/clouds/pcl_filter.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
-
-[[noreturn]] void refuse(const std::string& found, const std::string& remedy) {
-  throw InputError({.file = "point cloud filter", .found = found, .remedy = remedy});
-}
-
-RoadbedPclFilter& open_module() {
-  const ModuleFunction found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
-  if (found.address != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found.address);
-  refuse(
-      found.fault,
-      "install PCL (Debian: libpcl-filters1.13; libpcl-dev before roadbed is built), or leave the "
-      "filters out");
-}
 
 /// Points in a row that were measured from one place.
 struct Scan {
@@ -155,6 +137,7 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
   scaled.format = cloud.format;
   scaled.unit = LengthUnit::metre;
   scaled.dropped_not_finite = cloud.dropped_not_finite;
+  scaled.filtered_out = cloud.filtered_out;
   if (cloud.sensor_in_source) scaled.sensor_in_source = *cloud.sensor_in_source * factor;
   scaled.scans = cloud.scans;
   for (ScanStart& scan : scaled.scans) {
@@ -167,18 +150,6 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
 std::vector<PointCloud> split_cloud(const PointCloud& cloud,
                                     const Eigen::Vector3d& origin_in_source, double side_m) {
   return Cutter(cloud, origin_in_source, side_m).cut();
-}
-
-PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter) {
-  static RoadbedPclFilter& pcl_filter = open_module();
-  PointCloud kept = cloud;
-  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
-  const std::size_t count =
-      pcl_filter(kept.points.front().data(), kept.points.size(), static_cast<float>(filter.voxel_m),
-                 filter.outlier_neighbours, filter.outlier_deviations);
-  if (count == 0) refuse(fmt::format("no point of {} is left", cloud.name), "filter less");
-  kept.points.resize(count);
-  return kept;
 }
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -100,13 +100,14 @@ PointCloud relative_to_origin(RawCloud raw) {
   PointCloud cloud;
   if (!raw.float_points_in_source.empty()) {
     take_floats(std::move(raw.float_points_in_source), cloud);
-  } else {
+  } else if (!raw.empty()) {
     take_doubles(raw.points_in_source, cloud);
   }
   cloud.format = std::move(raw.format);
   cloud.crs = one_line(std::move(raw.crs));
   cloud.unit = raw.unit;
   cloud.dropped_not_finite = raw.dropped_not_finite;
+  cloud.filtered_out = raw.filtered_out;
   take_sensors(raw, cloud);
   cloud.notes = std::move(raw.notes);
   if (raw.without_sensor > 0) {

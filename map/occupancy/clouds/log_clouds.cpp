@@ -18,17 +18,18 @@ namespace {
 /// Clouds of one log, and from where each is placed.
 class CloudMessages {
  public:
-  CloudMessages(const std::string& file, const LogPoses& poses,
+  CloudMessages(const std::string& file, const LogPoses& poses, const CloudFilter& filter,
                 const std::function<void(PointCloud)>& use)
-      : file_(file), poses_(poses), use_(use) {}
+      : file_(file), poses_(poses), filter_(filter), use_(use) {}
 
   void take(const LogTopic& topic, const LogMessage& message) {
     const CloudMessage cloud = parse_cloud(topic, message, file_);
-    MessagePoints read =
-        points_of_message(cloud, pose_of(cloud.frame), file_, topic.name + ", " + message.place);
+    MessagePoints read = points_of_message(cloud, frames_of(cloud.frame), filter_, file_,
+                                           topic.name + ", " + message.place);
     counts_.points_without_pose += read.without_pose;
     counts_.points_with_unlikely_times += read.with_unlikely_times;
     counts_.not_finite += read.cloud.dropped_not_finite;
+    counts_.filtered_out += read.cloud.filtered_out;
     if (!read.cloud.points.empty()) {
       ++counts_.clouds;
       read.cloud.name = file_;
@@ -41,18 +42,19 @@ class CloudMessages {
   const LogCloudCounts& counts() const { return counts_; }
 
  private:
-  const PoseAt& pose_of(const std::string& frame) {
-    const auto known = pose_of_.find(frame);
-    if (known != pose_of_.end()) return known->second;
-    PoseAt pose_at = poses_.of(frame);
-    if (!pose_at) counts_.frames_as_they_stand.push_back(frame);
-    return pose_of_.emplace(frame, std::move(pose_at)).first->second;
+  const MessageFrames& frames_of(const std::string& frame) {
+    const auto known = frames_of_.find(frame);
+    if (known != frames_of_.end()) return known->second;
+    MessageFrames frames{poses_.of(frame), poses_.in_vehicle(frame)};
+    if (!frames.pose_at) counts_.frames_as_they_stand.push_back(frame);
+    return frames_of_.emplace(frame, std::move(frames)).first->second;
   }
 
   const std::string& file_;
   const LogPoses& poses_;
+  const CloudFilter& filter_;
   const std::function<void(PointCloud)>& use_;
-  std::map<std::string, PoseAt> pose_of_;
+  std::map<std::string, MessageFrames> frames_of_;
   LogCloudCounts counts_;
 };
 
@@ -102,8 +104,9 @@ void LogClouds::look_through(const std::string& asked) {
   }
 }
 
-LogCloudCounts LogClouds::for_each(const std::function<void(PointCloud cloud)>& use) const {
-  CloudMessages messages(file_, poses_, use);
+LogCloudCounts LogClouds::for_each(const std::function<void(PointCloud cloud)>& use,
+                                   const CloudFilter& filter) const {
+  CloudMessages messages(file_, poses_, filter, use);
   go_through_({.wants =
                    [&](const LogTopic& topic) {
                      return topic.name == topic_ && is_cloud_type(topic.type) &&
@@ -130,7 +133,7 @@ std::vector<std::string> LogClouds::notes(const LogCloudCounts& counts) const {
     notes.push_back(fmt::format("{}: points stand as they are, the log has no poses of {}", topic_,
                                 fmt::join(counts.frames_as_they_stand, ", ")));
   }
-  note(counts.without_point, "messages hold no finite point");
+  note(counts.without_point, "messages hold no finite point, or none is left");
   note(counts.without_pose, "messages lie before the first or after the last pose: left out");
   note(counts.points_without_pose, "points lie before the first or after the last pose: left out");
   note(counts.points_with_unlikely_times,

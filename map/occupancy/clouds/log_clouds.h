@@ -9,6 +9,7 @@
 
 #include "roadbed/map/logs/log_drive.h"
 #include "roadbed/map/logs/log_poses.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -22,11 +23,11 @@ struct LogCloudTopics {
 /// What came of the messages of a topic.
 struct LogCloudCounts {
   std::size_t clouds = 0;
-  std::size_t without_point = 0;               ///< messages that hold no finite point
-  std::size_t without_pose = 0;                ///< messages left out: no point has a pose
-  std::size_t points_without_pose = 0;         ///< in all messages
+  std::size_t without_point = 0;        ///< messages that hold no finite point, or none is left
+  std::size_t without_pose = 0;         ///< messages left out: no point has a pose
+  std::size_t points_without_pose = 0;  ///< in all messages
   std::size_t points_with_unlikely_times = 0;  ///< more than a second from their message's stamp
-  std::size_t not_finite = 0;
+  std::size_t not_finite = 0, filtered_out = 0;
   std::vector<std::string> frames_as_they_stand;  ///< those without poses
 };
 
@@ -49,8 +50,11 @@ class LogClouds {
   const std::string& topic() const { return topic_; }
 
   /// Goes through the log again. Each cloud has a point.
+  /// @param filter  of which attributes and the vehicle's box, in base_link where transforms say
+  ///                where the cloud's frame is in it, else in that frame, are looked at.
   /// @throws InputError if a message is damaged, or several topics say where its frame was.
-  LogCloudCounts for_each(const std::function<void(PointCloud cloud)>& use) const;
+  LogCloudCounts for_each(const std::function<void(PointCloud cloud)>& use,
+                          const CloudFilter& filter = {}) const;
 
   /// What the user may want to know of the last time.
   std::vector<std::string> notes(const LogCloudCounts& counts) const;

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <vector>
 
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 #include "roadbed/map/occupancy/clouds/point_time.h"
 #include "roadbed/map/occupancy/clouds/sweep_poses.h"
@@ -60,13 +62,24 @@ double real_at(const char* bytes) {
 
 class Decoder {
  public:
-  Decoder(const CloudMessage& message, const Layout& layout, const PoseAt& pose_at)
-      : message_(message), layout_(layout), time_(PointTime::of(message)) {
-    if (pose_at) poses_.emplace(pose_at, message.stamp_ns);
+  Decoder(const CloudMessage& message, const Layout& layout, const MessageFrames& frames,
+          const AttributeFilter& attributes, const std::optional<Box3>& vehicle_box)
+      : message_(message),
+        layout_(layout),
+        time_(PointTime::of(message)),
+        attributes_(attributes),
+        vehicle_box_(vehicle_box) {
+    if (frames.pose_at) poses_.emplace(frames.pose_at, message.stamp_ns);
+    if (vehicle_box && frames.in_vehicle) {
+      in_vehicle_ = frames.in_vehicle(message.stamp_ns).value_or(Eigen::Isometry3d::Identity());
+    }
   }
 
   MessagePoints points() {
-    if (!poses_ && !layout_.is_double && !layout_.is_turned) return floats_as_they_stand();
+    const bool are_floats = !layout_.is_double && !layout_.is_turned;
+    if (!poses_ && are_floats && attributes_.keeps_all() && !vehicle_box_) {
+      return floats_as_they_stand();
+    }
     if (poses_ && !time_ && !poses_->at_stamp()) {
       found_.without_pose = message_.height * message_.width;
       return std::move(found_);
@@ -128,7 +141,8 @@ class Decoder {
 
   template <class Use>
   void for_each(const Use& use) {
-    found_.cloud.dropped_not_finite = found_.without_pose = found_.with_unlikely_times = 0;
+    found_.cloud.dropped_not_finite = found_.cloud.filtered_out = 0;
+    found_.without_pose = found_.with_unlikely_times = 0;
     if (layout_.is_double) {
       layout_.is_turned ? for_each_of<double, true>(use) : for_each_of<double, false>(use);
     } else {
@@ -147,6 +161,8 @@ class Decoder {
                                     real_at<Real, is_turned>(at + z));
         if (!(point.cwiseAbs().maxCoeff() < RawCloud::kBeyondEarth) || !point.allFinite()) {
           ++found_.cloud.dropped_not_finite;
+        } else if (is_filtered_out(at, point)) {
+          ++found_.cloud.filtered_out;
         } else if (!poses_) {
           use(point, nullptr);
         } else {
@@ -154,6 +170,14 @@ class Decoder {
         }
       }
     }
+  }
+
+  bool is_filtered_out(const char* at, const Eigen::Vector3d& point) const {
+    if (vehicle_box_ && vehicle_box_->holds(in_vehicle_ * point)) return true;
+    return !attributes_.keeps([&](std::size_t i) {
+      const PointField& field = message_.fields[i];
+      return read_scalar(at + field.offset, scalar_of(field), message_.is_big_endian);
+    });
   }
 
   template <class Use>
@@ -179,15 +203,23 @@ class Decoder {
   Layout layout_;
   std::optional<PointTime> time_;
   std::optional<SweepPoses> poses_;
+  const AttributeFilter& attributes_;
+  const std::optional<Box3>& vehicle_box_;
+  Eigen::Isometry3d in_vehicle_ = Eigen::Isometry3d::Identity();
   MessagePoints found_;
 };
 
 }  // namespace
 
-MessagePoints points_of_message(const CloudMessage& message, const PoseAt& pose_at,
-                                const std::string& file, const std::string& place) {
+MessagePoints points_of_message(const CloudMessage& message, const MessageFrames& frames,
+                                const CloudFilter& filter, const std::string& file,
+                                const std::string& place) {
   if (message.height == 0 || message.width == 0) return {};
-  MessagePoints found = Decoder(message, layout_of(message, file, place), pose_at).points();
+  std::vector<std::string> fields;
+  for (const PointField& field : message.fields) fields.push_back(lower(field.name));
+  const AttributeFilter attributes(filter, fields, file);
+  const Layout layout = layout_of(message, file, place);
+  MessagePoints found = Decoder(message, layout, frames, attributes, filter.vehicle_box).points();
   found.cloud.format = "PointCloud2";
   found.cloud.unit = LengthUnit::metre;  // [REP 103]
   return found;

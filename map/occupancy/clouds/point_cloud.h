@@ -32,6 +32,7 @@ struct PointCloud {
   std::string crs;                      ///< as the file says, may be empty
   LengthUnit unit = LengthUnit::unknown;
   std::size_t dropped_not_finite = 0;
+  std::size_t filtered_out = 0;
   std::optional<Eigen::Vector3d> sensor_in_source;  ///< of the file's viewpoint, if it names one
   std::vector<ScanStart> scans;  ///< in order, from point 0 on, where the file says of each point
                                  ///< where it was measured from; then `sensor_in_source` is unused
@@ -51,6 +52,11 @@ using CloudsInTurn = std::function<void(const std::function<void(const PointClou
 /// An axis-aligned box in source coordinates.
 struct Box3 {
   Eigen::Vector3d min_in_source, max_in_source;
+
+  bool holds(const Eigen::Vector3d& point) const {
+    return (point.array() >= min_in_source.array()).all() &&
+           (point.array() <= max_in_source.array()).all();
+  }
 
   void extend(const Box3& other) {
     min_in_source = min_in_source.cwiseMin(other.min_in_source);

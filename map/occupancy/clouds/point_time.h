@@ -10,6 +10,9 @@
 
 namespace roadbed::map::inline occupancy::inline clouds {
 
+/// How a field of a PointCloud2 message is written.
+ScalarType scalar_of(const PointField& field);
+
 /// When each point of a PointCloud2 message was measured, by whichever of the fields `t` (Ouster),
 /// `time` (Velodyne), `timestamp` (Hesai, Livox) and `time_stamp` (Autoware) it has.
 class PointTime {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -30,7 +31,7 @@ void check_is_scan(const FloatRecords& scan, const std::string& name) {
 
 }  // namespace
 
-RawCloud parse_kitti(std::string_view bytes, const std::string& name) {
+RawCloud parse_kitti(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
   const bool has_ring = lower(name).find(".pcd.bin") != std::string::npos;
   const std::size_t size = (has_ring ? 5 : 4) * sizeof(float);
   if (bytes.size() % size != 0) {
@@ -44,7 +45,22 @@ RawCloud parse_kitti(std::string_view bytes, const std::string& name) {
   cloud.unit = LengthUnit::metre;
   const FloatRecords scan{bytes.data(), bytes.size() / size, size, 0, 4, 8};
   check_is_scan(scan, name);
-  add_float_points(scan, cloud);
+  const AttributeFilter attributes(filter, {"x", "y", "z", "intensity"}, name);
+  if (attributes.keeps_all()) {
+    add_float_points(scan, cloud);
+    return cloud;
+  }
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    const char* point = scan.first + i * scan.size;
+    const auto value = [point](std::size_t k) {
+      return read_scalar(point + k * sizeof(float), ScalarType::f32);
+    };
+    if (attributes.keeps(value)) {
+      cloud.add({value(0), value(1), value(2)});
+    } else {
+      ++cloud.filtered_out;
+    }
+  }
   return cloud;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 #include "roadbed/map/occupancy/laz/laz_points.h"
 
@@ -35,13 +36,16 @@ struct GeoKeys {
 
 class LasParser {
  public:
-  LasParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  LasParser(std::string_view bytes, const std::string& name, const CloudFilter& filter)
+      : bytes_(bytes), name_(name), asked_(filter) {}
 
   RawCloud parse() {
     check_header();
     read_variable_records();
     name_crs();
     read_scale();
+    filter_ = AttributeFilter(
+        asked_, {"intensity", "classification", "return_number", "number_of_returns"}, name_);
     is_packed_ ? read_packed_points() : read_plain_points();
     return std::move(cloud_);
   }
@@ -190,15 +194,34 @@ class LasParser {
     }
   }
 
-  void add(const PointSteps& steps) {
-    const Eigen::Vector3d at(steps[0], steps[1], steps[2]);
+  void add(const LazPoint& point) {
+    const std::array<unsigned, 4> values{point.intensity, point.classification, point.return_number,
+                                         point.returns};
+    if (!filter_.keeps([&](std::size_t i) { return static_cast<double>(values[i]); })) {
+      ++cloud_.filtered_out;
+      return;
+    }
+    const Eigen::Vector3d at(point.steps[0], point.steps[1], point.steps[2]);
     cloud_.add(at.cwiseProduct(scale_) + offset_);
+  }
+
+  // A record of any of the formats, of which two have bits in other places.
+  LazPoint point_at(std::string_view record) const {
+    LazPoint point{.steps = steps_at(record), .intensity = integer_at<std::uint16_t>(record, 12)};
+    const auto returns = static_cast<unsigned char>(record[14]);
+    const bool is_new = (number(at::format, 1) & ~kPackedFlag) >= 6;
+    point.return_number = returns & (is_new ? 15u : 7u);
+    point.returns = static_cast<std::uint8_t>(returns >> (is_new ? 4 : 3) & (is_new ? 15u : 7u));
+    point.classification =
+        is_new ? static_cast<std::uint8_t>(record[16])
+               : static_cast<std::uint8_t>(static_cast<unsigned char>(record[15]) & 31u);
+    return point;
   }
 
   void read_plain_points() {
     cloud_.points_in_source.reserve(count_);
     for (std::uint64_t i = 0; i < count_; ++i) {
-      add(steps_at(bytes_.substr(body_offset_ + i * record_length_, 3 * sizeof(std::int32_t))));
+      add(point_at(bytes_.substr(body_offset_ + i * record_length_, record_length_)));
     }
   }
 
@@ -213,14 +236,16 @@ class LasParser {
     cloud_.format += ", packed (LAZ)";
     // No more than the file can pay for: the count is its own word.
     cloud_.points_in_source.reserve(std::min<std::uint64_t>(count_, bytes_.size()));
-    unpack_laz(bytes_, body_offset_, count_, *layout_, name_,
-               [&](std::span<const PointSteps> some) {
-                 for (const PointSteps& steps : some) add(steps);
+    unpack_laz(bytes_, body_offset_, count_, *layout_, !filter_.keeps_all(), name_,
+               [&](std::span<const LazPoint> some) {
+                 for (const LazPoint& point : some) add(point);
                });
   }
 
   std::string_view bytes_;
   const std::string& name_;
+  const CloudFilter& asked_;
+  AttributeFilter filter_;
   std::size_t record_length_ = 0;
   std::size_t body_offset_ = 0;
   std::uint64_t count_ = 0;
@@ -233,8 +258,8 @@ class LasParser {
 
 }  // namespace
 
-RawCloud parse_las(std::string_view bytes, const std::string& name) {
-  return LasParser(bytes, name).parse();
+RawCloud parse_las(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
+  return LasParser(bytes, name, filter).parse();
 }
 
 }  // namespace roadbed::map::occupancy::clouds

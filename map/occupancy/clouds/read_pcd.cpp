@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "roadbed/geometry/primitives/work_limit.h"
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -55,7 +56,8 @@ std::optional<std::string> decompress_lzf(std::string_view packed, std::size_t s
 
 class PcdParser {
  public:
-  PcdParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  PcdParser(std::string_view bytes, const std::string& name, const CloudFilter& filter)
+      : bytes_(bytes), name_(name), asked_(filter) {}
 
   RawCloud parse() {
     read_header();
@@ -215,6 +217,7 @@ class PcdParser {
     for (const Field& field : header_.fields) {
       names.push_back(field.count == 1 ? field.name : std::string());
     }
+    filter_ = AttributeFilter(asked_, names, name_);
     const auto columns = sensor_columns(names, cloud_.notes);
     if (!columns) return;
     sensor_.emplace();
@@ -226,6 +229,10 @@ class PcdParser {
   // Takes a point whose fields are `value(field)`.
   template <typename Value>
   void add_point(const Value& value) {
+    if (!filter_.keeps([&](std::size_t i) { return value(header_.fields[i]); })) {
+      ++cloud_.filtered_out;
+      return;
+    }
     const auto vector_of = [&](const Axes& axes) {
       return Eigen::Vector3d(value(*axes[0]), value(*axes[1]), value(*axes[2]));
     };
@@ -308,7 +315,8 @@ class PcdParser {
     check_body(header_.point_size, header_.body.size());
     const bool are_floats = std::ranges::all_of(
         axes_, [](const Field* axis) { return axis->scalar == ScalarType::f32; });
-    if (are_floats && !sensor_ && std::endian::native == std::endian::little) {
+    if (are_floats && !sensor_ && filter_.keeps_all() &&
+        std::endian::native == std::endian::little) {
       add_float_points({.first = header_.body.data(),
                         .count = *header_.points,
                         .size = header_.point_size,
@@ -387,6 +395,8 @@ class PcdParser {
 
   std::string_view bytes_;
   const std::string& name_;
+  const CloudFilter& asked_;
+  AttributeFilter filter_;
   Header header_;
   Axes axes_{};
   std::optional<Axes> sensor_;           // where the file has its position for each point
@@ -396,8 +406,8 @@ class PcdParser {
 
 }  // namespace
 
-RawCloud parse_pcd(std::string_view bytes, const std::string& name) {
-  return PcdParser(bytes, name).parse();
+RawCloud parse_pcd(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
+  return PcdParser(bytes, name, filter).parse();
 }
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -50,7 +51,8 @@ std::optional<ScalarType> scalar_named(std::string_view word) {
 
 class PlyParser {
  public:
-  PlyParser(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
+  PlyParser(std::string_view bytes, const std::string& name, const CloudFilter& filter)
+      : lines_(bytes), name_(name), asked_(filter) {}
 
   RawCloud parse() {
     read_header();
@@ -179,6 +181,7 @@ class PlyParser {
       names.push_back(p.list_count ? std::string() : p.name);
     }
     const FieldColumns axes = axes_of(names);
+    filter_ = AttributeFilter(asked_, names, name_);
     const std::optional<FieldColumns> sensor = sensor_columns(names, cloud_.notes);
     cloud_.points_in_source.reserve(element.count);
     std::vector<double> values;
@@ -187,7 +190,9 @@ class PlyParser {
     };
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_row(element, i, values);
-      if (sensor) {
+      if (!filter_.keeps([&](std::size_t k) { return values[k]; })) {
+        ++cloud_.filtered_out;
+      } else if (sensor) {
         cloud_.add(vector_at(axes), vector_at(*sensor));
       } else {
         cloud_.add(vector_at(axes));
@@ -256,6 +261,8 @@ class PlyParser {
 
   TextScanner lines_;
   const std::string& name_;
+  const CloudFilter& asked_;
+  AttributeFilter filter_;
   Encoding encoding_ = Encoding::unknown;
   std::vector<Element> elements_;
   std::string_view body_;  // what is left of a binary body
@@ -265,8 +272,8 @@ class PlyParser {
 
 }  // namespace
 
-RawCloud parse_ply(std::string_view bytes, const std::string& name) {
-  return PlyParser(bytes, name).parse();
+RawCloud parse_ply(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
+  return PlyParser(bytes, name, filter).parse();
 }
 
 }  // namespace roadbed::map::occupancy::clouds

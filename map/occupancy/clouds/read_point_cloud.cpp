@@ -12,7 +12,7 @@
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
 
-using Parser = RawCloud (*)(std::string_view, const std::string&);
+using Parser = RawCloud (*)(std::string_view, const std::string&, const CloudFilter&);
 
 bool begins_as_pcd(std::string_view bytes) {
   TextScanner lines(bytes.substr(0, 4096));
@@ -52,9 +52,10 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
-  RawCloud raw = choose_parser(bytes, name)(bytes, name);
-  if (raw.empty()) {
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name,
+                             const CloudFilter& filter) {
+  RawCloud raw = choose_parser(bytes, name)(bytes, name, filter);
+  if (raw.empty() && raw.filtered_out == 0) {
     refuse_cloud(name, "", "",
                  raw.dropped_not_finite == 0
                      ? "holds no point"
@@ -63,11 +64,12 @@ PointCloud parse_point_cloud(std::string_view bytes, const std::string& name) {
   }
   PointCloud cloud = relative_to_origin(std::move(raw));
   cloud.name = name;
-  return cloud;
+  return without_vehicle(std::move(cloud), filter);
 }
 
-PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes) {
-  PointCloud cloud = parse_point_cloud(bytes, input_name(file));
+PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes,
+                          const CloudFilter& filter) {
+  PointCloud cloud = parse_point_cloud(bytes, input_name(file), filter);
   return is_feather(bytes) ? in_city(std::move(cloud), file) : cloud;
 }
 

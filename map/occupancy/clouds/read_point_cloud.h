@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/clouds/point_cloud.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -16,10 +17,14 @@ namespace roadbed::map::inline occupancy::inline clouds {
 PointCloud read_point_cloud(const std::filesystem::path& file);
 
 /// The same of a file whose bytes have been read.
-PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes);
+PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes,
+                          const CloudFilter& filter = {});
 
-/// The same from bytes, without what stands beside them; `name` stands for the file in messages,
+/// The same from bytes, without what stands beside them. With a filter, what it
+/// says of points by themselves and of the vehicle's box is done, and the cloud may hold no point;
+/// `name` stands for the file in messages,
 /// its suffix counts.
-PointCloud parse_point_cloud(std::string_view bytes, const std::string& name);
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name,
+                             const CloudFilter& filter = {});
 
 }  // namespace roadbed::map::occupancy::clouds

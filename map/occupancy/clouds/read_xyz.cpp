@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roadbed/map/occupancy/clouds/attribute_filter.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
@@ -45,7 +46,8 @@ bool is_comment(std::string_view line) { return line.starts_with('#') || line.st
 
 class XyzParser {
  public:
-  XyzParser(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
+  XyzParser(std::string_view bytes, const std::string& name, const CloudFilter& filter)
+      : lines_(bytes), name_(name), asked_(filter) {}
 
   RawCloud parse() {
     cloud_.format = "XYZ text";
@@ -53,6 +55,13 @@ class XyzParser {
       const std::string_view line = lines_.next_line();
       const auto words = split(line);
       if (words.empty() || take_header(line, words)) continue;
+      if (is_before_points()) {
+        filter_ = AttributeFilter(asked_, names_, name_);
+      }
+      if (!filter_.keeps([&](std::size_t column) { return number(words, column, "a number"); })) {
+        ++cloud_.filtered_out;
+        continue;
+      }
       const Eigen::Vector3d point = numbers(words, columns_, "x, y and z");
       if (sensor_columns_) {
         cloud_.add(point, numbers(words, *sensor_columns_, "the sensor's x, y and z"));
@@ -64,9 +73,13 @@ class XyzParser {
   }
 
  private:
+  bool is_before_points() const {
+    return cloud_.empty() && cloud_.dropped_not_finite == 0 && cloud_.filtered_out == 0;
+  }
+
   // Comments anywhere; column names or a number of points before the first point.
   bool take_header(std::string_view line, const std::vector<std::string_view>& words) {
-    const bool before_points = cloud_.points_in_source.empty() && cloud_.dropped_not_finite == 0;
+    const bool before_points = is_before_points();
     const bool is_named = before_points && take_names(field_names(words));
     if (is_named || is_comment(line)) return true;
     return before_points && words.size() == 1 && parse_count(words[0]).has_value();
@@ -76,6 +89,7 @@ class XyzParser {
     const auto named = columns_named(names, {"x", "y", "z"});
     if (!named) return false;
     columns_ = *named;
+    names_ = names;
     sensor_columns_ = sensor_columns(names, cloud_.notes);
     return true;
   }
@@ -84,15 +98,17 @@ class XyzParser {
                           const char* needed) const {
     Eigen::Vector3d numbers;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (columns[axis] >= words.size()) {
-        refuse(fmt::format("has {} values", words.size()), needed);
-      }
-      const std::string_view word = words[columns[axis]];
-      const auto value = parse_number(word);
-      if (!value) refuse(fmt::format("\"{}\" is not a number", word.substr(0, 40)), needed);
-      numbers[static_cast<int>(axis)] = *value;
+      numbers[static_cast<int>(axis)] = number(words, columns[axis], needed);
     }
     return numbers;
+  }
+
+  double number(const std::vector<std::string_view>& words, std::size_t column,
+                const char* needed) const {
+    if (column >= words.size()) refuse(fmt::format("has {} values", words.size()), needed);
+    const auto value = parse_number(words[column]);
+    if (!value) refuse(fmt::format("\"{}\" is not a number", words[column].substr(0, 40)), needed);
+    return *value;
   }
 
   [[noreturn]] void refuse(const std::string& found, const std::string& needed) const {
@@ -102,6 +118,9 @@ class XyzParser {
 
   TextScanner lines_;
   const std::string& name_;
+  const CloudFilter& asked_;
+  AttributeFilter filter_;
+  std::vector<std::string> names_;  // of the columns, where a line says them
   FieldColumns columns_{0, 1, 2};
   std::optional<FieldColumns> sensor_columns_;
   RawCloud cloud_;
@@ -122,10 +141,10 @@ bool begins_as_xyz(std::string_view bytes) {
   return false;
 }
 
-RawCloud parse_xyz(std::string_view bytes, const std::string& name) {
+RawCloud parse_xyz(std::string_view bytes, const std::string& name, const CloudFilter& filter) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
-  return XyzParser(bytes, name).parse();
+  return XyzParser(bytes, name, filter).parse();
 }
 
 }  // namespace roadbed::map::occupancy::clouds

@@ -25,7 +25,7 @@ struct TimeStep {
 /// Four sequences of times, which points may switch between.
 class GpsTime : public PackedItem {
  public:
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     while (switches_sequence(from) && !from.is_past_end()) continue;
   }
 
@@ -86,7 +86,7 @@ class GpsTime : public PackedItem {
 
 class GpsTimeVersion1 : public PackedItem {
  public:
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     if (step_.last != 0) {
       take_multiple(from, from.symbol(multiple_));
       return;

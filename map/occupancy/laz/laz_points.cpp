@@ -69,8 +69,15 @@ std::size_t layers_of(const LazLayout::Item& item) {
 class Unpacking {
  public:
   Unpacking(std::string_view file, std::size_t begin, std::uint64_t points, const LazLayout& layout,
-            const std::string& name, const std::function<void(std::span<const PointSteps>)>& take)
-      : file_(file), at_(begin), left_(points), layout_(layout), name_(name), take_(take) {}
+            bool has_attributes, const std::string& name,
+            const std::function<void(std::span<const LazPoint>)>& take)
+      : file_(file),
+        at_(begin),
+        left_(points),
+        layout_(layout),
+        has_attributes_(has_attributes),
+        name_(name),
+        take_(take) {}
 
   void run() {
     if (layout_.packing != Packing::one_stream) need(kChunkTablePlace), at_ += kChunkTablePlace;
@@ -91,8 +98,8 @@ class Unpacking {
     if (at_ > file_.size() || file_.size() - at_ < bytes) refuse_end();
   }
 
-  void put(const PointSteps& steps) {
-    batch_.push_back(steps);
+  void put(const LazPoint& point) {
+    batch_.push_back(point);
     --left_;
     if (batch_.size() == kBatch) pass_on();
   }
@@ -137,15 +144,15 @@ class Unpacking {
                                      ? left_
                                      : std::min<std::uint64_t>(left_, layout_.chunk_points);
     const std::string_view first = take_bytes(layout_.point_bytes());
-    PointSteps steps = steps_at(first);
-    put(steps);
+    LazPoint point = first_of_point10(first);
+    put(point);
     if (points == 1 && left_ == 0) return;
     const auto items = items_after(first);
     ArithmeticDecoder from(file_.substr(at_));
     for (std::uint64_t i = 1; i < points; ++i) {
-      for (const auto& item : items) item->next(from, steps);
+      for (const auto& item : items) item->next(from, point);
       if (from.is_past_end()) refuse_end();
-      put(steps);
+      put(point);
     }
     at_ += from.used();
   }
@@ -157,22 +164,28 @@ class Unpacking {
       refuse(name_, fmt::format("byte {}", at_ - 4), "points of a chunk", fmt::format("{}", points),
              fmt::format("1 to {}", left_), "get the whole file");
     }
-    std::array<std::size_t, 2> wanted{};  // bytes of the first two layers, what is looked at
+    std::array<std::size_t, 5> sizes{};  // of the first layers, what is looked at
     std::size_t layer = 0, others = 0;
     for (const LazLayout::Item& item : layout_.items) {
       for (std::size_t i = layers_of(item); i > 0; --i, ++layer) {
         const auto bytes = integer_at<std::uint32_t>(take_bytes(4), 0);
-        (layer < wanted.size() ? wanted[layer] : others) += bytes;
+        (layer < sizes.size() ? sizes[layer] : others) += bytes;
       }
     }
-    const std::string_view returns_and_xy = take_bytes(wanted[0]), z = take_bytes(wanted[1]);
+    PointLayers layers;
+    layers.returns_and_xy = take_bytes(sizes[0]);
+    layers.z = take_bytes(sizes[1]);
+    layers.classification = take_bytes(sizes[2]);
+    take_bytes(sizes[3]);  // flags
+    layers.intensity = take_bytes(sizes[4]);
     take_bytes(others);
-    LayeredPoints layers(first, returns_and_xy, z);
-    put(steps_at(first));
+    if (!has_attributes_) layers.classification = layers.intensity = {};
+    LayeredPoints packed(first, layers);
+    put(LayeredPoints::first_point(first));
     for (std::uint32_t i = 1; i < points; ++i) {
-      const PointSteps steps = layers.next();
-      if (layers.is_past_end()) refuse_end();
-      put(steps);
+      const LazPoint point = packed.next();
+      if (packed.is_past_end()) refuse_end();
+      put(point);
     }
   }
 
@@ -180,9 +193,10 @@ class Unpacking {
   std::size_t at_;
   std::uint64_t left_;
   const LazLayout& layout_;
+  bool has_attributes_;
   const std::string& name_;
-  const std::function<void(std::span<const PointSteps>)>& take_;
-  std::vector<PointSteps> batch_;
+  const std::function<void(std::span<const LazPoint>)>& take_;
+  std::vector<LazPoint> batch_;
 };
 
 }  // namespace
@@ -231,9 +245,9 @@ LazLayout parse_laz_layout(std::string_view record, const std::string& name) {
 }
 
 void unpack_laz(std::string_view file, std::size_t begin, std::uint64_t points,
-                const LazLayout& layout, const std::string& name,
-                const std::function<void(std::span<const PointSteps>)>& take) {
-  Unpacking(file, begin, points, layout, name, take).run();
+                const LazLayout& layout, bool has_attributes, const std::string& name,
+                const std::function<void(std::span<const LazPoint>)>& take) {
+  Unpacking(file, begin, points, layout, has_attributes, name, take).run();
 }
 
 }  // namespace roadbed::map::occupancy::laz

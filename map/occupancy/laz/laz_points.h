@@ -41,12 +41,14 @@ struct LazLayout {
 /// @throws InputError if it is cut, or names what LASzip 3.4 has not.
 LazLayout parse_laz_layout(std::string_view record, const std::string& name);
 
-/// Unpacks the coordinates of all points, in order, some thousands at a time.
+/// Unpacks all points, in order, some thousands at a time.
+/// @param has_attributes  whether more than coordinates and returns is looked at, which is not free
+///                        where points are packed in layers.
 /// @param file   its bytes, to the end.
 /// @param begin  where its points begin.
 /// @throws InputError if the file ends before the last point, or holds what cannot be.
 void unpack_laz(std::string_view file, std::size_t begin, std::uint64_t points,
-                const LazLayout& layout, const std::string& name,
-                const std::function<void(std::span<const PointSteps>)>& take);
+                const LazLayout& layout, bool has_attributes, const std::string& name,
+                const std::function<void(std::span<const LazPoint>)>& take);
 
 }  // namespace roadbed::map::occupancy::laz

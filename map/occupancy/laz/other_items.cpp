@@ -6,7 +6,7 @@ namespace {
 
 class Rgb : public PackedItem {
  public:
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     const std::uint32_t changed = from.symbol(changed_);
     for (const std::uint32_t red : {0u, 1u}) {
       if ((changed & 1u << red) != 0) from.symbol(bytes_[red]);
@@ -24,7 +24,7 @@ class Rgb : public PackedItem {
 
 class RgbVersion1 : public PackedItem {
  public:
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     const std::uint32_t changed = from.symbol(changed_);
     for (std::uint32_t byte = 0; byte < 6; ++byte) {
       if ((changed & 1u << byte) != 0) bytes_.decode(from, 0, byte);
@@ -38,7 +38,7 @@ class RgbVersion1 : public PackedItem {
 
 class WavePacket : public PackedItem {
  public:
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     from.symbol(descriptor_);
     offset_kind_ = from.symbol(offset_kinds_[offset_kind_]);
     if (offset_kind_ == 2) offset_.decode(from, 0);
@@ -59,7 +59,7 @@ class ExtraBytes : public PackedItem {
  public:
   explicit ExtraBytes(std::size_t count) : bytes_(count, SymbolModel(256)) {}
 
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     for (SymbolModel& byte : bytes_) from.symbol(byte);
   }
 
@@ -72,7 +72,7 @@ class ExtraBytesVersion1 : public PackedItem {
   explicit ExtraBytesVersion1(std::size_t count)
       : count_(static_cast<std::uint32_t>(count)), bytes_(8, count_) {}
 
-  void next(ArithmeticDecoder& from, PointSteps&) override {
+  void next(ArithmeticDecoder& from, LazPoint&) override {
     for (std::uint32_t byte = 0; byte < count_; ++byte) bytes_.decode(from, 0, byte);
   }
 

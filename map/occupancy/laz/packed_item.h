@@ -18,8 +18,8 @@ class PackedItem {
  public:
   virtual ~PackedItem() = default;
 
-  /// Takes the next point's part; `steps` are written by who has them.
-  virtual void next(ArithmeticDecoder& from, PointSteps& steps) = 0;
+  /// Takes the next point's part; `point` is written by who has it.
+  virtual void next(ArithmeticDecoder& from, LazPoint& point) = 0;
 };
 
 /// A model for each value of a byte, made when needed.
@@ -40,6 +40,9 @@ class ByteModels {
 /// @param first    the bytes of the chunk's first point, also in what follows.
 /// @param version  1 or 2, also in what follows.
 std::unique_ptr<PackedItem> make_point10(std::string_view first, unsigned version);
+
+/// The first point of a chunk, as it is.
+LazPoint first_of_point10(std::string_view first);
 
 /// GPS time (8 bytes).
 std::unique_ptr<PackedItem> make_gps_time(unsigned version);

@@ -14,24 +14,32 @@ struct LastPoint {
       : steps(steps_at(bytes)),
         flags(static_cast<std::uint8_t>(bytes[14])),
         type(static_cast<std::uint8_t>(bytes[15])),
+        intensity(integer_at<std::uint16_t>(bytes, 12)),
         user_data(static_cast<std::uint8_t>(bytes[17])) {}
 
   std::uint32_t return_number() const { return flags & 7u; }
   std::uint32_t returns() const { return flags >> 3 & 7u; }
   std::uint32_t scan_direction() const { return flags >> 6 & 1u; }
 
+  LazPoint point() const {
+    return {steps, intensity, static_cast<std::uint8_t>(type & 31u),
+            static_cast<std::uint8_t>(return_number()), static_cast<std::uint8_t>(returns())};
+  }
+
   PointSteps steps;
-  std::uint8_t flags, type, user_data;
+  std::uint8_t flags, type;
+  std::uint16_t intensity;
+  std::uint8_t user_data;
 };
 
 class Point10 : public PackedItem {
  public:
-  explicit Point10(std::string_view first) : last_(first) {}
+  explicit Point10(std::string_view first) : last_(first) { last_.intensity = 0; }
 
-  void next(ArithmeticDecoder& from, PointSteps& steps) override {
+  void next(ArithmeticDecoder& from, LazPoint& point) override {
     if (const std::uint32_t changed = from.symbol(changed_)) take_changed(from, changed);
     take_coordinates(from);
-    steps = last_.steps;
+    point = last_.point();
   }
 
  private:
@@ -45,6 +53,7 @@ class Point10 : public PackedItem {
       std::int32_t& last = last_intensity_[map()];
       last = intensity_.decode(from, last, std::min(map(), 3u));
     }
+    last_.intensity = static_cast<std::uint16_t>(last_intensity_[map()]);
     if ((changed & 8) != 0) {
       last_.type = static_cast<std::uint8_t>(from.symbol(type_[last_.type]));
     }
@@ -99,7 +108,7 @@ class Point10Version1 : public PackedItem {
  public:
   explicit Point10Version1(std::string_view first) : last_(first) {}
 
-  void next(ArithmeticDecoder& from, PointSteps& steps) override {
+  void next(ArithmeticDecoder& from, LazPoint& point) override {
     constexpr std::uint32_t most = 19;
     const std::int32_t dx = dx_.decode(from, x_steps_.median());
     const std::int32_t dy = dy_.decode(from, y_steps_.median(), std::min(dx_.k(), most));
@@ -109,12 +118,14 @@ class Point10Version1 : public PackedItem {
     x_steps_.add(dx);
     y_steps_.add(dy);
     take_changed(from, from.symbol(changed_), k);
-    steps = last_.steps;
+    point = last_.point();
   }
 
  private:
   void take_changed(ArithmeticDecoder& from, std::uint32_t changed, std::uint32_t k) {
-    if ((changed & 32) != 0) intensity_.decode(from, 0);
+    if ((changed & 32) != 0) {
+      last_.intensity = static_cast<std::uint16_t>(intensity_.decode(from, last_.intensity));
+    }
     if ((changed & 16) != 0) {
       last_.flags = static_cast<std::uint8_t>(from.symbol(flags_[last_.flags]));
     }
@@ -136,6 +147,8 @@ class Point10Version1 : public PackedItem {
 };
 
 }  // namespace
+
+LazPoint first_of_point10(std::string_view first) { return LastPoint(first).point(); }
 
 std::unique_ptr<PackedItem> make_point10(std::string_view first, unsigned version) {
   if (version == 1) return std::make_unique<Point10Version1>(first);

@@ -10,6 +10,13 @@ namespace roadbed::map::inline occupancy::inline laz {
 /// x, y and z as a file counts them, in steps of its scale.
 using PointSteps = std::array<std::int32_t, 3>;
 
+/// What is looked at of a point.
+struct LazPoint {
+  PointSteps steps;
+  std::uint16_t intensity = 0;
+  std::uint8_t classification = 0, return_number = 0, returns = 0;
+};
+
 /// A sum of two, modulo 2³².
 inline std::int32_t moved(std::int32_t value, std::int32_t by) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(value) +

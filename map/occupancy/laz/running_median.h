@@ -14,12 +14,12 @@ class RunningMedian {
   void add(std::int32_t value) {
     if (drops_largest_) {
       drops_largest_ = value < sorted_[2];
-      int i = 4;
+      std::size_t i = 4;
       for (; i > 0 && value < sorted_[i - 1]; --i) sorted_[i] = sorted_[i - 1];
       sorted_[i] = value;
     } else {
       drops_largest_ = value <= sorted_[2];
-      int i = 0;
+      std::size_t i = 0;
       for (; i < 4 && sorted_[i + 1] < value; ++i) sorted_[i] = sorted_[i + 1];
       sorted_[i] = value;
     }

@@ -1,10 +1,12 @@
-#include "roadbed/map/occupancy/clouds/cloud_transforms.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/tests/support/program_run.h"
 
 namespace roadbed::map {
@@ -50,6 +52,75 @@ TEST_F(CloudFilterTest, ThinsToAPointPerCube) {
   EXPECT_TRUE(holds_the_bird(kept));
   EXPECT_GE(kept.points.size(), 8u * 4u);
   EXPECT_LE(kept.points.size(), 9u * 5u + 1u);
+}
+
+std::size_t points_of(const std::string& bytes, const std::string& name,
+                      const CloudFilter& filter) {
+  return parse_point_cloud(bytes, name, filter).points.size();
+}
+
+// Class, return, number of returns and intensity of four points.
+const std::string kText =
+    "x,y,z,Classification,Return_Number,NumberOfReturns,scalar_Intensity\n"
+    "1,0,0,2,1,1,10\n2,0,0,6,1,2,20\n3,0,0,7,2,2,30\n4,0,0,2,2,3,40\n";
+
+TEST(CloudFilterOfAttributes, KeepsWhatPointsSayOfThemselves) {
+  EXPECT_EQ(points_of(kText, "a.csv", {}), 4u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.classes = {2}}), 2u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.classes = {2, 6}}), 3u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.left_out_classes = {7}}), 3u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.returns = {1}}), 2u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.last_returns = true}), 2u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.intensity = ValueRange{20, 30}}), 2u);
+  EXPECT_EQ(points_of(kText, "a.csv", {.classes = {2}, .returns = {2}}), 1u);
+  const PointCloud none = parse_point_cloud(kText, "a.csv", {.classes = {99}});
+  EXPECT_TRUE(none.points.empty());
+  EXPECT_EQ(none.filtered_out, 4u);
+}
+
+TEST(CloudFilterOfAttributes, RefusesCloudsThatDoNotSayThem) {
+  EXPECT_THROW(points_of("1 2 3\n", "a.xyz", {.classes = {2}}), InputError);
+  EXPECT_THROW(points_of("x,y,z,intensity\n1,2,3,4\n", "a.csv", {.returns = {1}}), InputError);
+}
+
+TEST(CloudFilterOfAttributes, IsTheSameInPcdAndPly) {
+  const CloudFilter filter{.intensity = ValueRange{20, 30}};
+  EXPECT_EQ(points_of("# .PCD v0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\n"
+                      "COUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n"
+                      "1 0 0 10\n2 0 0 20\n",
+                      "a.pcd", filter),
+            1u);
+  EXPECT_EQ(points_of("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                      "property float y\nproperty float z\nproperty uchar intensity\n"
+                      "end_header\n1 0 0 10\n2 0 0 20\n",
+                      "a.ply", filter),
+            1u);
+}
+
+TEST(CloudFilterOfPlaces, LeavesOutTheVehicleAndWhatIsTooFarOrTooHigh) {
+  const Box3 box{{1.5, -1, -1}, {3.0, 1, 1}};
+  EXPECT_EQ(points_of(kText, "a.csv", {.vehicle_box = box}), 2u);
+  PointCloud cloud = parse_point_cloud("1 0 0\n2 0 5\n3 0 0\n4 0 9\n", "a.xyz");
+  EXPECT_EQ(within_reach(cloud, {.height_m = ValueRange{1, 6}}).points.size(), 1u);
+  const CloudFilter near{.range_m = ValueRange{1.5, 3.5}};
+  EXPECT_THROW(within_reach(cloud, near), InputError);
+  cloud.sensor_in_source = Eigen::Vector3d(0, 0, 0);
+  EXPECT_EQ(within_reach(cloud, near).points.size(), 1u);
+}
+
+TEST(CloudFilterOfPlaces, KeepsEachPointsSensor) {
+  PointCloud cloud = parse_point_cloud("1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n", "a.xyz");
+  const Eigen::Vector3d at_two(2, 0, 0), at_four(4, 0, 0);
+  cloud.scans = {{0, at_two}, {2, std::nullopt}, {3, at_four}};
+  const PointCloud high = within_reach(cloud, {.height_m = ValueRange{1, 2}});
+  EXPECT_TRUE(high.points.empty() && high.scans.empty());
+  cloud.scans = {{0, at_two}, {2, at_two}, {3, at_four}};
+  const PointCloud near = within_reach(cloud, {.range_m = ValueRange{0.5, 5}});
+  ASSERT_EQ(near.points.size(), 3u);  // at 1, 3 and 5
+  ASSERT_EQ(near.scans.size(), 3u);
+  EXPECT_EQ(near.scans[1].first, 1u);
+  EXPECT_EQ(near.scans[2].first, 2u);
+  EXPECT_EQ(near.scans[2].sensor_in_source, at_four);
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/open_module.h"
+#include "roadbed/map/occupancy/clouds/pcl_filter.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+namespace {
+
+[[noreturn]] void refuse_filter(const std::string& found, const std::string& remedy) {
+  throw InputError({.file = "point cloud filter", .found = found, .remedy = remedy});
+}
+
+RoadbedPclFilter& open_module() {
+  const ModuleFunction found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
+  if (found.address != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found.address);
+  refuse_filter(
+      found.fault,
+      "install PCL (Debian: libpcl-filters1.13; libpcl-dev before roadbed is built), or leave the "
+      "filters out");
+}
+
+// Keeps the points for which `keeps(point, sensor)`, in place; scans keep what is left of theirs.
+template <class Keeps>
+void keep(PointCloud& cloud, const Keeps& keeps) {
+  std::vector<ScanStart> scans;
+  std::size_t kept = 0, next_scan = 0;
+  const std::optional<Eigen::Vector3d>* sensor = &cloud.sensor_in_source;
+  bool has_begun = false;  // whether the scan has a point that is kept
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (next_scan < cloud.scans.size() && cloud.scans[next_scan].first == i) {
+      sensor = &cloud.scans[next_scan++].sensor_in_source;
+      has_begun = false;
+    }
+    if (!keeps(cloud.in_source(i), *sensor)) continue;
+    if (!cloud.scans.empty() && !std::exchange(has_begun, true)) scans.push_back({kept, *sensor});
+    cloud.points[kept++] = cloud.points[i];
+  }
+  cloud.filtered_out += cloud.points.size() - kept;
+  cloud.points.resize(kept);
+  cloud.scans = std::move(scans);
+}
+
+}  // namespace
+
+PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter) {
+  if (!filter.vehicle_box) return cloud;
+  keep(cloud, [&](const Eigen::Vector3d& point, const std::optional<Eigen::Vector3d>&) {
+    return !filter.vehicle_box->holds(point);
+  });
+  return cloud;
+}
+
+PointCloud within_reach(PointCloud cloud, const CloudFilter& filter) {
+  if (!filter.range_m && !filter.height_m) return cloud;
+  const ValueRange height_m = filter.height_m.value_or(ValueRange());
+  keep(cloud, [&](const Eigen::Vector3d& point, const std::optional<Eigen::Vector3d>& sensor) {
+    if (!height_m.holds(point.z())) return false;
+    if (!filter.range_m) return true;
+    if (sensor) return filter.range_m->holds((point - *sensor).norm());
+    throw InputError({.file = cloud.name,
+                      .element = "range",
+                      .found = "does not say where its sensor was",
+                      .needed = "the sensor's position",
+                      .remedy = "give --sensor X,Y,Z or --poses"});
+  });
+  return cloud;
+}
+
+PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter) {
+  static RoadbedPclFilter& pcl_filter = open_module();
+  PointCloud kept = cloud;
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  const std::size_t count =
+      pcl_filter(kept.points.front().data(), kept.points.size(), static_cast<float>(filter.voxel_m),
+                 filter.outlier_neighbours, filter.outlier_deviations);
+  if (count == 0) refuse_filter(fmt::format("no point of {} is left", cloud.name), "filter less");
+  kept.points.resize(count);
+  return kept;
+}
+
+}  // namespace roadbed::map::occupancy::clouds

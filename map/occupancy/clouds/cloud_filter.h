@@ -1,0 +1,56 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "roadbed/map/occupancy/clouds/point_cloud.h"
+
+namespace roadbed::map::inline occupancy::inline clouds {
+
+/// Values from one to another, both included.
+struct ValueRange {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  bool holds(double value) const { return value >= least && value <= most; }
+};
+
+/// What of clouds counts before occupancy is built from them; as it stands, everything. What a
+/// point says of itself (class, return, intensity) is looked at when it is read, a cloud that does
+/// not say it is refused; `vehicle_box` is looked at before clouds are placed, the rest after.
+struct CloudFilter {
+  std::vector<int> classes = {};             ///< only these, as LAS numbers them; empty: all
+  std::vector<int> left_out_classes = {};    ///< none of these
+  std::vector<int> returns = {};             ///< only these of each pulse, from 1; empty: all
+  bool last_returns = false;                 ///< only the last one of each pulse
+  std::optional<ValueRange> intensity = {};  ///< in the file's own measure
+  std::optional<Box3> vehicle_box = {};     ///< nothing in it: the vehicle itself, in its own frame
+  std::optional<ValueRange> range_m = {};   ///< from where the point was measured
+  std::optional<ValueRange> height_m = {};  ///< z in the source
+  double voxel_m = 0.0;             ///< one point, the mean, per cube of this side; 0: keep all
+  int outlier_neighbours = 0;       ///< compare distances to this many neighbours; 0: keep all
+  double outlier_deviations = 2.0;  ///< over the mean by more standard deviations: an outlier
+
+  /// Whether it looks at what a point says of itself.
+  bool looks_at_attributes() const {
+    return !classes.empty() || !left_out_classes.empty() || !returns.empty() || last_returns ||
+           intensity.has_value();
+  }
+  /// Whether it needs PCL.
+  bool looks_at_neighbours() const { return voxel_m > 0.0 || outlier_neighbours > 0; }
+};
+
+/// A cloud without its points in `vehicle_box`; may hold none then.
+PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter);
+
+/// A cloud with its points within `range_m` and `height_m`; may hold none then.
+/// @throws InputError if a range is asked for and a point's sensor is not known.
+PointCloud within_reach(PointCloud cloud, const CloudFilter& filter);
+
+/// Applies PCL's StatisticalOutlierRemoval, then its VoxelGrid. PCL is opened now, not when the
+/// program starts, which would cost every command 50 ms.
+/// @throws InputError if roadbed was built without PCL, or no point is left.
+PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter);
+
+}  // namespace roadbed::map::occupancy::clouds

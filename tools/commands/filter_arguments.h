@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
+#include "roadbed/tools/cli/arguments.h"
+
+namespace roadbed::tools::inline commands {
+
+/// The options of a CloudFilter, all but those that need PCL.
+class FilterArguments {
+ public:
+  void declare(Arguments& arguments);
+  map::CloudFilter filter() const;
+
+ private:
+  std::vector<double> classes_, left_out_classes_, intensity_, range_m_, height_m_, vehicle_box_;
+  std::string returns_;
+};
+
+}  // namespace roadbed::tools::commands
