@@ -3,6 +3,7 @@
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/lanelet2/write/autoware/write.h"
 #include "roadbed/map/lanelet2/write/write.h"
 #include "roadbed/map/load_map.h"
 
@@ -10,12 +11,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace roadbed::map;
   try {
-    const RoadMap road_map =
-        parse_map(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+    const std::string bytes(reinterpret_cast<const char*>(data), size);
+    const RoadMap road_map = parse_map(bytes, "fuzz");
     if (road_map.format() == "Lanelet2") {
       parse_map(
           lanelet2::write_lanelet2(road_map, {.crs = "EPSG:32632", .offset_in_crs = {}}).bytes,
           "written");
+      parse_map(lanelet2::write_autoware(road_map, {road_map.crs(), {}, bytes}).vector_map,
+                "for Autoware");
     }
   } catch (const InputError&) {
     return 0;  // refused, as it should be

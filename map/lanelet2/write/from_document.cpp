@@ -18,7 +18,9 @@ bool is_of_place(std::string_view key) {
 std::int64_t id_beyond(const Document& document) {
   std::int64_t largest = 0;
   const auto see = [&](const auto& elements) {
-    for (const auto& element : elements) largest = std::max(largest, element.id);
+    for (const auto& element : elements) {
+      if (element.id <= kLargestKeptId) largest = std::max(largest, element.id);
+    }
   };
   see(document.nodes);
   see(document.ways);
@@ -35,14 +37,19 @@ class Copier {
     copy_nodes();
     copy_ways();
     copy_relations();
-    for (std::size_t lane = 0; lane < built_.lanes.size(); ++lane) {
-      made_.lanelets.emplace_back(relations_[built_.relations[lane]]);
-      made_.borders.push_back({in_copy(built_.left[lane]), in_copy(built_.right[lane])});
-    }
+    for (std::size_t lane = 0; lane < built_.lanes.size(); ++lane) add_lane(lane);
     return std::move(made_);
   }
 
  private:
+  void add_lane(std::size_t lane) {
+    const std::uint32_t relation = relations_[built_.relations[lane]];
+    const Border left = in_copy(built_.left[lane]), right = in_copy(built_.right[lane]);
+    const bool is_whole = relation != kLeftOut && left.way != kLeftOut && right.way != kLeftOut;
+    made_.lanelets.push_back(is_whole ? std::optional(relation) : std::nullopt);
+    made_.borders.push_back({left, right});
+  }
+
   void copy_nodes() {
     nodes_.resize(document_.nodes.size(), kLeftOut);
     for (std::uint32_t i = 0; i < document_.nodes.size(); ++i) {

@@ -13,9 +13,8 @@ namespace roadbed::map::lanelet2 {
 namespace {
 
 std::optional<std::int64_t> writable_id(const std::string& text) {
-  constexpr std::int64_t largest = 9'200'000'000'000'000'000;  // and 2·10¹⁶ fresh ones beyond
   const std::optional<std::int64_t> id = id_in(text);
-  return id && *id > 0 && *id <= largest ? id : std::nullopt;
+  return id && *id > 0 && *id <= kLargestKeptId ? id : std::nullopt;
 }
 
 void append_tag(std::string_view key, std::string_view value, std::string& text) {

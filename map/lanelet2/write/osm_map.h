@@ -39,6 +39,9 @@ struct OsmRelation {
   Attributes tags;
 };
 
+/// Ids that a map may bring along; of fresh ones there are 2·10¹⁶ beyond.
+inline constexpr std::int64_t kLargestKeptId = 9'200'000'000'000'000'000;
+
 /// An OpenStreetMap file while it is made: its elements, which name each other by their places in
 /// these lists, and ids that no other element has.
 class OsmMap {

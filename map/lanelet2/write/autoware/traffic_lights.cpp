@@ -103,12 +103,14 @@ class LightCompleter {
   void face_drivers(std::uint32_t element, const std::vector<LaneId>& users) {
     for (const std::uint32_t light : ways(element, "refers")) {
       std::vector<std::uint32_t>& nodes = osm_.ways[light].nodes;
-      const bool turned_away = !users.empty() && std::ranges::all_of(users, [&](LaneId user) {
-        const LaneletEdge edge = edge_at_line(user);
-        const Eigen::Vector3d along =
-            osm_.nodes[nodes.back()].in_map - osm_.nodes[nodes.front()].in_map;
-        return along.head<2>().dot((edge.right - edge.left).head<2>()) < 0.0;
-      });
+      const bool has_line = nodes.size() >= 2 && !users.empty();
+      const bool turned_away =
+          has_line && std::ranges::all_of(users, [&](LaneId user) {
+            const LaneletEdge edge = edge_at_line(user);
+            const Eigen::Vector3d along =
+                osm_.nodes[nodes.back()].in_map - osm_.nodes[nodes.front()].in_map;
+            return along.head<2>().dot((edge.right - edge.left).head<2>()) < 0.0;
+          });
       if (!turned_away) continue;
       std::ranges::reverse(nodes);
       ++assumed_.facings;

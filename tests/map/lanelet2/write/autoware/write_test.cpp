@@ -162,6 +162,26 @@ TEST(WriteAutoware, TheFileIsNeverToBeUploaded) {
               HasSubstr("upload=\"never\""));
 }
 
+// Of elements with one id the first is the file's; a light may be a way of nothing.
+TEST(WriteAutoware, ADamagedMapIsWrittenAsFarAsItIsOne) {
+  std::string source = read_file(tests::data_folder() / "crossing.osm");
+  const std::string end = "</osm>";
+  const std::size_t lanelet = source.find("<relation");
+  const std::string again =
+      source.substr(lanelet, source.find("</relation>", lanelet) + 11 - lanelet);
+  const std::size_t light = source.find("v=\"traffic_light\"");
+  std::size_t way = source.rfind("<way", light);
+  while (true) {  // without its nodes
+    const std::size_t node = source.find("<nd", way);
+    if (node > source.find("</way>", way)) break;
+    source.erase(node, source.find("/>", node) + 2 - node);
+  }
+  source.insert(source.rfind(end), again);
+  const RoadMap road_map = parse_map(source, "damaged.osm");
+  const AutowareFiles files = write_autoware(road_map, {road_map.crs(), {}, source});
+  EXPECT_EQ(parse_map(files.vector_map, "written.osm").lanes().size(), 24U);
+}
+
 /// A light beyond the middle road of three, for the first of them, that faces as said.
 RoadMap lit_road(double heading_rad) {
   tests::MadeMap made = tests::three_roads_in_a_row();
