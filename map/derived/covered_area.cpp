@@ -14,9 +14,10 @@ using Eigen::Vector2d;
 using geometry::Box;
 using geometry::Ring;
 
-/// A ring's part in a window.
+/// A ring's part in a window: of three points or more, which belong to somebody else.
 struct RingPart {
-  Ring ring;
+  const Ring* ring;
+  Box box;
   std::uint32_t group = GroupedRing::kNoGroup;
 };
 
@@ -158,7 +159,7 @@ struct LocalGroups {
 std::vector<Edge> edges_of(std::span<const RingPart> pieces) {
   std::vector<Edge> edges;
   for (std::uint32_t p = 0; p < pieces.size(); ++p) {
-    const Ring& ring = pieces[p].ring;
+    const Ring& ring = *pieces[p].ring;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vector2d &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
       if (a.y() < b.y()) edges.push_back({a, b, p});
@@ -206,6 +207,7 @@ CoveredArea swept(std::span<const RingPart> pieces, Budget& budget) {
 /// which covers nothing.
 Ring part_beside(const Ring& ring, int axis, double at, bool above) {
   Ring kept;
+  kept.reserve(ring.size() + 2);
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Vector2d &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
     const bool a_in = above ? a[axis] >= at : a[axis] <= at;
@@ -219,24 +221,34 @@ Ring part_beside(const Ring& ring, int axis, double at, bool above) {
   return kept;
 }
 
-/// Parts of pieces on either side of the middle of their box.
-std::pair<std::vector<RingPart>, std::vector<RingPart>> halves(std::vector<RingPart> pieces,
-                                                               const std::vector<Box>& boxes,
-                                                               int axis, double at) {
-  std::pair<std::vector<RingPart>, std::vector<RingPart>> both;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    RingPart& piece = pieces[i];
-    if (boxes[i].max()[axis] <= at) {
-      both.first.push_back(std::move(piece));
-    } else if (boxes[i].min()[axis] >= at) {
-      both.second.push_back(std::move(piece));
-    } else {
-      both.first.push_back({part_beside(piece.ring, axis, at, false), piece.group});
-      both.second.push_back({part_beside(piece.ring, axis, at, true), piece.group});
+/// Pieces on either side of a line along an axis; holds the rings that it cut.
+struct Halves {
+  std::vector<RingPart> below, above;
+
+  Halves(const std::vector<RingPart>& pieces, int axis, double at) {
+    const auto is_cut = [&](const RingPart& piece) {
+      return piece.box.min()[axis] < at && piece.box.max()[axis] > at;
+    };
+    rings_.reserve(2 * static_cast<std::size_t>(std::ranges::count_if(pieces, is_cut)));
+    for (const RingPart& piece : pieces) {
+      if (is_cut(piece)) {
+        keep(part_beside(*piece.ring, axis, at, false), piece.group, below);
+        keep(part_beside(*piece.ring, axis, at, true), piece.group, above);
+      } else {
+        (piece.box.max()[axis] <= at ? below : above).push_back(piece);
+      }
     }
   }
-  return both;
-}
+
+ private:
+  void keep(Ring part, std::uint32_t group, std::vector<RingPart>& side) {
+    if (part.size() < 3) return;
+    const Ring& ring = rings_.emplace_back(std::move(part));
+    side.push_back({&ring, geometry::box_around(ring), group});
+  }
+
+  std::vector<Ring> rings_;
+};
 
 /// Whether a ring of at most four points turns one way only, so that it cannot cross itself.
 bool is_convex(const geometry::Ring& ring) {
@@ -252,40 +264,37 @@ bool is_convex(const geometry::Ring& ring) {
 }
 
 CoveredArea alone(const RingPart& piece) {
-  const double area_m2 = std::abs(geometry::signed_area_m2(piece.ring));
+  const double area_m2 = std::abs(geometry::signed_area_m2(*piece.ring));
   return {area_m2, piece.group == GroupedRing::kNoGroup ? 0.0 : area_m2};
 }
 
-CoveredArea area_of(std::vector<RingPart> pieces, Budget& budget) {
-  std::erase_if(pieces, [](const RingPart& piece) { return piece.ring.size() < 3; });
-  std::vector<Box> boxes;
+CoveredArea area_of(const std::vector<RingPart>& pieces, Budget& budget) {
   Box window;
   std::size_t points = 0;
   for (const RingPart& piece : pieces) {
-    boxes.push_back(geometry::box_around(piece.ring));
-    window.extend(boxes.back());
-    points += piece.ring.size();
+    window.extend(piece.box);
+    points += piece.ring->size();
   }
   budget.spend(points);
   if (pieces.empty() || budget.is_spent) return {};
-  if (pieces.size() == 1 && is_convex(pieces.front().ring)) return alone(pieces.front());
+  if (pieces.size() == 1 && is_convex(*pieces.front().ring)) return alone(pieces.front());
   const int axis = window.sizes().x() >= window.sizes().y() ? 0 : 1;
   const double middle = window.center()[axis];
-  constexpr std::size_t kFew = 40, kFewEach = 10;
+  constexpr std::size_t kFew = 80, kFewEach = 10;
   constexpr double kSmall_m = 0.05;
   const bool is_small = points <= kFew || window.sizes()[axis] < kSmall_m;
   // Halving brings nothing where most pieces are short and would be in both halves.
-  const auto straddles = [&](const Box& box) {
-    return box.min()[axis] < middle && middle < box.max()[axis];
+  const auto straddles = [&](const RingPart& piece) {
+    return piece.box.min()[axis] < middle && middle < piece.box.max()[axis];
   };
   const bool is_bundle =
       points <= kFewEach * pieces.size() &&
-      2 * static_cast<std::size_t>(std::ranges::count_if(boxes, straddles)) > pieces.size();
+      2 * static_cast<std::size_t>(std::ranges::count_if(pieces, straddles)) > pieces.size();
   if (is_small || is_bundle) return swept(pieces, budget);
-  auto [below, above] = halves(std::move(pieces), boxes, axis, middle);
-  const CoveredArea one = area_of(std::move(below), budget);
-  const CoveredArea other = area_of(std::move(above), budget);
-  return {one.all_m2 + other.all_m2, one.groups_m2 + other.groups_m2};
+  const Halves halves(pieces, axis, middle);
+  const CoveredArea below = area_of(halves.below, budget);
+  const CoveredArea above = area_of(halves.above, budget);
+  return {below.all_m2 + above.all_m2, below.groups_m2 + above.groups_m2};
 }
 
 }  // namespace
@@ -293,13 +302,13 @@ CoveredArea area_of(std::vector<RingPart> pieces, Budget& budget) {
 std::optional<CoveredArea> covered_area(const std::vector<GroupedRing>& rings) {
   std::vector<RingPart> pieces;
   std::size_t points = 0;
-  for (const GroupedRing& grouped : rings) {
-    pieces.push_back({*grouped.ring, grouped.group});
-    points += grouped.ring->size();
+  for (const auto& [ring, group] : rings) {
+    points += ring->size();
+    if (ring->size() >= 3) pieces.push_back({ring, geometry::box_around(*ring), group});
   }
   constexpr std::size_t kStepsEach = 500, kSteps = 100'000;
   Budget budget{kSteps + kStepsEach * points};
-  const CoveredArea area = area_of(std::move(pieces), budget);
+  const CoveredArea area = area_of(pieces, budget);
   if (budget.is_spent) return std::nullopt;
   return area;
 }
