@@ -126,7 +126,8 @@ void OsmEdit::add(lanelet2::MemberKind kind, const std::string& text) {
   list += "\n  " + text;
 }
 
-std::string OsmEdit::file() const {
+std::string OsmEdit::file() && {
+  std::ranges::stable_sort(replaced_, {}, &Replacement::at);
   const std::string_view text = document_.text;
   // New elements stand behind the last one of their kind, or of the kind before.
   const auto last = [](const auto& elements, std::size_t before) {
@@ -156,7 +157,9 @@ std::string OsmEdit::file() const {
     file += text.substr(cursor, to - cursor);
     cursor = to;
   };
-  for (const auto& [at, replacement] : replaced_) {
+  for (std::size_t i = 0; i < replaced_.size(); ++i) {
+    const auto& [at, replacement] = replaced_[i];
+    if (i + 1 < replaced_.size() && replaced_[i + 1].at == at) continue;
     copy_to(at);
     if (replacement.empty()) {  // the blanks before it go, too
       file.erase(file.find_last_not_of(kBlanks) + 1);

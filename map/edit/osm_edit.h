@@ -61,9 +61,9 @@ class OsmEdit {
   /// @param document  outlives it.
   explicit OsmEdit(const lanelet2::Document& document) : document_(document) {}
 
-  /// What stands in place of the element that begins there; empty: nothing.
-  void replace(std::size_t at, std::string text) { replaced_[at] = std::move(text); }
-  void drop(std::size_t at) { replaced_[at].clear(); }
+  /// What stands in place of the element that begins there, empty: nothing; the last word counts.
+  void replace(std::size_t at, std::string text) { replaced_.push_back({at, std::move(text)}); }
+  void drop(std::size_t at) { replace(at, {}); }
 
   /// Behind all others of their kind.
   void add(lanelet2::MemberKind kind, const std::string& text);
@@ -71,11 +71,16 @@ class OsmEdit {
   std::string_view text_of(std::size_t at) const { return xml_element_at(document_.text, at); }
 
   /// The whole file.
-  std::string file() const;
+  std::string file() &&;
 
  private:
+  struct Replacement {
+    std::size_t at;
+    std::string text;
+  };
+
   const lanelet2::Document& document_;
-  std::map<std::size_t, std::string> replaced_;
+  std::vector<Replacement> replaced_;
   std::string nodes_, ways_, relations_;
 };
 

@@ -114,10 +114,14 @@ bool say_the_same(pugi::xml_node a, pugi::xml_node b, const Ignored& ignored) {
 }
 
 std::string text_of(const XmlDocument& xml, const std::string& indent) {
+  return text_of(xml.root(), indent, xml.size_bytes());
+}
+
+std::string text_of(pugi::xml_node root, const std::string& indent, std::size_t likely_bytes) {
   std::string text;
-  text.reserve(xml.size_bytes() + xml.size_bytes() / 8);
+  text.reserve(likely_bytes + likely_bytes / 8);
   StringWriter writer(text);
-  for (pugi::xml_node node : xml.root().parent().children()) {
+  for (const pugi::xml_node node : root.parent().children()) {
     node.print(writer, indent.c_str(), pugi::format_default, pugi::encoding_utf8);
   }
   return text;

@@ -54,6 +54,7 @@ bool say_the_same(pugi::xml_node a, pugi::xml_node b, const Ignored& ignored);
 /// more spaces, or tabs, as the file begins its second line of elements.
 /// @param indent  of one level, see indent_of.
 std::string text_of(const XmlDocument& xml, const std::string& indent);
+std::string text_of(pugi::xml_node root, const std::string& indent, std::size_t likely_bytes);
 
 /// How a text indents its elements: the blanks before the first one inside the root.
 std::string indent_of(std::string_view text);

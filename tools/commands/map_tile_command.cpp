@@ -65,16 +65,16 @@ class TileCommand : public Command {
   Exit run(const Streams& streams, const CommonOptions& common) override {
     map::OutputFolder folder(output_, {.force = force_, .inputs = common.input_files});
     const std::string name = map::input_name(input_);
-    const std::string bytes = map::read_file(input_);
+    std::string bytes = map::read_file(input_);
     const TileRange range = tiles_of(map::parse_map(bytes, name), name);
+    const map::Clipper clip = map::make_clipper(std::move(bytes), name, options_);
     Json tiles = Json::array();
     for (long y = range.from_y; y <= range.to_y; ++y) {
       for (long x = range.from_x; x <= range.to_x; ++x) {
         const Eigen::Vector2d corner(static_cast<double>(x) * side_m_,
                                      static_cast<double>(y) * side_m_);
         const Eigen::Vector2d far = corner + Eigen::Vector2d::Constant(side_m_);
-        const map::Edited tile =
-            map::clip(bytes, name, map::Region({geometry::box_ring(corner, far)}), options_);
+        const map::Edited tile = clip(map::Region({geometry::box_ring(corner, far)}));
         if (tile.bytes.empty()) continue;
         const std::string file = fmt::format("{}_{}{}", x, y, suffix());
         folder.write(file, tile.bytes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "roadbed/map/edit/clipping/region.h"
@@ -19,6 +20,13 @@ struct ClipOptions {
 Edited clip(std::string bytes, const std::string& name, const Region& region,
             const ClipOptions& options = {});
 
+/// Clips one map again and again, as `clip` does: it is read once, and what is far from a region
+/// costs next to nothing.
+using Clipper = std::function<Edited(const Region& region)>;
+
+/// @throws InputError as `clip` does.
+Clipper make_clipper(std::string bytes, const std::string& name, const ClipOptions& options = {});
+
 // Of one format.
 //
 // OpenDRIVE: a road is cut across its reference line, at the first and the last station at which
@@ -27,18 +35,18 @@ Edited clip(std::string bytes, const std::string& name, const Region& region,
 // width. A road that comes back in falls into parts; the first keeps the id.
 Edited clip_open_drive(std::string bytes, const std::string& name, const Region& region,
                        const ClipOptions& options);
+Clipper open_drive_clipper(std::string bytes, const std::string& name, const ClipOptions& options);
 
 // Lanelet2: a lanelet is cut where the region's edge crosses its borders, each exactly there, at
 // new points that lanelets beside it share. Where the edge does not cross both borders alike, the
 // lanelet stays whole, and so do those that share a border with it. Regulatory elements stay with
 // any of their lanelets, lines that they name stay whole.
-Edited clip_lanelet2(std::string bytes, const std::string& name, const Region& region,
-                     const ClipOptions& options);
+Clipper lanelet2_clipper(std::string bytes, const std::string& name, const ClipOptions& options);
 
 // CommonRoad: lanelets beside each other are cut together, across, at the first and the last row of
 // their points (or a place between two) at which any of them touches the region: everything inside
-// is kept. Obstacles and planning problems stay with where they begin.
-Edited clip_common_road(std::string bytes, const std::string& name, const Region& region,
-                        const ClipOptions& options);
+// is kept. Obstacles and planning problems stay with where they begin. Such a file is small, and
+// read for each region.
+Clipper common_road_clipper(std::string bytes, const std::string& name, const ClipOptions& options);
 
 }  // namespace roadbed::map::edit::clipping

@@ -282,17 +282,18 @@ class CommonRoadClipper {
 
 }  // namespace
 
-Edited clip_common_road(std::string bytes, const std::string& name, const Region& region,
-                        const ClipOptions& options) {
-  const std::string indent = indent_of(bytes);
-  const commonroad::Document document(std::move(bytes), name);
-  Edited result;
-  if (CommonRoadClipper(document, region, options).run(result)) {
-    result.bytes = text_of(document.xml, indent);
-  } else {
-    result.reason = "no lanelet of the map reaches into the region";
-  }
-  return result;
+Clipper common_road_clipper(std::string bytes, const std::string& name,
+                            const ClipOptions& options) {
+  return [bytes = std::move(bytes), name, options](const Region& region) {
+    const commonroad::Document document(bytes, name);
+    Edited result;
+    if (CommonRoadClipper(document, region, options).run(result)) {
+      result.bytes = text_of(document.xml, indent_of(bytes));
+    } else {
+      result.reason = "no lanelet of the map reaches into the region";
+    }
+    return result;
+  };
 }
 
 }  // namespace roadbed::map::edit::clipping

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,10 +11,10 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/edit/clipping/clip.h"
+#include "roadbed/map/edit/clipping/lanelet_index.h"
 #include "roadbed/map/edit/clipping/line_spans.h"
 #include "roadbed/map/edit/clipping/osm_nodes.h"
 #include "roadbed/map/edit/osm_edit.h"
-#include "roadbed/map/lanelet2/centreline.h"
 
 namespace roadbed::map::inline edit::inline clipping {
 namespace {
@@ -25,35 +26,30 @@ using lanelet2::MemberKind;
 using lanelet2::Relation;
 using lanelet2::Way;
 
-using Indices = std::vector<std::uint32_t>;
-
-/// A lanelet that the region touches.
-struct Strip {
-  std::uint32_t relation;
-  Indices ways;                ///< left, right, and the centreline if it has one
-  std::vector<bool> reversed;  ///< whether a way runs against the lanelet
-};
-
 class LaneletClipper {
  public:
-  LaneletClipper(const Document& document, const Region& region, const ClipOptions& options)
+  LaneletClipper(const Document& document, const LaneletIndex& index, const Region& region,
+                 const ClipOptions& options)
       : document_(document),
+        index_(index),
         region_(region),
         options_(options),
         edit_(document),
         nodes_(document),
-        next_id_(free_id(document)),
+        next_id_(index.free_id()),
         spans_(document.ways.size()),
-        role_(document.ways.size(), Role::alone),
+        role_(index.roles()),
         forced_(document.ways.size(), false),
         node_stays_(document.nodes.size(), false),
         relation_stays_(document.relations.size(), false),
         way_stays_(document.ways.size(), false) {}
 
   bool run(Edited& result) {
-    find_spans();
-    for (std::uint32_t i = 0; i < document_.relations.size(); ++i) {
-      if (document_.relations[i].type == "lanelet") look_at_lanelet(i);
+    for (const std::uint32_t way : index_.ways_near(region_)) {
+      spans_[way] = spans_inside(index_.line_of(way), region_);
+    }
+    for (const std::uint32_t i : index_.lanelets_near(region_)) {
+      if (touches(index_.lanelets()[i])) keep(index_.lanelets()[i]);
     }
     if (strips_.empty()) return false;
     keep_other_relations();
@@ -62,88 +58,35 @@ class LaneletClipper {
     write_strips();
     write_relations();
     write_nodes();
-    result.bytes = edit_.file();
+    result.bytes = std::move(edit_).file();
     result.count("lanelets kept whole", strips_.size() - cut_);
     result.count("lanelets cut", cut_);
     result.count("parts of lanelets with an id of their own", parts_);
     result.count("lanelets at the border that cannot be cut, kept whole", uncut_);
-    result.count("lanelets outside, left out", outside_);
-    result.count("lanelets without two usable borders, left out", unusable_);
+    result.count("lanelets outside, left out", index_.lanelets().size() - strips_.size());
+    result.count("lanelets without two usable borders, left out", index_.unusable());
     result.count("relations that lost members outside", thinned_);
     return true;
   }
 
  private:
-  enum class Role { alone, border, fixed };  // of a way: fixed ones are not cut
-
-  std::vector<Vector2d> line_of(std::uint32_t way) const {
-    std::vector<Vector2d> line;
-    for (const std::uint32_t node : document_.ways[way].nodes) {
-      line.push_back(document_.nodes[node].in_map.head<2>() + document_.origin_in_source);
-    }
-    return line;
-  }
-
   std::size_t points(std::uint32_t way) const { return document_.ways[way].nodes.size(); }
 
-  void find_spans() {
-    for (std::uint32_t i = 0; i < document_.ways.size(); ++i) {
-      const Way& way = document_.ways[i];
-      spans_[i] = spans_inside(line_of(i), region_);
-      const bool closed = way.nodes.size() > 2 && way.nodes.front() == way.nodes.back();
-      if (closed || way.references != way.nodes.size()) role_[i] = Role::fixed;
+  void keep(const LaneletWays& lanelet) {
+    for (const std::uint32_t way : lanelet.ways) {
+      if (role_[way] == WayRole::alone) role_[way] = WayRole::border;
     }
+    relation_stays_[lanelet.relation] = true;
+    strips_.push_back(&lanelet);
   }
 
-  std::optional<std::uint32_t> way_in_role(const Relation& relation, std::string_view role) const {
-    for (const Member& member : relation.members) {
-      if (member.role != role || member.kind != MemberKind::way) continue;
-      const auto way = document_.way_index.find(member.id);
-      if (way && document_.ways[*way].nodes.size() >= 2) return way;
-    }
-    return {};
-  }
-
-  void look_at_lanelet(std::uint32_t index) {
-    const Relation& relation = document_.relations[index];
-    const auto left = way_in_role(relation, "left"), right = way_in_role(relation, "right");
-    if (!left || !right) {
-      ++unusable_;
-      return;
-    }
-    for (const std::uint32_t way : {*left, *right}) {
-      if (role_[way] == Role::alone) role_[way] = Role::border;
-    }
-    const auto alignment = lanelet2::align(document_.points(document_.ways[*left]),
-                                           document_.points(document_.ways[*right]));
-    Strip strip{index, {*left, *right}, {alignment.left_reversed, alignment.right_reversed}};
-    if (!touches(strip)) {
-      ++outside_;
-      return;
-    }
-    if (const auto centre = way_in_role(relation, "centerline")) {
-      if (role_[*centre] == Role::alone) role_[*centre] = Role::border;
-      strip.ways.push_back(*centre);
-      strip.reversed.push_back(runs_against(*centre, strip));
-    }
-    relation_stays_[index] = true;
-    strips_.push_back(std::move(strip));
-  }
-
-  std::vector<Vector2d> along(const Strip& strip, std::size_t i) const {
-    std::vector<Vector2d> line = line_of(strip.ways[i]);
-    if (strip.reversed[i]) std::reverse(line.begin(), line.end());
+  std::vector<Vector2d> along(const LaneletWays& lanelet, std::size_t i) const {
+    std::vector<Vector2d> line = index_.line_of(lanelet.ways[i]);
+    if (lanelet.reversed[i]) std::reverse(line.begin(), line.end());
     return line;
   }
 
-  bool runs_against(std::uint32_t centre, const Strip& strip) const {
-    const std::vector<Vector2d> left = along(strip, 0), right = along(strip, 1),
-                                line = line_of(centre);
-    const Vector2d start = 0.5 * (left.front() + right.front());
-    return (line.back() - start).squaredNorm() < (line.front() - start).squaredNorm();
-  }
-
-  bool touches(const Strip& strip) const {
+  bool touches(const LaneletWays& strip) const {
     if (!spans_[strip.ways[0]].empty() || !spans_[strip.ways[1]].empty()) return true;
     geometry::Ring ring = along(strip, 0);
     const std::vector<Vector2d> right = along(strip, 1);
@@ -177,8 +120,8 @@ class LaneletClipper {
   // lines of all of these are not cut.
   void keep_other_relations() {
     std::set<std::int64_t> named;
-    for (const Strip& strip : strips_) {
-      for (const Member& member : document_.relations[strip.relation].members) {
+    for (const LaneletWays* strip : strips_) {
+      for (const Member& member : document_.relations[strip->relation].members) {
         if (member.kind == MemberKind::relation) named.insert(member.id);
       }
     }
@@ -203,7 +146,7 @@ class LaneletClipper {
   void keep_member_whole(const Member& member) {
     if (member.kind == MemberKind::way) {
       if (const auto way = document_.way_index.find(member.id)) {
-        role_[*way] = Role::fixed;
+        role_[*way] = WayRole::fixed;
         way_stays_[*way] = true;
       }
     } else if (member.kind == MemberKind::node) {
@@ -215,15 +158,15 @@ class LaneletClipper {
     return forced_[way] || is_whole(spans_[way], points(way));
   }
 
-  std::vector<LineSpan> spans_along(const Strip& strip, std::size_t i) const {
+  std::vector<LineSpan> spans_along(const LaneletWays& strip, std::size_t i) const {
     const auto& spans = spans_[strip.ways[i]];
     return strip.reversed[i] ? reversed(spans, points(strip.ways[i])) : spans;
   }
 
-  bool can_be_cut(const Strip& strip) const {
+  bool can_be_cut(const LaneletWays& strip) const {
     for (std::size_t i = 0; i < strip.ways.size(); ++i) {
       const std::uint32_t way = strip.ways[i];
-      if (forced_[way] || role_[way] == Role::fixed) return false;
+      if (forced_[way] || role_[way] == WayRole::fixed) return false;
       if (!correspond(spans_along(strip, 0), points(strip.ways[0]), spans_along(strip, i),
                       points(way))) {
         return false;
@@ -237,11 +180,11 @@ class LaneletClipper {
     std::map<std::uint32_t, std::vector<std::size_t>> users;
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < strips_.size(); ++i) {
-      for (const std::uint32_t way : strips_[i].ways) users[way].push_back(i);
+      for (const std::uint32_t way : strips_[i]->ways) users[way].push_back(i);
       open.push_back(i);
     }
     while (!open.empty()) {
-      const Strip& strip = strips_[open.back()];
+      const LaneletWays& strip = *strips_[open.back()];
       open.pop_back();
       const bool whole = std::all_of(strip.ways.begin(), strip.ways.end(),
                                      [&](std::uint32_t way) { return is_whole_line(way); });
@@ -253,23 +196,23 @@ class LaneletClipper {
         open.insert(open.end(), users[way].begin(), users[way].end());
       }
     }
-    for (const Strip& strip : strips_) {
-      for (const std::uint32_t way : strip.ways) way_stays_[way] = true;
+    for (const LaneletWays* strip : strips_) {
+      for (const std::uint32_t way : strip->ways) way_stays_[way] = true;
     }
   }
 
   void keep_ways() {
     for (std::uint32_t i = 0; i < document_.ways.size(); ++i) {
-      const bool alone = role_[i] == Role::alone;
-      if (!way_stays_[i] && (role_[i] == Role::border || spans_[i].empty())) {
+      const bool alone = role_[i] == WayRole::alone;
+      if (!way_stays_[i] && (role_[i] == WayRole::border || spans_[i].empty())) {
         edit_.drop(document_.ways[i].at);
         continue;
       }
       way_stays_[i] = true;
-      const bool whole =
-          forced_[i] || role_[i] == Role::fixed || options_.whole || is_whole(spans_[i], points(i));
+      const bool whole = forced_[i] || role_[i] == WayRole::fixed || options_.whole ||
+                         is_whole(spans_[i], points(i));
       ids_[i] = {document_.ways[i].id};
-      if (!whole && (alone || role_[i] == Role::border)) {
+      if (!whole && (alone || role_[i] == WayRole::border)) {
         cut_way(i);
       } else {
         for (const std::uint32_t node : document_.ways[i].nodes) node_stays_[node] = true;
@@ -312,18 +255,19 @@ class LaneletClipper {
     return id;
   }
 
-  std::int64_t id_of_part(const Strip& strip, std::size_t way, std::size_t part) const {
+  std::int64_t id_of_part(const LaneletWays& strip, std::size_t way, std::size_t part) const {
     const auto& ids = ids_.at(strip.ways[way]);
     return strip.reversed[way] ? ids[ids.size() - 1 - part] : ids[part];
   }
 
   void write_strips() {
-    for (const Strip& strip : strips_) {
+    for (const LaneletWays* const kept : strips_) {
+      const LaneletWays& strip = *kept;
       const Relation& relation = document_.relations[strip.relation];
       relation_parts_[relation.id] = {relation.id};
       const std::size_t parts = ids_.at(strip.ways[0]).size();
       const bool whole = std::all_of(strip.ways.begin(), strip.ways.end(), [&](std::uint32_t way) {
-        return is_whole_line(way) || role_[way] == Role::fixed || options_.whole;
+        return is_whole_line(way) || role_[way] == WayRole::fixed || options_.whole;
       });
       if (whole) continue;
       ++cut_;
@@ -331,7 +275,7 @@ class LaneletClipper {
     }
   }
 
-  void write_part(const Strip& strip, const Relation& relation, std::size_t part) {
+  void write_part(const LaneletWays& strip, const Relation& relation, std::size_t part) {
     std::vector<Member> members(relation.members.begin(), relation.members.end());
     for (Member& member : members) {
       for (std::size_t i = 0; i < strip.ways.size(); ++i) {
@@ -395,44 +339,44 @@ class LaneletClipper {
 
   // Those of lines and relations that stay, and those inside that nothing refers to.
   void write_nodes() {
-    std::vector<bool> referred(document_.nodes.size(), false);
-    for (const Way& way : document_.ways) {
-      for (const std::uint32_t node : way.nodes) referred[node] = true;
-    }
     for (std::size_t i = 0; i < document_.nodes.size(); ++i) {
       const lanelet2::Node& node = document_.nodes[i];
       const bool stays =
-          node_stays_[i] || (!referred[i] && node.placed &&
+          node_stays_[i] || (!index_.is_of_way()[i] && node.placed &&
                              region_.contains(node.in_map.head<2>() + document_.origin_in_source));
       if (!stays) edit_.drop(node.at);
     }
   }
 
   const Document& document_;
+  const LaneletIndex& index_;
   const Region& region_;
   const ClipOptions& options_;
   OsmEdit edit_;
   const NodeText nodes_;
   std::int64_t next_id_;
   std::vector<std::vector<LineSpan>> spans_;  // of each way
-  std::vector<Role> role_;
+  std::vector<WayRole> role_;
   std::vector<bool> forced_, node_stays_, relation_stays_, way_stays_;
-  std::vector<Strip> strips_;
-  std::map<std::uint32_t, std::vector<std::int64_t>> ids_;            // of the parts of each way
+  std::vector<const LaneletWays*> strips_;                  // lanelets that the region touches
+  std::map<std::uint32_t, std::vector<std::int64_t>> ids_;  // of the parts of each way
   std::map<std::int64_t, std::vector<std::int64_t>> relation_parts_;  // of each lanelet
-  std::size_t cut_ = 0, parts_ = 0, uncut_ = 0, outside_ = 0, unusable_ = 0, thinned_ = 0;
+  std::size_t cut_ = 0, parts_ = 0, uncut_ = 0, thinned_ = 0;
 };
 
 }  // namespace
 
-Edited clip_lanelet2(std::string bytes, const std::string& name, const Region& region,
-                     const ClipOptions& options) {
-  const Document document = lanelet2::read_document(std::move(bytes), name);
-  Edited result;
-  if (!LaneletClipper(document, region, options).run(result)) {
-    result.reason = "no lanelet of the map reaches into the region";
-  }
-  return result;
+Clipper lanelet2_clipper(std::string bytes, const std::string& name, const ClipOptions& options) {
+  const auto document =
+      std::make_shared<const Document>(lanelet2::read_document(std::move(bytes), name));
+  const auto index = std::make_shared<const LaneletIndex>(*document);
+  return [document, index, options](const Region& region) {
+    Edited result;
+    if (!LaneletClipper(*document, *index, region, options).run(result)) {
+      result.reason = "no lanelet of the map reaches into the region";
+    }
+    return result;
+  };
 }
 
 }  // namespace roadbed::map::edit::clipping

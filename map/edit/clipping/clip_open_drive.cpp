@@ -1,5 +1,8 @@
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/edit/clipping/clip.h"
@@ -13,18 +16,29 @@
 namespace roadbed::map::inline edit::inline clipping {
 namespace {
 
-class Clipper {
- public:
-  Clipper(pugi::xml_node root, const opendrive::Document& document, const Region& region,
-          const ClipOptions& options)
-      : root_(root), document_(document), region_(region), options_(options) {
-    for (const auto road : root.children("road")) fresh_.take(text(road, "id"));
-  }
+/// A road and its element, which may be removed or cut.
+struct RoadElement {
+  const opendrive::RoadRecord* record;
+  pugi::xml_node node;
+};
 
-  // Whether anything is left.
-  bool run(Edited& result) {
+class RoadClipper {
+ public:
+  /// @param fresh  ids that no road of the map has.
+  RoadClipper(pugi::xml_node root, const Eigen::Vector2d& origin_in_source, const FreshIds& fresh,
+              const Region& region, const ClipOptions& options)
+      : root_(root),
+        origin_in_source_(origin_in_source),
+        region_(region),
+        options_(options),
+        fresh_(fresh) {}
+
+  /// Whether anything is left.
+  /// @param far  how many roads more there are, outside.
+  bool run(const std::vector<RoadElement>& roads, std::size_t far, Edited& result) {
+    outside_ = far;
     for (const auto road : root_.children("road")) last_ = road;
-    for (const opendrive::RoadRecord& road : document_.roads) clip_road(road);
+    for (const RoadElement& road : roads) clip_road(*road.record, road.node);
     for (const auto road : children(root_, "road")) {
       if (!judged_.contains(road)) root_.remove_child(road), ++unusable_;
     }
@@ -46,35 +60,34 @@ class Clipper {
   }
 
  private:
-  void clip_road(const opendrive::RoadRecord& road) {
-    judged_.insert(road.node);
-    const std::vector<StationSpan> spans =
-        stretches_inside(road, document_.origin_in_source, region_);
+  void clip_road(const opendrive::RoadRecord& road, pugi::xml_node node) {
+    judged_.insert(node);
+    const std::vector<StationSpan> spans = stretches_inside(road, origin_in_source_, region_);
     if (spans.empty()) {
-      if (road.node == last_) last_ = last_.previous_sibling();
-      root_.remove_child(road.node);
+      if (node == last_) last_ = last_.previous_sibling();
+      root_.remove_child(node);
       ++outside_;
       return;
     }
     const bool inside = spans.front().from_m <= 0.0 && spans.front().to_m >= road.length_m;
-    if (inside || options_.whole || !can_be_cut(road.node)) {
+    if (inside || options_.whole || !can_be_cut(node)) {
       ++whole_;
       uncut_ += inside || options_.whole ? 0 : 1;
       return;
     }
     ++cut_;
     for (std::size_t i = 1; i < spans.size(); ++i) {
-      last_ = root_.insert_copy_after(road.node, last_);
+      last_ = root_.insert_copy_after(node, last_);
       judged_.insert(last_);
       cut_road(last_, spans[i].from_m, spans[i].to_m);
       set_text(last_, "id", fresh_.fresh());  // its clip memory knows whose part it is
       ++parts_;
     }
-    cut_road(road.node, spans.front().from_m, spans.front().to_m);
+    cut_road(node, spans.front().from_m, spans.front().to_m);
   }
 
   pugi::xml_node root_;
-  const opendrive::Document& document_;
+  const Eigen::Vector2d origin_in_source_;
   const Region& region_;
   const ClipOptions& options_;
   FreshIds fresh_;
@@ -83,21 +96,102 @@ class Clipper {
   std::size_t whole_ = 0, cut_ = 0, parts_ = 0, outside_ = 0, unusable_ = 0, uncut_ = 0;
 };
 
-}  // namespace
+struct OpenDriveMap {
+  OpenDriveMap(std::string bytes, const std::string& name)
+      : indent(indent_of(bytes)),
+        xml(std::move(bytes), name),
+        document(opendrive::read_document(xml)) {
+    opendrive::mend(document);
+    for (const auto road : xml.root().children("road")) fresh.take(text(road, "id"));
+  }
 
-Edited clip_open_drive(std::string bytes, const std::string& name, const Region& region,
-                       const ClipOptions& options) {
-  const std::string indent = indent_of(bytes);
-  const XmlDocument xml(std::move(bytes), name);
-  opendrive::Document document = opendrive::read_document(xml);
-  opendrive::mend(document);
+  std::string indent;
+  XmlDocument xml;
+  opendrive::Document document;
+  FreshIds fresh;  // ids that no road has
+};
+
+/// @param part   the map, or a copy of it.
+/// @param roads  those of its roads that are in it.
+Edited clip_part(const OpenDriveMap& map, pugi::xml_node part,
+                 const std::vector<RoadElement>& roads, const Region& region,
+                 const ClipOptions& options) {
   Edited result;
-  if (Clipper(xml.root(), document, region, options).run(result)) {
-    result.bytes = text_of(xml, indent);
+  RoadClipper clipper(part, map.document.origin_in_source, map.fresh, region, options);
+  if (clipper.run(roads, map.document.roads.size() - roads.size(), result)) {
+    result.bytes = text_of(part, map.indent, map.xml.size_bytes());
   } else {
     result.reason = "no road of the map reaches into the region";
   }
   return result;
+}
+
+/// Gives each region a copy of the map without the roads that are far away.
+class PartCopier {
+ public:
+  explicit PartCopier(const OpenDriveMap& map) : map_(map) {
+    std::vector<geometry::Box> boxes;
+    for (const opendrive::RoadRecord& road : map.document.roads) {
+      boxes.push_back(box_around(road, map.document.origin_in_source));
+      roads_.insert(road.node);
+    }
+    if (!boxes.empty()) tree_ = geometry::BoxTree(boxes);
+    for (const auto road : map.xml.root().children("road")) last_ = road;
+  }
+
+  std::vector<RoadElement> copy(const Region& region, pugi::xml_document& part) const {
+    std::set<pugi::xml_node> near{last_};  // behind the last road new ones stand
+    if (tree_.size() > 0) {
+      tree_.visit(region.bounds(),
+                  [&](std::size_t i) { near.insert(map_.document.roads[i].node); });
+    }
+    std::map<pugi::xml_node, pugi::xml_node> copies;
+    const pugi::xml_node root = map_.xml.root();
+    for (const pugi::xml_node node : root.parent().children()) {
+      if (node != root) {
+        part.append_copy(node);
+        continue;
+      }
+      pugi::xml_node copy = part.append_child(root.name());
+      for (const auto attribute : root.attributes()) copy.append_copy(attribute);
+      for (const pugi::xml_node child : root.children()) {
+        const bool is_far = roads_.contains(child) && !near.contains(child);
+        if (!is_far) copies[child] = copy.append_copy(child);
+      }
+    }
+    std::vector<RoadElement> kept;
+    for (const opendrive::RoadRecord& road : map_.document.roads) {
+      const auto found = copies.find(road.node);
+      if (found != copies.end()) kept.push_back({&road, found->second});
+    }
+    return kept;
+  }
+
+ private:
+  const OpenDriveMap& map_;
+  std::set<pugi::xml_node> roads_;
+  pugi::xml_node last_;
+  geometry::BoxTree tree_;  // of the document's roads
+};
+
+}  // namespace
+
+Edited clip_open_drive(std::string bytes, const std::string& name, const Region& region,
+                       const ClipOptions& options) {
+  const OpenDriveMap map(std::move(bytes), name);
+  std::vector<RoadElement> roads;
+  for (const opendrive::RoadRecord& road : map.document.roads) roads.push_back({&road, road.node});
+  return clip_part(map, map.xml.root(), roads, region, options);
+}
+
+Clipper open_drive_clipper(std::string bytes, const std::string& name, const ClipOptions& options) {
+  const auto map = std::make_shared<const OpenDriveMap>(std::move(bytes), name);
+  const auto copier = std::make_shared<const PartCopier>(*map);
+  return [map, copier, options](const Region& region) {
+    pugi::xml_document part;
+    const std::vector<RoadElement> roads = copier->copy(region, part);
+    return clip_part(*map, part.document_element(), roads, region, options);
+  };
 }
 
 }  // namespace roadbed::map::edit::clipping

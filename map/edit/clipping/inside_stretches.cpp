@@ -82,22 +82,41 @@ class SectionExtent {
 
 class Search {
  public:
-  Search(const opendrive::RoadRecord& road, const Vector2d& origin_in_source, const Region& region)
-      : road_(road), plan_view_(road.plan_pieces), origin_(origin_in_source), region_(region) {
+  Search(const opendrive::RoadRecord& road, const Vector2d& origin_in_source)
+      : road_(road), plan_view_(road.plan_pieces), origin_(origin_in_source) {
     for (const geometry::PlanPiece& piece : road.plan_pieces) {
       fastest_ = std::max(fastest_, fastest(piece));
     }
   }
 
-  std::vector<StationSpan> run() {
-    if (road_.sections.empty()) return without_lanes();
-    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
-      const double from_m = i == 0 ? 0.0 : road_.sections[i].s_m;
-      const double to_m =
-          i + 1 < road_.sections.size() ? road_.sections[i + 1].s_m : road_.length_m;
-      if (to_m > from_m) look_into(i, from_m, to_m);
-    }
+  std::vector<StationSpan> run(const Region& region) {
+    if (road_.sections.empty()) return without_lanes(region);
+    each_section([&](SectionExtent& extent, double from_m, double to_m) {
+      touching_spans(
+          from_m, to_m,
+          [&](double a_m, double b_m) {
+            const Disc disc = disc_around(a_m, b_m);
+            return region.side_of_disc(disc.centre, disc.radius_m);
+          },
+          [](double a_m, double b_m) { return b_m - a_m <= kStepM; },
+          [&](double s_m) {
+            const auto [left, right] = extent.at(s_m);
+            return region.touches(origin_ + left, origin_ + right);
+          },
+          found_);
+    });
     return spans_on_grid();
+  }
+
+  geometry::Box box() {
+    if (road_.sections.empty()) return geometry::Box(start());
+    geometry::Box box;
+    each_section([&](SectionExtent&, double from_m, double to_m) {
+      const Disc disc = disc_around(from_m, to_m);
+      const Vector2d reach = Vector2d::Constant(disc.radius_m);
+      box.extend(geometry::Box(disc.centre - reach, disc.centre + reach));
+    });
+    return box;
   }
 
  private:
@@ -119,34 +138,41 @@ class Search {
     return spans;
   }
 
-  std::vector<StationSpan> without_lanes() const {
-    const bool inside = region_.contains(origin_ + plan_view_.at(0.0).pose.position());
+  struct Disc {
+    Vector2d centre;
+    double radius_m;
+  };
+
+  Vector2d start() const { return origin_ + plan_view_.at(0.0).pose.position(); }
+
+  std::vector<StationSpan> without_lanes(const Region& region) const {
+    const bool inside = region.contains(start());
     return inside ? std::vector<StationSpan>{{0.0, road_.length_m}} : std::vector<StationSpan>{};
   }
 
-  void look_into(std::size_t section, double from_m, double to_m) {
-    SectionExtent extent(road_, plan_view_, section);
-    widest_m_ = extent.widest_m(road_, from_m, to_m);
-    touching_spans(
-        from_m, to_m, [&](double a_m, double b_m) { return side_between(a_m, b_m); },
-        [](double a_m, double b_m) { return b_m - a_m <= kStepM; },
-        [&](double s_m) { return touches(extent, s_m); }, found_);
+  // Calls `f` with each lane section that has a length, and its stations.
+  template <typename F>
+  void each_section(const F& f) {
+    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
+      const double from_m = i == 0 ? 0.0 : road_.sections[i].s_m;
+      const double to_m =
+          i + 1 < road_.sections.size() ? road_.sections[i + 1].s_m : road_.length_m;
+      if (!(to_m > from_m)) continue;
+      SectionExtent extent(road_, plan_view_, i);
+      widest_m_ = extent.widest_m(road_, from_m, to_m);
+      f(extent, from_m, to_m);
+    }
   }
 
-  Region::Side side_between(double from_m, double to_m) const {
-    const Vector2d middle = origin_ + plan_view_.at(0.5 * (from_m + to_m)).pose.position();
-    return region_.side_of_disc(middle, 0.5 * (to_m - from_m) * fastest_ + widest_m_ + kNoStretchM);
-  }
-
-  bool touches(SectionExtent& extent, double s_m) const {
-    const auto [left, right] = extent.at(s_m);
-    return region_.touches(origin_ + left, origin_ + right);
+  // Around all between two stations of a section.
+  Disc disc_around(double from_m, double to_m) const {
+    return {origin_ + plan_view_.at(0.5 * (from_m + to_m)).pose.position(),
+            0.5 * (to_m - from_m) * fastest_ + widest_m_ + kNoStretchM};
   }
 
   const opendrive::RoadRecord& road_;
   const geometry::PlanView plan_view_;
   const Vector2d origin_;
-  const Region& region_;
   double fastest_ = 1.0, widest_m_ = 0.0;
   std::vector<Span> found_;
 };
@@ -155,7 +181,11 @@ class Search {
 
 std::vector<StationSpan> stretches_inside(const opendrive::RoadRecord& road,
                                           const Vector2d& origin_in_source, const Region& region) {
-  return Search(road, origin_in_source, region).run();
+  return Search(road, origin_in_source).run(region);
+}
+
+geometry::Box box_around(const opendrive::RoadRecord& road, const Vector2d& origin_in_source) {
+  return Search(road, origin_in_source).box();
 }
 
 }  // namespace roadbed::map::edit::clipping

@@ -21,4 +21,8 @@ std::vector<StationSpan> stretches_inside(const opendrive::RoadRecord& road,
                                           const Eigen::Vector2d& origin_in_source,
                                           const Region& region);
 
+/// A box around the road: where a region does not meet it, there are no such stretches.
+geometry::Box box_around(const opendrive::RoadRecord& road,
+                         const Eigen::Vector2d& origin_in_source);
+
 }  // namespace roadbed::map::edit::clipping

@@ -32,6 +32,9 @@ class Region {
   enum class Side { inside, outside, border };
   Side side_of_disc(const Eigen::Vector2d& centre, double radius_m) const;
 
+  /// A box around all rings.
+  const geometry::Box& bounds() const { return bounds_; }
+
   /// A corner of each ring.
   const std::vector<Eigen::Vector2d>& corners() const { return corners_; }
 

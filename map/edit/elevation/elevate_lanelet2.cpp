@@ -88,7 +88,7 @@ Edited elevate_lanelet2(std::string bytes, const std::string& name, const Ground
     element.set_tag("ele", height_text(*heights_m[i]));
     edit.replace(document.nodes[i].at, element.text());
   }
-  result.bytes = edit.file();
+  result.bytes = std::move(edit).file();
   return result;
 }
 

@@ -41,7 +41,7 @@ class LaneletMerger {
     for (std::size_t f = 0; f < files_.size(); ++f) write_lanelets(f);
     for (std::size_t f = 0; f < files_.size(); ++f) write_others(f);
     for (std::size_t f = 0; f < files_.size(); ++f) write_nodes(f);
-    result.bytes = edit_.file();
+    result.bytes = std::move(edit_).file();
     result.count("lines put together of parts", joined_);
     result.count("lines taken once that several maps hold", repeated_ways_);
     result.count("lanelets taken once that several maps hold, or put together of parts",

@@ -63,7 +63,7 @@ class NodeMover {
     }
     for (std::size_t k = 0; k < placed_.size(); ++k) write(k);
     Edited result;
-    result.bytes = edit_.file();
+    result.bytes = std::move(edit_).file();
     const auto system = options_.to ? options_.to : options_.crs;
     if (system && (options_.to || has_local_)) {
       result.bytes = with_root_attribute(std::move(result.bytes), "crs", *system);

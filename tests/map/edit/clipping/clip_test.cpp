@@ -136,6 +136,32 @@ TEST(ClipLanelet2, CutsBordersWhereTheEdgeCrossesThem) {
   EXPECT_GE(on_edge, 2u);
 }
 
+// A clip of OpenDRIVE cuts the map itself, a clipper copies of what is near.
+TEST(MakeClipper, ClipsEachSquareAsAClipDoes) {
+  for (const char* name : {"town.xodr", "crossing.osm", "junction.xml"}) {
+    const std::string bytes = read_file(tests::data_folder() / name);
+    const RoadMap whole = parse_map(bytes, name);
+    for (const bool keeps_whole : {false, true}) {
+      const ClipOptions options{.whole = keeps_whole};
+      const Clipper clipper = make_clipper(bytes, name, options);
+      std::size_t left = 0, empty = 0;
+      for (std::size_t i = 0; i < whole.lanes().size(); i += 1 + whole.lanes().size() / 20) {
+        const Vector2d at = whole.to_source(whole.lanes()[i].centre.in_map.points().front());
+        for (const double shift_m : {0.0, 1e5}) {
+          const Region region = box(at.x() + shift_m, at.y(), at.x() + shift_m + 60, at.y() + 40);
+          const Edited once = clip(bytes, name, region, options), part = clipper(region);
+          EXPECT_EQ(part.bytes, once.bytes);
+          EXPECT_EQ(part.counts, once.counts);
+          EXPECT_EQ(part.reason, once.reason);
+          ++(part.bytes.empty() ? empty : left);
+        }
+      }
+      EXPECT_GT(left, 0u);
+      EXPECT_GT(empty, 0u);
+    }
+  }
+}
+
 // Lanelets are cut across: rows stay pairs, and lie on the lanelets that they are of.
 TEST(ClipCommonRoad, LeavesPartsOfTheLanelets) {
   const std::string bytes = read_file(tests::data_folder() / "junction.xml");
