@@ -182,8 +182,10 @@ constexpr std::array<Format, 13> kFormats = {{
      .what = "all lane lines, a row per vertex"},
     {.name = "Lanelet2",
      .sniff = [](const FileContent& content) { return content.root == "osm"; },
-     .read = [](std::string bytes, const std::string& name,
-                const LoadOptions&) { return RoadMap(lanelet2::read(std::move(bytes), name)); },
+     .read =
+         [](std::string bytes, const std::string& name, const LoadOptions& options) {
+           return RoadMap(lanelet2::read(std::move(bytes), name, options.threads));
+         },
      .judge = judge_lanelet2,
      .rules = lanelet2_rules,
      .suffix = ".osm",

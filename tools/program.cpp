@@ -100,13 +100,15 @@ int run_command_line(int argc, char** argv) {
   CommonOptions common;
   Arguments program(app);
   program.flag("-q,--quiet", common.quiet, "No progress and no notes; errors are still printed");
-  program.add("--threads", common.threads, "Threads to use; the output is the same for any")
+  program
+      .add("--threads", common.threads,
+           "Threads to use; the output is the same for any (by default 1; import: one for each "
+           "processor, up to 4)")
       .checked([](const std::string& text) {
         int threads = 0;
         const bool is_count = CLI::detail::lexical_cast(text, threads) && threads > 0;
         return is_count ? std::string() : text + " is no whole number greater than 0";
-      })
-      .with_default();
+      });
 
   std::vector<Registered> commands;
   const auto declare = [&](const char* name, std::unique_ptr<Command> command) {

@@ -244,18 +244,20 @@ std::string write_compiled_map(const RoadMap& road_map, std::string_view routing
 }
 
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing,
-                               const std::optional<MapSource>& source) {
+                               const std::optional<MapSource>& source,
+                               const std::optional<MapTotals>& totals) {
   StringSink sink;
-  write_compiled_map(road_map, routing, sink, source);
+  write_compiled_map(road_map, routing, sink, source, totals);
   return sink.take();
 }
 
 void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink,
-                        const std::optional<MapSource>& source) {
+                        const std::optional<MapSource>& source,
+                        const std::optional<MapTotals>& known_totals) {
   std::string head;
   ByteWriter head_writer(head);
   fields::head(head_writer, road_map.content());
-  const std::string totals = write_totals(totals_of(road_map));
+  const std::string totals = write_totals(known_totals ? *known_totals : totals_of(road_map));
   std::vector<Output> outputs{output_of("head", head), output_of(std::string(kTotals), totals)};
   const auto add_array = [&](std::string_view name, const auto& array) {
     outputs.push_back(output_of(std::string(name), array.bytes()));

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/storage/chunked_file.h"
 
@@ -31,12 +32,15 @@ struct MapSource {
 MapSource source_of_content(std::string_view content);
 
 /// A compiled map that names its source.
+/// @param totals  `totals_of` the map, where they have been added up before.
 std::string write_compiled_map(const RoadMap& road_map, std::string_view routing,
-                               const std::optional<MapSource>& source);
+                               const std::optional<MapSource>& source,
+                               const std::optional<MapTotals>& totals = {});
 
 /// The same into a sink, piece by piece: the file never stands in memory.
 void write_compiled_map(const RoadMap& road_map, std::string_view routing, ByteSink& sink,
-                        const std::optional<MapSource>& source = {});
+                        const std::optional<MapSource>& source = {},
+                        const std::optional<MapTotals>& totals = {});
 
 /// What a compiled map says of its source; none if it says nothing.
 /// @throws InputError if the file is no compiled map, or damaged there.

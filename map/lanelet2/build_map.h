@@ -27,9 +27,10 @@ struct BuiltLanes {
 };
 
 /// All lanelets as lanes; one without two usable borders is left out and remarked.
+/// @param threads  that may be used.
 /// @throws InputError if the borders have more points than a file of this size can mean, or if no
 /// lanelet is left.
-BuiltLanes build_lanes(Document& document);
+BuiltLanes build_lanes(Document& document, int threads = 1);
 
 /// First and last node of a border in driving direction.
 std::uint32_t first_node(const Document& document, const Border& border);

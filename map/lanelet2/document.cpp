@@ -83,16 +83,19 @@ std::string Document::written_reference(const Way& way, std::size_t index) const
 }
 
 long Document::line_of(std::size_t at) const {
-  if (!line_starts_) line_starts_.emplace(text);
-  return line_starts_->line_at(at);
+  std::call_once(lines_->once, [this] { lines_->starts.emplace(text); });
+  return lines_->starts->line_at(at);
+}
+
+ImportDiagnostic Document::fault_at(std::size_t at, const char* rule, std::string message) const {
+  XmlScanner element(text, name, at);
+  element.next();
+  return {rule, true, fmt::format("{} {}", element.name(), element.value("id")), line_of(at),
+          std::move(message)};
 }
 
 ImportDiagnostic& Document::fault(std::size_t at, const char* rule, std::string message) {
-  XmlScanner element(text, name, at);
-  element.next();
-  remarks.push_back({rule, true, fmt::format("{} {}", element.name(), element.value("id")),
-                     line_of(at), std::move(message)});
-  return remarks.back();
+  return remarks.emplace_back(fault_at(at, rule, std::move(message)));
 }
 
 std::optional<std::int64_t> id_in(std::string_view text) {

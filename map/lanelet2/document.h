@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -96,18 +97,25 @@ struct Document {
   /// Line of a place in the text, from 1.
   long line_of(std::size_t at) const;
 
-  /// Remarks a fault of the file at the element that begins there.
+  /// A fault of the file at the element that begins there.
+  ImportDiagnostic fault_at(std::size_t at, const char* rule, std::string message) const;
+
+  /// Remarks it.
   /// @returns the remark, until the next one.
   ImportDiagnostic& fault(std::size_t at, const char* rule, std::string message);
 
  private:
-  mutable std::optional<LineStarts> line_starts_;  // made for the first line
+  struct Lines {
+    std::once_flag once;
+    std::optional<LineStarts> starts;
+  };
+  std::unique_ptr<Lines> lines_ = std::make_unique<Lines>();  // made for the first line
 };
 
+/// @param threads  that may be used.
 /// @throws InputError if the bytes are not well-formed XML, or hold more elements than a map of
-/// their
-///         size does.
-Document read_document(std::string bytes, const std::string& name);
+///         their size does.
+Document read_document(std::string bytes, const std::string& name, int threads = 1);
 
 /// Tags as text of its own, and views of such text.
 Attributes attributes_of(Tags tags);

@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <string>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/mgrs.h"
 
 namespace roadbed::map::lanelet2 {
@@ -24,6 +26,25 @@ bool is_geographic(const NodePlace& node) {
 
 GeographicPoint geographic(const NodePlace& node) {
   return {node.latitude_deg, node.longitude_deg};
+}
+
+bool has_both(const NodePlace& node) { return node.is_local() && is_geographic(node); }
+
+double worst_difference_m(const TransverseMercator& grid, std::span<const NodePlace> nodes,
+                          int threads) {
+  std::mutex mutex;
+  double worst_m = 0.0;
+  in_threads_by_runs(nodes.size(), threads, [&](std::size_t from, std::size_t to) {
+    double worst_here_m = 0.0;
+    for (const NodePlace& node : nodes.subspan(from, to - from)) {
+      if (!has_both(node)) continue;
+      const Eigen::Vector2d local(node.local_x_m, node.local_y_m);
+      worst_here_m = std::max(worst_here_m, (grid.forward(geographic(node)) - local).norm());
+    }
+    const std::scoped_lock lock(mutex);
+    worst_m = std::max(worst_m, worst_here_m);
+  });
+  return worst_m;
 }
 
 std::string epsg_of_utm(int zone, bool south) {
@@ -106,14 +127,14 @@ bool NodePlace::is_on_earth() const {
   return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
 }
 
-Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
+Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code, int threads) {
   const auto locals = std::ranges::count_if(nodes, &NodePlace::is_local);
   const auto others = std::count_if(nodes.begin(), nodes.end(), [](const NodePlace& node) {
     return !node.is_local() && is_geographic(node);
   });
   local_ = locals > 0 && locals >= others;
   if (local_) {
-    find_local_grid(nodes, mgrs_code);
+    find_local_grid(nodes, mgrs_code, threads);
     return;
   }
   const auto first = std::find_if(nodes.begin(), nodes.end(), is_geographic);
@@ -124,8 +145,8 @@ Frame::Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
   crs_ = epsg_of_utm(zone, south);
 }
 
-void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code) {
-  const auto has_both = [](const NodePlace& n) { return n.is_local() && is_geographic(n); };
+void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code,
+                            int threads) {
   const auto first = std::find_if(nodes.begin(), nodes.end(), has_both);
   TransverseMercator grid;
   if (first == nodes.end()) {
@@ -143,12 +164,7 @@ void Frame::find_local_grid(std::span<const NodePlace> nodes, std::string_view m
         grid.forward(geographic(*first)) - Eigen::Vector2d(first->local_x_m, first->local_y_m);
     grid.false_easting_m -= std::round(shift_m.x() * 1e3) / 1e3;
     grid.false_northing_m -= std::round(shift_m.y() * 1e3) / 1e3;
-    double worst_m = 0.0;
-    for (const NodePlace& node : nodes) {
-      if (!has_both(node)) continue;
-      const Eigen::Vector2d local(node.local_x_m, node.local_y_m);
-      worst_m = std::max(worst_m, (grid.forward(geographic(node)) - local).norm());
-    }
+    const double worst_m = worst_difference_m(grid, nodes, threads);
     if (!(worst_m <= kAgreement_m)) {
       doubt_ =
           fmt::format("its local coordinates differ from its lat/lon by up to {:.3g} m", worst_m);

@@ -24,7 +24,8 @@ struct NodePlace {
 class Frame {
  public:
   /// @param mgrs_code  of the first node that names its grid square; may be empty.
-  Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code);
+  /// @param threads    that may be used.
+  Frame(std::span<const NodePlace> nodes, std::string_view mgrs_code, int threads = 1);
 
   /// Coordinates of a node; none if it has none that fit this frame, or impossible ones.
   std::optional<Eigen::Vector2d> place(const NodePlace& node) const;
@@ -39,7 +40,7 @@ class Frame {
   const std::string& doubt() const { return doubt_; }
 
  private:
-  void find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code);
+  void find_local_grid(std::span<const NodePlace> nodes, std::string_view mgrs_code, int threads);
 
   bool local_ = false;
   std::optional<TransverseMercator> grid_;  ///< shifted so that it yields local ones

@@ -3,8 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <iterator>
+#include <utility>
 
 #include "roadbed/map/elements/lane_lines.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/centreline.h"
 #include "roadbed/map/lanelet2/traffic_rules.h"
@@ -12,36 +17,51 @@
 namespace roadbed::map::lanelet2 {
 namespace {
 
-class LaneBuilder {
+// The lanes of a run of relations, counted from 0, and what there is to say of them.
+struct LaneRun {
+  std::vector<Lane> lanes;
+  std::vector<Border> left, right;
+  std::vector<std::uint32_t> relations;
+  std::vector<std::uint32_t> ways;  // that they use
+  std::vector<ImportDiagnostic> remarks;
+};
+
+// Of points that the lanes of a map may have; runs out for all of them.
+class PointBudget {
  public:
-  explicit LaneBuilder(Document& document)
-      : document_(document), points_left_(1'500'000 + document.text.size()) {
-    built_.lane_of_relation.resize(document.relations.size());
+  explicit PointBudget(const Document& document)
+      : file_(document.name), left_(1'500'000 + static_cast<std::int64_t>(document.text.size())) {}
+
+  void spend(std::size_t points) {
+    if ((left_ -= static_cast<std::int64_t>(points)) >= 0) return;
+    throw InputError({.file = file_,
+                      .found = "its lanelets repeat more points than a map of this size can hold",
+                      .remedy = "check whether many lanelets share one long border"});
   }
 
-  BuiltLanes build() {
-    built_.lanes.reserve(static_cast<std::size_t>(
-        std::count_if(document_.relations.begin(), document_.relations.end(),
-                      [](const Relation& relation) { return relation.type == "lanelet"; })));
-    for (std::uint32_t i = 0; i < document_.relations.size(); ++i) {
+ private:
+  const std::string& file_;
+  std::atomic<std::int64_t> left_;
+};
+
+class LaneBuilder {
+ public:
+  LaneBuilder(const Document& document, PointBudget& budget)
+      : document_(document), budget_(budget) {}
+
+  LaneRun build(std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
       const Relation& relation = document_.relations[i];
-      if (relation.type != "lanelet") continue;
-      ++lanelets_;
-      if (document_.relation_index.find(relation.id) == i) add(i);
+      if (relation.type == "lanelet" && document_.relation_index.find(relation.id) == i) {
+        add(static_cast<std::uint32_t>(i));
+      }
     }
-    if (built_.lanes.empty()) refuse();
     return std::move(built_);
   }
 
  private:
-  [[noreturn]] void refuse() const {
-    throw InputError(
-        {.file = document_.name,
-         .found = lanelets_ == 0
-                      ? "no lanelet"
-                      : fmt::format("none of its {} lanelets has two usable borders", lanelets_),
-         .needed = "relations with type=lanelet and a left and a right way",
-         .remedy = "give a Lanelet2 map; plain OpenStreetMap data has no lanes"});
+  ImportDiagnostic& fault(const Relation& relation, const char* rule, std::string message) {
+    return built_.remarks.emplace_back(document_.fault_at(relation.at, rule, std::move(message)));
   }
 
   // The only member of that role that is a way of two points or more; remarks why there is none.
@@ -60,8 +80,8 @@ class LaneBuilder {
     std::string reason = fmt::format("{} ways have the role {}, it needs one", count, role);
     if (count == 1 && !way) reason = fmt::format("its {} way is not in the file", role);
     if (count == 1 && way) reason = fmt::format("its {} way has fewer than 2 points", role);
-    document_.fault(relation.at, "import.lanelet-border", reason + "; " + consequence(role))
-        .in_text = count == 0 || (count == 1 && is_missing);
+    fault(relation, "import.lanelet-border", reason + "; " + consequence(role)).in_text =
+        count == 0 || (count == 1 && is_missing);
     return {};
   }
 
@@ -72,19 +92,10 @@ class LaneBuilder {
 
   Line3 points_of(const Border& border) {
     const Way& way = document_.ways[border.way];
-    spend(way.nodes.size());
+    budget_.spend(way.nodes.size());
     Line3 points = document_.points(way);
     if (border.reversed) std::reverse(points.begin(), points.end());
     return points;
-  }
-
-  void spend(std::size_t points) {
-    if (points > points_left_) {
-      throw InputError({.file = document_.name,
-                        .found = "its lanelets repeat more points than a map of this size can hold",
-                        .remedy = "check whether many lanelets share one long border"});
-    }
-    points_left_ -= points;
   }
 
   std::optional<Centreline> explicit_centreline(const Relation& relation, const Line3& left,
@@ -94,13 +105,13 @@ class LaneBuilder {
     if (!has_one) return {};
     const auto way = only_way(relation, "centerline");
     if (!way) return {};
-    document_.ways[*way].used = true;
+    built_.ways.push_back(*way);
     Line3 centre = points_of({*way, false});
     const Eigen::Vector3d start = 0.5 * (left.front() + right.front());
     if ((centre.back() - start).squaredNorm() < (centre.front() - start).squaredNorm()) {
       std::reverse(centre.begin(), centre.end());
-      document_.fault(relation.at, "import.centreline-reversed",
-                      "its centreline runs against its borders and is taken the other way round");
+      fault(relation, "import.centreline-reversed",
+            "its centreline runs against its borders and is taken the other way round");
     }
     return centreline_along(std::move(centre), left, right);
   }
@@ -123,7 +134,7 @@ class LaneBuilder {
     Lane lane = described(relation);
     lane.centre = lane_line(centre->points, {});
     if (lane.length_m() <= 0.0) {
-      document_.fault(relation.at, "import.lanelet-length", "has no length and is left out");
+      fault(relation, "import.lanelet-length", "has no length and is left out");
       return;
     }
     lane.centre.station_m = lane.centre.in_map.stations_m();
@@ -132,17 +143,15 @@ class LaneBuilder {
     lane.polygon = lane_ring(lane.left.in_map, lane.right.in_map);
     add_marks(left_border, lane.left_marks);
     add_marks(right_border, lane.right_marks);
-    for (const std::uint32_t way : {*left_way, *right_way}) document_.ways[way].used = true;
+    built_.ways.insert(built_.ways.end(), {*left_way, *right_way});
     built_.left.push_back(left_border);
     built_.right.push_back(right_border);
     built_.relations.push_back(index);
-    built_.lane_of_relation[index] = lane.id;
     built_.lanes.push_back(std::move(lane));
   }
 
   Lane described(const Relation& relation) const {
     Lane lane;
-    lane.id = LaneId{static_cast<std::uint32_t>(built_.lanes.size())};
     lane.origin.source_id = std::to_string(relation.id);
     lane.name = lane.origin.source_id;
     lane.attributes = attributes_of(relation.tags);
@@ -160,14 +169,63 @@ class LaneBuilder {
     if (mark) marks.push_back(*mark);
   }
 
-  Document& document_;
-  std::size_t points_left_, lanelets_ = 0;
-  BuiltLanes built_;
+  const Document& document_;
+  PointBudget& budget_;
+  LaneRun built_;
 };
+
+template <typename T>
+void append(std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
+}
+
+// Numbers the lanes of all runs, one run behind the other.
+BuiltLanes joined(std::vector<LaneRun> runs, Document& document) {
+  BuiltLanes built;
+  built.lane_of_relation.resize(document.relations.size());
+  std::size_t lanes = 0;
+  for (const LaneRun& run : runs) lanes += run.lanes.size();
+  built.lanes.reserve(lanes);
+  for (LaneRun& run : runs) {
+    append(run.lanes, built.lanes);
+    append(run.left, built.left);
+    append(run.right, built.right);
+    append(run.relations, built.relations);
+    append(run.remarks, document.remarks);
+    for (const std::uint32_t way : run.ways) document.ways[way].used = true;
+  }
+  for (std::uint32_t i = 0; i < built.lanes.size(); ++i) {
+    built.lanes[i].id = LaneId{i};
+    built.lane_of_relation[built.relations[i]] = LaneId{i};
+  }
+  return built;
+}
+
+[[noreturn]] void refuse(const Document& document) {
+  const auto lanelets = std::ranges::count(document.relations, "lanelet", &Relation::type);
+  throw InputError(
+      {.file = document.name,
+       .found = lanelets == 0
+                    ? "no lanelet"
+                    : fmt::format("none of its {} lanelets has two usable borders", lanelets),
+       .needed = "relations with type=lanelet and a left and a right way",
+       .remedy = "give a Lanelet2 map; plain OpenStreetMap data has no lanes"});
+}
 
 }  // namespace
 
-BuiltLanes build_lanes(Document& document) { return LaneBuilder(document).build(); }
+BuiltLanes build_lanes(Document& document, int threads) {
+  PointBudget budget(document);
+  constexpr std::size_t kRun = 1024;
+  const std::size_t relations = document.relations.size();
+  std::vector<LaneRun> runs((relations + kRun - 1) / kRun);
+  in_threads(runs.size(), threads, [&](std::size_t i) {
+    runs[i] = LaneBuilder(document, budget).build(i * kRun, std::min(relations, (i + 1) * kRun));
+  });
+  BuiltLanes built = joined(std::move(runs), document);
+  if (built.lanes.empty()) refuse(document);
+  return built;
+}
 
 std::uint32_t first_node(const Document& document, const Border& border) {
   const auto& nodes = document.ways[border.way].nodes;

@@ -33,10 +33,10 @@ void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportDia
 
 }  // namespace
 
-RoadMapParts read(std::string bytes, const std::string& file) {
-  Document document = read_document(std::move(bytes), file);
+RoadMapParts read(std::string bytes, const std::string& file, int threads) {
+  Document document = read_document(std::move(bytes), file, threads);
   document.places = {};  // only rules about the text ask for them
-  BuiltLanes built = build_lanes(document);
+  BuiltLanes built = build_lanes(document, threads);
   return read(std::move(document), std::move(built));
 }
 

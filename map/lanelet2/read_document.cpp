@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/lanelet2/document.h"
 
@@ -48,8 +49,9 @@ struct RawNode {
 
 class DocumentReader {
  public:
-  DocumentReader(std::string bytes, const std::string& name)
-      : document_(std::move(bytes), name),
+  DocumentReader(std::string bytes, const std::string& name, int threads)
+      : threads_(threads),
+        document_(std::move(bytes), name),
         scanner_(document_.scanner),
         budget_(128'000'000 + 6 * document_.text.size()) {
     if (document_.text.size() > 0xffff'ffff) refuse("more than 4 GB");
@@ -232,40 +234,46 @@ class DocumentReader {
   // Positions relative to a local origin, a whole number of kilometres in the file's coordinates.
   void place_nodes() {
     const std::vector<NodePlace>& places = document_.places;
-    const Frame frame(places, mgrs_code_);
+    const Frame frame(places, mgrs_code_, threads_);
     // A file that roadbed wrote says in its root what the local coordinates are.
     document_.crs = frame.is_local() && !crs_.empty() ? crs_ : frame.crs();
     if (document_.crs.empty() && !frame.doubt().empty()) {
       document_.remarks.push_back(
           {"import.crs-unknown", false, "file", 0, frame.doubt() + "; its CRS is unknown"});
     }
-    bool first = true;
-    std::size_t lost = 0;
-    std::size_t example = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto position = frame.place(places[i]);
-      Node& node = document_.nodes[i];
-      if (!position) {
-        if (lost++ == 0) example = i;
-        continue;
+    for (const NodePlace& place : places) {
+      const auto position = frame.place(place);
+      if (!position) continue;
+      document_.origin_in_source = (*position / 1000.0).array().round() * 1000.0;
+      break;
+    }
+    in_threads_by_runs(places.size(), threads_, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        const auto position = frame.place(places[i]);
+        if (!position) continue;
+        document_.nodes[i].in_map.head<2>() = *position - document_.origin_in_source;
+        document_.nodes[i].placed = true;
       }
-      if (first) document_.origin_in_source = (*position / 1000.0).array().round() * 1000.0;
-      first = false;
-      node.in_map.head<2>() = *position - document_.origin_in_source;
-      node.placed = true;
-    }
-    if (lost > 0) {
-      document_
-          .fault(document_.nodes[example].at, "import.node-position",
-                 fmt::format("{} nodes, this one first, have no usable coordinates", lost))
-          .in_text = !places[example].is_on_earth();
-    }
+    });
+    remark_lost_nodes();
     if (bad_elevations_ > 0) {
       document_.fault(first_bad_elevation_, "import.elevation",
                       fmt::format("{} nodes, this one first, have an elevation that is no height "
                                   "on earth; 0 is used",
                                   bad_elevations_));
     }
+  }
+
+  void remark_lost_nodes() {
+    const std::vector<Node>& nodes = document_.nodes;
+    const auto first = std::ranges::find(nodes, false, &Node::placed);
+    if (first == nodes.end()) return;
+    const auto lost =
+        std::count_if(first, nodes.end(), [](const Node& node) { return !node.placed; });
+    document_
+        .fault(first->at, "import.node-position",
+               fmt::format("{} nodes, this one first, have no usable coordinates", lost))
+        .in_text = !document_.places[static_cast<std::size_t>(first - nodes.begin())].is_on_earth();
   }
 
   void add_way_nodes(std::size_t index) {
@@ -311,6 +319,7 @@ class DocumentReader {
     return index;
   }
 
+  int threads_;
   Document document_;
   XmlScanner& scanner_;                          // the document's
   std::size_t budget_;                           // of memory [bytes]
@@ -326,8 +335,8 @@ class DocumentReader {
 
 }  // namespace
 
-Document read_document(std::string bytes, const std::string& name) {
-  return DocumentReader(std::move(bytes), name).read();
+Document read_document(std::string bytes, const std::string& name, int threads) {
+  return DocumentReader(std::move(bytes), name, threads).read();
 }
 
 }  // namespace roadbed::map::lanelet2

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "roadbed/tools/cli/in_threads.h"
+#include "roadbed/map/files/in_threads.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
@@ -136,7 +136,7 @@ std::vector<AuditedDrive> audit_all(const AuditDemand& demand,
   AuditDemand shared = demand;
   shared.question.drives_at_once =
       std::clamp<std::size_t>(subjects.size(), 1, static_cast<std::size_t>(std::max(1, threads)));
-  in_threads(subjects.size(), threads, [&](std::size_t i) {
+  map::in_threads(subjects.size(), threads, [&](std::size_t i) {
     audited[i] = audit_subject(shared, subjects[i]);
     done_one();
   });

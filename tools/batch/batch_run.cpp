@@ -12,12 +12,12 @@
 #include <sstream>
 #include <utility>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/unpack.h"
 #include "roadbed/tools/batch/job.h"
 #include "roadbed/tools/batch/memory.h"
-#include "roadbed/tools/cli/in_threads.h"
 
 namespace roadbed::tools::inline batch {
 namespace {
@@ -122,7 +122,7 @@ BatchRun::BatchRun(const BatchOptions& options, const JobKinds& kinds, ResultSto
 }
 
 void BatchRun::run() {
-  in_threads(runners_.size(), options_.threads, [&](std::size_t i) { work(*runners_[i]); });
+  map::in_threads(runners_.size(), options_.threads, [&](std::size_t i) { work(*runners_[i]); });
 }
 
 void BatchRun::work(JobRunner& runner) {

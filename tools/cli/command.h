@@ -31,7 +31,7 @@ Failure failure_of(const std::exception& error);
 /// Options that every command has.
 struct CommonOptions {
   bool quiet = false;
-  int threads = 1;
+  int threads = 0;  ///< 0: as many as the command itself would choose, mostly one
   /// Whether the process runs this command only, which may then set up its heap.
   bool is_alone = true;
   /// Files that the command line names as inputs, and those that these name; no output replaces

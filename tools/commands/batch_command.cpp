@@ -141,7 +141,7 @@ class BatchCommand : public Command {
   BatchOptions options(const CommonOptions& common) const {
     return {.jobs_file = jobs_file_,
             .folder = folder_,
-            .threads = common.threads,
+            .threads = std::max(1, common.threads),
             .memory_bytes = memory_bytes(default_memory()),
             .isolates = isolates_,
             .limits = {.time_s = time_limit_s_, .memory = job_memory_},

@@ -8,10 +8,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "roadbed/map/compiled/compiled_map.h"
+#include "roadbed/map/derived/map_totals.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/lane_table/read.h"
@@ -31,6 +35,7 @@ constexpr std::uintptr_t kMapPerFile = 8;  // of memory, a file's size of bytes
 constexpr std::uintptr_t kMostHugeBytes = std::uintptr_t{1} << 27;
 // Of a larger file, lists that grew out of their place would be too much to keep.
 constexpr std::uintmax_t kMostKeptBytes = std::uintmax_t{1} << 27;
+constexpr int kMostThreads = 4;   // unless more are asked for
 constexpr int kTopPad = 1 << 24;  // grown by at once
 
 // Makes ready the heap for a map that is read from `input`: kept when it is freed, as reading a
@@ -53,6 +58,13 @@ void keep_heap_in_huge_pages(const std::filesystem::path& input) {
   const auto to = (reinterpret_cast<std::uintptr_t>(block) + wanted) & ~(kHugePage - 1);
   if (to > from) ::madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
   std::free(block);
+}
+
+// The process's end gives memory back at once, which a map does line by line.
+void leave_to_the_end(std::unique_ptr<const map::RoadMap> road_map) {
+  [[maybe_unused]] static const map::RoadMap* left =
+      nullptr;  // still known, so that no checker calls it lost
+  left = road_map.release();
 }
 
 // A CRS of the user's own in place of the file's.
@@ -102,18 +114,20 @@ class ImportCommand : public Command {
     refuse_other_formats();
     map::check_writable(output_, force_);
     if (common.is_alone) keep_heap_in_huge_pages(input_);
-    const map::RoadMap road_map = with_crs(load(), crs_);
-    const std::string network = planning::write_route_network(planning::route_network_of(road_map));
-    write(road_map, network);
-    if (json_) print_json(streams.out, road_map);
-    if (!common.quiet) report(streams.err, road_map);
+    const int threads =
+        common.threads > 0 ? common.threads : std::min(map::processors(), kMostThreads);
+    auto road_map = std::make_unique<const map::RoadMap>(with_crs(load(threads), crs_));
+    write(*road_map, threads);
+    if (json_) print_json(streams.out, *road_map);
+    if (!common.quiet) report(streams.err, *road_map);
+    if (common.is_alone) leave_to_the_end(std::move(road_map));
     return Exit::ok;
   }
 
  private:
-  map::RoadMap load() {
+  map::RoadMap load(int threads) {
     if (!columns_.empty()) return load_lane_table();
-    const map::LoadOptions options{.max_error_m = max_error_m_};
+    const map::LoadOptions options{.max_error_m = max_error_m_, .threads = threads};
     if (map::is_compiled_map(map::stored_start(input_, 16))) return map::load_map(input_, options);
     std::string bytes = map::read_file(input_);
     source_ = map::source_of_content(bytes);
@@ -139,12 +153,19 @@ class ImportCommand : public Command {
     }
   }
 
-  void write(const map::RoadMap& road_map, const std::string& network) const {
+  void write(const map::RoadMap& road_map, int threads) const {
+    std::string network;
+    std::optional<map::MapTotals> totals;
+    map::in_threads(2, threads, [&](std::size_t task) {
+      if (task == 0) network = planning::write_route_network(planning::route_network_of(road_map));
+      if (task == 1) totals = map::totals_of(road_map);
+    });
     if (map::is_standard_stream(output_)) {
-      return map::write_to_standard_output(map::write_compiled_map(road_map, network, source_));
+      return map::write_to_standard_output(
+          map::write_compiled_map(road_map, network, source_, totals));
     }
     map::OutputFile output(output_, force_);
-    map::write_compiled_map(road_map, network, output, source_);
+    map::write_compiled_map(road_map, network, output, source_, totals);
     output.commit();
   }
 

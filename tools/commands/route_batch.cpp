@@ -5,13 +5,13 @@
 #include <algorithm>
 
 #include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/route/hierarchy_search.h"
 #include "roadbed/planning/route/no_route_explanation.h"
 #include "roadbed/planning/route/route_solver.h"
 #include "roadbed/planning/route/router.h"
-#include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/commands/route_output.h"
 #include "roadbed/tools/files/json.h"
@@ -62,7 +62,7 @@ class Batch {
   }
 
   void place(std::vector<PairRow>& rows) const {
-    in_threads(rows.size(), options_.threads, [&](std::size_t i) {
+    map::in_threads(rows.size(), options_.threads, [&](std::size_t i) {
       if (rows[i].fault.empty()) {
         place_row(road_map_, router_, router_.options().participant, rows[i]);
       }
@@ -71,7 +71,7 @@ class Batch {
 
   std::vector<Cell> answer_rows(const std::vector<PairRow>& rows) const {
     std::vector<Cell> cells(rows.size());
-    in_threads(
+    map::in_threads(
         rows.size(), options_.threads,
         [&] {
           return Own{planning::HierarchySearch(solver_.metric()), {}};
@@ -83,23 +83,23 @@ class Batch {
   std::vector<Cell> answer_matrix(const std::vector<PairRow>& rows) const {
     std::vector<planning::ClimbedSpace> goals(rows.size());
     const auto make = [&] { return planning::HierarchySearch(solver_.metric()); };
-    in_threads(rows.size(), options_.threads, make,
-               [&](planning::HierarchySearch& search, std::size_t i) {
-                 if (!rows[i].fault.empty()) return;
-                 const auto end = arrive_at(solver_.graph(), solver_.model(), *rows[i].to_place);
-                 goals[i] = search.climb(end.seeds, true);
-               });
+    map::in_threads(
+        rows.size(), options_.threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
+          if (!rows[i].fault.empty()) return;
+          const auto end = arrive_at(solver_.graph(), solver_.model(), *rows[i].to_place);
+          goals[i] = search.climb(end.seeds, true);
+        });
     std::vector<Cell> cells(rows.size() * rows.size());
-    in_threads(rows.size(), options_.threads, make,
-               [&](planning::HierarchySearch& search, std::size_t i) {
-                 if (!rows[i].fault.empty()) return;
-                 const auto end = leave_from(solver_.graph(), solver_.model(), *rows[i].from_place);
-                 const planning::ClimbedSpace start = search.climb(end.seeds, false);
-                 for (std::size_t j = 0; j < rows.size(); ++j) {
-                   if (!rows[j].fault.empty()) continue;
-                   cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
-                 }
-               });
+    map::in_threads(
+        rows.size(), options_.threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
+          if (!rows[i].fault.empty()) return;
+          const auto end = leave_from(solver_.graph(), solver_.model(), *rows[i].from_place);
+          const planning::ClimbedSpace start = search.climb(end.seeds, false);
+          for (std::size_t j = 0; j < rows.size(); ++j) {
+            if (!rows[j].fault.empty()) continue;
+            cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
+          }
+        });
     std::erase_if(cells, [](const Cell& cell) { return cell.csv.empty(); });
     return cells;
   }

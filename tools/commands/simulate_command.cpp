@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/files/read_file.h"
@@ -17,7 +18,6 @@
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/map/storage/output_folder.h"
 #include "roadbed/planning/audit/clearance_audit.h"
-#include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/cli/line_process.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/commands.h"
@@ -130,7 +130,7 @@ void drive_row(const DriveOptions& options, ScenarioRow& row) {
 }
 
 void drive_all(std::vector<ScenarioRow>& rows, const DriveOptions& options, ProgressBar& progress) {
-  in_threads(rows.size(), options.common.threads, [&](std::size_t i) {
+  map::in_threads(rows.size(), options.common.threads, [&](std::size_t i) {
     drive_row(options, rows[i]);
     progress.done_one();
   });

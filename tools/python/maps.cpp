@@ -11,6 +11,7 @@
 #include "roadbed/map/derived/drivable_area.h"
 #include "roadbed/map/derived/map_totals.h"
 #include "roadbed/map/drawing/write_svg.h"
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/gis/geopackage_content.h"
@@ -20,7 +21,6 @@
 #include "roadbed/map/validate_file.h"
 #include "roadbed/planning/route/route_network.h"
 #include "roadbed/planning/route/route_options.h"
-#include "roadbed/tools/cli/in_threads.h"
 #include "roadbed/tools/commands/finding_reports.h"
 #include "roadbed/tools/python/bindings.h"
 
@@ -79,7 +79,7 @@ Located locate(const Map& map, const Rows& points, const LocateOptions& options)
   Located located(map.road_map, size, options.count);
   const nb::gil_scoped_release released;
   const std::size_t batch = options.threads == 1 ? std::max<std::size_t>(size, 1) : kPointsAtOnce;
-  in_threads((size + batch - 1) / batch, options.threads, [&](std::size_t i) {
+  map::in_threads((size + batch - 1) / batch, options.threads, [&](std::size_t i) {
     const std::size_t from = i * batch, to = std::min(size, from + batch);
     std::vector<Eigen::Vector2d> in_map(to - from);
     for (std::size_t k = from; k < to; ++k) {

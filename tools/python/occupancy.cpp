@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "roadbed/map/files/in_threads.h"
 #include "roadbed/map/occupancy/clouds/cloud_formats.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/map/storage/output_file.h"
-#include "roadbed/tools/cli/in_threads.h"
 
 namespace roadbed::tools::inline python {
 
@@ -107,17 +107,17 @@ Array1 clearance(const Occupancy& occupancy, nb::handle poses, const ClearanceQu
   {
     const nb::gil_scoped_release released;
     const auto field = occupancy.field(question.band);
-    in_threads((distances.size() + kPosesAtOnce - 1) / kPosesAtOnce, question.threads,
-               [&](std::size_t batch) {
-                 const std::size_t to = std::min(distances.size(), (batch + 1) * kPosesAtOnce);
-                 for (std::size_t i = batch * kPosesAtOnce; i < to; ++i) {
-                   const double* row = rows.data() + 3 * i;
-                   const auto near =
-                       field->nearest(geometry::Pose2{row[0], row[1], row[2]}, question.shape,
-                                      question.within_m, question.kind);
-                   if (near) distances[i] = near->distance_m;
-                 }
-               });
+    map::in_threads((distances.size() + kPosesAtOnce - 1) / kPosesAtOnce, question.threads,
+                    [&](std::size_t batch) {
+                      const std::size_t to = std::min(distances.size(), (batch + 1) * kPosesAtOnce);
+                      for (std::size_t i = batch * kPosesAtOnce; i < to; ++i) {
+                        const double* row = rows.data() + 3 * i;
+                        const auto near =
+                            field->nearest(geometry::Pose2{row[0], row[1], row[2]}, question.shape,
+                                           question.within_m, question.kind);
+                        if (near) distances[i] = near->distance_m;
+                      }
+                    });
   }
   return owned(std::move(distances));
 }

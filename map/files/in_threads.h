@@ -4,12 +4,20 @@
 #include <functional>
 #include <memory>
 
-namespace roadbed::tools::inline cli {
+namespace roadbed::map::inline files {
+
+/// How many processors there are for this process, one at least.
+int processors();
 
 /// Runs work(0) … work(count − 1), each in one of the threads, whichever is free. When one throws,
 /// no other begins; when those that run have ended, what the least of them threw is thrown on. So
 /// results and errors are the same for any number of threads.
 void in_threads(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
+
+/// Runs work(from, to) on runs of indices that together are 0 … count − 1, in the same way: for
+/// many small pieces of work.
+void in_threads_by_runs(std::size_t count, int threads,
+                        const std::function<void(std::size_t from, std::size_t to)>& work);
 
 /// The same where each thread makes its work before the first that it does.
 void in_threads_that_make(std::size_t count, int threads,
@@ -26,4 +34,4 @@ void in_threads(std::size_t count, int threads, const Make& make, const Work& wo
   });
 }
 
-}  // namespace roadbed::tools::cli
+}  // namespace roadbed::map::files

@@ -1,4 +1,4 @@
-#include "roadbed/tools/cli/in_threads.h"
+#include "roadbed/map/files/in_threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace roadbed::tools::inline cli {
+namespace roadbed::map::inline files {
 namespace {
 
 /// What the threads share. Indices are taken in their order, so that all below one that throws have
@@ -42,6 +42,8 @@ class Indices {
 
 }  // namespace
 
+int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
 void in_threads_that_make(std::size_t count, int threads,
                           const std::function<std::function<void(std::size_t)>()>& make_work) {
   Indices indices(count);
@@ -68,8 +70,15 @@ void in_threads_that_make(std::size_t count, int threads,
   indices.rethrow();
 }
 
+void in_threads_by_runs(std::size_t count, int threads,
+                        const std::function<void(std::size_t, std::size_t)>& work) {
+  constexpr std::size_t kRun = 1024;
+  in_threads((count + kRun - 1) / kRun, threads,
+             [&](std::size_t run) { work(run * kRun, std::min(count, (run + 1) * kRun)); });
+}
+
 void in_threads(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
   in_threads_that_make(count, threads, [&] { return work; });
 }
 
-}  // namespace roadbed::tools::cli
+}  // namespace roadbed::map::files

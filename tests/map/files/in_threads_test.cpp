@@ -1,4 +1,4 @@
-#include "roadbed/tools/cli/in_threads.h"
+#include "roadbed/map/files/in_threads.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr std::size_t kCount = 1000;
 TEST(InThreads, DoesEachPieceOnceForAnyNumberOfThreads) {
   for (const int threads : {0, 1, 2, 7, 64}) {
     std::vector<std::atomic<int>> done(kCount);
-    tools::in_threads(done.size(), threads, [&](std::size_t i) { ++done[i]; });
+    map::in_threads(done.size(), threads, [&](std::size_t i) { ++done[i]; });
     for (const auto& times : done) EXPECT_EQ(times, 1) << threads;
   }
 }
@@ -28,7 +28,7 @@ TEST(InThreads, ThrowsForAnyNumberOfThreadsWhatOneAloneWouldHaveMet) {
     for (const int threads : {1, 2, 3, 8}) {
       std::string met = "nothing";
       try {
-        tools::in_threads(kCount, threads, [](std::size_t i) {
+        map::in_threads(kCount, threads, [](std::size_t i) {
           if (i % 7 == 5) throw std::runtime_error(std::to_string(i));
         });
       } catch (const std::runtime_error& error) {
@@ -47,7 +47,7 @@ TEST(InThreads, EndsAllThatRunBeforeItThrows) {
     --running;
     if (i == 0) throw std::runtime_error("first");
   };
-  EXPECT_THROW(tools::in_threads(kCount, 4, work), std::runtime_error);
+  EXPECT_THROW(map::in_threads(kCount, 4, work), std::runtime_error);
   EXPECT_EQ(running, 0);
 }
 
@@ -55,7 +55,7 @@ TEST(InThreads, MakesWhatAThreadHasForItselfOnceForEach) {
   std::atomic<int> made = 0;
   std::vector<std::atomic<int>> done(kCount);
   const auto make = [&] { return std::make_unique<std::thread::id>((++made, std::thread::id())); };
-  tools::in_threads(done.size(), 3, make, [&](auto& own, std::size_t i) {
+  map::in_threads(done.size(), 3, make, [&](auto& own, std::size_t i) {
     if (*own == std::thread::id()) *own = std::this_thread::get_id();
     EXPECT_EQ(*own, std::this_thread::get_id());
     ++done[i];
@@ -64,11 +64,11 @@ TEST(InThreads, MakesWhatAThreadHasForItselfOnceForEach) {
   EXPECT_LE(made, 3);
   for (const auto& times : done) EXPECT_EQ(times, 1);
 
-  tools::in_threads(
+  map::in_threads(
       0, 3, [&] { return ++made; }, [](int&, std::size_t) { FAIL(); });
   EXPECT_LE(made, 3) << "there was nothing to do";
   const auto fails = []() -> int { throw std::runtime_error("make"); };
-  EXPECT_THROW(tools::in_threads(9, 3, fails, [](int&, std::size_t) {}), std::runtime_error);
+  EXPECT_THROW(map::in_threads(9, 3, fails, [](int&, std::size_t) {}), std::runtime_error);
 }
 
 }  // namespace
