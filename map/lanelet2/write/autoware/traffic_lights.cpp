@@ -65,8 +65,7 @@ class LightCompleter {
     }
     if (inside.empty()) return users;
     std::ranges::sort(inside);
-    const auto repeated = std::ranges::unique(inside);
-    inside.erase(repeated.begin(), repeated.end());
+    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     for (const LaneId user : users) forget_regulation(made_, user, element);
     for (const LaneId lane : inside) name_regulation(made_, lane, element);
     return inside;

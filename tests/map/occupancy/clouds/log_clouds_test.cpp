@@ -307,6 +307,22 @@ TEST(LogClouds, PlaceEachPointWhereTheSensorWasThen) {
   }
 }
 
+TEST(LogClouds, LeaveOutTheVehicleInItsOwnFrame) {
+  // The lidar is 2 m ahead of base_link and looks to the left: its point is at 2, 5 there.
+  const LogClouds read(through(with_odometry(one_ahead())), "a log", {});
+  const auto kept = [&](const Box3& box) {
+    std::size_t points = 0;
+    try {
+      read.for_each([&](const PointCloud& cloud) { points += cloud.points.size(); },
+                    {.vehicle_box = box});
+    } catch (const InputError&) {  // no point is left
+    }
+    return points;
+  };
+  EXPECT_EQ(kept({{1.9, 4.9, -1}, {2.1, 5.1, 1}}), 0u);
+  EXPECT_EQ(kept({{4.9, -0.1, -1}, {5.1, 0.1, 1}}), 1u);
+}
+
 TEST(LogClouds, TakeTheStampWhereTimesAreUnlikely) {
   MadeCloud cloud = sweep<float>("time", 7, false, [](int i) { return i == 3 ? 1e5f : 0.0f; });
   std::vector<Recorded> log{{"/points", kCloud, cloud.message()},
