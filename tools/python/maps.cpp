@@ -227,9 +227,12 @@ std::vector<std::string> save(const Map& map, const std::filesystem::path& file,
     output.commit();
     return notes;
   }
-  const bool is_own = !choice.anchor && !choice.crs && !map.road_map->crs().empty();
-  map::save_map(*map.road_map, file,
-                {choice.layers, system_of(map, choice.crs, choice.anchor), is_own, &notes, {}});
+  map::SaveOptions options;
+  options.layers = choice.layers;
+  options.crs = system_of(map, choice.crs, choice.anchor);
+  options.is_own_crs = !choice.anchor && !choice.crs && !map.road_map->crs().empty();
+  options.notes = &notes;
+  map::save_map(*map.road_map, file, options);
   return notes;
 }
 
