@@ -53,11 +53,13 @@ using CloudsInTurn = std::function<void(const std::function<void(const PointClou
 struct Box3 {
   Eigen::Vector3d min_in_source, max_in_source;
 
+  /// Whether a point lies in the box or on it.
   bool holds(const Eigen::Vector3d& point) const {
     return (point.array() >= min_in_source.array()).all() &&
            (point.array() <= max_in_source.array()).all();
   }
 
+  /// Grows to hold another box, too.
   void extend(const Box3& other) {
     min_in_source = min_in_source.cwiseMin(other.min_in_source);
     max_in_source = max_in_source.cwiseMax(other.max_in_source);

@@ -41,6 +41,7 @@ class OccupancyMap final : public OccupancySource {
   /// memory.
   /// @throws as `build`.
   static File build_bt(std::span<const PointCloud> clouds, const OccupancyOptions& options);
+  /// The same of clouds that are gone through twice.
   static File build_bt(const CloudsInTurn& clouds, const OccupancyOptions& options);
 
   /// Reads `.bt` or `.ot`; the header, depth and node count are checked before a node is made.
