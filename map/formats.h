@@ -21,6 +21,7 @@ using Losses = std::vector<std::pair<std::string, std::size_t>>;
 /// A file of an output that consists of several, by its suffix.
 struct OutputPart {
   std::string suffix, bytes;
+  std::string name = {};  ///< its whole name, where that is always the same
 };
 
 /// What a writer may ask for besides the map.

@@ -68,7 +68,10 @@ void write_output_parts(const std::filesystem::path& file, const std::vector<Out
   stem.resize(stem.size() - (stem.ends_with(own) ? own : file.extension().string()).size());
   std::vector<std::unique_ptr<OutputFile>> files;
   for (const OutputPart& part : parts) {
-    const std::filesystem::path name = &part == &parts.front() ? file.string() : stem + part.suffix;
+    const std::filesystem::path name = &part == &parts.front() ? file
+                                       : part.name.empty()
+                                           ? std::filesystem::path(stem + part.suffix)
+                                           : file.parent_path() / part.name;
     check_writable(name, force);
     files.push_back(std::make_unique<OutputFile>(name, force));
     files.back()->write(0, part.bytes);

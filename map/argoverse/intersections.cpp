@@ -2,10 +2,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <string>
 #include <unordered_map>
 
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/argoverse/lane_segments.h"
 
@@ -14,38 +14,17 @@ namespace {
 
 constexpr double kStep_m = 1.0, kCell_m = 2.0;
 
-/// Groups of lanes: each is told by its least one.
-class Groups {
- public:
-  explicit Groups(std::size_t lanes) : parent_(lanes) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-
-  std::size_t of(std::size_t lane) {
-    while (parent_[lane] != lane) lane = parent_[lane] = parent_[parent_[lane]];
-    return lane;
-  }
-
-  void join(std::size_t a, std::size_t b) {
-    const std::size_t first = of(a), second = of(b);
-    parent_[std::max(first, second)] = std::min(first, second);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 /// Joins all lanes that give the same key.
 class ByKey {
  public:
-  explicit ByKey(Groups& groups) : groups_(groups) {}
+  explicit ByKey(geometry::DisjointSets& groups) : groups_(groups) {}
 
   void add(std::int64_t key, std::size_t lane) {
     groups_.join(first_.emplace(key, lane).first->second, lane);
   }
 
  private:
-  Groups& groups_;
+  geometry::DisjointSets& groups_;
   std::unordered_map<std::int64_t, std::size_t> first_;
 };
 
@@ -63,7 +42,7 @@ void visit_cells(const geometry::Polyline& line, geometry::WorkBudget& budget, c
 }  // namespace
 
 std::vector<Junction> LaneSegments::group_intersections() {
-  Groups groups(lanes_.size());
+  geometry::DisjointSets groups(lanes_.size());
   ByKey leading_to(groups), coming_from(groups), passing(groups);
   geometry::WorkBudget budget(geometry::most_steps(lanes_.size()));
   const auto join_inside = [&](std::size_t lane, std::int64_t id) {

@@ -3,40 +3,43 @@
 #include <algorithm>
 #include <map>
 
+#include "roadbed/geometry/primitives/disjoint_sets.h"
+
 namespace roadbed::map::inline derived {
 namespace {
 
 using Crossings = std::vector<std::optional<std::uint32_t>>;
 
-// Lanes that turn, as Lanelet2 says it, and lie over each other are in one crossing.
+// Whether a lane turns, as Lanelet2 says it.
+bool turns(const Lane& lane) {
+  return std::any_of(lane.attributes.begin(), lane.attributes.end(),
+                     [](const auto& tag) { return tag.first == "turn_direction"; });
+}
+
+// Lanes that turn and lie over each other are in one crossing.
 void name_turns(const RoadMap& road_map, const std::vector<bool>& counts, std::uint32_t next,
                 Crossings& crossings) {
-  std::map<LaneId, LaneId> leader;
+  std::vector<bool> is_turn(road_map.lanes().size());
   for (const Lane& lane : road_map.lanes()) {
-    const bool turns = std::any_of(lane.attributes.begin(), lane.attributes.end(),
-                                   [](const auto& tag) { return tag.first == "turn_direction"; });
-    if (turns && counts[lane.id.index]) leader.emplace(lane.id, lane.id);
+    is_turn[lane.id.index] = counts[lane.id.index] && turns(lane);
   }
-  const auto find = [&](LaneId lane) {
-    while (leader.at(lane) != lane) lane = leader.at(lane) = leader.at(leader.at(lane));
-    return lane;
-  };
+  geometry::DisjointSets sets(road_map.lanes().size());
   constexpr double step_m = 2.0, inside_m = 0.01;
-  for (const auto& [id, first] : leader) {
-    const Lane& lane = road_map.lane(id);
+  for (const Lane& lane : road_map.lanes()) {
+    if (!is_turn[lane.id.index]) continue;
     for (double s_m = 0.5 * step_m; s_m < lane.length_m(); s_m += step_m) {
       for (const LaneMatch& match : road_map.locate(lane.centre.in_map.at(s_m), inside_m, false)) {
-        if (!leader.contains(match.place.lane)) continue;
-        const LaneId a = find(id), b = find(match.place.lane);
-        leader.at(std::max(a, b)) = std::min(a, b);
+        const std::uint32_t other = match.place.lane.index;
+        if (is_turn[other]) sets.join(lane.id.index, other);
       }
     }
   }
-  std::map<LaneId, std::uint32_t> numbers;
-  for (const auto& [id, first] : leader) {
-    const auto [found, is_new] = numbers.emplace(find(id), next);
+  std::map<std::size_t, std::uint32_t> numbers;
+  for (std::uint32_t lane = 0; lane < is_turn.size(); ++lane) {
+    if (!is_turn[lane]) continue;
+    const auto [found, is_new] = numbers.emplace(sets.of(lane), next);
     next += is_new ? 1 : 0;
-    crossings[id.index] = found->second;
+    crossings[lane] = found->second;
   }
 }
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "roadbed/map/sumo/disjoint_sets.h"
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/map/sumo/inner_lanes.h"
 #include "roadbed/map/sumo/lane_lines.h"
 #include "roadbed/map/sumo/net.h"
@@ -40,7 +40,7 @@ class NetBuilder {
     std::uint32_t crossings = 0;
     for (const auto& number : inner_) crossings = std::max(crossings, number ? *number + 1 : 0U);
     const auto ends = static_cast<std::uint32_t>(2 * net_.edges.size());
-    DisjointSets sets(ends + crossings);
+    geometry::DisjointSets sets(ends + crossings);
     for (const NetConnection& connection : net_.connections) {
       sets.join(2 * connection.from + 1, 2 * connection.to);
       for (const DirectedLane way : connection.across) {
@@ -51,15 +51,15 @@ class NetBuilder {
   }
 
   // By the junction of the map where there is one, else by an edge that begins or ends there.
-  void name_nodes(DisjointSets& sets, std::uint32_t ends, std::uint32_t crossings) {
-    std::map<std::uint32_t, std::string> names;
+  void name_nodes(geometry::DisjointSets& sets, std::uint32_t ends, std::uint32_t crossings) {
+    std::map<std::size_t, std::string> names;
     const auto junctions = static_cast<std::uint32_t>(road_map_.junctions().size());
     for (std::uint32_t i = 0; i < std::min(crossings, junctions); ++i) {
       names.emplace(sets.of(ends + i), road_map_.junctions().at(i).source_id);
     }
-    std::map<std::uint32_t, std::uint32_t> nodes;
+    std::map<std::size_t, std::uint32_t> nodes;
     const auto node = [&](std::uint32_t end) {
-      const std::uint32_t set = sets.of(end);
+      const std::size_t set = sets.of(end);
       const auto [found, is_new] =
           nodes.emplace(set, static_cast<std::uint32_t>(net_.nodes.size()));
       if (is_new) {

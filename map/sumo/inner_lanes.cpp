@@ -1,9 +1,9 @@
 #include "roadbed/map/sumo/inner_lanes.h"
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 
 #include <algorithm>
 
 #include "roadbed/map/derived/crossings.h"
-#include "roadbed/map/sumo/disjoint_sets.h"
 
 namespace roadbed::map::sumo {
 namespace {
@@ -27,7 +27,7 @@ void add_crossing(const RoadMap& road_map, const std::vector<Conflict>& conflict
   const Numbers named = numbers;
   const bool names_any = std::any_of(named.begin(), named.end(),
                                      [](const auto& number) { return number.has_value(); });
-  DisjointSets sets(numbers.size());
+  geometry::DisjointSets sets(numbers.size());
   std::vector<bool> is_inner(numbers.size());
   for (const Conflict& conflict : conflicts) {
     if (!cross(road_map, conflict)) continue;

@@ -33,14 +33,8 @@ Participants without_vehicles(Participants users) {
 
 Participants users_of(const Lane& lane) {
   if (is_crosswalk(lane)) return {};
+  if (is_drivable(lane.type)) return lane.participants;
   switch (lane.type) {
-    case LaneType::driving:
-    case LaneType::bidirectional:
-    case LaneType::entry:
-    case LaneType::exit:
-    case LaneType::on_ramp:
-    case LaneType::off_ramp:
-    case LaneType::connecting_ramp:
     case LaneType::bus:
     case LaneType::taxi:
       return lane.participants;

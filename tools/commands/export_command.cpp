@@ -111,13 +111,11 @@ class ExportCommand : public Command {
     const map::Format& format = map::format_to_write(output_, suffix());
     check_layers(format, layers_);
     map::check_writable(output_, force_);
-    if (!profile_.empty()) map::check_writable(projector_info(), force_);
     const std::string file = input_.filename().string();
     map::MapPageOptions page{.title = file == "-" ? map::input_name(input_) : file, .file = file};
     const map::RoadMap road_map = suffix() == ".html" ? judged_map(page) : map::load_map(input_);
     overlays_.add_to(page, road_map);
     const Written written = write(format, road_map, std::move(page));
-    if (!profile_.empty()) map::write_output(projector_info(), written.projector_info, force_);
     map::write_output_parts(output_, written.parts, force_);
     if (json_) print_json(streams.out, format, road_map, written);
     if (!common.quiet) print_text(streams.err, road_map, written);
@@ -171,7 +169,6 @@ class ExportCommand : public Command {
     std::vector<std::string> notes = {};
     map::Losses lost = {};
     std::optional<double> largest_error_m = {}, largest_height_error_m = {};
-    std::string projector_info = {};
 
     std::size_t bytes() const {
       std::size_t sum = 0;
@@ -217,10 +214,10 @@ class ExportCommand : public Command {
       options.source = map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes;
     }
     map::lanelet2::AutowareFiles files = map::lanelet2::write_autoware(road_map, options);
-    return {.parts = one_file(format, std::move(files.vector_map)),
-            .notes = std::move(files.notes),
-            .lost = std::move(files.lost),
-            .projector_info = std::move(files.projector_info)};
+    Written written{one_file(format, std::move(files.vector_map)), std::move(files.notes),
+                    std::move(files.lost)};
+    written.parts.push_back({"", std::move(files.projector_info), "map_projector_info.yaml"});
+    return written;
   }
 
   static std::vector<map::OutputPart> one_file(const map::Format& format, std::string bytes) {
@@ -261,10 +258,6 @@ class ExportCommand : public Command {
     }
     document["notes"] = written.notes;
     out << map::json_text(versioned("export", document), 2) << '\n';
-  }
-
-  std::filesystem::path projector_info() const {
-    return output_.parent_path() / "map_projector_info.yaml";
   }
 
   std::string system_of(const map::RoadMap& road_map) const {

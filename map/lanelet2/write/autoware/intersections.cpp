@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "roadbed/geometry/polygons/convex_hull.h"
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/map/derived/conflicts.h"
+#include "roadbed/map/derived/crossings.h"
 #include "roadbed/map/elements/lane_bend.h"
 #include "roadbed/map/lanelet2/autoware/shapes.h"
 #include "roadbed/map/lanelet2/traffic_rules.h"
@@ -20,27 +21,6 @@ namespace {
 constexpr double kCovered = 0.99;  // share of a lanelet from which on it lies in an area
 
 using Group = std::vector<LaneId>;
-
-/// Lanes that are in conflict with each other, directly or by others.
-class ConflictGroups {
- public:
-  explicit ConflictGroups(std::size_t lanes) : root_(lanes) {
-    std::iota(root_.begin(), root_.end(), 0U);
-  }
-
-  void join(LaneId one, LaneId other) {
-    const std::uint32_t a = root(one.index), b = root(other.index);
-    root_[std::max(a, b)] = std::min(a, b);
-  }
-
-  std::uint32_t root(std::uint32_t lane) {
-    while (root_[lane] != lane) lane = root_[lane] = root_[root_[lane]];
-    return lane;
-  }
-
- private:
-  std::vector<std::uint32_t> root_;
-};
 
 class IntersectionMaker {
  public:
@@ -55,9 +35,8 @@ class IntersectionMaker {
       tag_those_in(way);
     }
     if (has_areas) return;
-    for (const Group& group : road_map_.junctions().empty() ? by_conflicts() : by_junctions()) {
-      add_area(group);
-    }
+    const std::vector<Group> named = by_crossings();
+    for (const Group& group : named.empty() ? by_conflicts() : named) add_area(group);
   }
 
  private:
@@ -85,29 +64,35 @@ class IntersectionMaker {
     }
   }
 
-  std::vector<Group> by_junctions() const {
-    std::vector<Group> groups(road_map_.junctions().size());
-    for (const Lane& lane : road_map_.lanes()) {
-      if (lane.junction && is_wanted(lane.id)) groups[lane.junction->index].push_back(lane.id);
+  /// Roads inside each crossing that the map names.
+  std::vector<Group> by_crossings() const {
+    std::vector<bool> wanted;
+    for (const Lane& lane : road_map_.lanes()) wanted.push_back(is_wanted(lane.id));
+    const auto crossings = crossings_of_lanes(road_map_, wanted);
+    std::map<std::uint32_t, Group> groups;
+    for (std::uint32_t lane = 0; lane < wanted.size(); ++lane) {
+      if (crossings[lane] && wanted[lane]) groups[*crossings[lane]].push_back(LaneId{lane});
     }
-    return groups;
+    std::vector<Group> found;
+    for (auto& [number, group] : groups) found.push_back(std::move(group));
+    return found;
   }
 
   std::vector<Group> by_conflicts() const {
-    ConflictGroups joined(road_map_.lanes().size());
+    geometry::DisjointSets joined(road_map_.lanes().size());
     std::vector<bool> crosses(road_map_.lanes().size()), meets(road_map_.lanes().size());
     for (const Conflict& conflict : find_conflicts(road_map_)) {
       if (!is_wanted(conflict.one) || !is_wanted(conflict.other)) continue;
-      joined.join(conflict.one, conflict.other);
+      joined.join(conflict.one.index, conflict.other.index);
       meets[conflict.one.index] = meets[conflict.other.index] = true;
       if (conflict.kind == ConflictKind::crossing) crosses[conflict.one.index] = true;
     }
-    std::map<std::uint32_t, Group> groups;
-    std::map<std::uint32_t, bool> has_crossing;
+    std::map<std::size_t, Group> groups;
+    std::map<std::size_t, bool> has_crossing;
     for (std::uint32_t lane = 0; lane < meets.size(); ++lane) {
       if (!meets[lane]) continue;
-      groups[joined.root(lane)].push_back(LaneId{lane});
-      if (crosses[lane]) has_crossing[joined.root(lane)] = true;
+      groups[joined.of(lane)].push_back(LaneId{lane});
+      if (crosses[lane]) has_crossing[joined.of(lane)] = true;
     }
     std::vector<Group> found;
     for (auto& [root, group] : groups) {

@@ -7,7 +7,8 @@ namespace roadbed::map::lanelet2 {
 
 /// Intersection areas, and of the roads in them the turn directions and virtual borders.
 ///
-///        ┊   ┊           An intersection is a junction of the source, or where there are none,
+///        ┊   ┊           An intersection is a crossing that the map names, or where there are
+///        none,
 ///     ●──●   ●──●        roads that cross and those in conflict with them. Its area is the hull
 ///     ┈┈┈┈┈┈┈┈┈┈┈        of their corners ●; a road that does not lie in it is not of it.
 ///     ●──●   ●──●
