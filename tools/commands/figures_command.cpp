@@ -8,7 +8,7 @@
 
 #include "roadbed/map/storage/output_folder.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/report/paper_figures.h"
+#include "roadbed/tools/figures/paper_figures.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -16,15 +16,16 @@ namespace {
 std::vector<Figure> all_figures() {
   std::vector<Figure> figures = reference_line_figures();
   std::ranges::move(lateral_planner_figures(), std::back_inserter(figures));
-  std::ranges::move(tracking_figures(), std::back_inserter(figures));
+  figures.push_back(cruise_control_figure());
   std::ranges::move(steering_law_figures(), std::back_inserter(figures));
+  std::ranges::move(tracking_figures(), std::back_inserter(figures));
   return figures;
 }
 
 class FiguresCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Compute the paper's figures 2 to 10 and 12 to 14, each as SVG and CSV");
+    arguments.description("Compute the paper's figures 2 to 14, each as SVG and CSV");
     arguments.add("-o,--output", folder_, "Folder for the figures").required().writes("/");
     arguments.flag("-f,--force", force_, "Replace files in the folder");
     arguments.example("  roadbed figures -o figures");
@@ -34,8 +35,8 @@ class FiguresCommand : public Command {
     map::OutputFolder folder(folder_, {.force = force_});
     const std::vector<Figure> figures = all_figures();
     for (const Figure& figure : figures) {
-      folder.write(figure.name + ".svg", chart_svg(figure.chart));
-      folder.write(figure.name + ".csv", chart_csv(figure.chart));
+      folder.write(figure.name + ".svg", figure_svg(figure));
+      folder.write(figure.name + ".csv", figure_csv(figure));
     }
     folder.commit();
     for (const Figure& figure : figures) {
