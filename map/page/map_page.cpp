@@ -85,6 +85,10 @@ Json lon_lat_json(const RoadMap& road_map, AlignedBox2d box, const MapPageOption
   }
 }
 
+std::string title_of(const MapPageOptions& options) {
+  return options.title.empty() ? "Map" : options.title;
+}
+
 /// Of everything but lanes, which have a column of their own.
 Json lines_of_things_json(const validation::ElementLines& lines) {
   Json made = Json::object();
@@ -106,14 +110,13 @@ std::vector<PageRemark> remarks_of(const std::vector<validation::Finding>& findi
   return remarks;
 }
 
-std::string write_map_page(const RoadMap& road_map, const MapPageOptions& options) {
+std::string map_page_data(const RoadMap& road_map, const MapPageOptions& options) {
   const AlignedBox2d box = box_of(road_map);
   const Vector2d low = box.isEmpty() ? Vector2d(-10, -10) : box.min();
   const Vector2d high = box.isEmpty() ? Vector2d(10, 10) : box.max();
   const Vector2d& origin = road_map.origin_in_source();
-  const std::string title = options.title.empty() ? "Map" : options.title;
   Json data = {
-      {"file", options.file.empty() ? title : options.file},
+      {"file", options.file.empty() ? title_of(options) : options.file},
       {"format", road_map.format()},
       {"crs", options.crs},
       {"origin", {origin.x(), origin.y()}},
@@ -127,10 +130,14 @@ std::string write_map_page(const RoadMap& road_map, const MapPageOptions& option
   data["lanes"] = lanes_json(road_map, options.lines);
   data["lines"] = lines_of_things_json(options.lines);
   data.update(things_json(road_map));
-  return filled_page(kMapTemplate, {{"title", html_text(title)},
+  return json_for_script(json_text(data));
+}
+
+std::string write_map_page(const RoadMap& road_map, const MapPageOptions& options) {
+  return filled_page(kMapTemplate, {{"title", html_text(title_of(options))},
                                     {"css", std::string(kMapCss)},
                                     {"js", std::string(kMapJs)},
-                                    {"data", json_for_script(json_text(data))}});
+                                    {"data", map_page_data(road_map, options)}});
 }
 
 }  // namespace roadbed::map::page

@@ -19,13 +19,14 @@ struct PagePiece {
 /// Something drawn over the map: a route, a drive, occupied cells.
 struct PageOverlay {
   std::string kind;  ///< which of the page's looks it has: "route", "drive", "occupied", "reach", …
-  std::string name;               ///< in the list of layers
-  std::string text;               ///< what there is to say of it: "812 m, 61 s"
-  bool is_alternative = false;    ///< dashed
-  std::vector<PagePiece> pieces;  ///< drawn along their centrelines; the page knows their heights
-  std::vector<std::vector<Eigen::Vector2d>> lines_in_map;
-  std::vector<geometry::Ring> rings_in_map;
-  std::vector<Eigen::AlignedBox2d> boxes_in_map;
+  std::string name;             ///< in the list of layers
+  std::string text = {};        ///< what there is to say of it: "812 m, 61 s"
+  bool is_alternative = false;  ///< dashed
+  std::vector<PagePiece> pieces =
+      {};  ///< drawn along their centrelines; the page knows their heights
+  std::vector<std::vector<Eigen::Vector2d>> lines_in_map = {};
+  std::vector<geometry::Ring> rings_in_map = {};
+  std::vector<Eigen::AlignedBox2d> boxes_in_map = {};
 };
 
 /// An entry of the list that a page walks through: a finding, a change.
@@ -46,6 +47,10 @@ struct MapPageOptions {
   std::vector<PageOverlay> overlays = {};
   std::vector<std::string>* notes = nullptr;  ///< takes what the user should know, a line each
 };
+
+/// What the scripts of a page need to draw a map (scripts/map_data.js reads it), as JSON that may
+/// stand in a script: for pages that show a map among other things.
+std::string map_page_data(const RoadMap& road_map, const MapPageOptions& options);
 
 /// A map as one HTML file that opens without a server or a network and answers who looks at it:
 /// what is here, what does it lead to, where is it. Lines are kept to 0.1 mm, so that the page

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "roadbed/planning/speed/st_picture.h"
+
 namespace roadbed::planning::inline behaviour {
 
 /// What a hypothesis does to those who are in the way.
@@ -38,8 +40,11 @@ inline std::string_view to_string(Maneuver maneuver) {
 struct HypothesisOutcome {
   Maneuver maneuver = Maneuver::keep_lane;
   std::optional<double> end_d_m = {}, end_l_m = {};  ///< of its path; none where there is none
+  std::optional<double> path_cost = {};              ///< of the candidate (eq. 12)
+  std::optional<double> drive_cost = {};  ///< of what the search found; the cruise law has none
   bool is_driven = false;
   std::string reason = {};  ///< why it is not driven; empty for the one that is
+  StPicture st = {};        ///< what it was judged by; empty where no path was asked for
 };
 
 }  // namespace roadbed::planning::behaviour

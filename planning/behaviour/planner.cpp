@@ -31,6 +31,24 @@ LateralReplanner::Ends ends_at(double speed_mps) {
   return {.least_m = least_m, .most_m = 2.0 * least_m};
 }
 
+/// Until what is planned for.
+std::vector<ForeseenMotion> foreseen_motions(const Traffic& traffic, double now_s) {
+  constexpr double kStep_s = 0.5;
+  constexpr int kSteps = 10;
+  std::vector<ForeseenMotion> foreseen;
+  for (std::size_t i = 0; i < traffic.obstacles.size(); ++i) {
+    const Obstacle& obstacle = traffic.obstacles[i];
+    if (obstacle.is_static() || !obstacle.is_there(now_s)) continue;
+    foreseen.push_back({.obstacle = i});
+    for (int step = 0; step <= kSteps; ++step) {
+      const double t_s = now_s + kStep_s * step;
+      if (!obstacle.is_there(t_s)) break;
+      foreseen.back().points.push_back(obstacle.motion.at(t_s).pose().position());
+    }
+  }
+  return foreseen;
+}
+
 }  // namespace
 
 class Planner::Impl {
@@ -64,6 +82,7 @@ class Planner::Impl {
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
+    if (predicts_) command.foreseen = foreseen_motions(traffic_, view.t_s);
     if (!task_.goal) look_at_blocked_road(view, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +25,13 @@ struct PlannerView {
   bool explains = false;  ///< keep what became of every candidate (LateralReplanner::explained())
 };
 
+/// A motion that is foreseen of an obstacle.
+struct ForeseenMotion {
+  std::size_t obstacle = 0;  ///< index in the task
+  double probability = 1.0;
+  std::vector<Eigen::Vector2d> points = {};  ///< of its middle, every half a second from now
+};
+
 /// What it wants until the next cycle.
 struct PlannerCommand {
   double acceleration_mps2 = 0.0;  ///< desired, to the actuator
@@ -34,6 +43,8 @@ struct PlannerCommand {
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
   /// What is foreseen to be driven along the path, from its state now; not empty.
   std::vector<SpeedState> drive = {};
+  /// Of what moves, in the map's frame; empty if the future is known.
+  std::vector<ForeseenMotion> foreseen = {};
   bool is_news = false;  ///< the reason is worth an event
   /// To be put into the task before the next decision, by a planner of its own.
   std::optional<Detour> detour = {};

@@ -37,6 +37,11 @@ HypothesisOutcome outcome_of(const ManeuverHypothesis& hypothesis) {
   if (const std::optional<Candidate>& chosen = hypothesis.proposal.plan.chosen) {
     outcome.end_d_m = chosen->end_d_m;
     outcome.end_l_m = chosen->end_l_m;
+    outcome.path_cost = chosen->cost;
+  }
+  if (hypothesis.risk_level && !hypothesis.by_cruise_law) outcome.drive_cost = hypothesis.cost;
+  if (hypothesis.occupancy) {
+    outcome.st = st_picture(*hypothesis.occupancy, hypothesis.answer.plan);
   }
   return outcome;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace roadbed::tests {
@@ -49,16 +51,29 @@ tools::LineInSource line_beside(double d_m, bool backwards, double length_m) {
   return line;
 }
 
-tools::ReportLane lane_between(const char* name, map::LaneType type, double left_d_m,
-                               double right_d_m) {
-  const bool backwards = left_d_m < right_d_m;
+map::LaneLine lane_line(double d_m, bool backwards) {
   constexpr double kLength_m = 420.0;
-  return {.name = name,
-          .type = type,
-          .in_junction = false,
-          .left = line_beside(left_d_m, backwards, kLength_m),
-          .centre = line_beside(0.5 * (left_d_m + right_d_m), backwards, kLength_m),
-          .right = line_beside(right_d_m, backwards, kLength_m)};
+  tools::LineInSource points = line_beside(d_m, backwards, kLength_m);
+  for (Eigen::Vector2d& point : points) point -= kOffset;
+  map::LaneLine line{.in_map = geometry::Polyline(std::move(points)), .z_m = {}, .station_m = {}};
+  line.station_m = line.in_map.stations_m();
+  line.z_m.assign(line.station_m.size(), 0.0);
+  return line;
+}
+
+void add_lane(map::RoadMapParts& parts, const char* name, map::LaneType type, double left_d_m,
+              double right_d_m) {
+  const bool backwards = left_d_m < right_d_m;
+  map::Lane lane;
+  lane.id = {static_cast<std::uint32_t>(parts.lanes.size())};
+  lane.name = name;
+  lane.type = type;
+  lane.left = lane_line(left_d_m, backwards);
+  lane.centre = lane_line(0.5 * (left_d_m + right_d_m), backwards);
+  lane.right = lane_line(right_d_m, backwards);
+  lane.polygon = map::lane_ring(lane.left.in_map, lane.right.in_map);
+  parts.lanes.push_back(std::move(lane));
+  parts.links.emplace_back();
 }
 
 // A smooth bump of height 1 around `middle`, `half` to each side.
@@ -130,6 +145,18 @@ std::vector<tools::DriveCycle> cycles_of(const geometry::Trajectory& drive) {
         .end_l_m = {15.0, 30.0},
         .causes = {0, 0, 1, 5, 5, 0},
         .runner_up = planning::Candidate{.end_d_m = 0.5, .end_l_m = 21.0, .terms = {0.15, 0.2}}};
+    cycle.hypotheses = {
+        {.maneuver = planning::Maneuver::overtake, .reason = "oncoming-3 comes: 40 m are missing"},
+        {.maneuver = planning::Maneuver::keep_lane,
+         .end_d_m = 0.4,
+         .end_l_m = 22.0,
+         .path_cost = 0.3,
+         .drive_cost = 1.25,
+         .is_driven = true,
+         .st = {.parts = {{.step = 0, .from_m = 20.0F, .to_m = 26.0F, .obstacle = 1},
+                          {.step = 1, .from_m = 23.0F, .to_m = 29.0F, .obstacle = 1}},
+                .drive_m = {0.0F, 5.0F, 9.5F}}}};
+    cycle.foreseen = {{.obstacle = 1, .probability = 0.8, .points = {{0.0, 0.0}, {3.0, 0.0}}}};
     cycles.push_back(std::move(cycle));
   }
   return cycles;
@@ -186,17 +213,24 @@ std::vector<map::Box2> wall() {
 
 }  // namespace
 
-tools::ReportInput sample_report() {
+map::RoadMapParts sample_road() {
   using map::LaneType;
+  map::RoadMapParts parts;
+  parts.origin_in_source = kOffset;
+  add_lane(parts, "12/0/-1", LaneType::driving, 0.0, -3.5);
+  add_lane(parts, "12/0/1", LaneType::driving, 0.0, 3.5);
+  add_lane(parts, "12/0/-2", LaneType::shoulder, -3.5, -5.0);
+  add_lane(parts, "12/0/2", LaneType::sidewalk, 3.5, 5.5);
+  return parts;
+}
+
+tools::ReportInput sample_report() {
   tools::ReportInput input;
   input.title = "Drive past a parked car";
   input.scenario = "data/scenarios/parked_car.json";
   input.verdict = {tools::Tone::good, "goal reached after 40 s, 390 m; nothing was touched"};
   input.audit = tools::ReportVerdict{tools::Tone::good, "clear, at least 0.61 m"};
-  input.scene.lanes = {lane_between("12/0/-1", LaneType::driving, 0.0, -3.5),
-                       lane_between("12/0/1", LaneType::driving, 0.0, 3.5),
-                       lane_between("12/0/-2", LaneType::shoulder, -3.5, -5.0),
-                       lane_between("12/0/2", LaneType::sidewalk, 3.5, 5.5)};
+  input.scene.road_map = std::make_shared<const map::RoadMap>(sample_road());
   input.scene.route = {line_beside(-1.75, false, 410.0)};
   input.scene.references = {line_beside(-1.75, false, 410.0)};
   input.scene.goal = beside(405.0, -1.75).position();
@@ -217,7 +251,7 @@ tools::ReportInput sample_report() {
   input.checks = {{"collisions", 0.0, "", "= 0", true, {}},
                   {"least clearance", 0.612, "m", "≥ 0.3", true, 9.5},
                   {"largest lateral acceleration", 1.72, "m/s²", "≤ 4.89", true, 7.1},
-                  {"largest jerk", 9.1, "m/s³", "≤ 8.37", false, 18.3},
+                  {"largest jerk", 9.1, "m/s³", "≤ 8.37", false, 18.3, "comfort, nuPlan"},
                   {"time-to-collision", std::nullopt, "s", "≥ 1.5", true, {}}};
   input.origin.command = "roadbed simulate data/scenarios/parked_car.json -o out";
   input.origin.version = "roadbed 0.1.0";

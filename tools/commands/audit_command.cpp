@@ -489,7 +489,7 @@ class AuditCommand : public Command {
                            .parts = question.inflated_parts(),
                            .clearance_m = options_.clearance_m,
                            .occupied = {},
-                           .lanes = {},
+                           .road_map = {},
                            .moving = question.moving_in_source,
                            .command = "roadbed audit " + against(),
                            .version = name_and_version(),
@@ -502,7 +502,7 @@ class AuditCommand : public Command {
       page.clearance_m = margin_m_;
       if (!map_.empty()) page.sources.push_back(source("map", hashed_once(map_)));
     }
-    if (scene.road_map != nullptr) page.lanes = lanes_in(*scene.road_map, box);
+    if (scene.road_map != nullptr) page.road_map = map_around(*scene.road_map, box);
     if (!subjects_.is_swept() && !std::filesystem::is_directory(subjects_.file())) {
       page.sources.push_back(source("trajectory", hashed_input(subjects_.file())));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct AuditSurroundings {
   std::vector<geometry::BodyPart> parts;  ///< as audited, with the margin
   double clearance_m = 0.0;               ///< asked for
   std::vector<map::Box2> occupied;
-  std::vector<ReportLane> lanes;
+  std::shared_ptr<const map::RoadMap> road_map;  ///< near the drive; none: no map was given
   std::vector<planning::ObstacleInSource> moving;
   std::string command, version, crs;
   std::vector<ReportSource> sources;

@@ -35,13 +35,17 @@ std::optional<double> time_of(const Worst& worst) {
   return worst.value > 0.0 ? std::optional<double>(worst.at_s) : std::nullopt;
 }
 
-ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit) {
+constexpr const char* kComfort = "comfort, nuPlan";
+
+ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit,
+                    const char* bound_from = kComfort) {
   return {.name = std::move(name),
           .value = worst.value,
           .unit = std::move(unit),
           .bound = fmt::format("≤ {}", bound),
           .passed = worst.value <= bound,
-          .at_s = time_of(worst)};
+          .at_s = time_of(worst),
+          .bound_from = bound_from};
 }
 
 ReportCheck noted(std::string name, double value, std::string unit, std::optional<double> at_s) {
@@ -59,7 +63,8 @@ ReportCheck outcome_check(const Drive& drive) {
           .unit = {},
           .bound = "required",
           .passed = drive.verdict.outcome == Outcome::goal_reached,
-          .at_s = drive.trajectory.empty() ? std::optional<double>() : drive.verdict.at_s};
+          .at_s = drive.trajectory.empty() ? std::optional<double>() : drive.verdict.at_s,
+          .bound_from = "the scenario"};
 }
 
 ReportCheck clearance_check(const Drive& drive) {
@@ -70,7 +75,8 @@ ReportCheck clearance_check(const Drive& drive) {
                     .unit = "m",
                     .bound = "> 0",
                     .passed = nearest.value < 0.0,
-                    .at_s = {}};
+                    .at_s = {},
+                    .bound_from = "nothing is touched"};
   if (std::isfinite(nearest.value)) {
     check.value = -nearest.value;
     check.at_s = nearest.at_s;
@@ -85,7 +91,8 @@ ReportCheck audit_check(const planning::AuditReport& audit) {
           .unit = "m",
           .bound = "no conflict",
           .passed = audit.verdict != planning::Verdict::conflict,
-          .at_s = audit.least_clearance_at_s};
+          .at_s = audit.least_clearance_at_s,
+          .bound_from = "the audit"};
 }
 
 ReportCheck braking_check(const Drive& drive) {
@@ -106,9 +113,10 @@ void append_motion_checks(const Drive& drive, std::vector<ReportCheck>& checks) 
   const auto yaw_rate = [](const Row& p, const DriveSample&) {
     return std::abs(p.speed_mps * p.curvature_per_m);
   };
-  checks.push_back(at_most("farthest off the road", largest(drive, off_road), 0.0, "m"));
   checks.push_back(
-      at_most("speed above the limit", largest(drive, over_limit), kOverLimitTolerance_mps, "m/s"));
+      at_most("farthest off the road", largest(drive, off_road), 0.0, "m", "the map's surface"));
+  checks.push_back(at_most("speed above the limit", largest(drive, over_limit),
+                           kOverLimitTolerance_mps, "m/s", "the map's limit, overshoot"));
   checks.push_back(at_most("strongest acceleration", largest(drive, speeding_up),
                            kMostAcceleration_mps2, "m/s²"));
   checks.push_back(braking_check(drive));

@@ -18,15 +18,18 @@ endforeach()
 
 set(report_page ${CMAKE_CURRENT_LIST_DIR}/page)
 # In this order: what comes later uses what comes before.
-set(report_scripts decode.js motion.js clock.js scene.js cycle.js draw.js map.js plots.js player.js report.js)
+set(report_scripts decode.js motion.js clock.js scene.js hypotheses.js cycle.js draw.js map.js plots.js player.js report.js)
 list(TRANSFORM report_scripts PREPEND ${report_page}/)
-list(PREPEND report_scripts ${PROJECT_SOURCE_DIR}/map/page/scripts/view.js)  # of the map page, too
+# What the page of a map draws with.
+set(map_scripts decode view map_data grid locate colours tiles paint things overlays canvas)
+list(TRANSFORM map_scripts REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/map/page/scripts/\\1.js")
+list(JOIN map_scripts , map_scripts)
 list(JOIN report_scripts , report_scripts)
 set(report_page_source ${CMAKE_CURRENT_BINARY_DIR}/report_page_parts.cpp)
 roadbed_embed(OUT ${report_page_source} HEADER roadbed/tools/report/page_parts.h
   NAMESPACE "roadbed::tools::inline report"
-  PARTS kPageTemplate=${report_page}/template.html kPageCss=${report_page}/report.css
-        kPageJs=${report_scripts} kDygraphsCss=${ROADBED_DYGRAPHS_DIR}/dygraph.min.css
+  PARTS kPageTemplate=${report_page}/template.html kPageCss=${PROJECT_SOURCE_DIR}/map/page/map_colours.css,${report_page}/report.css
+        kPageJs=${map_scripts},${report_scripts} kDygraphsCss=${ROADBED_DYGRAPHS_DIR}/dygraph.min.css
         kDygraphsJs=${ROADBED_DYGRAPHS_DIR}/dygraph.min.js
         kSynchronizerJs=${ROADBED_DYGRAPHS_DIR}/extras/synchronizer.js
         kDygraphsLicence=${ROADBED_DYGRAPHS_LICENCE})

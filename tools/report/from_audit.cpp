@@ -8,6 +8,7 @@
 
 #include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/report/surroundings.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -88,9 +89,12 @@ std::vector<DriveEvent> events_of_audit(const AuditReport& report) {
   return events;
 }
 
-std::vector<geometry::Ring> rings_of(const std::vector<ReportLane>& lanes) {
+std::vector<geometry::Ring> rings_of(const map::RoadMap* road_map) {
   std::vector<geometry::Ring> rings;
-  for (const ReportLane& lane : lanes) rings.push_back(lane.outline());
+  if (road_map == nullptr) return rings;
+  for (const map::Lane& lane : road_map->lanes()) {
+    rings.push_back(outline_in_source(*road_map, lane));
+  }
   return rings;
 }
 
@@ -114,7 +118,8 @@ std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m
            .unit = "m",
            .bound = fmt::format("≥ {:.2f}", clearance_m),
            .passed = report.conflicts.empty(),
-           .at_s = report.least_clearance_at_s},
+           .at_s = report.least_clearance_at_s,
+           .bound_from = "--clearance"},
           {.name = "proven clearance",
            .value = report.proven_clearance_m,
            .unit = "m",
@@ -126,14 +131,16 @@ std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m
            .unit = "%",
            .bound = fmt::format("≤ {:g}", 100.0 * (1.0 - report.least_measured)),
            .passed = report.is_measured_enough(),
-           .at_s = {}},
+           .at_s = {},
+           .bound_from = "--least-measured"},
           {.name = "stretches without anything measured near",
            .value = static_cast<double>(report.unobserved.size()),
            .unit = "",
            .bound = "≤ 0",
            .passed = report.unobserved.empty(),
            .at_s = report.unobserved.empty() ? std::nullopt
-                                             : std::optional(report.unobserved.front().from_s)}};
+                                             : std::optional(report.unobserved.front().from_s),
+           .bound_from = "the audit"}};
 }
 
 }  // namespace
@@ -144,7 +151,7 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   input.title = "Audit of " + around.name;
   input.scenario = around.name;
   input.verdict = verdict_of(report);
-  input.scene.lanes = around.lanes;
+  input.scene.road_map = around.road_map;
   input.scene.occupied = around.occupied;
   input.scene.vehicle = around.body;
   if (around.parts.size() > 1) {
@@ -162,8 +169,8 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
                                reason_of(stretch.verdict)});
   }
   input.checks = checks_of(report, around.clearance_m);
-  input.pictures = close_ups(
-      report, {drive, around.parts, around.occupied, rings_of(around.lanes), around.moving});
+  input.pictures = close_ups(report, {drive, around.parts, around.occupied,
+                                      rings_of(around.road_map.get()), around.moving});
   input.origin = {around.command, around.version, around.crs, around.sources};
   return input;
 }

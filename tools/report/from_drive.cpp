@@ -72,7 +72,7 @@ ReportScene scene_of(const Scenario& scenario, const World& world, const Drive& 
   for (const GivenUpRoute& before : drive.given_up) add(before.route, before.line);
   add(world.route, world.line);
   scene.goal = route_goal(world.road_map, world.route);
-  scene.lanes = lanes_in(world.road_map, box_around(scene.route, drive, kMapMargin_m));
+  scene.road_map = map_around(world.road_map, box_around(scene.route, drive, kMapMargin_m));
   if (world.occupancy) {
     scene.occupied = occupied_in(*world.occupancy, height_band(scene.vehicle),
                                  box_around(scene.route, drive, kOccupancyMargin_m));

@@ -4,16 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/map/index/road_map_index.h"
+#include "roadbed/map/derived/map_part.h"
 
 namespace roadbed::tools::inline report {
 namespace {
-
-LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyline& in_map) {
-  LineInSource line;
-  for (const Eigen::Vector2d& point : in_map.points()) line.push_back(road_map.to_source(point));
-  return line;
-}
 
 // The stretch of a line between two stations, with both its ends, from the lower one on.
 geometry::Polyline stretch(const geometry::Polyline& line, double from_s_m, double to_s_m) {
@@ -27,33 +21,28 @@ geometry::Polyline stretch(const geometry::Polyline& line, double from_s_m, doub
   return geometry::Polyline(std::move(points));
 }
 
-Eigen::AlignedBox2d box_of(const ReportLane& lane) {
-  Eigen::AlignedBox2d box;
-  for (const LineInSource* line : {&lane.left, &lane.right}) {
-    for (const Eigen::Vector2d& point : *line) box.extend(point);
-  }
-  return box;
-}
-
 }  // namespace
 
-std::vector<ReportLane> lanes_in(const map::RoadMap& road_map,
-                                 const Eigen::AlignedBox2d& box_in_source) {
-  std::vector<ReportLane> lanes;
-  if (box_in_source.isEmpty()) return lanes;
-  for (const map::LaneId id :
-       road_map.index().lanes.in_box(road_map.to_map(box_in_source.min()),
-                                     road_map.to_map(box_in_source.max()), map::LaneTypes::all())) {
-    const map::Lane& lane = road_map.lane(id);
-    ReportLane shown{.name = lane.name,
-                     .type = lane.type,
-                     .in_junction = lane.junction.has_value(),
-                     .left = line_in_source(road_map, lane.left.in_map),
-                     .centre = line_in_source(road_map, lane.centre.in_map),
-                     .right = line_in_source(road_map, lane.right.in_map)};
-    if (box_of(shown).intersects(box_in_source)) lanes.push_back(std::move(shown));
-  }
-  return lanes;
+std::shared_ptr<const map::RoadMap> map_around(const map::RoadMap& road_map,
+                                               const Eigen::AlignedBox2d& box_in_source) {
+  const Eigen::AlignedBox2d box_in_map =
+      box_in_source.isEmpty() ? box_in_source
+                              : Eigen::AlignedBox2d(road_map.to_map(box_in_source.min()),
+                                                    road_map.to_map(box_in_source.max()));
+  return std::make_shared<const map::RoadMap>(map::map_part(road_map, box_in_map));
+}
+
+LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyline& in_map) {
+  LineInSource line;
+  for (const Eigen::Vector2d& point : in_map.points()) line.push_back(road_map.to_source(point));
+  return line;
+}
+
+LineInSource outline_in_source(const map::RoadMap& road_map, const map::Lane& lane) {
+  LineInSource ring = line_in_source(road_map, lane.right.in_map);
+  const LineInSource left = line_in_source(road_map, lane.left.in_map);
+  ring.insert(ring.end(), left.rbegin(), left.rend());
+  return ring;
 }
 
 std::vector<LineInSource> route_lines(const map::RoadMap& road_map, const planning::Route& route) {

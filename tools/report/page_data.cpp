@@ -12,12 +12,12 @@
 
 #include "roadbed/geometry/primitives/polyline.h"
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/map/page/map_page.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline report {
 namespace {
 
-constexpr double kLaneTolerance_m = 0.01;  // less than a pixel at the nearest zoom that is of use
 constexpr double kPathTolerance_m = 0.002;
 
 long long rounded(double value) { return std::llround(value); }
@@ -91,8 +91,8 @@ Eigen::Vector2d choose_origin(const ReportInput& input) {
   Eigen::Vector2d near(0, 0);
   if (!input.drive.trajectory.empty()) {
     near = input.drive.trajectory.points().front().pose().position();
-  } else if (!input.scene.lanes.empty() && !input.scene.lanes.front().centre.empty()) {
-    near = input.scene.lanes.front().centre.front();
+  } else if (input.scene.road_map) {
+    near = input.scene.road_map->origin_in_source();
   }
   return near.array().round().matrix();
 }
@@ -102,23 +102,6 @@ Json list_of(const Items& items, Function coded) {
   Json list = Json::array();
   for (const auto& item : items) list.push_back(coded(item));
   return list;
-}
-
-Json coded_lanes(const ReportInput& input, const Eigen::Vector2d& origin) {
-  Json lanes = Json::array();
-  const auto line = [&](const LineInSource& full) {
-    return coded_line(geometry::simplify(full, kLaneTolerance_m), origin);
-  };
-  for (const ReportLane& lane : input.scene.lanes) {
-    const std::string_view look = lane.look();
-    if (look.empty()) continue;
-    lanes.push_back({{"name", lane.name},
-                     {"look", look},
-                     {"left", line(lane.left)},
-                     {"centre", line(lane.centre)},
-                     {"right", line(lane.right)}});
-  }
-  return lanes;
 }
 
 Json coded_obstacle(const planning::ObstacleInSource& obstacle, const Eigen::Vector2d& origin) {
@@ -218,8 +201,40 @@ std::ptrdiff_t line_at(const Drive& drive, double t_s) {
                                [&](const GivenUpRoute& route) { return route.until_s <= t_s; });
 }
 
+// Distances in centimetres: the drive's at each step; four numbers a part, its obstacle's index
+// first, −1 for a light.
+Json coded_st(const planning::StPicture& st) {
+  if (st.drive_m.empty()) return nullptr;
+  const auto cm = [](float metres) { return rounded(1e2 * static_cast<double>(metres)); };
+  Json drive = Json::array(), parts = Json::array();
+  for (const float ahead_m : st.drive_m) drive.push_back(cm(ahead_m));
+  for (const planning::StPicture::Part& part : st.parts) {
+    const bool is_light = part.obstacle == planning::StInterval::kNoObstacle;
+    parts.push_back(is_light ? -1 : static_cast<std::int64_t>(part.obstacle));
+    parts.push_back(part.step);
+    parts.push_back(cm(part.from_m));
+    parts.push_back(cm(part.to_m));
+  }
+  return {{"drive", std::move(drive)}, {"parts", std::move(parts)}};
+}
+
+Json coded_hypothesis(const planning::HypothesisOutcome& one) {
+  const auto thousandths = [](const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? Json(1e-3 * static_cast<double>(rounded(1e3 * *value)))
+                                          : Json();
+  };
+  return {{"maneuver", planning::to_string(one.maneuver)},
+          {"d", thousandths(one.end_d_m)},
+          {"l", thousandths(one.end_l_m)},
+          {"path", thousandths(one.path_cost)},
+          {"drive", thousandths(one.drive_cost)},
+          {"driven", one.is_driven},
+          {"reason", one.reason},
+          {"st", coded_st(one.st)}};
+}
+
 Json coded_cycle(const Drive& drive, const DriveCycle& cycle, Json path,
-                 const planning::CostTerms& weights) {
+                 const planning::CostTerms& weights, const Eigen::Vector2d& origin) {
   return {{"t", cycle.t_s},
           {"line", line_at(drive, cycle.t_s)},
           {"note", note_of(cycle)},
@@ -228,6 +243,13 @@ Json coded_cycle(const Drive& drive, const DriveCycle& cycle, Json path,
           {"start", coded_start(cycle.start)},
           {"chosen", coded_candidate(cycle.chosen, weights)},
           {"runner", coded_candidate(cycle.grid ? cycle.grid->runner_up : std::nullopt, weights)},
+          {"hypotheses", list_of(cycle.hypotheses, coded_hypothesis)},
+          {"foreseen", list_of(cycle.foreseen,
+                               [&](const planning::ForeseenMotion& one) {
+                                 return Json{{"obstacle", one.obstacle},
+                                             {"probability", one.probability},
+                                             {"points", coded_line(one.points, origin)}};
+                               })},
           {"grid", coded_grid(cycle.grid)}};
 }
 
@@ -253,6 +275,30 @@ void check_plots(const ReportInput& input) {
 
 }  // namespace
 
+std::string page_map_json(const ReportInput& input) {
+  const map::RoadMap nothing{map::RoadMapParts{}};
+  const map::RoadMap& road_map = input.scene.road_map ? *input.scene.road_map : nothing;
+  const auto lines = [&](const std::vector<LineInSource>& full) {
+    std::vector<LineInSource> in_map;
+    for (const LineInSource& line : full) {
+      in_map.push_back(geometry::simplify(line, kPathTolerance_m));
+      for (Eigen::Vector2d& point : in_map.back()) point = road_map.to_map(point);
+    }
+    return in_map;
+  };
+  map::PageOverlay route{.kind = "route", .name = "Route"},
+      occupied{.kind = "occupied", .name = "Occupancy"};
+  map::PageOverlay reference{.kind = "reference", .name = "Reference line", .is_alternative = true};
+  route.lines_in_map = lines(input.scene.route);
+  reference.lines_in_map = lines(input.scene.references);
+  for (const map::Box2& box : input.scene.occupied) {
+    occupied.boxes_in_map.emplace_back(road_map.to_map(box.min_in_source),
+                                       road_map.to_map(box.max_in_source));
+  }
+  return map::map_page_data(road_map, {.remarks = std::vector<map::PageRemark>{},
+                                       .overlays = {route, reference, occupied}});
+}
+
 std::string page_data_json(const ReportInput& input) {
   check_plots(input);
   const Eigen::Vector2d origin = choose_origin(input);
@@ -262,21 +308,15 @@ std::string page_data_json(const ReportInput& input) {
   const Json data = {
       {"origin", {origin.x(), origin.y()}},
       {"vehicle", coded_vehicle(input)},
-      {"lanes", coded_lanes(input, origin)},
-      {"route", list_of(input.scene.route, line)},
-      {"references", list_of(input.scene.references, line)},
       {"goal", input.scene.goal ? coded_line({*input.scene.goal}, origin) : Json(nullptr)},
-      {"occupied", list_of(input.scene.occupied,
-                           [&](const map::Box2& box) {
-                             return coded_line({box.min_in_source, box.max_in_source}, origin);
-                           })},
       {"drive", coded_motion(input.drive.trajectory, origin, true)},
       {"obstacles",
        list_of(input.scene.obstacles,
                [&](const planning::ObstacleInSource& one) { return coded_obstacle(one, origin); })},
       {"plans", list_of(input.drive.cycles,
                         [&](const DriveCycle& cycle) {
-                          return coded_cycle(input.drive, cycle, line(cycle.path), input.weights);
+                          return coded_cycle(input.drive, cycle, line(cycle.path), input.weights,
+                                             origin);
                         })},
       {"costNames", names_of<planning::CostTerm>(input.drive, planning::kCostTerms)},
       {"causeNames", names_of<planning::Rejection>(input.drive, planning::kRejections)},

@@ -35,8 +35,11 @@ std::string page_events(const ReportInput& input);
 /// Command, version, coordinates and inputs.
 std::string page_foot(const ReportInput& input);
 
-/// What the page's scripts need, as one JSON document (page/decode.js reads it): points in whole
-/// millimetres from an origin near the drive, series in whole steps, both as differences.
+/// The map around the drive, with what stands still on it, for the scripts of map/page.
+std::string page_map_json(const ReportInput& input);
+
+/// What else the page's scripts need, as one JSON document (page/decode.js reads it): points in
+/// whole millimetres from an origin near the drive, series in whole steps, both as differences.
 /// @throws std::invalid_argument if a plot's series differ in length from its times.
 std::string page_data_json(const ReportInput& input);
 

@@ -108,10 +108,11 @@ std::string check_row(const ReportCheck& check) {
   const std::string value =
       check.value ? short_number(*check.value, 3) + ' ' + map::html_text(check.unit) : "–";
   return fmt::format(
-      "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+      "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td>"
       "<td class=\"number\">{}</td>{}</tr>\n",
       map::html_text(check.name), value, map::html_text(check.bound),
-      check.at_s ? moment_link(*check.at_s) : "", result_cell(check));
+      map::html_text(check.bound_from), check.at_s ? moment_link(*check.at_s) : "",
+      result_cell(check));
 }
 
 std::string_view sign_of(EventLevel level) {
@@ -172,7 +173,8 @@ std::string page_checks(const ReportInput& input) {
   if (input.checks.empty()) return html + "<p class=\"none\">Nothing.</p></section>";
   html +=
       "<table id=\"checks\"><thead><tr><th>check</th><th class=\"number\">value</th>"
-      "<th class=\"number\">bound</th><th class=\"number\">at</th><th>result</th></tr></thead>"
+      "<th class=\"number\">bound</th><th>bound from</th><th "
+      "class=\"number\">at</th><th>result</th></tr></thead>"
       "<tbody>\n";
   for (const ReportCheck& check : input.checks) html += check_row(check);
   return html + "</tbody></table></section>";

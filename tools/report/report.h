@@ -1,13 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/map/elements/lane.h"
+#include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
@@ -21,20 +22,6 @@ namespace roadbed::tools::inline report {
 
 /// N points of a line [m], in source coordinates.
 using LineInSource = std::vector<Eigen::Vector2d>;
-
-/// A lane as the map shows it.
-struct ReportLane {
-  std::string name;
-  map::LaneType type = map::LaneType::none;
-  bool in_junction = false;
-  LineInSource left, centre, right;
-
-  LineInSource outline() const;
-
-  /// Which of a few colours it has in pictures: "drive", "junction", "shoulder", "walk", "bike",
-  /// "other", or empty for a lane that is not drawn.
-  std::string_view look() const;
-};
 
 struct ReportSeries {
   std::string name;            ///< "speed", "target", "limit"
@@ -64,7 +51,8 @@ struct ReportCheck {
   std::string unit;             ///< "m"
   std::string bound;            ///< "≥ 0.30", empty if it is only noted
   bool passed = true;
-  std::optional<double> at_s;  ///< when the value was taken
+  std::optional<double> at_s;   ///< when the value was taken
+  std::string bound_from = {};  ///< what the bound comes from: "comfort, nuPlan"
 };
 
 /// A file that the drive was made from.
@@ -93,7 +81,7 @@ struct ReportVerdict {
 
 /// What is around a drive.
 struct ReportScene {
-  std::vector<ReportLane> lanes;
+  std::shared_ptr<const map::RoadMap> road_map;  ///< near the drive; none: not driven on a map
   std::vector<LineInSource> route;       ///< centrelines of its legs; of routes given up, as driven
   std::vector<LineInSource> references;  ///< line of each route in turn, that of the last one last
   std::optional<Eigen::Vector2d> goal;

@@ -14,6 +14,7 @@ std::string drive_report_html(const ReportInput& input) {
                                           {"events", page_events(input)},
                                           {"pictures", page_pictures(input)},
                                           {"foot", page_foot(input)},
+                                          {"map_data", page_map_json(input)},
                                           {"data", map::json_for_script(page_data_json(input))},
                                           {"page_css", std::string(kPageCss)},
                                           {"page_js", std::string(kPageJs)},

@@ -14,6 +14,7 @@
 
 #include "roadbed/map/drawing/svg.h"
 #include "roadbed/map/files/xml_characters.h"
+#include "roadbed/tools/report/surroundings.h"
 #include "roadbed/tools/report/svg_legend.h"
 
 namespace roadbed::tools::inline report {
@@ -53,8 +54,10 @@ Box shown_box(const ReportInput& input) {
   if (input.drive.trajectory.empty()) {
     for (const LineInSource& leg : input.scene.route) extend(box, leg);
   }
-  if (box.isEmpty()) {
-    for (const ReportLane& lane : input.scene.lanes) extend(box, lane.centre);
+  if (box.isEmpty() && input.scene.road_map) {
+    for (const map::Lane& lane : input.scene.road_map->lanes()) {
+      extend(box, line_in_source(*input.scene.road_map, lane.centre.in_map));
+    }
   }
   return box.isEmpty() ? Box(Vector2d(-10, -10), Vector2d(10, 10)) : box;
 }
@@ -72,11 +75,31 @@ map::PictureFrame lay_out(const Box& box) {
           .size_px = {kSceneWidth_px, height_px}};
 }
 
-bool may_be_seen(const map::PictureFrame& frame, const ReportLane& lane) {
-  Box box;
-  extend(box, lane.left);
-  extend(box, lane.right);
-  return frame.shows(box);
+// Which of a few colours a lane has; empty: it is not drawn.
+std::string_view look_of(const map::Lane& lane) {
+  using map::LaneType;
+  const bool in_junction = lane.junction.has_value();
+  if (map::is_drivable(lane.type)) return in_junction ? "junction" : "drive";
+  switch (lane.type) {
+    case LaneType::none:
+      return {};
+    case LaneType::bus:
+    case LaneType::taxi:
+      return in_junction ? "junction" : "drive";
+    case LaneType::shoulder:
+    case LaneType::stop:
+    case LaneType::parking:
+    case LaneType::border:
+      return "shoulder";
+    case LaneType::sidewalk:
+    case LaneType::curb:
+    case LaneType::median:
+      return "walk";
+    case LaneType::biking:
+      return "bike";
+    default:
+      return "other";
+  }
 }
 
 std::string lanes_svg(const ReportInput& input, const map::PictureFrame& frame) {
@@ -85,12 +108,19 @@ std::string lanes_svg(const ReportInput& input, const map::PictureFrame& frame) 
                                                       "shoulder", "drive", "junction"};
   std::map<std::string_view, std::string> areas;
   std::string borders;
-  for (const ReportLane& lane : input.scene.lanes) {
-    const std::string_view look = lane.look();
-    if (look.empty() || !may_be_seen(frame, lane)) continue;
-    areas[look] += map::svg_ring(frame, lane.outline());
-    if (lane.in_junction) continue;
-    borders += map::svg_line(frame, lane.left) + map::svg_line(frame, lane.right);
+  if (!input.scene.road_map) return {};
+  const map::RoadMap& road_map = *input.scene.road_map;
+  for (const map::Lane& lane : road_map.lanes()) {
+    const std::string_view look = look_of(lane);
+    const LineInSource outline = outline_in_source(road_map, lane);
+    Box box;
+    extend(box, outline);
+    if (look.empty() || !frame.shows(box)) continue;
+    areas[look] += map::svg_ring(frame, outline);
+    if (lane.junction) continue;
+    for (const map::LaneLine* border : {&lane.left, &lane.right}) {
+      borders += map::svg_line(frame, line_in_source(road_map, border->in_map));
+    }
   }
   std::string svg;
   for (const std::string_view look : kKinds) svg += map::svg_path(look, areas[look]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,9 +16,14 @@ namespace roadbed::tools::inline report {
 
 // From the map's frame to what the report shows, in source coordinates.
 
-/// Lanes of which a part may lie in the box, in the map's order.
-std::vector<ReportLane> lanes_in(const map::RoadMap& road_map,
-                                 const Eigen::AlignedBox2d& box_in_source);
+/// What of a map may lie in the box (map::map_part).
+std::shared_ptr<const map::RoadMap> map_around(const map::RoadMap& road_map,
+                                               const Eigen::AlignedBox2d& box_in_source);
+
+LineInSource line_in_source(const map::RoadMap& road_map, const geometry::Polyline& in_map);
+
+/// The ring between a lane's borders.
+LineInSource outline_in_source(const map::RoadMap& road_map, const map::Lane& lane);
 
 /// Centrelines of the route's legs, from where each is entered to where it is left.
 std::vector<LineInSource> route_lines(const map::RoadMap& road_map, const planning::Route& route);

@@ -225,7 +225,11 @@ class ClosedLoop {
                      .plan_reason = replanner().last_plan().reason,
                      .beyond_the_edge_m = replanner().beyond_the_edge_m(),
                      .lead = command_.lead,
-                     .hypotheses = command_.hypotheses};
+                     .hypotheses = command_.hypotheses,
+                     .foreseen = command_.foreseen};
+    for (planning::ForeseenMotion& motion : cycle.foreseen) {
+      for (Eigen::Vector2d& point : motion.points) point = world_.road_map.to_source(point);
+    }
     for (const geometry::TrajectoryPoint& point : replanner().last_plan().trajectory.points()) {
       cycle.path.push_back(world_.road_map.to_source({point.x_m, point.y_m}));
     }

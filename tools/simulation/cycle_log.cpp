@@ -32,6 +32,8 @@ Json hypotheses_json(const std::vector<planning::HypothesisOutcome>& hypotheses)
     list.push_back({{"maneuver", planning::to_string(one.maneuver)},
                     {"d_e_m", json_or_null(one.end_d_m)},
                     {"l_e_m", json_or_null(one.end_l_m)},
+                    {"path_cost", json_or_null(one.path_cost)},
+                    {"drive_cost", json_or_null(one.drive_cost)},
                     {"driven", one.is_driven},
                     {"reason", one.reason}});
   }

@@ -40,6 +40,7 @@ struct DriveCycle {
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<planning::DriveLead> lead = {};
   std::vector<planning::HypothesisOutcome> hypotheses = {};
+  std::vector<planning::ForeseenMotion> foreseen = {};  ///< in the source's coordinates
 
   bool has_plan() const { return chosen.has_value() || is_outside; }
 };

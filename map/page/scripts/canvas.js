@@ -9,7 +9,8 @@ function element(id) {
 
 /**
  * @param home  the box that is shown at first
- * @param hooks draw(stage, ctx, ratio); optional moved(), clicked(place, pixel), hovered(place, pixel)
+ * @param hooks draw(stage, ctx, ratio); optional moved(), panned(), clicked(place, pixel), hovered(place, pixel),
+ *              recoloured(), and fit(view), which shows what is home in another way
  */
 function makeStage(canvas, home, margin, hooks) {
   const stage = {canvas, ctx: canvas.getContext("2d", {alpha: false}), view: makeView(), home, margin, hooks, fitted: true,
@@ -50,15 +51,21 @@ function drawStage(stage) {
   stage.hooks.draw(stage, ctx, ratio);
 }
 
+function fitHome(stage, view) {
+  if (stage.hooks.fit) stage.hooks.fit(view);
+  else fitBox(view, stage.home, stage.margin);
+}
+
 function homeView(stage) {
   const view = {...stage.view};
-  fitBox(view, stage.home, stage.margin);
+  fitHome(stage, view);
   return view;
 }
 
 function goHome(stage) {
-  fitBox(stage.view, stage.home, stage.margin);
+  fitHome(stage, stage.view);
   stage.fitted = true;
+  stage.hooks.panned?.();
   viewMoved(stage);
 }
 
@@ -74,7 +81,7 @@ function resizeStage(stage) {
   stage.canvas.height = Math.round(clientHeight * ratio);
   stage.view.width = Math.max(1, clientWidth);
   stage.view.height = Math.max(1, clientHeight);
-  if (stage.fitted) fitBox(stage.view, stage.home, stage.margin);
+  if (stage.fitted) fitHome(stage, stage.view);
   drawStage(stage);
 }
 
@@ -87,6 +94,7 @@ function zoomStage(stage, factor, pixel = [stage.view.width / 2, stage.view.heig
 function panStage(stage, dx, dy) {
   panBy(stage.view, dx, dy);
   stage.fitted = false;
+  stage.hooks.panned?.();
   viewMoved(stage);
 }
 
@@ -143,6 +151,22 @@ function keyOfStage(stage, key) {
   else if (key === "0") goHome(stage);
   else return false;
   return true;
+}
+
+/** Shows what is drawn in tiles, and draws some that are missing, for a few milliseconds. Returns whether there are more. */
+function drawTiles(stage, tiles, ctx, ratio) {
+  const home = homeView(stage), waits = choosePass(tiles, stage.view, home, ratio, performance.now());
+  const missing = waits || drawSomeTiles(tiles, stage.view, home);
+  forgetFarTiles(tiles, stage.view);
+  showTiles(tiles, ctx, stage.view);
+  if (missing) redraw(stage);
+  return missing;
+}
+
+/** Sets the context to metres. */
+function toMetres(ctx, view, ratio) {
+  const k = ratio * view.scale, [x, y] = toScreen(view, [0, 0]);
+  ctx.setTransform(k, 0, 0, -k, ratio * x, ratio * y);
 }
 
 /** Text with a halo, in pixels. */

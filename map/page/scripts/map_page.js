@@ -220,17 +220,8 @@ function drawNames(page, ctx) {
   }
 }
 
-/** Sets the context to metres of the map. */
-function toMetres(ctx, view, ratio) {
-  const k = ratio * view.scale, [x, y] = toScreen(view, [0, 0]);
-  ctx.setTransform(k, 0, 0, -k, ratio * x, ratio * y);
-}
-
 function drawPage(page, stage, ctx, ratio) {
-  const {tiles} = page, home = homeView(stage), now = performance.now(), waits = choosePass(tiles, stage.view, home, ratio, now);
-  const missing = waits ? true : drawSomeTiles(tiles, stage.view, home);
-  forgetFarTiles(tiles, stage.view);
-  showTiles(tiles, ctx, stage.view);
+  const missing = drawTiles(stage, page.tiles, ctx, ratio);
   ctx.save();
   toMetres(ctx, stage.view, ratio);
   drawSelected(page, ctx);
@@ -240,7 +231,6 @@ function drawPage(page, stage, ctx, ratio) {
   drawScaleBar(stage, ctx);
   if (stage.canvas.matches(":focus-visible")) drawCross(stage, ctx);
   document.documentElement.dataset.drawn = missing ? "part" : "all";
-  if (missing) redraw(stage);
 }
 
 /** Where Enter selects. */

@@ -47,8 +47,10 @@ function* paintOverlays(pen, map, box) {
   for (const overlay of map.overlays.filter(({shown}) => shown)) {
     const {strokes, areas} = shapesOf(map, overlay), [metres, pixels] = WIDTHS[overlay.kind] ?? [0.2, 2];
     ctx.fillStyle = ctx.strokeStyle = pen.ink("over-" + overlay.kind);
+    ctx.lineWidth = pen.ratio;
     for (const _ of batchesOf(pen, areas, box, true)) {
       ctx.fill();
+      if (overlay.kind === "occupied") ctx.stroke();  // cells smaller than a pixel are seen, too
       yield;
     }
     ctx.globalAlpha = overlay.kind === "route" ? 0.75 : 1;

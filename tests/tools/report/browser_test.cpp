@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,6 +83,42 @@ TEST(ReportInBrowser, GoesWhereKeysAndLinksSay) {
   EXPECT_TRUE(holds(page, "data-hash=\"#t=7.1\""));
 }
 
+TEST(ReportInBrowser, SaysWhatBecameOfEachHypothesisAndDrawsItsStPicture) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  std::string html = drive_report_html(tests::sample_report());
+  html.insert(html.rfind("</body>"), R"(<script>
+const rows = [...document.querySelectorAll(".hypotheses tbody tr")].map((row) => [...row.cells].map((cell) => cell.textContent).join("|"));
+const canvas = document.querySelector("canvas.st"), pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+document.documentElement.dataset.rows = rows.join(" / ");
+document.documentElement.dataset.inks = new Set(new Uint32Array(pixels.buffer)).size > 20;
+document.documentElement.dataset.pressed = document.querySelectorAll(".hypotheses button[aria-pressed=true]").length;
+</script>)");
+  const std::string page = page_after_scripts(browser, html, "#t=5");
+  EXPECT_TRUE(holds(page,
+                    "data-rows=\"overtake|no path|||oncoming-3 comes: 40 m are missing / "
+                    "keep lane|d 0.4 m, l 22.0 m|0.300|1.250|✔ driven\""))
+      << page.substr(0, 600);
+  EXPECT_TRUE(holds(page, "data-inks=\"true\""));
+  EXPECT_TRUE(holds(page, "data-pressed=\"1\""));
+}
+
+TEST(ReportInBrowser, NamesTheLaneUnderThePointerAsTheMapDoes) {
+  ROADBED_BROWSER_OR_SKIP(browser);
+  std::string html = drive_report_html(tests::sample_report());
+  html.insert(html.rfind("</body>"), R"(<script>
+const map = document.getElementById("map"), box = map.getBoundingClientRect(), named = new Set();
+for (let y = 2; y < box.height; y += 2) {
+  const at = {clientX: box.left + box.width / 2, clientY: box.top + y, bubbles: true};
+  map.dispatchEvent(new PointerEvent("pointermove", at));
+  named.add(/lane (\S+)/.exec(document.getElementById("place").textContent)?.[1] ?? "none");
+}
+document.documentElement.dataset.named = [...named].sort().join(" ");
+</script>)");
+  const std::string page = page_after_scripts(browser, html, "#t=5&follow");
+  EXPECT_TRUE(holds(page, "data-named=\"12/0/-1 12/0/-2 12/0/1 12/0/2 none\""))
+      << page.substr(0, 600);
+}
+
 // Whether the map and the last plot end above the bar of time, which ends where the window does.
 constexpr std::string_view kMeasure = R"(<script>
 const bottomOf = (selector) => Math.max(...[...document.querySelectorAll(selector)].map((one) => one.getBoundingClientRect().bottom));
@@ -144,8 +181,10 @@ TEST(ReportInBrowser, RunsNoScriptOutOfANameInItsInput) {
   const std::string attack = "</script><img src=x onerror='document.title=\"broken in\"'>";
   ReportInput input = tests::sample_report();
   input.scenario = input.origin.command = input.origin.crs = attack;
-  input.scene.lanes[0].name = input.scene.obstacles[0].id = input.drive.cycles[0].plan_reason =
-      attack;
+  map::RoadMapParts road = tests::sample_road();
+  road.lanes[0].name = attack;
+  input.scene.road_map = std::make_shared<const map::RoadMap>(std::move(road));
+  input.scene.obstacles[0].id = input.drive.cycles[0].plan_reason = attack;
   input.drive.cycles[0].chosen.reset();
   input.decisions[0].state = input.decisions[0].reason = input.drive.events[0].text = attack;
   input.plots[0].title = input.plots[0].series[0].name = input.checks[0].name = attack;

@@ -121,7 +121,7 @@ function testRestlessSeries() {
   const course = smoothed(t, noisy, 0.5);
   expectNear("its course is what it was before the noise", course[200], 2, 0.01);
   expectEqual("a gap stays one", smoothed([0, 1, 2], [1, null, 3], 0.1), [1, null, 3]);
-  const lines = linesOf({t, series: [{name: "a", values: noisy}, {name: "b", values: t}]});
+  const lines = linesOfPlot({t, series: [{name: "a", values: noisy}, {name: "b", values: t}]});
   expectEqual("it is pale below its course", lines.map(({name, ink, isPale}) => [name, ink, isPale]),
               [["a", 0, true], ["b", 1, false], ["a, smoothed", 0, false]]);
 }
@@ -145,6 +145,22 @@ function testTexts() {
   expectEqual("long texts end in an ellipsis, letters stay whole", shortened("😀😀😀😀", 3), "😀😀…");
 }
 
+function testHypotheses() {
+  const st = decodeSt({drive: [0, 500, 950], parts: [1, 0, 2000, 2600, 1, 1, 2300, 2900, -1, 1, 3000, 4000]});
+  expectEqual("distances are in metres", [st.drive, st.parts[0]], [[0, 5, 9.5], {obstacle: 1, step: 0, from: 20, to: 26}]);
+  const rings = ringsOfParts(st.parts);
+  expectEqual("parts of one obstacle join over time, those of others do not", rings.map((one) => one.obstacle), [1, -1]);
+  expectEqual("up one side, down the other", rings[0].points, [[0, 20], [0.5, 23], [0.5, 29], [0, 26]]);
+  expectEqual("what is there once lasts for half a step", rings[1].points.map(([t]) => t), [0.375, 0.625, 0.625, 0.375]);
+  const far = ringsOfParts([{obstacle: 1, step: 0, from: 0, to: 5}, {obstacle: 1, step: 1, from: 60, to: 65}]);
+  expectEqual("what is somewhere else is another part", far.length, 2);
+  const {t, s} = rangesOfSt(st);
+  expectEqual("all of the drive is shown", [t[0] <= 0 && t[1] >= 1, s[0] <= 0 && s[1] >= 9.5], [true, true]);
+  const axes = axesOfSt(400, 240, {t: [0, 5], s: [0, 50]});
+  expectNear("later is to the right", axes.x(5) - axes.x(0), 400 - 44 - 10, 1e-9);
+  expectNear("farther is up", axes.y(0) - axes.y(50), 240 - 8 - 30, 1e-9);
+}
+
 function testCycle() {
   expectEqual("runs of causes", decodeRuns([2, 5, 1, 0]), [5, 5, 0]);
   const start = {s: 10, d: 0.5, slope: 0.1, curvature: -0.02}, d = quintic(start, -1.5, 20), h = 1e-4;
@@ -162,7 +178,7 @@ function testCycle() {
 }
 
 for (const test of [testDecoding, testMotion, testRectangle, testView, testClock, testKeys, testFragments,
-                    testPlots, testRestlessSeries, testStrip, testTexts, testCycle]) {
+                    testPlots, testRestlessSeries, testStrip, testTexts, testHypotheses, testCycle]) {
   try {
     test();
   } catch (error) {

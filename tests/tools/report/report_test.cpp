@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -99,7 +100,10 @@ TEST(Report, HasNoElementOutOfATextOfItsInput) {
   input.title = input.scenario = input.origin.command = input.origin.version = input.origin.crs =
       attack;
   input.verdict.text = input.audit->text = attack;
-  input.scene.lanes[0].name = input.scene.obstacles[0].id = input.scene.obstacles[0].kind = attack;
+  map::RoadMapParts road = tests::sample_road();
+  road.lanes[0].name = attack;
+  input.scene.road_map = std::make_shared<const map::RoadMap>(std::move(road));
+  input.scene.obstacles[0].id = input.scene.obstacles[0].kind = attack;
   input.drive.cycles[0].chosen.reset();
   input.drive.cycles[0].plan_reason = input.decisions[0].state = input.decisions[0].reason = attack;
   input.drive.events[0].text = input.plots[0].title = input.plots[0].unit = attack;
@@ -110,7 +114,7 @@ TEST(Report, HasNoElementOutOfATextOfItsInput) {
   for (const char* part : {"<script", "</script", "</style", "<b>", "application/json"}) {
     EXPECT_EQ(count_of(after, part), count_of(before, part)) << part;
   }
-  EXPECT_EQ(data_of(after)["lanes"][0]["name"], attack);
+  EXPECT_EQ(data_of(after)["obstacles"][0]["id"], attack);
 }
 
 TEST(Report, TakesNamesThatAreNoUtf8) {
@@ -125,7 +129,7 @@ TEST(Report, SaysInWordsAndShapesWhatPassed) {
   const std::string html = drive_report_html(tests::sample_report());
   EXPECT_TRUE(holds(html,
                     "<td>largest jerk</td><td class=\"number\">9.1 m/s³</td>"
-                    "<td class=\"number\">≤ 8.37</td>"));
+                    "<td class=\"number\">≤ 8.37</td><td>comfort, nuPlan</td>"));
   EXPECT_EQ(count_of(html, "✔ passed"), 4U);
   EXPECT_EQ(count_of(html, "✖ failed"), 1U);
   EXPECT_TRUE(holds(html, "<dd>4 of 5</dd>"));

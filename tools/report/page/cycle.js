@@ -98,6 +98,7 @@ function costTable(names, plan) {
   const all = [plan.chosen, plan.runner].filter((one) => one !== null);
   const largest = Math.max(...all.flatMap((one) => one.costs));
   const table = document.createElement("table"), head = table.insertRow();
+  table.className = "costs";
   for (const text of ["cost", "chosen", ...(plan.runner ? ["runner-up"] : [])]) addText(head, "th", "", text);
   names.forEach((name, i) => {
     const row = table.insertRow();
@@ -124,10 +125,16 @@ function showCycle(page, names) {
   if (plan === page.shownPlan) return;
   page.shownPlan = plan;
   box.replaceChildren();
-  box.hidden = !plan || !(plan.grid || plan.chosen);
+  box.hidden = !plan || !(plan.grid || plan.chosen || plan.hypotheses.length > 0);
   if (box.hidden) return;
+  if (plan.hypotheses.length > 0) {
+    const [table, figure, draw] = hypothesesBox(page, plan);
+    box.append(...[table, figure].filter(Boolean));
+    draw?.();
+  }
   if (plan.grid) {
     const figure = document.createElement("figure"), canvas = document.createElement("canvas");
+    canvas.className = "grid";
     drawGrid(canvas, plan);
     const [d, l] = [plan.grid.d, plan.grid.l].map(([least, most]) => `${least.toFixed(1)} … ${most.toFixed(1)} m`);
     figure.append(canvas);

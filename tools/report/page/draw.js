@@ -1,5 +1,5 @@
-// How the layers of the map look. `pen` is {ctx, view, ink, scene, t, ghost}; the context is set
-// to metres, so that a width of w pixels is w / scale.
+// How what moves looks. `pen` is {ctx, view, ink, scene, t, ghost, stage}; the context is set to
+// metres, so that a width of w pixels is w / scale.
 
 function pixels(pen, count) {
   return count / pen.view.scale;
@@ -15,41 +15,6 @@ function stroke(pen, path, colour, width, dash = []) {
 
 function strokePoints(pen, points, colour, width, dash) {
   stroke(pen, pathOfLines([points]), colour, width, dash);
-}
-
-/** A line as wide as a car far away and at least `least` pixels wide. */
-function bandWidth(pen, metres, least) {
-  return Math.max(metres, pixels(pen, least));
-}
-
-function drawLanes(pen) {
-  for (const [look, area] of pen.scene.areas) {
-    pen.ctx.fillStyle = pen.ink("lane-" + look);
-    pen.ctx.fill(area, "nonzero");
-    stroke(pen, area, pen.ink("lane-" + look), pixels(pen, 0.8));
-  }
-  // Far away, borders are thinner than a pixel, or they would hide their lanes.
-  stroke(pen, pen.scene.borders, pen.ink("border"),
-         bandWidth(pen, 0.12, Math.min(0.8, 0.3 * pen.view.scale)));
-}
-
-function drawCentres(pen) {
-  stroke(pen, pen.scene.centres, pen.ink("centre"), pixels(pen, 1), [pixels(pen, 4), pixels(pen, 4)]);
-}
-
-function drawRoute(pen) {
-  stroke(pen, pen.scene.route, pen.ink("route"), bandWidth(pen, 2.2, 5));
-}
-
-function drawReference(pen) {
-  stroke(pen, pen.scene.reference, pen.ink("reference"), pixels(pen, 1.2),
-         [pixels(pen, 7), pixels(pen, 4)]);
-}
-
-function drawOccupied(pen) {
-  pen.ctx.fillStyle = pen.ink("occupied");
-  pen.ctx.fill(pen.scene.occupied);
-  stroke(pen, pen.scene.occupied, pen.ink("occupied"), pixels(pen, 1));
 }
 
 function drawDrive(pen) {
@@ -85,6 +50,24 @@ function drawAhead(pen) {
       const {x, y, h} = stateAt(motion, pen.t + ahead), path = new Path2D();
       addRing(path, rectangle(x, y, h, -length / 2, length / 2, width));
       stroke(pen, path, pen.ink("moving"), pixels(pen, 1));
+    }
+  }
+}
+
+/** What the planner foresees, the fainter the less likely; only where it does not know the future. */
+function drawForeseen(pen) {
+  for (const {points, probability} of planAt(pen.scene, pen.t)?.foreseen ?? []) {
+    pen.ctx.globalAlpha = Math.max(0.25, probability);
+    strokePoints(pen, points, pen.ink("foreseen"), pixels(pen, 2), [pixels(pen, 6), pixels(pen, 3)]);
+    pen.ctx.globalAlpha = 1;
+  }
+}
+
+/** Their probabilities, where they are not the only ones. */
+function drawProbabilities(pen) {
+  for (const {points, probability} of planAt(pen.scene, pen.t)?.foreseen ?? []) {
+    if (probability < 0.995 && points.length > 0) {
+      drawBeside(pen, `${Math.round(100 * probability)} %`, toScreen(pen.view, points.at(-1)), 5);
     }
   }
 }
@@ -167,22 +150,11 @@ function drawVehicle(pen) {
 
 // Drawn in pixels, above everything.
 
-function drawText(pen, text, [x, y], colour) {
-  const {ctx} = pen;
-  ctx.font = "12px system-ui, sans-serif";
-  ctx.lineWidth = 3;
-  ctx.setLineDash([]);
-  ctx.strokeStyle = pen.ink("halo");
-  ctx.strokeText(text, x, y);
-  ctx.fillStyle = colour;
-  ctx.fillText(text, x, y);
-}
-
 /** Text beside a point, on its left where there is no room on its right. */
 function drawBeside(pen, text, [x, y], gap) {
   pen.ctx.font = "12px system-ui, sans-serif";
   const wide = pen.ctx.measureText(text).width, fits = x + gap + wide < pen.view.width - 4;
-  drawText(pen, text, [fits ? x + gap : x - gap - wide, y], pen.ink("text"));
+  drawLabel(pen.stage, pen.ctx, text, [fits ? x + gap : x - gap - wide, y]);
 }
 
 /** A ring where the vehicle is, so that it is found on a map of a whole town. */
@@ -241,37 +213,18 @@ function drawEnds(pen) {
   if (pen.scene.goal) drawFlag(pen, pen.scene.goal, "goal", pen.ink("goal"));
 }
 
-function drawScaleBar(pen) {
-  const {ctx, view} = pen, length = scaleBarLength(view, 140), width = length * view.scale;
-  const x = view.width - 16 - width, y = view.height - 16;
-  ctx.strokeStyle = pen.ink("text");
-  ctx.setLineDash([]);
-  ctx.lineWidth = 1.5;
-  ctx.beginPath();
-  ctx.moveTo(x, y - 5);
-  ctx.lineTo(x, y);
-  ctx.lineTo(x + width, y);
-  ctx.lineTo(x + width, y - 5);
-  ctx.stroke();
-  drawText(pen, length + " m", [x + 4, y - 6], pen.ink("text"));
-}
-
 // From the ground up. `pixels`: drawn in pixels, after all others.
 const LAYERS = [
-  {key: "lanes", label: "Lanes", shown: true, draw: drawLanes},
-  {key: "centres", label: "Centrelines", shown: false, draw: drawCentres},
-  {key: "route", label: "Route", shown: true, draw: drawRoute},
-  {key: "reference", label: "Reference line", shown: true, draw: drawReference},
-  {key: "occupied", label: "Occupancy", shown: true, draw: drawOccupied},
   {key: "footprints", label: "Footprints (1 s)", shown: false, draw: drawFootprints},
   {key: "drive", label: "Drive", shown: true, draw: drawDrive},
   {key: "candidates", label: "Candidates", shown: true, draw: drawCandidates},
   {key: "ahead", label: "Others in 1, 2, 3 s", shown: false, draw: drawAhead},
+  {key: "foreseen", label: "Foreseen by the planner", shown: true, draw: drawForeseen},
   {key: "plan", label: "Plan", shown: true, draw: drawPlan},
   {key: "obstacles", label: "Obstacles", shown: true, draw: drawObstacles},
   {key: "vehicle", label: "Vehicle", shown: true, draw: drawVehicle},
   {key: "beacon", label: "", shown: true, pixels: true, draw: drawBeacon},
   {key: "ends", label: "Start and goal", shown: true, pixels: true, draw: drawEnds},
+  {key: "probabilities", label: "", shown: true, pixels: true, draw: drawProbabilities},
   {key: "labels", label: "Labels", shown: true, pixels: true, draw: drawLabels},
-  {key: "scale", label: "", shown: true, pixels: true, draw: drawScaleBar},
 ];

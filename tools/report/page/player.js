@@ -156,12 +156,10 @@ function keyIsTaken(event) {
   return event.key === " " && (tag === "BUTTON" || tag === "SUMMARY" || tag === "INPUT" || tag === "A");
 }
 
+/** Arrows are the clock's. */
 function mapKey(page, key) {
   if (key === "f" || key === "F") return setFollow(page.map, !page.map.follow), true;
-  if (key === "0") return fitHome(page.map), true;
-  if (key === "+") return zoom(page.map, 1.5), true;
-  if (key === "-") return zoom(page.map, 1 / 1.5), true;
-  return false;
+  return !key.startsWith("Arrow") && keyOfStage(page.map.stage, key);
 }
 
 function watchKeys(page) {

@@ -48,7 +48,7 @@ function smoothed(t, values, reach) {
 }
 
 /** The lines of a plot: a restless series is pale and thin, with its course over it. */
-function linesOf(plot) {
+function linesOfPlot(plot) {
   const lines = plot.series.map(({name, values}, i) => ({name, values, ink: i, isPale: isRestless(values)}));
   const courses = lines.filter(({isPale}) => isPale).map((line) => (
       {...line, name: line.name + ", smoothed", values: smoothed(plot.t, line.values, COURSE_S), isPale: false}));
@@ -128,7 +128,7 @@ function shadeBounds(plot, ctx, area, graph, ink) {
 }
 
 function plotOptions(plot, page) {
-  const ink = (name) => inkOf(page.map, name), [low, high] = axisRange(plot);
+  const ink = (name) => inkOf(page.map.stage, name), [low, high] = axisRange(plot);
   return {
     labels: ["t", ...plot.lines.map((line) => line.name)],
     colors: plot.lines.map((line) => ink(LINE_INKS[line.ink % LINE_INKS.length]) + (line.isPale ? "50" : "")),
@@ -157,7 +157,7 @@ function rowsOf(plot) {
 }
 
 function drawPlot(plot, page) {
-  plot.lines = linesOf(plot);
+  plot.lines = linesOfPlot(plot);
   plot.graph = new Dygraph(plot.box, rowsOf(plot), plotOptions(plot, page));
   plot.cursor = addText(plot.box, "div", "cursor", "");
 }
@@ -183,7 +183,7 @@ function recolour(page) {
 
 function hover(page, t) {
   page.map.ghost = t;
-  redraw(page.map);
+  redraw(page.map.stage);
   showPlots(page);
 }
 

@@ -42,7 +42,7 @@ function chooseShape({home: [x0, y0, x1, y1]}, plots) {
 }
 
 function start() {
-  const data = JSON.parse(element("data").textContent), scene = decodeScene(data);
+  const [data, mapData] = ["data", "map_data"].map((id) => JSON.parse(element(id).textContent)), scene = decodeScene(data, mapData);
   const clock = makeClock(...timesOf(scene, data.plots));
   const page = {clock, map: makeMap(scene, clock), plots: []};
   chooseShape(scene, data.plots);

@@ -1,14 +1,5 @@
 // The data block, decoded once: everything in metres from the origin and seconds.
 
-function decodeLane(coded) {
-  const lane = {name: coded.name, look: coded.look,
-                left: decodeLine(coded.left), centre: decodeLine(coded.centre),
-                right: decodeLine(coded.right)};
-  lane.area = new Path2D();
-  addRing(lane.area, [...lane.right, ...lane.left.slice().reverse()]);
-  return lane;
-}
-
 function addLine(path, points) {
   points.forEach(([x, y], i) => (i === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
 }
@@ -24,22 +15,6 @@ function pathOfLines(lines) {
   return path;
 }
 
-function pathOfBoxes(boxes) {
-  const path = new Path2D();
-  for (const [[x0, y0], [x1, y1]] of boxes) path.rect(x0, y0, x1 - x0, y1 - y0);
-  return path;
-}
-
-/** One area per look, so that neighbours have no seam. */
-function areasByLook(lanes) {
-  const areas = new Map();
-  for (const lane of lanes) {
-    if (!areas.has(lane.look)) areas.set(lane.look, new Path2D());
-    areas.get(lane.look).addPath(lane.area);
-  }
-  return areas;
-}
-
 function decodeObstacle(coded) {
   return {id: coded.id, kind: coded.kind, length: coded.length, width: coded.width,
           motion: decodeMotion(coded.motion)};
@@ -52,6 +27,8 @@ function decodePlan(coded) {
           path: decodeLine(coded.path),
           start: {s: s / 1e3, d: d / 1e3, slope: slope / 1e5, curvature: curvature / 1e6},
           chosen: costs(coded.chosen), runner: costs(coded.runner),
+          hypotheses: coded.hypotheses.map((one) => ({...one, st: one.st && decodeSt(one.st)})),
+          foreseen: coded.foreseen.map((one) => ({...one, points: decodeLine(one.points)})),
           grid: coded.grid && {...coded.grid, causes: decodeRuns(coded.grid.runs)}};
 }
 
@@ -72,29 +49,28 @@ function footprintsOf(drive, vehicle) {
   return path;
 }
 
-/** What the map shows at first: the drive, else the route, else all lanes. */
-function homeOf(drivePoints, routeLines, lanes) {
-  return boxOf(drivePoints) ?? boxOf(routeLines.flat()) ?? boxOf(lanes.flatMap((l) => l.centre)) ??
-      [-10, -10, 10, 10];
+/** Lines of an overlay of the map, in the scene's coordinates. */
+function linesOfOverlay({overlays}, kind, [x0, y0]) {
+  return overlays.filter((one) => one.kind === kind).flatMap((one) => one.lines).map((line) => line.map(([x, y]) => [x - x0, y - y0]));
 }
 
-function decodeScene(data) {
-  const lanes = data.lanes.map(decodeLane), drive = decodeMotion(data.drive);
-  const drivePoints = drive.x.map((x, i) => [x, drive.y[i]]);
-  const routeLines = data.route.map(decodeLine), references = data.references.map(decodeLine);
+/** What is shown at first: the drive, else the route, else the whole map. */
+function homeOf(drivePoints, routeLines, box, [x0, y0]) {
+  return boxOf(drivePoints) ?? boxOf(routeLines.flat()) ?? [box[0] - x0, box[1] - y0, box[2] - x0, box[3] - y0];
+}
+
+/** @param mapData of the page of a map, in its own coordinates: those of the scene and `shift` */
+function decodeScene(data, mapData) {
+  const map = decodeMap(mapData), shift = data.origin.map((value, axis) => value - map.origin[axis]);
+  map.colouring = classify(map, "type");
+  const drive = decodeMotion(data.drive), drivePoints = drive.x.map((x, i) => [x, drive.y[i]]);
   const plans = data.plans.map(decodePlan), goal = data.goal ? decodeLine(data.goal)[0] : null;
   return {
-    origin: data.origin, vehicle: data.vehicle, lanes, drive, drivePoints,
-    goal,
-    areas: areasByLook(lanes),
-    borders: pathOfLines(lanes.flatMap((lane) => [lane.left, lane.right])),
-    centres: pathOfLines(lanes.map((lane) => lane.centre)),
-    route: pathOfLines(routeLines), reference: pathOfLines(references),
-    lines: references.map((points) => ({points, stations: stationsOf(points)})),
-    occupied: pathOfBoxes(data.occupied.map(decodeLine)),
+    map, shift, origin: data.origin, vehicle: data.vehicle, drive, drivePoints, goal,
+    lines: linesOfOverlay(map, "reference", shift).map((points) => ({points, stations: stationsOf(points)})),
     drivePath: pathOfLines([drivePoints]), footprints: footprintsOf(drive, data.vehicle),
     obstacles: data.obstacles.map(decodeObstacle),
     plans, planTimes: plans.map((plan) => plan.t),
-    home: homeOf(drivePoints.concat(goal ? [goal] : []), routeLines, lanes),
+    home: homeOf(drivePoints.concat(goal ? [goal] : []), linesOfOverlay(map, "route", shift), map.box, shift),
   };
 }
