@@ -83,6 +83,8 @@ class ExitStatus : public testing::Test {
         {"occupancy info", {none}},
         {"occupancy export", {none, "-o", fresh(".pgm")}},
         {"occupancy diff", {none, none}},
+        {"occupancy crop", {none, "--heights=0,1", "-o", fresh(".bt")}},
+        {"occupancy merge", {none, none, "-o", fresh(".bt")}},
         {"drive info", {none}},
         {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},
         {"figures", {"-o", folder_.path()}},
@@ -122,7 +124,8 @@ TEST_F(ExitStatus, OfAWrongCommandLineComesWithOneLineThatNamesWhatWasMeant) {
             "roadbed occupancy: there is no command bild; did you mean build? see: roadbed "
             "occupancy --help\n");
   EXPECT_EQ(said({"occupancy"}),
-            "roadbed occupancy: a command is required: build, info, export, diff; see: roadbed "
+            "roadbed occupancy: a command is required: build, info, export, diff, crop, merge; "
+            "see: roadbed "
             "occupancy --help\n");
   EXPECT_EQ(said({"route", town_, "--frm", "0,0"}),
             "roadbed route: there is no option --frm; did you mean --from? see: roadbed route "
@@ -220,6 +223,8 @@ TEST_F(ExitStatus, QuietSilencesNotesAndNoErrorOfEveryCommand) {
            {"occupancy", "info", octree},
            {"occupancy", "export", octree, "-o", fresh(".pgm")},
            {"occupancy", "diff", octree, octree},
+           {"occupancy", "crop", octree, "--heights=0,1", "-o", fresh(".bt")},
+           {"occupancy", "merge", octree, octree, "-o", fresh(".bt")},
            {"audit", "--occupancy", octree, "--trajectory", drive_, "--unknown", "free"},
            {"report", "compare", a_, b_},
            {"batch", jobs_, "-o", fresh("")},

@@ -11,7 +11,7 @@ class OccupancyCommand : public Command {
   void declare(Arguments& arguments) override {
     arguments.description(
         "Make obstacle occupancy from point clouds, say what one holds, write it for others, "
-        "compare");
+        "compare, cut and put together");
     arguments.example(
         "  roadbed occupancy build scan.pcd -o scan.bt\n"
         "  roadbed occupancy info scan.bt");
@@ -34,9 +34,12 @@ class OccupancyCommand : public Command {
     std::unique_ptr<Command> command;
     std::optional<Arguments> arguments = {};
   };
-  std::array<Part, 4> parts_{
-      Part{"build", make_occupancy_build_command()}, Part{"info", make_occupancy_info_command()},
-      Part{"export", make_occupancy_export_command()}, Part{"diff", make_occupancy_diff_command()}};
+  std::array<Part, 6> parts_{Part{"build", make_occupancy_build_command()},
+                             Part{"info", make_occupancy_info_command()},
+                             Part{"export", make_occupancy_export_command()},
+                             Part{"diff", make_occupancy_diff_command()},
+                             Part{"crop", make_occupancy_crop_command()},
+                             Part{"merge", make_occupancy_merge_command()}};
 };
 
 }  // namespace

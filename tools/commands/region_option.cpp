@@ -9,6 +9,7 @@
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/geojson/document.h"
 #include "roadbed/map/gis/lon_lat.h"
@@ -58,14 +59,15 @@ std::vector<geometry::Ring> rings_of(const map::geojson::Document& document,
 
 }  // namespace
 
-void RegionOption::declare(Arguments& arguments) {
-  arguments.add("--bbox", box_, "The part inside a box: X0,Y0,X1,Y1 in the map's coordinates")
+void RegionOption::declare(Arguments& arguments, const std::string& what) {
+  arguments
+      .add("--bbox", box_, "The part inside a box: X0,Y0,X1,Y1 in the " + what + "'s coordinates")
       .values(4)
       .separated_by(',');
   arguments
       .add("--polygon", polygon_file_,
-           "The part inside the polygons of a GeoJSON file: longitude and latitude, or the map's "
-           "coordinates where its member crs is null or names another system")
+           "The part inside the polygons of a GeoJSON file: longitude and latitude, or the " +
+               what + "'s coordinates where its member crs is null or names another system")
       .reads()
       .ending(".geojson");
   arguments.add("--within", within_, "The part within a distance of a lane: lane:NAME,500m")
@@ -74,9 +76,12 @@ void RegionOption::declare(Arguments& arguments) {
       });
 }
 
+int RegionOption::count_given() const {
+  return int(!box_.empty()) + int(!polygon_file_.empty()) + int(!within_.empty());
+}
+
 std::string RegionOption::fault() const {
-  const int given = int(!box_.empty()) + int(!polygon_file_.empty()) + int(!within_.empty());
-  if (given != 1) return "just one of --bbox, --polygon and --within is required";
+  if (count_given() != 1) return "just one of --bbox, --polygon and --within is required";
   if (!box_.empty() && !(box_[0] < box_[2] && box_[1] < box_[3])) {
     return "--bbox: X0 is less than X1, and Y0 less than Y1";
   }
@@ -84,19 +89,40 @@ std::string RegionOption::fault() const {
 }
 
 map::Region RegionOption::region(const std::string& map_bytes, const std::string& name) const {
-  if (!polygon_file_.empty()) return from_polygons(map_bytes, name);
   if (!within_.empty()) return around_lane(map_bytes, name);
+  if (!box_.empty()) return box();
+  return from_polygons([&](std::span<Eigen::Vector2d> points) {
+    map::lon_lat_to_source(map::parse_map(map_bytes, name), points);
+  });
+}
+
+map::Region RegionOption::region_in(const std::string& crs, const std::string& name) const {
+  if (!box_.empty()) return box();
+  return from_polygons([&](std::span<Eigen::Vector2d> points) {
+    if (!crs.empty()) return map::from_lon_lat(crs, points);
+    throw map::InputError({.file = name,
+                           .found = "names no coordinate system",
+                           .needed = "one, for longitude and latitude to have a place in it",
+                           .remedy = "give the polygons in its coordinates, with \"crs\": null"});
+  });
+}
+
+map::Region RegionOption::box() const {
   return map::Region({geometry::box_ring({box_[0], box_[1]}, {box_[2], box_[3]})});
 }
 
-map::Region RegionOption::from_polygons(const std::string& map_bytes,
-                                        const std::string& name) const {
+map::Region RegionOption::from_polygons(const FromLonLat& from_lon_lat) const {
   const std::string file = map::input_name(polygon_file_);
   const auto document = map::geojson::parse(map::read_file(polygon_file_), file);
   std::vector<geometry::Ring> rings = rings_of(document, file);
   if (document.in_degrees) {
-    const map::RoadMap road_map = map::parse_map(map_bytes, name);
-    for (geometry::Ring& ring : rings) map::lon_lat_to_source(road_map, ring);
+    std::vector<Eigen::Vector2d> points;
+    for (const geometry::Ring& ring : rings) points.insert(points.end(), ring.begin(), ring.end());
+    from_lon_lat(points);
+    auto point = points.begin();
+    for (geometry::Ring& ring : rings) {
+      for (Eigen::Vector2d& corner : ring) corner = *point++;
+    }
   }
   return map::Region(std::move(rings));
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,13 @@ namespace roadbed::tools::inline commands {
 /// The part of the plane that a command line names: `--bbox`, `--polygon` or `--within`.
 class RegionOption {
  public:
-  void declare(Arguments& arguments);
+  /// @param what  is cut: "map".
+  void declare(Arguments& arguments, const std::string& what = "map");
+
+  bool given() const { return count_given() > 0; }
+
+  /// Whether it is around a lane.
+  bool needs_map() const { return !within_.empty(); }
 
   /// What is missing; nothing if just one of them is given.
   std::string fault() const;
@@ -22,8 +31,18 @@ class RegionOption {
   /// @throws InputError if the polygons are unusable, or cannot be placed on the map.
   map::Region region(const std::string& map_bytes, const std::string& name) const;
 
+  /// The same in a coordinate system. @pre it does not need a map.
+  /// @param crs   may be empty, where it is unknown.
+  /// @param name  of the file that has it.
+  /// @throws InputError as above.
+  map::Region region_in(const std::string& crs, const std::string& name) const;
+
  private:
-  map::Region from_polygons(const std::string& map_bytes, const std::string& name) const;
+  using FromLonLat = std::function<void(std::span<Eigen::Vector2d> points)>;
+
+  int count_given() const;
+  map::Region box() const;
+  map::Region from_polygons(const FromLonLat& from_lon_lat) const;
   map::Region around_lane(const std::string& map_bytes, const std::string& name) const;
 
   std::vector<double> box_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -16,7 +17,8 @@
 namespace roadbed::map::inline occupancy::inline octree {
 
 /// What a file of OctoMap says is free and occupied, in six bytes for each inner node: three times
-/// the data of a `.bt`, where nodes of OctoMap's own take 170 times. Immutable.
+/// the data of a `.bt`, where nodes of OctoMap's own take 170 times. The log-odds of an `.ot` take
+/// four bytes more for each leaf and inner node. Immutable.
 class CompactOctree {
  public:
   static constexpr std::uint32_t kSide = 65536;  ///< cells of the root
@@ -26,6 +28,7 @@ class CompactOctree {
     std::array<std::uint32_t, 3> least;  ///< key of the cell in its lowest corner
     std::uint32_t side;                  ///< in cells, a power of two
     CellState state;
+    float log_odds;  ///< of a `.bt`: what OctoMap clamps to
   };
 
   /// Keys of cells, both with it.
@@ -40,6 +43,7 @@ class CompactOctree {
   static CompactOctree of_bt(std::string_view data);
 
   /// The same of an `.ot`; log-odds of 0 and above are occupied, OctoMap's threshold.
+  /// @throws std::length_error over 2³² nodes.
   static CompactOctree of_ot(std::string_view data);
 
   std::size_t leaves() const { return leaves_; }
@@ -57,7 +61,7 @@ class CompactOctree {
   /// The data of a `.bt`; eight equal leaves become one.
   OctreeBytes bt() const;
 
-  /// The data of an `.ot`, with the log-odds that OctoMap clamps to: no more is known.
+  /// The data of an `.ot`; where it comes from one, the same node for node.
   OctreeBytes ot() const;
 
  private:
@@ -80,31 +84,51 @@ class CompactOctree {
   void visit(std::uint32_t node, const Corner& corner, std::uint32_t side, const KeyBox& box,
              Use& use) const {
     const std::uint32_t half = side / 2;
-    std::uint32_t inner = first_inner_[node];
+    std::uint32_t inner = first_inner_[node], leaf = first_leaf(node);
     for (unsigned child = 0; child < 8; ++child) {
       const BtPair pair = pair_of(pairs_[node], child);
-      const std::uint32_t below = inner;
-      inner += pair == BtPair::inner;
       if (pair == BtPair::unknown) continue;
+      const std::uint32_t below = pair == BtPair::inner ? inner++ : leaf++;
       const Corner at = corner_of(child, corner, half);
       if (!do_meet(at, half, box)) continue;
       if (pair == BtPair::inner) {
         visit(below, at, half, box, use);
       } else {
-        use(Leaf{at, half, pair == BtPair::free ? CellState::free : CellState::occupied});
+        use(Leaf{at, half, pair == BtPair::free ? CellState::free : CellState::occupied,
+                 log_odds_of(pair, below)});
       }
     }
   }
 
-  void read_node(std::string_view& data, std::size_t node);
+  std::uint32_t first_leaf(std::uint32_t node) const {
+    return first_leaf_.empty() ? 0 : first_leaf_[node];
+  }
+  float log_odds_of(BtPair pair, std::uint32_t leaf) const {
+    if (!log_odds_.empty()) return log_odds_[leaf];
+    return pair == BtPair::free ? rule_.least : rule_.most;
+  }
+
+  /// Nodes as a `.bt` has them one after the other, and of each which its first leaf is.
+  struct Reading {
+    std::string_view data;
+    std::span<const std::uint32_t> first_leaf = {};
+    std::size_t node = 0;
+  };
+  static CompactOctree read(Reading from);
+  void read_node(Reading& from, std::size_t node);
   BtPair write_bt(std::uint32_t node, OctreeBytes& bytes) const;
-  float write_ot(std::uint32_t node, const LogOddsRule& rule, OctreeBytes& bytes) const;
+  float write_ot(std::uint32_t node, OctreeBytes& bytes) const;
 
   // Of inner nodes: what each child is, and the first of its children that are inner nodes; they
   // stand one behind the other.
   std::vector<std::uint16_t> pairs_;
   std::vector<std::uint32_t> first_inner_;
   std::size_t leaves_ = 0;
+
+  // Of an `.ot`: the first leaf among the children of each inner node, and the values of leaves.
+  std::vector<std::uint32_t> first_leaf_;
+  std::vector<float> log_odds_;
+  LogOddsRule rule_ = LogOddsRule::of_octomap();
 };
 
 }  // namespace roadbed::map::occupancy::octree

@@ -20,7 +20,6 @@ struct OccupancyMap::Tree {
   double resolution_m;
   CompactOctree octree;
   std::size_t nodes = 0;
-  std::string log_odds;  // the data of an `.ot` where clouds were added up; else they are clamped
   Eigen::Vector3d origin_in_source{0, 0, 0};
   std::string crs;
   std::optional<SeeThroughRemoval> seen_through;
@@ -42,7 +41,7 @@ struct OccupancyMap::Tree {
     };
     return {origin_in_source + Eigen::Vector3d(middle(leaf.least[0]), middle(leaf.least[1]),
                                                middle(leaf.least[2])),
-            size_m, leaf.state};
+            size_m, leaf.state, leaf.log_odds};
   }
 };
 
@@ -90,12 +89,11 @@ OccupancyMap OccupancyMap::build(const CloudsInTurn& clouds, const OccupancyOpti
   auto tree = std::make_unique<Tree>(options.resolution_m);
   tree->crs = measured.crs;
   tree->origin_in_source = measured.origin_in_source;
-  OctreeBytes bytes = options.sticky_hits ? measured.cells.bt() : measured.cells.ot();
+  const OctreeBytes bytes = options.sticky_hits ? measured.cells.bt() : measured.cells.ot();
   tree->seen_through = seen_through_of(options, measured.cells);
   tree->octree =
       octree_of(options.sticky_hits ? OctreeForm::bt : OctreeForm::ot, bytes.data, bytes.nodes);
   tree->nodes = bytes.nodes;
-  if (!options.sticky_hits) tree->log_odds = std::move(bytes.data);
   return OccupancyMap(std::move(tree));
 }
 
@@ -180,11 +178,7 @@ std::optional<Box3> OccupancyMap::bounds() const {
 
 std::string OccupancyMap::to_bt() const { return tree_->file(OctreeForm::bt, tree_->octree.bt()); }
 
-std::string OccupancyMap::to_ot() const {
-  return tree_->file(OctreeForm::ot, tree_->log_odds.empty()
-                                         ? tree_->octree.ot()
-                                         : OctreeBytes{tree_->log_odds, tree_->nodes});
-}
+std::string OccupancyMap::to_ot() const { return tree_->file(OctreeForm::ot, tree_->octree.ot()); }
 
 bool is_occupancy_file(std::string_view bytes) { return is_octree_file(bytes); }
 

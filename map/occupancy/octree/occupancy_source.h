@@ -18,6 +18,7 @@ struct OccupancyCell {
   Eigen::Vector3d centre_in_source;
   double size_m;
   CellState state;
+  float log_odds = 0.0f;  ///< of being occupied; where only the state is known, OctoMap's limits
 };
 
 /// What a removal of dynamic objects took away: hits whose cells later or earlier clouds saw

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "roadbed/map/files/visible_text.h"
+#include "roadbed/map/occupancy/octree/ot_writer.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
@@ -118,68 +116,6 @@ class BtWriter {
     bytes_.data[at + 1] = static_cast<char>(pairs >> 8);
     for (; pairs != 0; pairs >>= 2) bytes_.nodes += (pairs & 3u) != 0;
     return BtPair::inner;
-  }
-
-  OctreeBytes bytes_;
-};
-
-class OtWriter {
- public:
-  /// A node that was written; `value` is NaN where there is none.
-  struct Node {
-    float value;
-    bool is_leaf;
-  };
-
-  static Node none() { return {std::numeric_limits<float>::quiet_NaN(), true}; }
-
-  // A float and a byte that says which children there are; the children follow.
-  template <typename Child>
-  Node node(const Child& child) {
-    const std::size_t at = bytes_.data.size(), nodes = bytes_.nodes;
-    bytes_.data.append(kNodeBytes, '\0');
-    ++bytes_.nodes;
-    unsigned there = 0, leaves = 0;
-    float least = std::numeric_limits<float>::infinity(), most = -least;
-    for (unsigned i = 0; i < 8; ++i) {
-      const Node made = child(i);
-      if (std::isnan(made.value)) continue;
-      there |= 1u << i;
-      leaves += made.is_leaf;
-      least = std::min(least, made.value);
-      most = std::max(most, made.value);
-    }
-    const bool is_one = leaves == 8 && least == most;
-    if (there == 0 || is_one) {
-      bytes_.data.resize(at);
-      bytes_.nodes = nodes;
-      return is_one ? leaf(most) : none();
-    }
-    std::memcpy(&bytes_.data[at], &most, sizeof most);
-    bytes_.data[at + sizeof most] = static_cast<char>(there);
-    return {most, false};
-  }
-
-  Node block(const CellBlock& block) { return cells(*block.log_odds, 0, block.log_odds->size()); }
-
-  OctreeBytes take() { return std::move(bytes_); }
-
- private:
-  static constexpr std::size_t kNodeBytes = sizeof(float) + 1;
-
-  Node leaf(float value) {
-    if (std::isnan(value)) return none();
-    char bytes[kNodeBytes] = {};
-    std::memcpy(bytes, &value, sizeof value);
-    bytes_.data.append(bytes, kNodeBytes);
-    ++bytes_.nodes;
-    return {value, true};
-  }
-
-  Node cells(const std::array<float, 512>& values, std::size_t from, std::size_t count) {
-    if (count == 1) return leaf(values[from]);
-    const std::size_t part = count / 8;
-    return node([&](std::size_t i) { return cells(values, from + i * part, part); });
   }
 
   OctreeBytes bytes_;

@@ -9,15 +9,10 @@
 
 #include "roadbed/map/occupancy/octree/cell_blocks.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/map/occupancy/octree/octree_data.h"
 #include "roadbed/map/occupancy/octree/octree_file.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
-
-/// The data of an OctoMap file, as it follows its header.
-struct OctreeBytes {
-  std::string data;
-  std::size_t nodes = 0;
-};
 
 /// What two bits of a `.bt` say of a child. Eight of them, the first lowest, are an inner node.
 enum class BtPair : unsigned { unknown = 0, free = 1, occupied = 2, inner = 3 };

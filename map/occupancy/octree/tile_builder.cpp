@@ -10,11 +10,10 @@
 #include <stdexcept>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/sha256.h"
 #include "roadbed/map/occupancy/clouds/cloud_transforms.h"
 #include "roadbed/map/occupancy/octree/cell_range.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
-#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/tile_file.h"
 
 namespace roadbed::map::inline occupancy::inline octree {
 namespace {
@@ -225,7 +224,7 @@ void TileBuilder::spill() {
   }
 }
 
-OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
+void TileBuilder::make_tile(const Place& place, TilesIndex& index, const Write& write) {
   CellBlocks blocks;
   ScanAccumulator sum(options());
   std::ifstream file(spill_file(place), std::ios::binary);
@@ -255,25 +254,7 @@ OccupancyTile TileBuilder::make_tile(const Place& place, const Write& write) {
   }
   sum.settle(blocks);
   removed_ += sum.removed();
-  const OctreeBytes data = bt_data(blocks);
-  const Eigen::Vector3d corner(static_cast<double>(first_x), static_cast<double>(first_y), 0.0);
-  const std::string bytes =
-      octree_header(OctreeForm::bt,
-                    {.resolution_m = plan_.resolution_m,
-                     .nodes = data.nodes,
-                     .origin_in_source = plan_.origin_in_source + plan_.resolution_m * corner,
-                     .crs = plan_.crs,
-                     .seen_through = seen_through(sum.removed())}) +
-      data.data;
-  OccupancyTile tile{.x = place.second,
-                     .y = place.first,
-                     .file = tile_file_name(place.second, place.first),
-                     .nodes = data.nodes,
-                     .sha256 = sha256_of_bytes(bytes),
-                     .bounds = {}};
-  tile.bounds = *OccupancyMap::parse(bytes, tile.file).bounds();
-  write(tile.file, bytes);
-  return tile;
+  add_tile(index, place.second, place.first, bt_data(blocks), seen_through(sum.removed()), write);
 }
 
 TilesIndex TileBuilder::finish(const Write& write) {
@@ -283,8 +264,7 @@ TilesIndex TileBuilder::finish(const Write& write) {
                    .crs = plan_.crs,
                    .side_cells = plan_.side_cells,
                    .tiles = {}};
-  for (const auto& [place, blocks] : spilled_blocks_)
-    index.tiles.push_back(make_tile(place, write));
+  for (const auto& [place, blocks] : spilled_blocks_) make_tile(place, index, write);
   index.seen_through = seen_through(removed_);
   return index;
 }

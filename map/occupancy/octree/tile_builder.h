@@ -79,7 +79,7 @@ class TileBuilder {
   OccupancyOptions options() const;
   std::optional<SeeThroughRemoval> seen_through(std::size_t removed) const;
   bool keeps_clouds_apart() const { return !plan_.sticky_hits || plan_.remove_seen_through > 0; }
-  OccupancyTile make_tile(const Place& place, const Write& write);
+  void make_tile(const Place& place, TilesIndex& index, const Write& write);
 
   Plan plan_;
   Shift shift_{};

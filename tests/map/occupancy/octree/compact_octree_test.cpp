@@ -110,6 +110,22 @@ TEST(CompactOctree, FindsInABoxExactlyTheLeavesThatMeetIt) {
   }
 }
 
+TEST(CompactOctree, KeepsTheLogOddsOfEveryLeaf) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> value(-1.9f, 3.4f);
+  octomap::OcTree theirs = random_tree(random, 2000, true);
+  for (auto leaf = theirs.begin_leafs(), end = theirs.end_leafs(); leaf != end; ++leaf) {
+    leaf->setLogOdds(value(random));
+  }
+  theirs.updateInnerOccupancy();
+  const std::string bytes = file_of(theirs, false);
+  const OccupancyMap ours = OccupancyMap::parse(bytes, "a");
+  auto leaf = theirs.begin_leafs();
+  for (const OccupancyCell& cell : ours.cells()) EXPECT_EQ(cell.log_odds, (leaf++)->getLogOdds());
+  const std::string written = ours.to_ot();
+  EXPECT_EQ(written.substr(written.find("data\n")), bytes.substr(bytes.find("data\n")));
+}
+
 TEST(CompactOctree, WritesEightEqualLeavesAsOneOnEveryLevel) {
   // Pairs 01 are free: eight in each of eight in each child of the root.
   std::string data;

@@ -1,0 +1,134 @@
+// Octrees cut, put together, and written for others.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "roadbed/map/files/projection.h"
+#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/real_data.h"
+
+namespace roadbed::tests {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+const std::string kTown = data_folder() / "town.bt";
+
+class OccupancyParts : public testing::Test {
+ protected:
+  static ProgramRun run(Words words) {
+    words.insert(words.begin(), "occupancy");
+    return run_roadbed(words);
+  }
+
+  std::string made(Words words, const std::string& name, int status = 0) const {
+    const std::string output = folder_ / name;
+    words.insert(words.end(), {"-o", output});
+    const ProgramRun done = run(words);
+    EXPECT_EQ(done.status, status) << done.err;
+    EXPECT_EQ(done.out, "");
+    return output;
+  }
+
+  static Json info(const std::string& file) {
+    return Json::parse(run({"info", file, "--json"}).out);
+  }
+
+  /// Three points in UTM zone 32, as an octree of 0.5 m.
+  std::string in_utm(const std::string& name = "utm.bt") const {
+    const std::string cloud = folder_.write(
+        "utm.xyz", "500010.1 5500020.1 100.3\n500010.6 5500020.1 100.3\n500020 5500030 101\n");
+    return made({"build", cloud, "--crs", "EPSG:32632", "--resolution", "0.5"}, name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(OccupancyParts, CutApartArePutTogetherToTheSameFile) {
+  const Json box = info(kTown).at("bounds");
+  const double middle = std::round(5.0 * box.at("min_x_m").get<double>() + 200.0) / 5.0;
+  const std::string west =
+                        made({"crop", kTown, "--bbox=-1e4,-1e4," + std::to_string(middle) + ",1e4"},
+                             "west.bt"),
+                    east =
+                        made({"crop", kTown, "--bbox=" + std::to_string(middle) + ",-1e4,1e4,1e4"},
+                             "east.bt");
+  EXPECT_NEAR(info(west).at("bounds").at("max_x_m").get<double>(), middle, 1e-9);
+  EXPECT_NEAR(info(east).at("bounds").at("min_x_m").get<double>(), middle, 1e-9);
+  EXPECT_EQ(bytes_of(made({"merge", east, west}, "whole.bt")),
+            bytes_of(made({"build", kTown}, "town.bt")));
+}
+
+TEST_F(OccupancyParts, KeepTheirTilesOrGetOthers) {
+  const std::string whole = made({"build", kTown}, "town.bt");
+  const std::string tiles = made({"merge", kTown, "--tiles", "40"}, "town.tiles"),
+                    part = made({"crop", tiles, "--heights=-100,1"}, "low.tiles");
+  EXPECT_EQ(info(part).at("side_m"), info(tiles).at("side_m"));
+  EXPECT_LE(info(part).at("bounds").at("max_z_m").get<double>(), 1.2);
+  EXPECT_EQ(bytes_of(made({"merge", tiles, part}, "again.bt")), bytes_of(whole));
+  const ProgramRun unsaid = run({"merge", kTown, "-o", folder_ / "no.tiles"});
+  EXPECT_EQ(unsaid.status, 3);
+  EXPECT_THAT(unsaid.err, HasSubstr("give --tiles SIDE"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "no.tiles"));
+}
+
+TEST_F(OccupancyParts, AreCutByAPolygonInDegreesWhereTheSystemIsKnown) {
+  const auto degrees = [](double x, double y) {
+    std::vector<Eigen::Vector2d> point{{x, y}};
+    map::to_lon_lat("EPSG:32632", point);
+    return Json{point[0].x(), point[0].y()};
+  };
+  const Json ring{degrees(500009, 5500019), degrees(500015, 5500019), degrees(500015, 5500025),
+                  degrees(500009, 5500025), degrees(500009, 5500019)};
+  const Json polygon{{"type", "Feature"},
+                     {"properties", Json::object()},
+                     {"geometry", {{"type", "Polygon"}, {"coordinates", Json::array({ring})}}}};
+  const std::string file = folder_.write("yard.geojson", polygon.dump());
+  const std::string part = made({"crop", in_utm(), "--polygon", file}, "yard.bt");
+  EXPECT_EQ(info(part).at("occupied").at("volume_m3"), 2 * 0.125);
+  EXPECT_EQ(info(part).at("crs"), "EPSG:32632");
+  const ProgramRun unknown = run({"crop", kTown, "--polygon", file, "-o", folder_ / "no.bt"});
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("town.bt: names no coordinate system"));
+}
+
+TEST_F(OccupancyParts, AreCutAroundALaneOfTheirMap) {
+  const std::string map = data_folder() / "town.xodr";
+  const std::string near =
+      made({"crop", kTown, "--map", map, "--within", "lane:1/0/-1,8m"}, "near.bt", 0);
+  const auto leaves = [](const std::string& file) { return info(file).at("leaves").get<int>(); };
+  EXPECT_GT(leaves(near), 0);
+  EXPECT_LT(leaves(near), leaves(kTown) / 2);
+}
+
+TEST_F(OccupancyParts, OfNothingAreAnEmptyOctreeAndANo) {
+  const std::string none = made({"crop", kTown, "--heights=500,600"}, "none.bt", 1);
+  EXPECT_EQ(info(none).at("leaves"), 0);
+}
+
+TEST_F(OccupancyParts, AreRefusedInOneLineAndLeaveNothing) {
+  const std::string coarse = in_utm("coarse.bt"), out = folder_ / "out.bt";
+  for (const auto& [words, status, text] : std::vector<std::tuple<Words, int, std::string>>{
+           {{"merge", kTown, coarse}, 3, "coarse.bt: cells of 0.5 m, needs cells of 0.2 m as"},
+           {{"crop", kTown}, 2, "one of --bbox, --polygon and --within, or --heights, is required"},
+           {{"crop", kTown, "--heights=2,1"}, 2, "the first has to be below the second"},
+           {{"crop", kTown, "--within", "lane:1/0/-1,8m"}, 2, "--within and --map need each other"},
+           {{"crop", kTown, "--bbox=0,0,1,1", "--tiles", "50"}, 2, "ends in .tiles"}}) {
+    Words line = words;
+    line.insert(line.end(), {"-o", out});
+    const ProgramRun refused = run(line);
+    EXPECT_EQ(refused.status, status) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr(text));
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+}
+
+}  // namespace
+}  // namespace roadbed::tests
