@@ -120,7 +120,8 @@ TEST_F(OccupancyParts, AreRefusedInOneLineAndLeaveNothing) {
            {{"crop", kTown}, 2, "one of --bbox, --polygon and --within, or --heights, is required"},
            {{"crop", kTown, "--heights=2,1"}, 2, "the first has to be below the second"},
            {{"crop", kTown, "--within", "lane:1/0/-1,8m"}, 2, "--within and --map need each other"},
-           {{"crop", kTown, "--bbox=0,0,1,1", "--tiles", "50"}, 2, "ends in .tiles"}}) {
+           {{"crop", kTown, "--bbox=0,0,1,1", "--tiles", "50"}, 2, "ends in .tiles"},
+           {{"export", kTown}, 2, "ends in none of .pcd .ply .pgm .tif .geojson .gpkg .fgb"}}) {
     Words line = words;
     line.insert(line.end(), {"-o", out});
     const ProgramRun refused = run(line);
@@ -128,6 +129,29 @@ TEST_F(OccupancyParts, AreRefusedInOneLineAndLeaveNothing) {
     EXPECT_THAT(refused.err, HasSubstr(text));
     EXPECT_FALSE(std::filesystem::exists(out));
   }
+}
+
+TEST_F(OccupancyParts, AreRectanglesInDegreesWhereTheSystemIsKnownElseInMetres) {
+  const Json known = Json::parse(bytes_of(made({"export", in_utm()}, "utm.geojson")));
+  ASSERT_EQ(known.at("features").size(), 2u);
+  EXPECT_FALSE(known.contains("crs"));
+  const Json& feature = known.at("features").at(0);
+  std::vector<Eigen::Vector2d> corner{{500010.0, 5500020.0}};
+  map::to_lon_lat("EPSG:32632", corner);
+  const Json& first = feature.at("geometry").at("coordinates").at(0).at(0);
+  EXPECT_NEAR(first.at(0).get<double>(), corner[0].x(), 1e-9);
+  EXPECT_NEAR(first.at(1).get<double>(), corner[0].y(), 1e-9);
+  EXPECT_EQ(feature.at("properties").at("from_z_m"), 100.0);
+  EXPECT_EQ(feature.at("properties").at("to_z_m"), 100.5);
+  const Json raw = Json::parse(bytes_of(made({"export", kTown}, "town.geojson")));
+  EXPECT_TRUE(raw.at("crs").is_null());
+}
+
+TEST_F(OccupancyParts, ComeAsGeoTiffAndFilesOfGeographicSystems) {
+  EXPECT_EQ(bytes_of(made({"export", in_utm()}, "utm.tif")).substr(0, 4), std::string("II*\0", 4));
+  EXPECT_EQ(bytes_of(made({"export", folder_ / "utm.bt"}, "utm.gpkg")).substr(0, 15),
+            "SQLite format 3");
+  EXPECT_EQ(bytes_of(made({"export", folder_ / "utm.bt"}, "utm.fgb")).substr(0, 3), "fgb");
 }
 
 }  // namespace

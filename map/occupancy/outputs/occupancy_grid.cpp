@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "roadbed/map/files/input_error.h"
 
@@ -12,37 +13,43 @@ namespace {
 
 constexpr double kMostSquares = 1e8;
 
-bool is_between(const OccupancyCell& cell, const GridHeights& heights) {
-  const double half_m = 0.5 * cell.size_m;
-  return cell.centre_in_source.z() + half_m > heights.from_m &&
-         cell.centre_in_source.z() - half_m < heights.to_m;
-}
+/// A leaf, or what of it lies between the heights.
+struct Part {
+  CellBox cells;
+  CellState state;
+};
 
-// Where a cell begins, in squares from a corner.
-Eigen::Array2i place_of(const OccupancyCell& cell, const OccupancyGrid& grid) {
-  const Eigen::Vector2d begin = cell.centre_in_source.head<2>().array() - 0.5 * cell.size_m;
-  return ((begin - grid.corner_in_source) / grid.resolution_m).array().round().cast<int>();
-}
-
-OccupancyGrid empty_grid(const std::vector<OccupancyCell>& cells, double resolution_m,
-                         const std::string& name) {
-  Eigen::Vector2d least = cells.front().centre_in_source.head<2>(), most = least;
-  for (const OccupancyCell& cell : cells) {
-    const Eigen::Vector2d centre = cell.centre_in_source.head<2>();
-    least = least.cwiseMin((centre.array() - 0.5 * cell.size_m).matrix());
-    most = most.cwiseMax((centre.array() + 0.5 * cell.size_m).matrix());
+std::vector<Part> parts_between(const OccupancySource& occupancy, const CellGrid& grid,
+                                const GridHeights& heights) {
+  const CellBox between = cells_between(grid, heights);
+  std::vector<Part> parts;
+  for (const OccupancyCell& leaf : occupancy.cells()) {
+    const CellBox cells = grid.cells_of(leaf).cut(between);
+    if (!cells.empty()) parts.push_back({cells, leaf.state});
   }
-  const Eigen::Vector2d size = ((most - least) / resolution_m).array().round();
-  if (!(size.x() * size.y() <= kMostSquares)) {
+  return parts;
+}
+
+CellBox box_around(const std::vector<Part>& parts) {
+  CellBox box;
+  for (const Part& part : parts) box = box.joined(part.cells);
+  return box;
+}
+
+OccupancyGrid empty_grid(const CellBox& box, const CellGrid& cells, double resolution_m,
+                         const std::string& name) {
+  const std::int64_t columns = box.to[0] - box.from[0], rows = box.to[1] - box.from[1];
+  if (!(static_cast<double>(columns) * static_cast<double>(rows) <= kMostSquares)) {
     throw InputError({.file = name,
-                      .found = fmt::format("{:.0f} by {:.0f} cells", size.x(), size.y()),
+                      .found = fmt::format("{} by {} cells", columns, rows),
                       .needed = fmt::format("at most {:.0f} in all", kMostSquares),
-                      .remedy = "build it with a coarser --resolution, or of a part"});
+                      .remedy = "take a part with roadbed occupancy crop"});
   }
   OccupancyGrid grid{.resolution_m = resolution_m,
-                     .corner_in_source = least,
-                     .columns = static_cast<std::size_t>(size.x()),
-                     .rows = static_cast<std::size_t>(size.y()),
+                     .corner_in_source = cells.corner_in_source(box.from).head<2>(),
+                     .corner = box.from,
+                     .columns = static_cast<std::size_t>(columns),
+                     .rows = static_cast<std::size_t>(rows),
                      .squares = {}};
   grid.squares.assign(grid.columns * grid.rows, CellState::unknown);
   return grid;
@@ -50,29 +57,27 @@ OccupancyGrid empty_grid(const std::vector<OccupancyCell>& cells, double resolut
 
 }  // namespace
 
+CellBox cells_between(const CellGrid& grid, const GridHeights& heights) {
+  constexpr double anywhere = std::numeric_limits<double>::infinity();
+  return grid.cells_of(
+      Box3{{-anywhere, -anywhere, heights.from_m}, {anywhere, anywhere, heights.to_m}});
+}
+
 OccupancyGrid grid_from_above(const OccupancySource& occupancy, const GridHeights& heights,
                               const std::string& name) {
-  std::vector<OccupancyCell> cells = occupancy.cells();
-  std::erase_if(cells, [&](const OccupancyCell& cell) { return !is_between(cell, heights); });
-  if (cells.empty()) {
+  const CellGrid cells(occupancy);
+  const std::vector<Part> parts = parts_between(occupancy, cells, heights);
+  if (parts.empty()) {
     throw InputError({.file = name,
                       .found = "no cell between the heights",
                       .needed = "at least one",
                       .remedy = "give other heights; see: roadbed occupancy info"});
   }
-  OccupancyGrid grid = empty_grid(cells, occupancy.resolution_m(), name);
-  for (const OccupancyCell& cell : cells) {
-    const Eigen::Array2i place = place_of(cell, grid);
-    const auto side =
-        static_cast<std::size_t>(std::max(1L, std::lround(cell.size_m / grid.resolution_m)));
-    const auto first_column = static_cast<std::size_t>(place.x()),
-               first_row = static_cast<std::size_t>(place.y());
-    for (std::size_t row = first_row; row < first_row + side; ++row) {
-      for (std::size_t column = first_column; column < first_column + side; ++column) {
-        CellState& square = grid.squares[row * grid.columns + column];
-        square = std::max(square, cell.state);  // unknown, free, occupied
-      }
-    }
+  OccupancyGrid grid = empty_grid(box_around(parts), cells, occupancy.resolution_m(), name);
+  for (const Part& part : parts) {
+    grid.for_each_square(part.cells, [&](std::size_t square) {
+      grid.squares[square] = std::max(grid.squares[square], part.state);  // unknown, free, occupied
+    });
   }
   return grid;
 }

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <set>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/outputs/cell_boxes.h"
 #include "roadbed/map/occupancy/outputs/cell_centres.h"
+#include "roadbed/map/occupancy/outputs/grid_raster.h"
 #include "roadbed/map/occupancy/outputs/occupancy_changes.h"
 #include "roadbed/map/occupancy/outputs/occupancy_grid.h"
 
@@ -124,6 +128,95 @@ TEST(OccupancyGrid, IsAnImageWhoseFirstRowIsTheNorth) {
   EXPECT_EQ(grid_yaml(grid, "a.pgm"),
             "image: a.pgm\nmode: trinary\nresolution: 0.5\norigin: [-1.5, 20, 0]\nnegate: 0\n"
             "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+/// Squares of 0.5 m with a wall, a beam above it, and free space: what a column of them holds.
+struct Column {
+  bool is_known = false, is_occupied = false;
+  double lowest_m = 1e9, highest_m = -1e9;
+};
+
+TEST(GridRaster, HasTheBandsThatEachColumnOfCellsSays) {
+  const OccupancyMap octree = octree_of(block_and_post(), Eigen::Vector3d(0.1, 0.1, 0.7));
+  const GridHeights heights{0.5, 1.5};
+  const Raster raster = raster_from_above(octree, heights, "a.bt");
+  ASSERT_EQ(raster.bands.size(), 4u);
+  std::map<std::array<long, 2>, Column> columns;
+  for (const OccupancyCell& leaf : octree.cells()) {
+    const long side = std::lround(leaf.size_m / kCell_m);
+    for (long i = 0; i < side * side * side; ++i) {
+      const auto middle = [&](int axis, long k) {
+        return leaf.centre_in_source[axis] - 0.5 * leaf.size_m + kCell_m * (double(k) + 0.5);
+      };
+      const double z = middle(2, i / side / side), half = 0.5 * kCell_m;
+      if (z + half <= heights.from_m || z - half >= heights.to_m) continue;
+      Column& column = columns[{std::lround((middle(0, i % side) - half) / kCell_m),
+                                std::lround((middle(1, i / side % side) - half) / kCell_m)}];
+      column.is_known = true;
+      if (leaf.state != CellState::occupied) continue;
+      column.is_occupied = true;
+      column.lowest_m = std::min(column.lowest_m, z - half);
+      column.highest_m = std::max(column.highest_m, z + half);
+    }
+  }
+  std::size_t known = 0;
+  for (std::size_t row = 0; row < raster.rows; ++row) {
+    for (std::size_t column = 0; column < raster.columns; ++column) {
+      const std::size_t i = row * raster.columns + column;
+      const auto found = columns.find({std::lround(raster.corner.x() / kCell_m) + long(column),
+                                       std::lround(raster.corner.y() / kCell_m) + long(row)});
+      const Column expected = found == columns.end() ? Column{} : found->second;
+      known += expected.is_known;
+      EXPECT_EQ(!std::isnan(raster.bands[0].values[i]), expected.is_known);
+      EXPECT_EQ(raster.bands[0].values[i] == 1.0f, expected.is_occupied);
+      EXPECT_EQ(!std::isnan(raster.bands[1].values[i]), expected.is_occupied);
+      if (expected.is_occupied) {
+        EXPECT_NEAR(raster.bands[1].values[i], expected.lowest_m, 1e-6);
+        EXPECT_NEAR(raster.bands[2].values[i], expected.highest_m, 1e-6);
+      }
+      double nearest_m = 1e9;
+      for (const auto& [place, other] : columns) {
+        if (!other.is_occupied) continue;
+        const double dx = raster.corner.x() / kCell_m + double(column) - double(place[0]),
+                     dy = raster.corner.y() / kCell_m + double(row) - double(place[1]);
+        nearest_m = std::min(nearest_m, kCell_m * std::hypot(dx, dy));
+      }
+      EXPECT_NEAR(raster.bands[3].values[i], nearest_m, 1e-5);
+    }
+  }
+  EXPECT_EQ(known, columns.size());
+}
+
+TEST(CellBoxes, HoldEachOccupiedCellOfTheHeightsOnceAndAreFew) {
+  std::vector<Eigen::Vector3d> points = block_and_post();
+  points.insert(points.end(), {{-4.1, 0.9, 1.1}, {-3.1, 1.9, 1.1}, {-3.1, 0.9, 2.1}});  // with gaps
+  const OccupancyMap octree = octree_of(points);
+  const CellGrid grid(octree);
+  for (const GridHeights& heights : {GridHeights{}, GridHeights{0.6, 0.9}}) {
+    const std::vector<CellBox> boxes = occupied_boxes(octree, heights, "a.bt");
+    Places found, expected;
+    for (const CellBox& box : boxes) {
+      for (std::int64_t x = box.from[0]; x < box.to[0]; ++x) {
+        for (std::int64_t y = box.from[1]; y < box.to[1]; ++y) {
+          for (std::int64_t z = box.from[2]; z < box.to[2]; ++z) {
+            const Eigen::Vector3d at = grid.corner_in_source({x, y, z}).array() + 0.5 * kCell_m;
+            EXPECT_TRUE(found.insert({at.x(), at.y(), at.z()}).second);
+          }
+        }
+      }
+    }
+    for (const Eigen::Vector3d& at : occupied_centres(octree, "a.bt")) {
+      if (at.z() + 0.25 <= heights.from_m || at.z() - 0.25 >= heights.to_m) continue;
+      expected.insert({at.x(), at.y(), at.z()});
+    }
+    EXPECT_EQ(found, expected);
+    EXPECT_EQ(boxes.size(), expected.size() == 16 ? 1u : 5u);
+    const Layer layer = layer_of_boxes(octree, boxes);
+    ASSERT_EQ(layer.features.size(), boxes.size());
+    const Points& ring = layer.features.front().shape.front().front();
+    EXPECT_EQ(ring[0].head<2>(), grid.corner_in_source(boxes.front().from).head<2>());
+    EXPECT_EQ(ring[2].head<2>(), grid.corner_in_source(boxes.front().to).head<2>());
+  }
 }
 
 TEST(OccupancyChanges, TellWhatIsFreeNowFromWhatNobodyLookedAt) {
