@@ -1,0 +1,261 @@
+#include "roadbed/tools/commands/audit_outputs.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/commands/audit_frames.h"
+#include "roadbed/tools/commands/audit_output.h"
+#include "roadbed/tools/files/drive_file.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/report/audit_pages.h"
+#include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/surroundings.h"
+
+namespace roadbed::tools::inline commands {
+namespace {
+
+// What a picture of a drive can show.
+map::Box2 drawn(const AuditedDrive& audited, const AuditScene& scene) {
+  const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
+  const map::Box2 around =
+      planning::audited_region(audited.drive, scene.question.parts, scene.asked.options()).around;
+  return {around.min_in_source - margin_m, around.max_in_source + margin_m};
+}
+
+// Lanes that a picture of a drive can show: it is wider or higher than the drive's box by less
+// than three times the box's longer side.
+std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited, const AuditScene& scene) {
+  if (scene.road_map == nullptr) return {};
+  const map::Box2 box = drawn(audited, scene);
+  const double side_m = (box.max_in_source - box.min_in_source).maxCoeff();
+  const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(3.0 * side_m);
+  return drivable_rings(*scene.road_map,
+                        {box.min_in_source - margin_m, box.max_in_source + margin_m});
+}
+
+std::vector<map::Box2> occupied_around(const AuditedDrive& audited, const AuditScene& scene) {
+  if (!scene.occupancy) return {};
+  return occupied_boxes(*scene.occupancy, scene.question.heights(audited.audit.ground),
+                        drawn(audited, scene));
+}
+
+// The surface that the drive has to stay on; else lanes.
+std::vector<geometry::Ring> drawn_ground(const AuditedDrive& audited, const AuditScene& scene) {
+  if (!audited.road) return drawn_lanes(audited, scene);
+  std::vector<geometry::Ring> rings;
+  for (const geometry::Polygon& polygon : audited.road->made->polygons_in_source) {
+    rings.push_back(polygon.outer);
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  }
+  return rings;
+}
+
+// The vehicle's rectangle, grown by the margin on every side.
+geometry::VehicleShape inflated(geometry::VehicleShape grown, double margin_m) {
+  grown.length_m += 2.0 * margin_m;
+  grown.width_m += 2.0 * margin_m;
+  grown.rear_overhang_m += margin_m;
+  return grown;
+}
+
+ReportSource source(const char* role, const CertifiedFile& file) {
+  return {.role = role, .name = file.name, .sha256 = file.sha256};
+}
+
+// Of what many audits share.
+CertifiedFile hashed_once(const AuditScene& scene, const std::filesystem::path& file) {
+  return *scene.inputs.of<CertifiedFile>("hashed input", {file}, [&] {
+    return std::make_shared<const CertifiedFile>(hashed_input(file));
+  });
+}
+
+// Who checks a certificate hashes its files again.
+void refuse_certificate_of_streams(const AuditAsked& asked, const AuditSubjects& subjects) {
+  for (const auto& file : {asked.occupancy_file(), subjects.file(), asked.vehicle_file(),
+                           asked.map_file(), asked.obstacles_file()}) {
+    if (map::is_stream(file)) certified_file(file);  // says why not
+  }
+}
+
+// Who checks it gets the drive as it was audited, and needs no options to read it.
+void refuse_certificate_of_logs(const AuditSubjects& subjects) {
+  if (subjects.is_swept() || subjects.is_folder() || is_drive_table(subjects.file())) return;
+  throw map::InputError({.file = map::input_name(subjects.file()),
+                         .found = "is no .csv of a drive, which certificates are about",
+                         .needed = "--save-drive beside --certificate",
+                         .remedy = "give it"});
+}
+
+}  // namespace
+
+std::string AuditScene::crs() const {
+  if (occupancy) return occupancy->crs();
+  return road_map == nullptr ? std::string() : road_map->crs();
+}
+
+AuditDemand AuditScene::demand() const {
+  return {.occupancy = occupancy.get(), .question = question, .road = road};
+}
+
+std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
+  const Argument svg =
+      arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")
+          .writes(".svg");
+  const Argument page =
+      arguments
+          .add("--report", report_,
+               "Write a page that plays the audit of one drive, or lists those of a folder, with "
+               "close-ups (.html)")
+          .writes(".html");
+  const Argument certificate =
+      arguments
+          .add("--certificate", certificate_,
+               "Write the proof of one drive (.json): spans of time, what holds in them, "
+               "witnesses, hashes of the inputs")
+          .writes(".json");
+  const Argument junit =
+      arguments.add("--junit", junit_, "Write a test case per drive (.xml)").writes(".xml");
+  const Argument geojson =
+      arguments
+          .add("--geojson", geojson_,
+               "Write stretches, conflicts and witnesses (.geojson), in the occupancy's "
+               "coordinates")
+          .writes(".geojson");
+  const Argument saved = arguments
+                             .add("--save-drive", saved_drive_,
+                                  "Write the drive that was audited, poses of the rear axle (.csv)")
+                             .writes(".csv");
+  return {svg, page, certificate, junit, geojson, saved};
+}
+
+void AuditOutputs::declare_force(Arguments& arguments) {
+  arguments.flag("-f,--force", force_, "Replace outputs that exist");
+}
+
+void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects) const {
+  for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
+    if (!output.empty()) map::check_writable(output, force_);
+  }
+  if (!certifies()) return;
+  refuse_certificate_of_streams(asked, subjects);
+  if (!saves_drive()) refuse_certificate_of_logs(subjects);
+}
+
+void AuditOutputs::check_for_folder() const {
+  if (svg_.empty() && certificate_.empty() && saved_drive_.empty()) return;
+  throw map::InputError({.file = "--svg, --certificate or --save-drive",
+                         .found = "is about one drive, and --trajectory is a folder",
+                         .remedy = "give one file"});
+}
+
+void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (!saved_drive_.empty()) {
+    map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
+  }
+  write_picture(audited, scene);
+  write_report(audited, scene);
+  write_certificate(audited, scene);
+  write_lists({audited}, scene);
+}
+
+void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
+                             const AuditScene& scene) const {
+  write_index(audits, scene);
+  write_lists(audits, scene);
+}
+
+void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (svg_.empty()) return;
+  const planning::AuditReport whole = audited.whole();
+  map::write_output(svg_,
+                    audit_svg({audited.drive, scene.question.inflated_parts(), whole,
+                               occupied_around(audited, scene), drawn_ground(audited, scene),
+                               scene.question.moving_in_source, !scene.occupancy}),
+                    force_);
+}
+
+void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (report_.empty()) return;
+  const map::Box2 around = drawn(audited, scene);
+  const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
+  AuditSurroundings page{.name = audited.name,
+                         .body = inflated(scene.shape, scene.asked.options().inflate_m),
+                         .parts = scene.question.inflated_parts(),
+                         .clearance_m = scene.asked.options().clearance_m,
+                         .occupied = {},
+                         .road_map = {},
+                         .moving = scene.question.moving_in_source,
+                         .command = "roadbed audit " + scene.asked.against(),
+                         .version = name_and_version(),
+                         .crs = scene.crs(),
+                         .sources = {}};
+  if (scene.occupancy) {
+    page.occupied =
+        occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
+    page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
+  } else {
+    page.clearance_m = scene.asked.margin_m();
+    if (!scene.asked.map_file().empty())
+      page.sources.push_back(source("map", hashed_once(scene, scene.asked.map_file())));
+  }
+  if (scene.road_map != nullptr) page.road_map = map_around(*scene.road_map, box);
+  if (!scene.subjects.is_swept() && !std::filesystem::is_directory(scene.subjects.file())) {
+    page.sources.push_back(source("trajectory", hashed_input(scene.subjects.file())));
+  }
+  map::write_output(
+      report_, drive_report_html(report_of_audit(audited.drive, audited.whole(), page)), force_);
+}
+
+void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
+                               const AuditScene& scene) const {
+  if (report_.empty()) return;
+  const std::vector<geometry::BodyPart> parts = scene.question.inflated_parts();
+  std::vector<IndexedAudit> index;
+  for (const AuditedDrive& audited : audits) {
+    index.push_back(indexed(audited));
+    if (!audited.fault.empty()) continue;
+    const auto occupied = occupied_around(audited, scene);
+    const std::vector<geometry::Ring> lanes = drawn_ground(audited, scene);
+    index.back().pictures = close_ups(
+        audited.whole(), {audited.drive, parts, occupied, lanes, scene.question.moving_in_source});
+  }
+  map::write_output(report_, audit_index_html(index, scene.asked.suite(), name_and_version()),
+                    force_);
+}
+
+void AuditOutputs::write_certificate(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (certificate_.empty()) return;
+  const std::filesystem::path& drive = saved_drive_.empty() ? scene.subjects.file() : saved_drive_;
+  CertificateFile file{.program = name_and_version(),
+                       .trajectory = certified_file(drive),
+                       .underside_m = scene.asked.from_height_m(),
+                       .ground = {scene.question.ground.kind, audited.audit.ground},
+                       .least_measured = scene.asked.options().least_measured,
+                       .parts = audited.audit.certificates};
+  if (scene.occupancy) file.occupancy = hashed_once(scene, scene.asked.occupancy_file());
+  if (!scene.asked.obstacles_file().empty() && scene.occupancy) {
+    file.obstacles =
+        certified_obstacles(scene.asked.obstacles_file(), scene.question.moving_in_source);
+  }
+  if (!scene.asked.vehicle_file().empty())
+    file.vehicle = certified_file(scene.asked.vehicle_file());
+  if (!scene.asked.map_file().empty()) file.roads = hashed_once(scene, scene.asked.map_file());
+  if (audited.road)
+    file.surface = certified_surface(*audited.road, scene.asked.options().inflate_m);
+  map::write_output(certificate_, write_certificate_json(file), force_);
+}
+
+void AuditOutputs::write_lists(const std::vector<AuditedDrive>& audits,
+                               const AuditScene& scene) const {
+  if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, scene.asked.suite()), force_);
+  if (!geojson_.empty()) {
+    map::write_output(geojson_, audits_geojson(audits, scene.question, scene.crs()), force_);
+  }
+}
+
+}  // namespace roadbed::tools::commands

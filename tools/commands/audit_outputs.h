@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "roadbed/geometry/motion/vehicle_shape.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/tools/audit/certificate_json.h"
+#include "roadbed/tools/cli/arguments.h"
+#include "roadbed/tools/cli/inputs.h"
+#include "roadbed/tools/commands/audit_asked.h"
+
+namespace roadbed::tools::inline commands {
+
+/// What all drives are audited against.
+struct AuditScene {
+  const AuditAsked& asked;
+  const AuditSubjects& subjects;
+  const Inputs& inputs;
+  planning::AuditQuestion question = {};
+  geometry::VehicleShape shape = {};
+  std::shared_ptr<const map::OccupancySource> occupancy = nullptr;  ///< null: the road only
+  const map::RoadMap* road_map = nullptr;
+  const RoadQuestion* road = nullptr;  ///< null: the occupancy only
+
+  std::string crs() const;
+  AuditDemand demand() const;
+};
+
+/// The files that an audit writes.
+class AuditOutputs {
+ public:
+  /// @returns what --check does not go with.
+  std::vector<Argument> declare(Arguments& arguments);
+  void declare_force(Arguments& arguments);
+
+  bool certifies() const { return !certificate_.empty(); }
+  bool saves_drive() const { return !saved_drive_.empty(); }
+
+  /// Checks that all can be written, and that a certificate can be about its files.
+  /// @throws OutputError, InputError
+  void check(const AuditAsked& asked, const AuditSubjects& subjects) const;
+
+  /// @throws InputError if an output is about one drive.
+  void check_for_folder() const;
+
+  void write_one(const AuditedDrive& audited, const AuditScene& scene) const;
+  void write_all(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
+
+ private:
+  void write_picture(const AuditedDrive& audited, const AuditScene& scene) const;
+  void write_report(const AuditedDrive& audited, const AuditScene& scene) const;
+  void write_index(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
+  void write_certificate(const AuditedDrive& audited, const AuditScene& scene) const;
+  void write_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
+
+  std::filesystem::path svg_, report_, certificate_, junit_, geojson_, saved_drive_;
+  bool force_ = false;
+};
+
+}  // namespace roadbed::tools::commands
