@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace roadbed::geometry::inline curves {
 namespace {
@@ -39,20 +41,49 @@ PlanPoint point_on(const ArcCurve& arc, double ds, double) {
   return {{ds * sinc(turn), ds * cosc(turn), turn}, arc.curvature_per_m};
 }
 
+constexpr std::size_t kMostTerms = 64;
+
+// 1/(n + 1).
+constexpr std::array<double, kMostTerms + 1> kReciprocals = [] {
+  std::array<double, kMostTerms + 1> reciprocals{};
+  for (std::size_t n = 0; n <= kMostTerms; ++n) reciprocals[n] = 1.0 / static_cast<double>(n + 1);
+  return reciprocals;
+}();
+
+// ∫ exp(i (K t + R t²/2)) dt from 0 to 1. The integrand u has u′ = i (K + R t) u, and so the power
+// series (n + 1) c_{n+1} = i (K c_n + R c_{n−1}); for a turn of a radian it ends after 20 to 40
+// terms, of a tenth of one after 10.
+Eigen::Vector2d unit_spiral(double k, double r) {
+  constexpr double kNothing = 1e-17;
+  double a = 1.0, b = 0.0, last_a = 0.0, last_b = 0.0;  // c_n, c_{n−1}
+  double x = 1.0, y = 0.0;
+  for (std::size_t n = 0; n < kMostTerms; ++n) {
+    const double next_a = -(k * b + r * last_b) * kReciprocals[n];
+    const double next_b = (k * a + r * last_a) * kReciprocals[n];
+    last_a = std::exchange(a, next_a);
+    last_b = std::exchange(b, next_b);
+    x += a * kReciprocals[n + 1];
+    y += b * kReciprocals[n + 1];
+    if (std::abs(a) + std::abs(b) + std::abs(last_a) + std::abs(last_b) < kNothing) break;
+  }
+  return {x, y};
+}
+
 PlanPoint point_on(const SpiralCurve& spiral, double ds, double length_m) {
   const double k0 = spiral.start_curvature_per_m;
   const double rate = (spiral.end_curvature_per_m - k0) / length_m;
   const auto heading = [&](double s) { return s * (k0 + 0.5 * rate * s); };
-  // Eight nodes per half radian of turning: error below 1e-15 of the stretch.
   const double turning = std::abs(ds) * std::max(std::abs(k0), std::abs(k0 + rate * ds));
-  const int parts = std::clamp(static_cast<int>(std::ceil(2.0 * turning)), 1, 100'000);
-  double x = 0.0, y = 0.0;
-  for (int i = 0; i < parts; ++i) {
-    const double from = ds * i / parts, to = ds * (i + 1) / parts;
-    x += integrate_by_gauss([&](double s) { return std::cos(heading(s)); }, from, to);
-    y += integrate_by_gauss([&](double s) { return std::sin(heading(s)); }, from, to);
+  const int parts = std::clamp(static_cast<int>(std::ceil(turning)), 1, 100'000);
+  const double step = ds / parts;
+  Eigen::Vector2d at = step * unit_spiral(k0 * step, rate * step * step);
+  for (int i = 1; i < parts; ++i) {
+    const double from = step * i;
+    const Eigen::Vector2d part = step * unit_spiral((k0 + rate * from) * step, rate * step * step);
+    const double c = std::cos(heading(from)), s = std::sin(heading(from));
+    at += Eigen::Vector2d(c * part.x() - s * part.y(), s * part.x() + c * part.y());
   }
-  return {{x, y, heading(ds)}, k0 + rate * ds};
+  return {{at.x(), at.y(), heading(ds)}, k0 + rate * ds};
 }
 
 // u at arc length ds of v(u): Newton on the length, which is integrated piecewise.

@@ -9,13 +9,13 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-constexpr double kChord_m = 5e-4;    // how far a straight chord may be from its points' line
 constexpr double kLongest_m = 10.0;  // of a chord: over more, the road may bend both ways
 
 class BorderPlacer {
  public:
-  BorderPlacer(const geometry::PlanView& plan_view, BesideFaults& faults)
-      : plan_view_(plan_view), faults_(faults) {}
+  BorderPlacer(const geometry::PlanView& plan_view, BesideFaults& faults,
+               const BesideDensity& density)
+      : plan_view_(plan_view), faults_(faults), density_(density) {}
 
   // From the border's own start on, and before it, as far as the road goes.
   BesideLine place(const RoadBorder& border, double from_m, double to_m) {
@@ -53,12 +53,12 @@ class BorderPlacer {
   void add_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const BesidePoint from,
                    const RoadPosition& to, int depth, BesideLine& line) {
     const double length_m = std::abs(to.s_m - from.s_m);
-    if (depth > 9 || length_m < 0.05) return;
+    if (depth > 9 || length_m < 0.05 || faults_.least_bend < density_.hopeless_bend) return;
     const Eigen::Vector3d middle = 0.5 * (a + b);
     const RoadPosition at = foot(middle.head<2>(), 0.5 * (from.s_m + to.s_m));
     const double share = (at.s_m - from.s_m) / (to.s_m - from.s_m);
     const double off_m = at.t_m - from.t_m - share * (to.t_m - from.t_m);
-    if (std::abs(off_m) < kChord_m && length_m < kLongest_m) return;
+    if (std::abs(off_m) < density_.chord_m && length_m < kLongest_m) return;
     add_between(a, middle, from, at, depth + 1, line);
     const BesidePoint here{at.s_m, at.t_m, middle.z()};
     line.push_back(here);
@@ -119,6 +119,7 @@ class BorderPlacer {
 
   const geometry::PlanView& plan_view_;
   BesideFaults& faults_;
+  const BesideDensity density_;
 };
 
 }  // namespace
@@ -152,8 +153,8 @@ BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint) {
 }
 
 BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
-                       double to_m, BesideFaults& faults) {
-  return BorderPlacer(plan_view, faults).place(border, from_m, to_m);
+                       double to_m, BesideFaults& faults, const BesideDensity& density) {
+  return BorderPlacer(plan_view, faults, density).place(border, from_m, to_m);
 }
 
 }  // namespace roadbed::map::opendrive

@@ -38,11 +38,17 @@ struct BesideFaults {
   double crossing_m = 0.0;  ///< how far one is on the wrong side of the next
 };
 
-/// A border over [from, to] of the road, by growing s, as densely as its chords are straight in
-/// (s, t) within half a millimetre. Where it runs back its points are left out, where it does not
-/// reach it goes straight on.
+/// How densely a border is placed.
+struct BesideDensity {
+  double chord_m = 5e-4;  ///< how far a straight chord may be from its points' line in (s, t)
+  /// As soon as a bend is less than this, the line is of no use: the rest is placed coarsely.
+  double hopeless_bend = -1e300;
+};
+
+/// A border over [from, to] of the road, by growing s. Where it runs back its points are left out,
+/// where it does not reach it goes straight on.
 /// @param faults  grow by those of the border.
 BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
-                       double to_m, BesideFaults& faults);
+                       double to_m, BesideFaults& faults, const BesideDensity& density = {});
 
 }  // namespace roadbed::map::opendrive

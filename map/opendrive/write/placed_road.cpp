@@ -18,6 +18,8 @@ constexpr double kReferenceTolerance_m = 0.004;
 constexpr double kLeastBend = 0.1;
 constexpr double kBack_m = 0.005, kMissing_m = 0.01, kSideways_m = 0.3, kCrossing_m = 0.005;
 constexpr double kShortest_m = 0.02;  // of a road between its ends
+constexpr double kFine_m = 5e-4,
+                 kCoarse_m = 0.01;  // of chords; to see soon that a line is no better
 
 /// Where a border crosses the line across the road's end.
 struct Crossing {
@@ -66,22 +68,40 @@ class RoadPlacer {
   }
 
  private:
-  // The first sound one of: along the border, along the middle, both ever smoother.
+  /// A reference line, and a bound of its fault.
+  struct Try {
+    std::vector<geometry::PlanPiece> line;
+    double at_least_m;
+  };
+
+  // The first sound one of: along the border, along the middle, both ever smoother. Else the one
+  // with the least fault, those first that have the least along coarse chords.
   void choose_reference(double most_m) {
-    std::pair<std::size_t, double> best{0, 0.0};
-    double least_m = most_m;
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
+    std::vector<Try> tries;
+    for (const ReferenceTarget& target : targets_) {
       for (const double scale_m : kScales_m) {
-        try_reference(targets_[i], scale_m, least_m);
-        if (placed_.fault_m < least_m) {
-          least_m = placed_.fault_m;
-          best = {i, scale_m};
-        }
-        if (least_m <= 0.0) return;
+        take(fit_reference_line(target, scale_m, kReferenceTolerance_m));
+        judge(most_m, kCoarse_m);
+        if (placed_.fault_m <= 0.0) judge(most_m, kFine_m);
+        if (placed_.fault_m <= 0.0) return;
+        if (placed_.fault_m < most_m) tries.push_back({placed_.plan_view, placed_.fault_m});
       }
     }
+    std::ranges::stable_sort(tries, {}, &Try::at_least_m);
+    double least_m = most_m;
+    const Try* best = nullptr;
+    for (const Try& one : tries) {
+      if (one.at_least_m >= least_m) break;
+      take(one.line);
+      judge(least_m, kFine_m);
+      if (placed_.fault_m >= least_m) continue;
+      least_m = placed_.fault_m;
+      best = &one;
+    }
     placed_.fault_m = most_m;
-    if (least_m < most_m) try_reference(targets_[best.first], best.second, 1e300);
+    if (best == nullptr) return;
+    take(best->line);
+    judge(1e300, kFine_m);
   }
 
   // Midway between the outer borders of a road with one section, by shares of their length.
@@ -116,26 +136,32 @@ class RoadPlacer {
     return target;
   }
 
-  // Stops where there are as many faults as may be.
-  void try_reference(const ReferenceTarget& target, double scale_m, double most_m) {
-    placed_.plan_view = fit_reference_line(target, scale_m, kReferenceTolerance_m);
+  void take(std::vector<geometry::PlanPiece> line) {
+    placed_.plan_view = std::move(line);
     view_.emplace(placed_.plan_view);
+  }
+
+  // Stops where there are as many faults as may be. Along coarser chords it sees no more of them.
+  void judge(double most_m, double chord_m) {
     placed_.faults = {};
     placed_.fault_m = 0.0;
-    if (!place_borders(most_m)) return;
+    if (!place_borders(most_m, chord_m)) return;
     for (const auto& lines : placed_.borders) {
       for (std::size_t i = 1; i < lines.size(); ++i) note_crossing(lines[i - 1], lines[i]);
     }
     note_folds();
-    sum_faults();
+    sum_faults(chord_m);
   }
 
-  void sum_faults() {
+  static double uncertain_m(double chord_m) { return 2.0 * (chord_m - kFine_m); }
+
+  void sum_faults(double chord_m) {
     const auto over = [](double fault, double allowed) { return std::max(0.0, fault - allowed); };
-    placed_.fault_m =
-        over(kLeastBend, placed_.faults.least_bend) + over(placed_.faults.back_m, kBack_m) +
-        over(placed_.faults.missing_m, kMissing_m) + over(placed_.faults.sideways_m, kSideways_m) +
-        over(placed_.faults.crossing_m, kCrossing_m);
+    placed_.fault_m = over(kLeastBend, placed_.faults.least_bend + uncertain_m(chord_m)) +
+                      over(placed_.faults.back_m, kBack_m) +
+                      over(placed_.faults.missing_m, kMissing_m) +
+                      over(placed_.faults.sideways_m, kSideways_m) +
+                      over(placed_.faults.crossing_m, kCrossing_m + uncertain_m(chord_m));
   }
 
   // Vertices of a border may lie on both sides of a fold: all along the line, too.
@@ -172,7 +198,7 @@ class RoadPlacer {
     for (const BesidePoint& point : right) note(point.s_m);
   }
 
-  bool place_borders(double most_m) {
+  bool place_borders(double most_m, double chord_m) {
     placed_.borders.clear();
     placed_.section_from_m.clear();
     double hint_m = 0.0;
@@ -181,12 +207,14 @@ class RoadPlacer {
       placed_.section_from_m.push_back(hint_m);
     }
     placed_.section_from_m.push_back(view_->end_s_m());
+    const BesideDensity density{.chord_m = chord_m,
+                                .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m)};
     for (std::size_t i = 0; i < road_.sections.size(); ++i) {
       auto& lines = placed_.borders.emplace_back();
       for (const RoadBorder& border : borders_[i]) {
         lines.push_back(line_beside(*view_, border, placed_.section_from_m[i],
-                                    placed_.section_from_m[i + 1], placed_.faults));
-        sum_faults();
+                                    placed_.section_from_m[i + 1], placed_.faults, density));
+        sum_faults(chord_m);
         if (placed_.fault_m >= most_m) return false;
       }
     }
