@@ -16,8 +16,6 @@ struct CandidateGrid {
   std::vector<std::uint8_t> causes;      ///< the first Rejection of each candidate, d fastest
   /// The cheapest feasible one of them that ends at another offset than the chosen one.
   std::optional<Candidate> runner_up;
-
-  bool operator==(const CandidateGrid&) const = default;
 };
 
 /// Which candidates of a cycle are kept.
