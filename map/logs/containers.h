@@ -9,11 +9,11 @@
 
 #include "roadbed/map/logs/log_bytes.h"
 #include "roadbed/map/logs/log_messages.h"
+#include "roadbed/map/logs/mcap_records.h"
 
 namespace roadbed::map::inline logs {
 
 /// [https://mcap.dev/spec], with or without a summary, which is not read.
-inline constexpr std::string_view kMcapStart = "\x89MCAP0\r\n";
 void read_mcap(LogBytes& file, const LogVisitor& visitor);
 
 /// What rosbag2 writes by its storage plugin sqlite3.

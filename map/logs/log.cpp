@@ -4,6 +4,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/files/unpack.h"
 #include "roadbed/map/logs/containers.h"
+#include "roadbed/map/logs/unpack_block.h"
 
 namespace roadbed::map::inline logs {
 namespace {
@@ -14,6 +15,14 @@ bool begins_as_log(std::string_view bytes) {
   return bytes.starts_with(kMcapStart) || bytes.starts_with(kSqliteStart);
 }
 
+/// No more of it than of a chunk.
+void read_packed(const fs::path& file, const LogVisitor& visitor) {
+  LogBytes packed(file);
+  const std::string name = input_name(file);
+  parse_log(unpacked(packed.read(0, packed.size()), name, most_unpacked(packed.size())), name,
+            visitor);
+}
+
 void read_log_file(const fs::path& file, const LogVisitor& visitor) {
   const std::string stored = stored_start(file, kSqliteStart.size());
   if (stored.starts_with(kSqliteStart)) return read_bag_file(file, visitor);
@@ -21,6 +30,7 @@ void read_log_file(const fs::path& file, const LogVisitor& visitor) {
     LogBytes bytes(file);
     return read_mcap(bytes, visitor);
   }
+  if (!is_stream(file) && is_packed(stored)) return read_packed(file, visitor);
   parse_log(read_file(file), input_name(file), visitor);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -10,6 +11,8 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/logs/foxglove_poses.h"
+#include "roadbed/map/logs/foxglove_schemas.h"
 #include "roadbed/map/logs/transform_tree.h"
 
 namespace roadbed::map::inline logs {
@@ -36,6 +39,7 @@ AskedTopic asked_topic(const std::string& text) {
 /// What a topic may be a drive of.
 struct Candidate {
   std::vector<TimedPose> poses;
+  std::vector<geometry::TrajectoryPoint> rows;
   std::size_t planned = 0;  ///< trajectories, of which one is kept
   std::string frame;
 };
@@ -53,7 +57,10 @@ class DriveSearch {
 
   LogDrive result() {
     add_transforms();
-    std::erase_if(candidates_, [](const auto& entry) { return entry.second.poses.empty(); });
+    keep_rows();
+    std::erase_if(candidates_, [](const auto& entry) {
+      return entry.second.poses.empty() && entry.second.rows.empty();
+    });
     if (candidates_.empty()) {
       refuse(fmt::format("holds no drive{}: topics {}",
                          asked_.name.empty() ? "" : " of topic " + asked_.name,
@@ -72,7 +79,7 @@ class DriveSearch {
              fmt::format("choose it by its number: --topic {}#{}", name, candidate.planned));
     }
     if (candidate.planned == 0) sort_by_stamp(candidate.poses);
-    return {name, std::move(candidate.poses)};
+    return {name, std::move(candidate.poses), std::move(candidate.rows)};
   }
 
  private:
@@ -83,21 +90,27 @@ class DriveSearch {
 
   bool wants(const LogTopic& topic) {
     topics_.push_back(fmt::format("{} ({})", topic.name, topic.type));
-    const bool is_known =
-        is_pose_type(topic.type) || is_transform_type(topic.type) || is_trajectory_type(topic.type);
+    const bool is_known = is_pose_type(topic.type) || is_transform_type(topic.type) ||
+                          is_trajectory_type(topic.type) || topic.type == kDriveStateType;
     if (!is_known) return false;
     // Static transforms have a topic of their own, which belongs to the one that is asked for.
     if (!asked_.name.empty() && asked_.name != topic.name && !is_transform_type(topic.type)) {
       return false;
     }
-    if (topic.encoding == "cdr") return true;
-    refuse(fmt::format("{} is encoded as {}", topic.name, topic.encoding), "cdr",
+    const std::string needed(encoding_of(topic.type));
+    if (topic.encoding == needed) return true;
+    if (needed == "protobuf") return false;  // as JSON or FlatBuffers
+    refuse(fmt::format("{} is encoded as {}", topic.name, topic.encoding), needed,
            "convert the log to ROS 2");
   }
 
   void take(const LogTopic& topic, const LogMessage& message) {
     if (is_transform_type(topic.type)) return take_transforms(topic, message);
     Candidate& candidate = candidates_[topic.name];
+    if (topic.type == kDriveStateType) {
+      candidate.rows.push_back(parse_drive_state(topic, message, file_));
+      return;
+    }
     if (is_trajectory_type(topic.type)) {
       ++candidate.planned;
       const std::size_t kept = asked_.number == 0 ? 1 : asked_.number;
@@ -116,9 +129,16 @@ class DriveSearch {
   void take_transforms(const LogTopic& topic, const LogMessage& message) {
     const bool is_static = topic.name.ends_with("tf_static");
     if (!is_static) transforms_topic_ = topic.name;
-    for (const FrameTransform& transform : parse_transforms(message, file_)) {
+    for (const FrameTransform& transform : parse_transforms(topic, message, file_)) {
       tree_.add(transform, is_static, file_);
     }
+  }
+
+  // Rows say all of the drive that other topics say in part.
+  void keep_rows() {
+    const auto has_rows = [](const auto& entry) { return !entry.second.rows.empty(); };
+    if (!asked_.name.empty() || std::ranges::count_if(candidates_, has_rows) != 1) return;
+    std::erase_if(candidates_, [&](const auto& entry) { return !has_rows(entry); });
   }
 
   void add_transforms() {

@@ -5,23 +5,27 @@
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/logs/pose_messages.h"
 
 namespace roadbed::map::inline logs {
 
-/// The poses of one topic, at increasing stamps.
+/// The poses of one topic, at increasing stamps; of roadbed.DriveState rows in their place, in the
+/// order of the file.
 struct LogDrive {
   std::string topic;
-  std::vector<TimedPose> poses;
+  std::vector<TimedPose> poses = {};
+  std::vector<geometry::TrajectoryPoint> rows = {};
 };
 
 /// A log to go through, once.
 using GoThrough = std::function<void(const LogVisitor&)>;
 
-/// The drive of a log: poses of Odometry, PoseStamped or PoseWithCovarianceStamped; what transforms
-/// say of the frame base_link; or a planned trajectory, NAME#K for the K-th message, from 1.
-/// Planned ways without times get them from their speeds.
-/// @param topic  may be empty where only one topic could be meant.
+/// The drive of a log: poses of Odometry, PoseStamped, PoseWithCovarianceStamped or
+/// foxglove.PoseInFrame; what transforms say of the frame base_link; a planned trajectory, NAME#K
+/// for the K-th message, from 1; or rows of roadbed.DriveState. Planned ways without times get them
+/// from their speeds.
+/// @param topic  may be empty where only one topic could be meant, or only one has rows.
 /// @throws InputError if there is none or there are several, which it lists.
 LogDrive drive_of_log(const GoThrough& go_through, const std::string& file,
                       const std::string& topic);

@@ -25,7 +25,7 @@ LogPoses::LogPoses(std::string file, std::string topic)
     : file_(std::move(file)), topic_(std::move(topic)) {}
 
 bool LogPoses::wants(const LogTopic& topic) const {
-  if (topic.encoding != "cdr") return false;
+  if (topic.encoding != encoding_of(topic.type)) return false;
   if (is_transform_type(topic.type) && is_static(topic)) return true;
   if (!is_transform_type(topic.type) && !is_pose_type(topic.type)) return false;
   return topic_.empty() || topic_ == topic.name;
@@ -33,7 +33,7 @@ bool LogPoses::wants(const LogTopic& topic) const {
 
 void LogPoses::take(const LogTopic& topic, const LogMessage& message) {
   if (is_transform_type(topic.type)) {
-    for (const FrameTransform& transform : parse_transforms(message, file_)) {
+    for (const FrameTransform& transform : parse_transforms(topic, message, file_)) {
       transforms_.add(transform, is_static(topic), file_);
     }
     return;

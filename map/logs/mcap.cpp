@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <map>
 #include <optional>
@@ -7,21 +6,11 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/containers.h"
+#include "roadbed/map/logs/mcap_records.h"
 #include "roadbed/map/logs/unpack_block.h"
 
 namespace roadbed::map::inline logs {
 namespace {
-
-enum Opcode : unsigned char {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kDataEnd = 15
-};
-constexpr std::uint64_t kRecordHead = 9;
 
 /// Fields of a record, in turn.
 class Fields {
@@ -57,6 +46,7 @@ class Fields {
     return static_cast<Number>(value);
   }
 
+  McapRecord kind() { return static_cast<McapRecord>(number<unsigned char>()); }
   std::string_view text() { return take(number<std::uint32_t>()); }
   std::string_view rest() const { return rest_; }
   const std::string& place() const { return place_; }
@@ -72,11 +62,6 @@ struct Channel {
   bool is_wanted = false;
 };
 
-std::uint32_t crc_of(std::string_view bytes, std::uint32_t so_far = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 class McapReader {
  public:
   McapReader(LogBytes& file, const LogVisitor& visitor) : file_(file), visitor_(visitor) {}
@@ -85,16 +70,16 @@ class McapReader {
     take_bytes(kMcapStart.size());
     for (;;) {
       const std::uint64_t at = offset_;
-      Fields head(file_.read(offset_, kRecordHead), file_.name(), fmt::format("byte {}", at));
-      const auto opcode = head.number<unsigned char>();
+      Fields head(file_.read(offset_, kMcapRecordHead), file_.name(), fmt::format("byte {}", at));
+      const McapRecord kind = head.kind();
       const auto length = head.number<std::uint64_t>();
-      if (opcode == kDataEnd) return end_data(at, length);
-      take_bytes(kRecordHead);
+      if (kind == McapRecord::data_end) return end_data(at, length);
+      take_bytes(kMcapRecordHead);
       Fields fields(take_bytes(length), file_.name(), fmt::format("byte {}", at));
-      if (opcode == kChunk) {
+      if (kind == McapRecord::chunk) {
         chunk(fields);
       } else {
-        record(opcode, fields);
+        record(kind, fields);
       }
     }
   }
@@ -103,12 +88,12 @@ class McapReader {
   std::string_view take_bytes(std::uint64_t count) {
     const std::string_view bytes = file_.read(offset_, count);
     offset_ += count;
-    crc_ = crc_of(bytes, crc_);
+    crc_ = mcap_crc(bytes, crc_);
     return bytes;
   }
 
   void end_data(std::uint64_t at, std::uint64_t length) {
-    const std::string_view content = file_.read(at + kRecordHead, length);
+    const std::string_view content = file_.read(at + kMcapRecordHead, length);
     Fields end(content, file_.name(), fmt::format("byte {}", at));
     const auto written = end.number<std::uint32_t>();
     if (written != 0 && written != crc_) {
@@ -116,12 +101,12 @@ class McapReader {
     }
   }
 
-  void record(unsigned char opcode, Fields& fields) {
-    if (opcode == kSchema) return schema(fields);
-    if (opcode == kChannel) return channel(fields);
-    if (opcode == kMessage) return message(fields);
-    if (opcode == kFooter) fields.refuse("the footer", "the end of the data before it");
-    if (opcode == 0) fields.refuse("a record of kind 0", "a kind that MCAP has");
+  void record(McapRecord kind, Fields& fields) {
+    if (kind == McapRecord::schema) return schema(fields);
+    if (kind == McapRecord::channel) return channel(fields);
+    if (kind == McapRecord::message) return message(fields);
+    if (kind == McapRecord::footer) fields.refuse("the footer", "the end of the data before it");
+    if (kind == McapRecord{}) fields.refuse("a record of kind 0", "a kind that MCAP has");
   }
 
   void schema(Fields& fields) {
@@ -172,14 +157,14 @@ class McapReader {
     const std::string packing(fields.text());
     const std::string_view packed = fields.take(fields.number<std::uint64_t>());
     const std::string_view records = unpacked_chunk(fields, packed, packing, size);
-    if (crc != 0 && crc_of(records) != crc) {
+    if (crc != 0 && mcap_crc(records) != crc) {
       fields.refuse("the checksum of the chunk is another than the one written", "the same");
     }
     Fields rest(records, file_.name(), fields.place());
     while (!rest.rest().empty()) {
-      const auto opcode = rest.number<unsigned char>();
+      const McapRecord kind = rest.kind();
       Fields inner(rest.take(rest.number<std::uint64_t>()), file_.name(), fields.place());
-      record(opcode, inner);
+      record(kind, inner);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roadbed/map/logs/cdr.h"
+#include "roadbed/map/logs/foxglove_poses.h"
 
 namespace roadbed::map::inline logs {
 namespace {
@@ -27,28 +28,28 @@ Eigen::Isometry3d read_isometry(Cdr& cdr) {
   for (double& value : position) value = cdr.number<double>();
   Eigen::Quaterniond turn;
   for (double& value : turn.coeffs()) value = cdr.number<double>();  // x, y, z, w
-  constexpr double farthest_m = 1e9, off = 0.01;
-  if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() < farthest_m)) {
-    cdr.refuse(fmt::format("is at {}, {}, {}", position.x(), position.y(), position.z()),
-               "a place on Earth");
+  if (const PoseFault fault = pose_fault(position, turn); !fault.found.empty()) {
+    cdr.refuse(fault.found, fault.needed);
   }
-  if (!(std::abs(turn.norm() - 1.0) <= off)) {
-    cdr.refuse(fmt::format("has a quaternion of length {:.4g}", turn.norm()), "length 1");
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = turn.normalized().toRotationMatrix();
-  pose.translation() = position;
-  return pose;
+  return pose_of(position, turn);
 }
 
 }  // namespace
 
 bool is_pose_type(std::string_view type) {
-  return type == kOdometry || type == kPose || type == kPoseWithCovariance;
+  return type == kOdometry || type == kPose || type == kPoseWithCovariance ||
+         is_foxglove_pose_type(type);
 }
-bool is_transform_type(std::string_view type) { return type == kTransforms; }
+bool is_transform_type(std::string_view type) {
+  return type == kTransforms || is_foxglove_transform_type(type);
+}
 bool is_trajectory_type(std::string_view type) {
   return type == kTrajectory || type == kOldTrajectory;
+}
+
+std::string_view encoding_of(std::string_view type) {
+  const bool is_protobuf = type.starts_with("foxglove.") || type.starts_with("roadbed.");
+  return is_protobuf ? "protobuf" : "cdr";
 }
 
 MessageHeader read_header(Cdr& cdr, std::int64_t received_ns) {
@@ -57,6 +58,7 @@ MessageHeader read_header(Cdr& cdr, std::int64_t received_ns) {
 }
 
 PoseMessage parse_pose(const LogTopic& topic, const LogMessage& message, const std::string& file) {
+  if (is_foxglove_pose_type(topic.type)) return parse_foxglove_pose(topic, message, file);
   Cdr cdr(message.bytes, file, topic.name + ", " + message.place);
   const MessageHeader header = read_header(cdr, message.received_ns);
   std::string child = topic.type == kOdometry ? cdr.text() : std::string();
@@ -69,7 +71,11 @@ PoseMessage parse_pose(const LogTopic& topic, const LogMessage& message, const s
   return read;
 }
 
-std::vector<FrameTransform> parse_transforms(const LogMessage& message, const std::string& file) {
+std::vector<FrameTransform> parse_transforms(const LogTopic& topic, const LogMessage& message,
+                                             const std::string& file) {
+  if (is_foxglove_transform_type(topic.type)) {
+    return parse_foxglove_transforms(topic, message, file);
+  }
   constexpr std::size_t least_bytes = 72;
   Cdr cdr(message.bytes, file, message.place);
   std::vector<FrameTransform> transforms(cdr.count(least_bytes));

@@ -99,6 +99,7 @@ CLOUD: Commands = [
     ("occupancy info", ["occupancy", "info", "IN"]),
     ("occupancy build", ["occupancy", "build", "IN", "-o", "out.bt", "--force"]),
 ]
+LOG: Commands = [("drive info", ["drive", "info", "IN"])]
 OCTREE: Commands = CLOUD + [
     (
         "audit",
@@ -200,6 +201,8 @@ CASES = [
     Case("points .pcd", inputs.pcd_binary, 10000, CLOUD),
     Case("points in one place", inputs.pcd_one_place, 100_000, CLOUD),
     Case("compressed .pcd", inputs.pcd_bomb, 50_000, CLOUD),
+    Case("packed log", inputs.log_bomb, 10_000_000, LOG),
+    Case("log of huge chunks", inputs.log_chunks, 10_000, LOG),
     Case("full .bt", inputs.bt_checked, 10_000, OCTREE),
     Case("full .ot", inputs.ot_chain, 10_000, OCTREE),
     Case("points .ply", inputs.ply, 10_000, CLOUD),

@@ -1,5 +1,6 @@
 """Inputs that grow along one dimension: functions from a folder and a number to a file in it."""
 
+import gzip
 import json
 import math
 import random
@@ -684,6 +685,18 @@ def pcd_bomb(folder: Path, n: int) -> Path:
     packed = lzf_of_zeros(plain)
     sizes = struct.pack("<II", len(packed), plain)
     return written(folder / "in.pcd", pcd_header(points, "binary_compressed") + sizes + packed)
+
+
+def log_bomb(folder: Path, n: int) -> Path:
+    """MCAP packed as a file, n bytes unpacked, a thousandth packed."""
+    record = b"\x89MCAP0\r\n" + b"\x01" + struct.pack("<Q", n) + bytes(n)
+    return written(folder / "in.mcap", gzip.compress(record, 9, mtime=0))
+
+
+def log_chunks(folder: Path, n: int) -> Path:
+    """MCAP with n chunks that hold nothing and claim a terabyte each."""
+    chunk = struct.pack("<QQQI", 0, 0, 1 << 40, 0) + struct.pack("<I4sQ", 4, b"zstd", 0)
+    return written(folder / "in.mcap", b"\x89MCAP0\r\n" + n * (b"\x06" + struct.pack("<Q", len(chunk)) + chunk))
 
 
 def ply(folder: Path, n: int) -> Path:

@@ -124,6 +124,18 @@ DrivePoses of_log(const map::LogDrive& log) {
   return read;
 }
 
+/// Rows of roadbed's own: of the rear axle, with all that they say.
+geometry::Trajectory drive_of_rows(const std::vector<TrajectoryPoint>& rows,
+                                   const std::string& name) {
+  DrivePoses read{.unit = "row"};
+  for (const TrajectoryPoint& row : rows) {
+    read.poses.push_back({row.t_s, row.x_m, row.y_m, row.heading_rad, row.speed_mps});
+    read.places.push_back(read.poses.size());
+  }
+  DriveOfPoses(read, name).drive({});  // refuses what is no drive
+  return geometry::Trajectory(rows);
+}
+
 geometry::Trajectory drive_of(const DrivePoses& read, const std::string& name,
                               const DriveOptions& options) {
   const std::optional<Pose2> frame =
@@ -158,8 +170,10 @@ double needed_step_s(const DriveOptions& options, const std::string& name,
 
 geometry::Trajectory read_drive(const fs::path& file, const DriveOptions& options) {
   const std::string name = map::input_name(file);
-  if (map::is_log(file))
-    return drive_of(of_log(map::drive_of_log(file, options.topic)), name, options);
+  if (map::is_log(file)) {
+    const map::LogDrive log = map::drive_of_log(file, options.topic);
+    return log.rows.empty() ? drive_of(of_log(log), name, options) : drive_of_rows(log.rows, name);
+  }
   return parse_drive(map::read_file(file), name, options);
 }
 

@@ -15,6 +15,7 @@ namespace roadbed::tools::inline files {
 /// |---|---|---|
 /// | CSV, as trajectory_csv.h | rear axle, always | as they stand |
 /// | log: rosbag2, MCAP (map/logs) | rear axle | from the first pose on |
+/// | MCAP that roadbed wrote | rear axle, always | as they stand |
 /// | Argoverse 2, `city_SE3_egovehicle.feather` | rear axle | from the first pose on |
 /// | CommonRoad solution (KS, ST, MB, PM) | middle of its vehicle's body | steps; `rate_hz` |
 /// | TUM: `t x y z qx qy qz qw` a line | has to be said | as they stand |
