@@ -46,7 +46,9 @@ class AuditCommand : public Command {
         "--save-drive poses.csv\n"
         "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3\n"
         "  roadbed audit --map town.xodr --on drivable --margin 0.1 --trajectory "
-        "drive/trajectory.csv");
+        "drive/trajectory.csv\n"
+        "  roadbed audit --occupancy street.bt --map town.xodr --trajectory drive/trajectory.csv "
+        "--mcap audit.mcap");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -13,6 +13,7 @@
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/audit_pages.h"
 #include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/report/drive_mcap.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/report/surroundings.h"
 
@@ -74,6 +75,36 @@ CertifiedFile hashed_once(const AuditScene& scene, const std::filesystem::path& 
   });
 }
 
+ReportInput report_of(const AuditedDrive& audited, const AuditScene& scene) {
+  const map::Box2 around = drawn(audited, scene);
+  const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
+  AuditSurroundings page{.name = audited.name,
+                         .body = inflated(scene.shape, scene.asked.options().inflate_m),
+                         .parts = scene.question.inflated_parts(),
+                         .clearance_m = scene.asked.options().clearance_m,
+                         .occupied = {},
+                         .road_map = {},
+                         .moving = scene.question.moving_in_source,
+                         .command = "roadbed audit " + scene.asked.against(),
+                         .version = name_and_version(),
+                         .crs = scene.crs(),
+                         .sources = {}};
+  if (scene.occupancy) {
+    page.occupied =
+        occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
+    page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
+  } else {
+    page.clearance_m = scene.asked.margin_m();
+    if (!scene.asked.map_file().empty())
+      page.sources.push_back(source("map", hashed_once(scene, scene.asked.map_file())));
+  }
+  if (scene.road_map != nullptr) page.road_map = map_around(*scene.road_map, box);
+  if (!scene.subjects.is_swept() && !std::filesystem::is_directory(scene.subjects.file())) {
+    page.sources.push_back(source("trajectory", hashed_input(scene.subjects.file())));
+  }
+  return report_of_audit(audited.drive, audited.whole(), page);
+}
+
 // Who checks a certificate hashes its files again.
 void refuse_certificate_of_streams(const AuditAsked& asked, const AuditSubjects& subjects) {
   for (const auto& file : {asked.occupancy_file(), subjects.file(), asked.vehicle_file(),
@@ -112,6 +143,12 @@ std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
                "Write a page that plays the audit of one drive, or lists those of a folder, with "
                "close-ups (.html)")
           .writes(".html");
+  const Argument log =
+      arguments
+          .add("--mcap", mcap_,
+               "Write a log that plays the audit of one drive in Foxglove, Lichtblick and Rerun "
+               "(.mcap): poses, lanes, obstacles, occupied space, stretches by verdict")
+          .writes(".mcap");
   const Argument certificate =
       arguments
           .add("--certificate", certificate_,
@@ -130,7 +167,7 @@ std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
                              .add("--save-drive", saved_drive_,
                                   "Write the drive that was audited, poses of the rear axle (.csv)")
                              .writes(".csv");
-  return {svg, page, certificate, junit, geojson, saved};
+  return {svg, page, log, certificate, junit, geojson, saved};
 }
 
 void AuditOutputs::declare_force(Arguments& arguments) {
@@ -138,7 +175,7 @@ void AuditOutputs::declare_force(Arguments& arguments) {
 }
 
 void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects) const {
-  for (const auto& output : {svg_, report_, certificate_, junit_, geojson_, saved_drive_}) {
+  for (const auto& output : {svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_}) {
     if (!output.empty()) map::check_writable(output, force_);
   }
   if (!certifies()) return;
@@ -147,8 +184,8 @@ void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects)
 }
 
 void AuditOutputs::check_for_folder() const {
-  if (svg_.empty() && certificate_.empty() && saved_drive_.empty()) return;
-  throw map::InputError({.file = "--svg, --certificate or --save-drive",
+  if (svg_.empty() && mcap_.empty() && certificate_.empty() && saved_drive_.empty()) return;
+  throw map::InputError({.file = "--svg, --mcap, --certificate or --save-drive",
                          .found = "is about one drive, and --trajectory is a folder",
                          .remedy = "give one file"});
 }
@@ -159,6 +196,7 @@ void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scen
   }
   write_picture(audited, scene);
   write_report(audited, scene);
+  write_log(audited, scene);
   write_certificate(audited, scene);
   write_lists({audited}, scene);
 }
@@ -181,34 +219,17 @@ void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& 
 
 void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
   if (report_.empty()) return;
-  const map::Box2 around = drawn(audited, scene);
-  const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
-  AuditSurroundings page{.name = audited.name,
-                         .body = inflated(scene.shape, scene.asked.options().inflate_m),
-                         .parts = scene.question.inflated_parts(),
-                         .clearance_m = scene.asked.options().clearance_m,
-                         .occupied = {},
-                         .road_map = {},
-                         .moving = scene.question.moving_in_source,
-                         .command = "roadbed audit " + scene.asked.against(),
-                         .version = name_and_version(),
-                         .crs = scene.crs(),
-                         .sources = {}};
-  if (scene.occupancy) {
-    page.occupied =
-        occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
-    page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
-  } else {
-    page.clearance_m = scene.asked.margin_m();
-    if (!scene.asked.map_file().empty())
-      page.sources.push_back(source("map", hashed_once(scene, scene.asked.map_file())));
-  }
-  if (scene.road_map != nullptr) page.road_map = map_around(*scene.road_map, box);
-  if (!scene.subjects.is_swept() && !std::filesystem::is_directory(scene.subjects.file())) {
-    page.sources.push_back(source("trajectory", hashed_input(scene.subjects.file())));
-  }
-  map::write_output(
-      report_, drive_report_html(report_of_audit(audited.drive, audited.whole(), page)), force_);
+  map::write_output(report_, drive_report_html(report_of(audited, scene)), force_);
+}
+
+void AuditOutputs::write_log(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (mcap_.empty()) return;
+  DriveSpace space;
+  space.parts = scene.question.parts;
+  space.occupancy = scene.occupancy.get();
+  space.ground = &audited.audit.ground;
+  space.audit = audited.whole();
+  map::write_output(mcap_, drive_mcap(report_of(audited, scene), space), force_);
 }
 
 void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,

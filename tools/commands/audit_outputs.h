@@ -54,11 +54,12 @@ class AuditOutputs {
  private:
   void write_picture(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_report(const AuditedDrive& audited, const AuditScene& scene) const;
+  void write_log(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_index(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
   void write_certificate(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
 
-  std::filesystem::path svg_, report_, certificate_, junit_, geojson_, saved_drive_;
+  std::filesystem::path svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_;
   bool force_ = false;
 };
 

@@ -24,6 +24,7 @@
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/files/vehicle_file.h"
 #include "roadbed/tools/report/drive_files.h"
+#include "roadbed/tools/report/drive_mcap.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline commands {
@@ -37,11 +38,11 @@ bool can_replay(const DrivenScenario& driven) {
   return std::ranges::none_of(driven.record.sources, map::is_stream, &DriveSource::file);
 }
 
-/// Of what an earlier drive left, the solution and the record go, too, where this drive has none:
-/// nobody could tell that they are not this drive's.
+/// Of what an earlier drive left, the solution, the record and the log go, too, where this drive
+/// has none: nobody could tell that they are not this drive's.
 map::OutputFolderOptions folder_options(bool force, const CommonOptions& common) {
   const auto is_dropped = [](const std::string& name) {
-    return name == "solution.xml" || name == kDriveRecordName;
+    return name == "solution.xml" || name == kDriveRecordName || name == kDriveLogName;
   };
   return {.force = force, .is_dropped = is_dropped, .inputs = common.input_files};
 }
@@ -169,6 +170,9 @@ class SimulateCommand : public Command {
     arguments.flag("-j,--json", json_, "Print the metrics as one JSON document");
     arguments.flag("--candidates", choice_.keeps_candidates,
                    "Keep what became of each candidate, for the report; takes longer");
+    arguments.flag("--mcap", choice_.writes_mcap,
+                   "Write drive.mcap, too, a log for Foxglove, Lichtblick and Rerun: poses, plans, "
+                   "lanes, obstacles, occupied space");
     arguments.flag("--predict", choice_.predicts,
                    "Foresee others from what could be seen of them, not by their true future");
     arguments.add(
@@ -185,7 +189,8 @@ class SimulateCommand : public Command {
     arguments.says_no_if("a drive does not reach its goal");
     arguments.example(
         "  roadbed simulate data/drive.json -o drive\n"
-        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7");
+        "  roadbed simulate data/scenarios/stop_and_go.json --seed 7 -o drive_7\n"
+        "  roadbed simulate data/scenarios/pass_car.json --mcap -o passed");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

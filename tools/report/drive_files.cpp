@@ -9,6 +9,7 @@
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/files/vehicle_file.h"
+#include "roadbed/tools/report/drive_mcap.h"
 #include "roadbed/tools/report/from_drive.h"
 #include "roadbed/tools/report/report.h"
 #include "roadbed/tools/simulation/cycle_log.h"
@@ -115,6 +116,12 @@ DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& ch
       {"metrics.json", map::json_text(metrics_of(scenario, world, driven, result.audit), 2) + "\n"},
       {"report.html", drive_report_html(report)},
       {"drive.svg", drive_scene_svg(report)}};
+  if (choice.writes_mcap && !driven.trajectory.empty()) {
+    DriveSpace space;
+    space.occupancy = world.occupancy.get();
+    space.audit = result.audit;
+    result.files.emplace_back(kDriveLogName, drive_mcap(report, space));
+  }
   if (problem != nullptr && !choice.changes.vehicle) {
     result.files.emplace_back("solution.xml", solution_xml(*problem, driven));
   }

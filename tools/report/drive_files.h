@@ -31,6 +31,7 @@ struct DrivenScenario {
 struct DriveChoice {
   bool predicts = false;  ///< the planner knows of others only what could be known at the time
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
+  bool writes_mcap = false;       ///< drive.mcap as well
   ScenarioChanges changes = {};   ///< of what the file says
   std::filesystem::path vehicle_file = {}, noise_file = {}, planner_file = {};  ///< their sources
   OutsidePlanner outside_planner = {};  ///< that drives in place of roadbed's
@@ -55,8 +56,8 @@ void with_scenario(const std::filesystem::path& file, const DriveChoice& choice,
                    const Inputs& inputs, const std::function<void(const ReadyDrive&)>& use);
 
 /// Reads a scenario file, drives it, and makes its outputs: trajectory.csv, cycles.jsonl,
-/// metrics.json, report.html, drive.svg, replay.json, and for CommonRoad solution.xml, unless
-/// the vehicle is another than the one that it names.
+/// metrics.json, report.html, drive.svg, replay.json, where it is asked for drive.mcap, and for
+/// CommonRoad solution.xml, unless the vehicle is another than the one that it names.
 /// @throws InputError if the scenario is unusable.
 DrivenScenario drive_scenario(const std::filesystem::path& file, const DriveChoice& choice = {},
                               const Inputs& inputs = Inputs());
