@@ -162,11 +162,11 @@ RoadAudit audit_road(const geometry::Trajectory& drive, std::span<const geometry
                      const RoadQuestion& question, bool certifies) {
   double reach_m = 0.0;
   for (const geometry::BodyPart& part : parts) reach_m = std::max(reach_m, part.reach_m());
-  const auto made = question.made
-                        ? question.made
-                        : std::make_shared<const planning::RoadSurface>(planning::road_surface(
-                              planning::surface_polygons(question.surface, drive, reach_m),
-                              question.surface.seam_m));
+  const auto made =
+      question.made
+          ? question.made
+          : question.kept->of(planning::surface_polygons(question.surface, drive, reach_m),
+                              question.surface.seam_m);
   const planning::RoadSurface& surface = *made;
   RoadAudit audit;
   audit.on = question.on;

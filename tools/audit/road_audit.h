@@ -12,6 +12,7 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/audit/surface_audit.h"
 #include "roadbed/planning/rules/rule_audit.h"
+#include "roadbed/tools/audit/kept_surfaces.h"
 #include "roadbed/tools/cli/inputs.h"
 
 namespace roadbed::tools::inline audit {
@@ -35,6 +36,7 @@ struct RoadQuestion {
   /// Of a rule that asks for the same whatever the drive (an area, a route): made once. May be
   /// null.
   std::shared_ptr<const planning::RoadSurface> made = {};
+  std::shared_ptr<KeptSurfaces> kept = std::make_shared<KeptSurfaces>();  ///< of other drives
   double margin_m = 0.0;
   std::vector<planning::LightCycle> lights = {};
   std::vector<planning::TrafficRule> counted = {};  ///< rules that count in the verdict

@@ -13,6 +13,7 @@
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
+#include "roadbed/tools/cli/freed_memory.h"
 #include "roadbed/tools/cli/progress_bar.h"
 #include "roadbed/tools/commands/audit_asked.h"
 #include "roadbed/tools/commands/audit_frames.h"
@@ -124,6 +125,7 @@ class AuditCommand : public Command {
   Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditScene& scene,
                   const Streams& streams, const CommonOptions& common) const {
     outputs_.check_for_folder();
+    keep_freed_memory();  // each drive takes and frees surroundings of its own
     ProgressBar progress(subjects.size(), !common.quiet && isatty(STDERR_FILENO) == 1);
     const std::vector<AuditedDrive> audits =
         audit_all(scene.demand(), subjects, common.threads, [&] { progress.done_one(); });

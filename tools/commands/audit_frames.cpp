@@ -58,14 +58,14 @@ std::vector<map::Box2> occupied_boxes(const map::OccupancySource& occupancy,
   std::vector<map::Box2> boxes;
   constexpr double any_height_m = 1e6;
   const Eigen::Vector2d &least = around.min_in_source, &most = around.max_in_source;
-  for (const map::OccupancyCell& cell : occupancy.cells_in(
-           {{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}})) {
+  const map::Box3 box{{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}};
+  occupancy.for_each_in(box, [&](const map::OccupancyCell& cell) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
-    if (cell.state != map::CellState::occupied) continue;
+    if (cell.state != map::CellState::occupied) return;
     const Eigen::Array2d centre = cell.centre_in_source.head<2>();
-    if (!band.holds(centre.matrix(), z_m - half_m, 2.0 * half_m)) continue;
+    if (!band.holds(centre.matrix(), z_m - half_m, 2.0 * half_m)) return;
     boxes.push_back({centre - half_m, centre + half_m});
-  }
+  });
   return boxes;
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <malloc.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/planning/route/route_network.h"
+#include "roadbed/tools/cli/freed_memory.h"
 #include "roadbed/tools/cli/output_format.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
@@ -35,8 +35,7 @@ constexpr std::uintptr_t kMapPerFile = 8;  // of memory, a file's size of bytes
 constexpr std::uintptr_t kMostHugeBytes = std::uintptr_t{1} << 27;
 // Of a larger file, lists that grew out of their place would be too much to keep.
 constexpr std::uintmax_t kMostKeptBytes = std::uintmax_t{1} << 27;
-constexpr int kMostThreads = 4;   // unless more are asked for
-constexpr int kTopPad = 1 << 24;  // grown by at once
+constexpr int kMostThreads = 4;  // unless more are asked for
 
 // Makes ready the heap for a map that is read from `input`: kept when it is freed, as reading a
 // map takes and frees memory of many times the file's size, and for files of up to 16 MB in huge
@@ -46,10 +45,7 @@ void keep_heap_in_huge_pages(const std::filesystem::path& input) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(input, error);
   if (error || size > kMostKeptBytes) return;
-  // One heap that grows and is not given back; blocks of its own would be new memory each time.
-  ::mallopt(M_MMAP_MAX, 0);
-  ::mallopt(M_TRIM_THRESHOLD, -1);
-  ::mallopt(M_TOP_PAD, kTopPad);
+  keep_freed_memory();
   if (size > kMostHugeBytes / kMapPerFile) return;
   const std::uintptr_t wanted = kMapPerFile * size + kHugePage;
   void* block = std::malloc(wanted);

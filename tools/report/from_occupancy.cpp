@@ -50,16 +50,16 @@ std::vector<Box2> occupied_in(const map::OccupancySource& occupancy, const map::
   std::vector<Box2> boxes;
   const Eigen::Vector2d &least = box_in_source.min(), &most = box_in_source.max();
   constexpr double any_height_m = 1e6;
-  for (const map::OccupancyCell& cell : occupancy.cells_in(
-           {{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}})) {
+  const map::Box3 box{{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}};
+  occupancy.for_each_in(box, [&](const map::OccupancyCell& cell) {
     const double half_m = 0.5 * cell.size_m, z_m = cell.centre_in_source.z();
-    if (cell.state != map::CellState::occupied) continue;
+    if (cell.state != map::CellState::occupied) return;
     const Eigen::Vector2d centre = cell.centre_in_source.head<2>();
-    if (!band.holds(centre, z_m - half_m, 2.0 * half_m)) continue;
+    if (!band.holds(centre, z_m - half_m, 2.0 * half_m)) return;
     const Eigen::Vector2d corner(half_m, half_m);
-    if (!box_in_source.intersects(Eigen::AlignedBox2d(centre - corner, centre + corner))) continue;
+    if (!box_in_source.intersects(Eigen::AlignedBox2d(centre - corner, centre + corner))) return;
     boxes.push_back({centre - corner, centre + corner});
-  }
+  });
   return joined(std::move(boxes));
 }
 

@@ -93,11 +93,10 @@ struct ClearanceField::Grid {
       body_radius_m = kBodyRadius_m;
       return make_tiles(0.0, kMostCells);
     }
-    whole = grid_of({all, all, true}, [&](const CellRange& range) {
-      std::vector<Slab> in_range;
-      std::ranges::copy_if(slabs, std::back_inserter(in_range),
-                           [&](const Slab& slab) { return !slab.cells.cut(range).empty(); });
-      return in_range;
+    whole = grid_of({all, all, true}, [&](const CellRange& range, const UseSlab& use) {
+      for (const Slab& slab : slabs) {
+        if (!slab.cells.cut(range).empty()) use(slab);
+      }
     });
   }
 
@@ -123,7 +122,9 @@ struct ClearanceField::Grid {
   }
 
   std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent) const {
-    return grid_of(extent, [this](const CellRange& range) { return slicer.slabs_in(range); });
+    return grid_of(extent, [this](const CellRange& range, const UseSlab& use) {
+      slicer.for_each_slab_in(range, use);
+    });
   }
 
   std::shared_ptr<const PlanGrid> grid_of(const GridExtent& extent, const SlabsIn& slabs_in) const {

@@ -15,6 +15,10 @@ constexpr double kHeightRounding_m = 5e-5;  // of some dozens of heights added u
 // Layers of a column whose whole height in the band was measured.
 constexpr std::int64_t kGroundRelativeLayers = 1000;
 
+/// What leaves fill of a band that follows the ground, column by column: the ground is level over a
+/// column, at its height in the middle. Cells that are alike and beside each other share a slab.
+/// @param range  what matters, in cells from the origin.
+/// @pre `band.ground` is there.
 class BandColumns {
  public:
   BandColumns(const HeightBand& band, const Eigen::Vector3d& origin, double cell_m,
@@ -100,26 +104,14 @@ class BandColumns {
   std::vector<float> measured_m_;  // of its band; infinite where there is a hit
 };
 
-/// What leaves fill of a band that follows the ground, column by column: the ground is level over a
-/// column, at its height in the middle. Cells that are alike and beside each other share a slab.
-/// @param range  what matters, in cells from the origin.
-/// @pre `band.ground` is there.
-std::vector<Slab> ground_relative_columns(const std::vector<OccupancyCell>& leaves,
-                                          const HeightBand& band,
-                                          const Eigen::Vector3d& origin_in_source, double cell_m,
-                                          const CellRange& range) {
-  BandColumns columns(band, origin_in_source, cell_m, range);
-  for (const OccupancyCell& leaf : leaves) columns.add(leaf);
-  return columns.slabs();
-}
-
 }  // namespace
 
 HeightBandSlicer::HeightBandSlicer(const OccupancySource& source, const HeightBand& band)
     : source_(source),
       band_(band),
       origin_(source.origin_in_source()),
-      cell_m_(source.resolution_m()) {
+      cell_m_(source.resolution_m()),
+      per_cell_(1.0 / cell_m_) {
   from_layer_ = to_cells(band.from_m + kTouchesBand_m - origin_.z());
   to_layer_ = to_cells(band.to_m - kTouchesBand_m - origin_.z()) + 1;
 }
@@ -132,11 +124,13 @@ std::int64_t HeightBandSlicer::to_cells(double metres) const {
   return static_cast<std::int64_t>(std::floor(metres / cell_m_));
 }
 
+// In cells it begins at whole numbers: from the middle of its first cell, rounding does not matter.
 std::optional<Slab> HeightBandSlicer::slab_of(const OccupancyCell& leaf) const {
-  const Eigen::Vector3d corner =
-      (leaf.centre_in_source - origin_).array() - 0.5 * (leaf.size_m - cell_m_);
-  const auto side = static_cast<std::int64_t>(std::llround(leaf.size_m / cell_m_));
-  const std::int64_t x = to_cells(corner.x()), y = to_cells(corner.y()), z = to_cells(corner.z());
+  const Eigen::Array3d first =
+      ((leaf.centre_in_source - origin_).array() - 0.5 * (leaf.size_m - cell_m_)) * per_cell_;
+  const auto side = static_cast<std::int64_t>(leaf.size_m * per_cell_ + 0.5);
+  const std::int64_t x = whole_below(first.x()), y = whole_below(first.y()),
+                     z = whole_below(first.z());
   const std::int64_t layers = std::min(z + side, to_layer_) - std::max(z, from_layer_);
   if (layers <= 0) return std::nullopt;
   return Slab{{x, y, x + side, y + side}, layers, leaf.state == CellState::occupied};
@@ -149,29 +143,34 @@ CellRange HeightBandSlicer::range(const Box2& box, double margin_m) const {
           to(box.max_in_source.x(), origin_.x()), to(box.max_in_source.y(), origin_.y())};
 }
 
-std::vector<Slab> HeightBandSlicer::slabs_of(const std::vector<OccupancyCell>& leaves) const {
+std::vector<Slab> HeightBandSlicer::slabs() const {
   std::vector<Slab> slabs;
-  for (const OccupancyCell& leaf : leaves) {
+  for (const OccupancyCell& leaf : source_.cells()) {
     if (const std::optional<Slab> slab = slab_of(leaf)) slabs.push_back(*slab);
   }
   return slabs;
 }
 
-std::vector<Slab> HeightBandSlicer::slabs() const { return slabs_of(source_.cells()); }
-
-std::vector<Slab> HeightBandSlicer::slabs_in(const CellRange& range) const {
+void HeightBandSlicer::for_each_slab_in(const CellRange& range, const UseSlab& use) const {
   const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t layer) -> Eigen::Vector3d {
     return origin_ + cell_m_ * Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y),
                                                static_cast<double>(layer));
   };
   Box3 box{at(range.from_x - 1, range.from_y - 1, from_layer_ - 1),
            at(range.to_x + 1, range.to_y + 1, to_layer_ + 1)};
-  if (band_.ground == nullptr) return slabs_of(source_.cells_in(box));
+  if (band_.ground == nullptr) {
+    source_.for_each_in(box, [&](const OccupancyCell& leaf) {
+      if (const std::optional<Slab> slab = slab_of(leaf)) use(*slab);
+    });
+    return;
+  }
   // Over ground that is not level every column has layers of its own.
   constexpr double farthest_m = 1e6;
   box.min_in_source.z() = -farthest_m;
   box.max_in_source.z() = farthest_m;
-  return ground_relative_columns(source_.cells_in(box), band_, origin_, cell_m_, range);
+  BandColumns columns(band_, origin_, cell_m_, range);
+  source_.for_each_in(box, [&](const OccupancyCell& leaf) { columns.add(leaf); });
+  for (const Slab& slab : columns.slabs()) use(slab);
 }
 
 }  // namespace roadbed::map::occupancy::clearance

@@ -27,8 +27,8 @@ class HeightBandSlicer {
   /// The cells that a box touches, and those up to `margin_m` around it.
   CellRange range(const Box2& box, double margin_m) const;
 
-  /// Slabs that meet a range, uncut.
-  std::vector<Slab> slabs_in(const CellRange& range) const;
+  /// Goes through the slabs that meet a range, uncut.
+  void for_each_slab_in(const CellRange& range, const UseSlab& use) const;
 
   /// All slabs. @pre the band is level.
   std::vector<Slab> slabs() const;
@@ -36,12 +36,11 @@ class HeightBandSlicer {
  private:
   std::int64_t to_cells(double metres) const;
   std::optional<Slab> slab_of(const OccupancyCell& leaf) const;
-  std::vector<Slab> slabs_of(const std::vector<OccupancyCell>& leaves) const;
 
   const OccupancySource& source_;
   HeightBand band_;
   Eigen::Vector3d origin_;
-  double cell_m_;
+  double cell_m_, per_cell_;
   std::int64_t from_layer_, to_layer_;
 };
 

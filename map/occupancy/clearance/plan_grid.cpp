@@ -49,13 +49,13 @@ PlanGrid::PlanGrid(const SlabsIn& slabs_in, const GridExtent& extent, std::int64
       layers_(static_cast<std::uint16_t>(layers)) {
   std::vector<std::uint8_t> occupied;
   for (const CellRange& strip : strips_of(extent.seen)) {
-    for (const Slab& slab : slabs_in(strip)) {
+    slabs_in(strip, [&](const Slab& slab) {
       if (is_blank()) {
         known_layers_.resize(extent.seen.count());
         occupied.resize(known_layers_.size());
       }
       paint(slab, strip, occupied);
-    }
+    });
   }
   if (!is_blank()) occupied_ = layer_of(occupied);
 }

@@ -25,8 +25,9 @@ struct Slab {
   bool occupied;
 };
 
-/// The slabs that meet a range, and others perhaps.
-using SlabsIn = std::function<std::vector<Slab>(const CellRange& range)>;
+/// Goes through the slabs that meet a range, and others perhaps.
+using UseSlab = std::function<void(const Slab& slab)>;
+using SlabsIn = std::function<void(const CellRange& range, const UseSlab& use)>;
 
 /// Which cells a grid knows of.
 struct GridExtent {

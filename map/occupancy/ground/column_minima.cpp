@@ -47,9 +47,9 @@ ColumnMinima::ColumnMinima(const map::OccupancySource& occupancy,
   }
   constexpr double any_height_m = 1e6;
   const map::Box3 around{{least.x(), least.y(), -any_height_m}, {most.x(), most.y(), any_height_m}};
-  for (const map::OccupancyCell& leaf : occupancy.cells_in(around)) {
+  occupancy.for_each_in(around, [this](const map::OccupancyCell& leaf) {
     if (leaf.state == map::CellState::occupied) add(leaf);
-  }
+  });
 }
 
 ColumnMinima::Columns ColumnMinima::columns_around(const Vector2d& point) const {

@@ -153,14 +153,11 @@ std::vector<OccupancyCell> OccupancyMap::cells() const {
   return cells;
 }
 
-std::vector<OccupancyCell> OccupancyMap::cells_in(const Box3& box) const {
+void OccupancyMap::for_each_in(const Box3& box, const UseCell& use) const {
   const Eigen::Vector3d& origin = tree_->origin_in_source;
-  std::vector<OccupancyCell> cells;
-  tree_->octree.for_each(
-      {key_around(box.min_in_source - origin, resolution_m()),
-       key_around(box.max_in_source - origin, resolution_m())},
-      [&](const CompactOctree::Leaf& leaf) { cells.push_back(tree_->cell_of(leaf)); });
-  return cells;
+  tree_->octree.for_each({key_around(box.min_in_source - origin, resolution_m()),
+                          key_around(box.max_in_source - origin, resolution_m())},
+                         [&](const CompactOctree::Leaf& leaf) { use(tree_->cell_of(leaf)); });
 }
 
 std::optional<Box3> OccupancyMap::bounds() const {

@@ -73,7 +73,7 @@ class OccupancyMap final : public OccupancySource {
   std::vector<OccupancyCell> cells() const override;
 
   /// In the same order. O(leaves in the box).
-  std::vector<OccupancyCell> cells_in(const Box3& box) const override;
+  void for_each_in(const Box3& box, const UseCell& use) const override;
 
   /// The bytes of a standard `.bt` with a line `# roadbed origin X Y Z CRS`, and one
   /// `# roadbed seen-through CLOUDS removed CELLS` where hits were taken away. Log-odds of an `.ot`

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,8 +50,14 @@ class OccupancySource {
   /// All leaves with a state.
   virtual std::vector<OccupancyCell> cells() const = 0;
 
-  /// Those that overlap a box, and some around it perhaps. May be called by several threads.
-  virtual std::vector<OccupancyCell> cells_in(const Box3& box) const = 0;
+  /// Takes a leaf.
+  using UseCell = std::function<void(const OccupancyCell&)>;
+
+  /// Goes through those that overlap a box, and some around it perhaps. Several threads may.
+  virtual void for_each_in(const Box3& box, const UseCell& use) const = 0;
+
+  /// The same as a list.
+  std::vector<OccupancyCell> cells_in(const Box3& box) const;
 
  protected:
   OccupancySource() = default;
@@ -59,5 +66,11 @@ class OccupancySource {
   OccupancySource& operator=(const OccupancySource&) = default;
   OccupancySource& operator=(OccupancySource&&) = default;
 };
+
+inline std::vector<OccupancyCell> OccupancySource::cells_in(const Box3& box) const {
+  std::vector<OccupancyCell> cells;
+  for_each_in(box, [&](const OccupancyCell& cell) { cells.push_back(cell); });
+  return cells;
+}
 
 }  // namespace roadbed::map::occupancy::octree

@@ -66,12 +66,10 @@ std::vector<OccupancyCell> TiledOccupancy::cells() const {
   return cells;
 }
 
-std::vector<OccupancyCell> TiledOccupancy::cells_in(const Box3& box) const {
-  std::vector<OccupancyCell> cells;
+void TiledOccupancy::for_each_in(const Box3& box, const UseCell& use) const {
   for (const OccupancyTile& tile : index_.tiles) {
-    if (do_meet(square_of(index_, tile), box)) append_to(cells, load(tile)->cells_in(box));
+    if (do_meet(square_of(index_, tile), box)) load(tile)->for_each_in(box, use);
   }
-  return cells;
 }
 
 std::vector<OccupancyCell> TiledOccupancy::cells_of_tiles(std::span<const Box3> boxes) const {

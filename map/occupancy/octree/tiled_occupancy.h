@@ -38,7 +38,7 @@ class TiledOccupancy final : public OccupancySource {
 
   /// Of the tiles that the box meets.
   /// @throws as `cells`.
-  std::vector<OccupancyCell> cells_in(const Box3& box) const override;
+  void for_each_in(const Box3& box, const UseCell& use) const override;
 
   /// All leaves of the tiles that meet any of some boxes, each once.
   /// @throws as `cells`.

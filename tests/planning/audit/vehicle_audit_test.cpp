@@ -212,9 +212,9 @@ class CountedOccupancy : public map::OccupancySource {
   std::optional<map::SeeThroughRemoval> seen_through() const override { return std::nullopt; }
   std::optional<map::Box3> bounds() const override { return occupancy_.bounds(); }
   std::vector<map::OccupancyCell> cells() const override { return occupancy_.cells(); }
-  std::vector<map::OccupancyCell> cells_in(const map::Box3& box) const override {
+  void for_each_in(const map::Box3& box, const UseCell& use) const override {
     ++times_[{box.min_in_source.x(), box.min_in_source.y()}];
-    return occupancy_.cells_in(box);
+    occupancy_.for_each_in(box, use);
   }
 
   const std::map<std::pair<double, double>, int>& times() const { return times_; }

@@ -10,7 +10,7 @@
 namespace roadbed::map {
 namespace {
 
-std::vector<Slab> no_slabs(const CellRange&) { return {}; }
+void no_slabs(const CellRange&, const UseSlab&) {}
 
 TEST(GridTiles, KeepsNoMoreTilesAliveThanAllowedAndTheLastUsedOnes) {
   std::vector<std::weak_ptr<const PlanGrid>> made;
