@@ -84,7 +84,7 @@ OutsidePlanner planner_of(nb::object callable) {
 
 struct DriveArguments {
   nb::handle scenario, planner, vehicle, noise, options;
-  bool predict, candidates, drop_ego_recording;
+  bool predict, candidates, mcap, drop_ego_recording;
   std::optional<std::uint64_t> seed;
   double planner_limit_s;
 };
@@ -95,6 +95,7 @@ std::unique_ptr<DrivenScenario> simulate(const DriveArguments& given) {
   };
   DriveChoice choice{.predicts = given.predict,
                      .keeps_candidates = given.candidates,
+                     .writes_mcap = given.mcap,
                      .noise_file = file(given.noise),
                      .planner_file = file(given.options),
                      .planner_limit_s = given.planner_limit_s};
@@ -268,7 +269,8 @@ void bind_drive(nb::module_& module) {
           nb::arg("folder"), nb::kw_only(), nb::arg("force") = false,
           nb::sig("def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None"),
           "Writes what `roadbed simulate -o` writes: trajectory.csv, cycles.jsonl, metrics.json, "
-          "report.html, drive.svg, replay.json, of CommonRoad solution.xml.\n\n"
+          "report.html, drive.svg, replay.json, with `mcap=True` drive.mcap, of CommonRoad "
+          "solution.xml.\n\n"
           "Raises OutputError if the folder holds something, unless `force` is set.")
       .def("__str__", [](const DrivenScenario& of) { return of.name + ": " + of.verdict.text; })
       .def("__repr__",
@@ -286,22 +288,23 @@ void bind_drives(nb::module_& module) {
   module.def(
       "simulate",
       [](nb::handle scenario, nb::handle planner, nb::handle vehicle, nb::handle noise,
-         nb::handle options, bool predict, bool candidates, bool drop_ego_recording,
+         nb::handle options, bool predict, bool candidates, bool mcap, bool drop_ego_recording,
          std::optional<std::uint64_t> seed, double planner_limit_s) {
-        return simulate({scenario, planner, vehicle, noise, options, predict, candidates,
+        return simulate({scenario, planner, vehicle, noise, options, predict, candidates, mcap,
                          drop_ego_recording, seed, planner_limit_s});
       },
       nb::arg("scenario"), nb::arg("planner") = nb::none(), nb::kw_only(),
       nb::arg("vehicle") = nb::none(), nb::arg("noise") = nb::none(),
       nb::arg("options") = nb::none(), nb::arg("predict") = false, nb::arg("candidates") = false,
-      nb::arg("drop_ego_recording") = false, nb::arg("seed") = nb::none(),
+      nb::arg("mcap") = false, nb::arg("drop_ego_recording") = false, nb::arg("seed") = nb::none(),
       nb::arg("planner_limit_s") = 60.0,
       nb::sig(
           "def simulate(scenario: str | os.PathLike[str], planner: "
           "collections.abc.Callable[[Observation], typing.Any] | str | None = None, *, vehicle: "
           "Vehicle | str | os.PathLike[str] | None = None, noise: str | os.PathLike[str] | None "
           "= None, options: str | os.PathLike[str] | None = None, predict: bool = False, "
-          "candidates: bool = False, drop_ego_recording: bool = False, seed: int | None = "
+          "candidates: bool = False, mcap: bool = False, drop_ego_recording: bool = False, seed: "
+          "int | None = "
           "None, planner_limit_s: float = 60.0) -> Drive"),
       "Drives a scenario (.json, or CommonRoad .xml) in a closed loop: a cycle plans every 0.1 s, "
       "controllers steer and accelerate every 0.01 s.\n\n"
@@ -312,7 +315,8 @@ void bind_drives(nb::module_& module) {
       "The loop follows it and the same report judges it. A text is the command of a process that "
       "answers a line of JSON with a line of JSON, within planner_limit_s each.\n"
       "vehicle, noise, options, seed: in place of the scenario's; predict: others are known only "
-      "as could be seen; candidates: keep what became of each candidate, for the report.");
+      "as could be seen; candidates: keep what became of each candidate, for the report; mcap: "
+      "make drive.mcap, too, a log for Foxglove, Lichtblick and Rerun.");
 }
 
 }  // namespace roadbed::tools::python

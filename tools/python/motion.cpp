@@ -5,6 +5,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/files/drive_file.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/python/motion.h"
 
@@ -49,6 +50,28 @@ Trajectory trajectory_from(nb::handle rows) {
   return {geometry::Trajectory(std::move(points)), {}};
 }
 
+/// The options of a file of a drive. @throws std::invalid_argument if one is none.
+DriveOptions drive_options(const std::string& topic, const std::string& frame, nb::handle vehicle,
+                           std::optional<double> rate_hz) {
+  if (rate_hz && !(*rate_hz >= 1e-3 && *rate_hz <= 1e6)) {
+    throw std::invalid_argument(fmt::format("rate_hz: {}, needs 0.001 to 1e6", *rate_hz));
+  }
+  DriveOptions options{.topic = topic, .pose_in_vehicle = {}, .rate_hz = rate_hz};
+  if (frame.empty()) return options;
+  options.pose_in_vehicle = pose_frame(frame, shape_of(vehicle));
+  if (!options.pose_in_vehicle) {
+    throw std::invalid_argument(
+        fmt::format("pose_frame: \"{}\", needs rear-axle, centre or X,Y[,HEADING]", frame));
+  }
+  return options;
+}
+
+/// Certificates are about tables only, which need no options.
+Trajectory drive_of_file(const std::filesystem::path& file, const DriveOptions& options) {
+  const nb::gil_scoped_release released;
+  return {read_drive(file, options), is_drive_table(file) ? file : std::filesystem::path()};
+}
+
 void bind_trajectory(nb::module_& module) {
   nb::class_<Trajectory>(module, "Trajectory",
                          "A drive: states of the rear axle's centre at increasing times, in the "
@@ -62,12 +85,21 @@ void bind_trajectory(nb::module_& module) {
           "Raises InputError if no vehicle can drive so.")
       .def_static(
           "open",
-          [](nb::handle path) {
-            const std::filesystem::path file = path_of(path);
-            return Trajectory{read_trajectory_csv(file), file};
+          [](nb::handle path, const std::string& topic, const std::string& pose_frame,
+             nb::handle vehicle, std::optional<double> rate_hz) {
+            return drive_of_file(path_of(path), drive_options(topic, pose_frame, vehicle, rate_hz));
           },
-          nb::arg("path"), nb::sig("def open(path: str | os.PathLike[str]) -> Trajectory"),
-          "Reads a CSV file with the columns t_s, x_m, y_m, heading_rad and the like.")
+          nb::arg("path"), nb::kw_only(), nb::arg("topic") = "", nb::arg("pose_frame") = "",
+          nb::arg("vehicle") = nb::none(), nb::arg("rate_hz") = nb::none(),
+          nb::sig("def open(path: str | os.PathLike[str], *, topic: str = '', pose_frame: str = "
+                  "'', vehicle: Vehicle | str | os.PathLike[str] | None = None, rate_hz: float | "
+                  "None = None) -> Trajectory"),
+          "Reads a drive, told by content: a CSV file with the columns t_s, x_m, y_m, heading_rad "
+          "and the like; a log (rosbag2, MCAP); a CommonRoad solution; poses of Argoverse 2, TUM "
+          "or KITTI.\n\n"
+          "topic: of a log, where several could be the drive; pose_frame: which point the poses "
+          "are, \"rear-axle\", \"centre\" of the vehicle's body, or \"X,Y[,HEADING]\" ahead and to "
+          "the left of the rear axle; rate_hz: poses in a second, where the file has no times.")
       .def(
           "save",
           [](Trajectory& self, nb::handle path) {
@@ -133,8 +165,7 @@ void bind_measure(nb::class_<VehicleOfFile>& bound, const char* name) {
 Trajectory trajectory_of(nb::handle given) {
   if (nb::isinstance<Trajectory>(given)) return nb::cast<const Trajectory&>(given);
   if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__")) {
-    const std::filesystem::path file = path_of(given);
-    return {read_trajectory_csv(file), file};
+    return drive_of_file(path_of(given), {});
   }
   return trajectory_from(given);
 }

@@ -188,6 +188,26 @@ def test_a_drive_is_the_programs(tmp_path: Path) -> None:
         drive.save(tmp_path / "made")
 
 
+def test_a_log_of_a_drive_is_the_drive(tmp_path: Path) -> None:
+    drive = roadbed.simulate(PARKED, mcap=True)
+    drive.save(tmp_path / "drive")
+    read = roadbed.Trajectory.open(tmp_path / "drive" / "drive.mcap")
+    assert np.array_equal(read.array, drive.trajectory.array)
+    poses = roadbed.Trajectory.open(tmp_path / "drive" / "drive.mcap", topic="/tf")
+    assert np.array_equal(poses.x_m, read.x_m)
+    assert np.allclose(poses.heading_rad, read.heading_rad, atol=1e-12)
+
+
+def test_a_recorded_drive_is_read_with_what_its_file_leaves_open(tmp_path: Path) -> None:
+    tum = tmp_path / "poses.txt"
+    tum.write_text("".join(f"{0.1 * i} {i} 0 0 0 0 0 1\n" for i in range(5)))
+    with pytest.raises(roadbed.InputError, match="which point of the vehicle"):
+        roadbed.Trajectory.open(tum)
+    assert roadbed.Trajectory.open(tum, pose_frame="1,0").x_m[2] == 1.0
+    with pytest.raises(ValueError, match="pose_frame"):
+        roadbed.Trajectory.open(tum, pose_frame="roof")
+
+
 def test_an_own_planner_drives_and_is_judged(tmp_path: Path) -> None:
     scenario = write_scenario(tmp_path)
     drive = roadbed.simulate(scenario, along_the_line)
