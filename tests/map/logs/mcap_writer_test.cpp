@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/logs/log.h"
+#include "roadbed/map/logs/unpack_block.h"
 
 namespace roadbed::map {
 namespace {
@@ -72,6 +73,28 @@ TEST(McapWriter, WritesWhatTheReaderReads) {
 
 TEST(McapWriter, IsTheSameForTheSameCalls) { EXPECT_EQ(written(messages()), written(messages())); }
 
+/// How many messages an index leads to, each of its topic and time in the chunk.
+std::size_t indexed_messages(const std::string& bytes, std::size_t chunk, std::size_t index) {
+  constexpr std::size_t head = 9, packing = head + 28, data = packing + 4 + 4 + 8;
+  const std::string_view packed(bytes.data() + chunk + data,
+                                number_at<std::uint64_t>(bytes, chunk + data - 8));
+  std::string records;
+  EXPECT_EQ(unpack_block(packed, BlockPacking::zstandard,
+                         number_at<std::uint64_t>(bytes, chunk + head + 16), records),
+            "");
+  const auto topic = number_at<std::uint16_t>(bytes, index + head);
+  const std::size_t count = number_at<std::uint32_t>(bytes, index + head + 2) / 16;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t entry = index + head + 6 + 16 * i;
+    const auto at = number_at<std::uint64_t>(bytes, entry + 8);
+    EXPECT_EQ(records[at], 5);
+    EXPECT_EQ(number_at<std::uint16_t>(records, at + head), topic);
+    EXPECT_EQ(number_at<std::uint64_t>(records, at + head + 6),
+              number_at<std::uint64_t>(bytes, entry));
+  }
+  return count;
+}
+
 // Records are gone through one by one, from the summary on, as a reader does that seeks.
 TEST(McapWriter, ItsSummaryLeadsToEveryChunkAndIsChecked) {
   const std::string bytes = written(messages());
@@ -97,7 +120,7 @@ TEST(McapWriter, ItsSummaryLeadsToEveryChunkAndIsChecked) {
       for (std::uint32_t i = 0; i < topics; ++i) {
         const auto index = number_at<std::uint64_t>(bytes, at + 9 + 36 + 10 * i + 2);
         ASSERT_EQ(bytes[index], 7);
-        messages_in_chunks += number_at<std::uint32_t>(bytes, index + 9 + 2) / 16;
+        messages_in_chunks += indexed_messages(bytes, start, index);
       }
     }
     if (kind == 11) {
