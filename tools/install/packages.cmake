@@ -26,7 +26,7 @@ lane-level routes, smooth reference lines and driven trajectories; point
 clouds become occupancy; and every drive can be audited against it, with
 a proof that can be checked.
 
-Longitude and latitude need PROJ, filters of point clouds PCL; without
+Longitude and latitude need PROJ, objects in point clouds PCL; without
 these recommended libraries everything else works.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libroadbed-dev)

@@ -66,6 +66,8 @@ PointCloud in_city(PointCloud sweep, const std::filesystem::path& file) {
                  fmt::format("one between the first and the last of {}", poses_file.string()),
                  "get the poses of the same log");
   }
+  sweep.stamp_ns = static_cast<std::int64_t>(*stamp_ns);
+  sweep.drive_start_ns = poses.front().stamp_ns;
   if (sweep.points.empty()) return sweep;
   PointCloud moved = placed(sweep, *pose);
   moved.sensor_in_source.reset();  // it is somewhere on the vehicle

@@ -16,7 +16,7 @@ namespace roadbed::map::inline occupancy::inline clouds {
 RawCloud parse_sweep(std::string_view bytes, const std::string& name, const CloudFilter& filter);
 
 /// A sweep LOG/sensors/lidar/TIME.feather in the city's frame, by the pose at that time of
-/// LOG/city_SE3_egovehicle.feather; as it is where there is no such file.
+/// LOG/city_SE3_egovehicle.feather, with its time; as it is where there is no such file.
 /// @throws InputError if those poses are unusable, or TIME lies before or after them.
 PointCloud in_city(PointCloud sweep, const std::filesystem::path& file);
 

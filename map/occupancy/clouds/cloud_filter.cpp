@@ -5,24 +5,11 @@
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/map/files/open_module.h"
 #include "roadbed/map/occupancy/clouds/pcl_filter.h"
+#include "roadbed/map/occupancy/clouds/pcl_function.h"
 
 namespace roadbed::map::inline occupancy::inline clouds {
 namespace {
-
-[[noreturn]] void refuse_filter(const std::string& found, const std::string& remedy) {
-  throw InputError({.file = "point cloud filter", .found = found, .remedy = remedy});
-}
-
-RoadbedPclFilter& open_module() {
-  const ModuleFunction found = function_of_module("libroadbed_pcl", "roadbed_pcl_filter");
-  if (found.address != nullptr) return *reinterpret_cast<RoadbedPclFilter*>(found.address);
-  refuse_filter(
-      found.fault,
-      "install PCL (Debian: libpcl-filters1.13; libpcl-dev before roadbed is built), or leave the "
-      "filters out");
-}
 
 // Keeps the points for which `keeps(point, sensor)`, in place; scans keep what is left of theirs.
 template <class Keeps>
@@ -72,13 +59,17 @@ PointCloud within_reach(PointCloud cloud, const CloudFilter& filter) {
 }
 
 PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter) {
-  static RoadbedPclFilter& pcl_filter = open_module();
+  static auto& pcl_filter = pcl_function_as<RoadbedPclFilter>("roadbed_pcl_filter");
   PointCloud kept = cloud;
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
   const std::size_t count =
       pcl_filter(kept.points.front().data(), kept.points.size(), static_cast<float>(filter.voxel_m),
                  filter.outlier_neighbours, filter.outlier_deviations);
-  if (count == 0) refuse_filter(fmt::format("no point of {} is left", cloud.name), "filter less");
+  if (count == 0) {
+    throw InputError({.file = "point cloud filter",
+                      .found = fmt::format("no point of {} is left", cloud.name),
+                      .remedy = "filter less"});
+  }
   kept.points.resize(count);
   return kept;
 }

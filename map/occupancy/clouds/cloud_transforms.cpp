@@ -143,6 +143,8 @@ PointCloud scaled_to_metres(const PointCloud& cloud, double factor) {
   for (ScanStart& scan : scaled.scans) {
     if (scan.sensor_in_source) *scan.sensor_in_source *= factor;
   }
+  scaled.stamp_ns = cloud.stamp_ns;
+  scaled.drive_start_ns = cloud.drive_start_ns;
   scaled.notes = cloud.notes;
   return scaled;
 }

@@ -33,6 +33,7 @@ class CloudMessages {
     if (!read.cloud.points.empty()) {
       ++counts_.clouds;
       read.cloud.name = file_;
+      read.cloud.stamp_ns = cloud.stamp_ns;
       use_(std::move(read.cloud));
     } else {
       ++(read.without_pose > 0 ? counts_.without_pose : counts_.without_point);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,7 +37,9 @@ struct PointCloud {
   std::optional<Eigen::Vector3d> sensor_in_source;  ///< of the file's viewpoint, if it names one
   std::vector<ScanStart> scans;  ///< in order, from point 0 on, where the file says of each point
                                  ///< where it was measured from; then `sensor_in_source` is unused
-  std::vector<std::string> notes;  ///< what the user may want to know of the file
+  std::optional<std::int64_t> stamp_ns = {};        ///< when it was measured, if its log says so
+  std::optional<std::int64_t> drive_start_ns = {};  ///< of the first pose of its log's drive
+  std::vector<std::string> notes;                   ///< what the user may want to know of the file
 
   /// Whether rays can be drawn to some of its points.
   bool has_sensor() const { return sensor_in_source.has_value() || !scans.empty(); }

@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
-#include "roadbed/tests/support/program_run.h"
+#include "roadbed/tests/support/needs_pcl.h"
 
 namespace roadbed::map {
 namespace {
@@ -29,15 +28,7 @@ bool holds_the_bird(const PointCloud& cloud) {
                      [](const Eigen::Vector3f& point) { return point.x() > 50.0f; });
 }
 
-class CloudFilterTest : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(tests::program_file().parent_path() /
-                                 "../lib/libroadbed_pcl.so")) {
-      GTEST_SKIP() << "built without PCL";
-    }
-  }
-};
+class CloudFilterTest : public tests::NeedsPcl {};
 
 TEST_F(CloudFilterTest, TakesOutAPointFarFromItsNeighboursAndKeepsTheOrigin) {
   const PointCloud cloud = wall_with_a_bird();
