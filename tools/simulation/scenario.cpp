@@ -258,6 +258,9 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
   }
   if (const auto node = root.find("lights")) scenario.lights = lights(*node);
   if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
+  if (const auto node = root.find("obstacles_file")) {
+    scenario.obstacles_file = beside(*node, scenario.file.parent_path());
+  }
 }
 
 bool is_random(const ScenarioNoise& noise) {
@@ -282,7 +285,7 @@ Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& fil
   root.check_version("scenario");
   root.require_object({"roadbed_scenario", "name", "map", "occupancy", "ego", "goal", "way_points",
                        "half_width_m", "speed_limit_mps", "vehicle", "duration_s", "seed", "noise",
-                       "options", "lights", "obstacles"});
+                       "options", "lights", "obstacles", "obstacles_file"});
   root.at("roadbed_scenario");
   Scenario scenario;
   scenario.file = file;
@@ -322,7 +325,9 @@ std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem
     const Scenario scenario = read_scenario(file);
     files = scenario.occupancy_files;
     files.push_back(scenario.map_file);
-    if (!scenario.vehicle_file.empty()) files.push_back(scenario.vehicle_file);
+    for (const auto& named : {scenario.vehicle_file, scenario.obstacles_file}) {
+      if (!named.empty()) files.push_back(named);
+    }
   } catch (const map::InputError&) {
     return {};
   }

@@ -101,6 +101,7 @@ struct Scenario {
   bool pedals = true;  ///< acceleration goes through throttle and brake, air, tyres and grade
   std::vector<planning::LightCycle> lights;
   std::vector<ScenarioObstacle> obstacles;
+  std::filesystem::path obstacles_file;  ///< boxes over time besides, resolved; empty: none
 };
 
 /// Reads and checks a scenario; of the files that it names only a vehicle's is opened.
@@ -111,9 +112,9 @@ Scenario read_scenario(const std::filesystem::path& file);
 /// opened: a vehicle's is left to the caller.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
 
-/// The map, the clouds and the vehicle's file that a scenario names, or those of all scenarios
-/// (.json) right in a folder. A file that is no such scenario names none, as a CommonRoad one,
-/// which holds its map.
+/// The map, the clouds, and the files of vehicle and obstacles that a scenario names, or those of
+/// all scenarios (.json) right in a folder. A file that is no such scenario names none, as a
+/// CommonRoad one, which holds its map.
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file);
 
 /// What a scenario is driven with otherwise than its file says.

@@ -84,7 +84,7 @@ TrafficFlow::Ahead TrafficFlow::ahead_of(const Car& car, const DrivenBody& vehic
   };
   look_at(vehicle.body, vehicle.speed_mps);
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (i == car.obstacle) continue;
+    if (i == car.obstacle || !obstacles_[i].is_there(t_s)) continue;
     const double speed = obstacles_[i].is_static() ? 0.0 : obstacles_[i].motion.at(t_s).speed_mps;
     look_at(rectangle_at(obstacles_[i], t_s), speed);
   }
@@ -107,7 +107,7 @@ std::vector<TrafficFlow::Body> TrafficFlow::movers(const DrivenBody& vehicle) co
   std::vector<Body> all;
   const double t_s = kStep_s * steps_;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (obstacles_[i].is_static()) continue;
+    if (obstacles_[i].is_static() || !obstacles_[i].is_there(t_s)) continue;
     all.push_back({i, rectangle_at(obstacles_[i], t_s), obstacles_[i].motion.at(t_s).speed_mps});
   }
   all.push_back({obstacles_.size(), vehicle.body, vehicle.speed_mps});

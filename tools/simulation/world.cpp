@@ -9,11 +9,13 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/obstacles/lanes_ahead.h"
 #include "roadbed/planning/route/router.h"
 #include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/files/obstacles_csv.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
 namespace roadbed::tools::inline simulation {
@@ -131,6 +133,17 @@ class ObstacleMaker {
     return obstacle;
   }
 
+  // Its speeds follow from its poses.
+  Obstacle make(const planning::ObstacleInSource& from) const {
+    Obstacle obstacle = planning::obstacle_in_map(road_map_, from);
+    std::vector<TimedPose> poses;
+    for (const geometry::TrajectoryPoint& at : obstacle.motion.points()) {
+      poses.push_back({at.t_s, at.pose()});
+    }
+    obstacle.motion = drive_through(poses);
+    return obstacle;
+  }
+
   LaneDriver driver_of(const std::string& id, const TrafficObstacle& traffic) const {
     const map::LanePlace start = find(scenario_, road_map_, traffic.start).on_lane;
     LaneDriver driver = traffic.to ? along_route(traffic, start) : along_lanes(traffic, start);
@@ -227,14 +240,31 @@ void refuse_unknown_signals(const Scenario& scenario, const map::RoadMap& road_m
   }
 }
 
-/// @pre the obstacles are those of the scenario, in its order.
+/// The boxes of the scenario's obstacles_file, behind its own obstacles.
+void add_boxes(const Scenario& scenario, const ObstacleMaker& maker,
+               std::vector<Obstacle>& obstacles) {
+  const std::filesystem::path& file = scenario.obstacles_file;
+  for (const auto& box : parse_obstacles_csv(map::read_file(file), map::input_name(file))) {
+    const auto same = [&](const ScenarioObstacle& own) { return own.id == box.id; };
+    if (std::ranges::any_of(scenario.obstacles, same)) {
+      refuse(scenario, "/obstacles_file",
+             fmt::format("names \"{}\", as an obstacle of the scenario", box.id),
+             "rename one of the two");
+    }
+    obstacles.push_back(maker.make(box));
+  }
+}
+
+/// @pre the obstacles are those of the scenario, in its order, then those of its file.
 void refuse_overlap(const Scenario& scenario, const World& world) {
   const geometry::Rectangle body = geometry::body_at(world.start, scenario.vehicle);
   for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
-    if (geometry::distance_m(body, rectangle_at(world.obstacles[i], 0.0)) > 0.0) continue;
-    refuse(scenario, fmt::format("/obstacles/{}", i),
-           fmt::format("{} touches the ego at the start", world.obstacles[i].id),
-           "move one of the two");
+    const Obstacle& obstacle = world.obstacles[i];
+    if (!obstacle.is_there(0.0)) continue;
+    if (geometry::distance_m(body, rectangle_at(obstacle, 0.0)) > 0.0) continue;
+    refuse(scenario,
+           i < scenario.obstacles.size() ? fmt::format("/obstacles/{}", i) : "/obstacles_file",
+           fmt::format("{} touches the ego at the start", obstacle.id), "move one of the two");
   }
 }
 
@@ -255,6 +285,7 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
       drivers.push_back(maker.driver_of(obstacle.id, *traffic));
     }
   }
+  if (!scenario.obstacles_file.empty()) add_boxes(scenario, maker, obstacles);
   std::shared_ptr<const map::OccupancyMap> occupancy;
   std::shared_ptr<const map::ClearanceField> field;
   if (!scenario.occupancy_files.empty()) {
