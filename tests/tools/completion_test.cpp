@@ -163,7 +163,7 @@ TEST_F(Share, HasManualPagesThatMandocFindsNoFaultIn) {
 TEST_F(Share, LetsBashCompleteEveryCommandAndOption) {
   EXPECT_THAT(offered_by_bash({"roadbed", ""}), IsSupersetOf(commands_in(help_lines({}))));
   EXPECT_THAT(offered_by_bash({"roadbed", "occupancy", ""}),
-              UnorderedElementsAre("build", "crop", "diff", "export", "info", "merge"));
+              UnorderedElementsAre("build", "crop", "diff", "export", "info", "merge", "objects"));
   for (const Words& command : all_commands()) {
     Words words = command;
     words.insert(words.begin(), "roadbed");
@@ -193,7 +193,7 @@ TEST_F(Share, LetsFishComplete) {
   folder_.write("town.txt", "");
   EXPECT_THAT(offered_by_fish("roadbed "), IsSupersetOf(commands_in(help_lines({}))));
   EXPECT_THAT(offered_by_fish("roadbed occupancy "),
-              UnorderedElementsAre("build", "crop", "diff", "export", "info", "merge"));
+              UnorderedElementsAre("build", "crop", "diff", "export", "info", "merge", "objects"));
   for (const Words& command : all_commands()) {
     const Words offered = offered_by_fish("roadbed " + joined(command, " ") + " --");
     for (const std::string& name : options_of(command)) {

@@ -85,6 +85,7 @@ class ExitStatus : public testing::Test {
         {"occupancy diff", {none, none}},
         {"occupancy crop", {none, "--heights=0,1", "-o", fresh(".bt")}},
         {"occupancy merge", {none, none, "-o", fresh(".bt")}},
+        {"occupancy objects", {none, "-o", fresh(".csv")}},
         {"drive info", {none}},
         {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},
         {"figures", {"-o", folder_.path()}},
@@ -124,8 +125,8 @@ TEST_F(ExitStatus, OfAWrongCommandLineComesWithOneLineThatNamesWhatWasMeant) {
             "roadbed occupancy: there is no command bild; did you mean build? see: roadbed "
             "occupancy --help\n");
   EXPECT_EQ(said({"occupancy"}),
-            "roadbed occupancy: a command is required: build, info, export, diff, crop, merge; "
-            "see: roadbed "
+            "roadbed occupancy: a command is required: build, info, export, diff, crop, merge, "
+            "objects; see: roadbed "
             "occupancy --help\n");
   EXPECT_EQ(said({"route", town_, "--frm", "0,0"}),
             "roadbed route: there is no option --frm; did you mean --from? see: roadbed route "

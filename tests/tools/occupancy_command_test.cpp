@@ -53,6 +53,15 @@ class OccupancyCommands : public testing::Test {
   std::string octree_ = folder_ / "street.bt";
 };
 
+TEST_F(OccupancyCommands, BuildLooksAtWhatPointsOfFilesSayOfThemselves) {
+  const std::string cloud =
+      folder_.write("classes.csv", "x,y,z,Classification\n0,0,0,2\n5,5,5,7\n");
+  const std::string octree = folder_ / "ground.bt";
+  ASSERT_EQ(run_roadbed({"occupancy", "build", cloud, "--classes", "2", "-o", octree}).status, 0);
+  const ProgramRun run = run_roadbed({"occupancy", "info", octree, "--json"});
+  EXPECT_EQ(Json::parse(run.out).at("occupied").at("leaves"), 1);
+}
+
 TEST_F(OccupancyCommands, InfoTellsBoundsAndSpaceOfWhatBuildMade) {
   const ProgramRun run = run_roadbed({"occupancy", "info", octree_, "--json"});
   ASSERT_EQ(run.status, 0) << run.err;

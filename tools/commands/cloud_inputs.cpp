@@ -8,6 +8,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/logs/log.h"
+#include "roadbed/map/logs/log_drive.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/clouds/sensor_poses.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
@@ -29,11 +30,11 @@ void note_filtered(const CloudInputs::Note& note, const std::string& name, std::
   if (count > 0) note(name, fmt::format("{} points do not count, as the filter says", count));
 }
 
-void note_all(const CloudInputs::Note& note, const map::PointCloud& cloud) {
+void note_all(const CloudInputs::Note& note, const map::PointCloud& cloud, bool needs_sensor) {
   for (const std::string& text : cloud.notes) note(cloud.name, text);
   note_left_out(note, cloud.name, cloud.dropped_not_finite, cloud.points.size());
   note_filtered(note, cloud.name, cloud.filtered_out);
-  if (!cloud.has_sensor()) note(cloud.name, kNoSensor);
+  if (needs_sensor && !cloud.has_sensor()) note(cloud.name, kNoSensor);
 }
 
 // Filters do not say which point is which.
@@ -46,11 +47,12 @@ void check_is_one_scan(const map::PointCloud& cloud) {
                          .remedy = "leave the filter out, or give --sensor or --no-carving"});
 }
 
-[[noreturn]] void refuse_octree(const std::filesystem::path& file) {
-  throw map::InputError({.file = map::input_name(file),
-                         .found = "is an octree where clouds are asked for",
-                         .needed = "one octree alone, without --tiles, or point clouds",
-                         .remedy = "give the clouds that the octree was built from"});
+[[noreturn]] void refuse_octree(const std::filesystem::path& file, bool for_octree) {
+  throw map::InputError(
+      {.file = map::input_name(file),
+       .found = "is an octree where clouds are asked for",
+       .needed = for_octree ? "one octree alone, without --tiles, or point clouds" : "point clouds",
+       .remedy = "give the clouds that the octree was built from"});
 }
 
 }  // namespace
@@ -64,23 +66,22 @@ void declare_cloud_topics(Arguments& arguments, map::LogCloudTopics& topics) {
                 "Default: its transforms, else its only topic of poses");
 }
 
-void CloudInputs::declare(Arguments& arguments) {
-  arguments
-      .add("CLOUD", files_,
-           "Point clouds (.pcd .ply .las .laz .xyz .csv .bin .feather) in one frame, in metres; "
-           "logs (a bag's "
-           "folder, .db3 or .mcap), whose PointCloud2 messages are placed by the poses of the same "
-           "log, or stand as they are without any; or one octree (.bt .ot) to convert")
-      .required()
-      .reads()
-      .ending(kCloudInputEndings);
+void CloudInputs::declare(Arguments& arguments, bool for_octree) {
+  for_octree_ = for_octree;
+  std::string help =
+      "Point clouds (.pcd .ply .las .laz .xyz .csv .bin .feather) in one frame, in metres; logs (a "
+      "bag's folder, .db3 or .mcap), whose PointCloud2 messages are placed by the poses of the "
+      "same "
+      "log, or stand as they are without any";
+  if (for_octree) help += "; or one octree (.bt .ot) to convert";
+  arguments.add("CLOUD", files_, help).required().reads().ending(kCloudInputEndings);
 }
 
 void CloudInputs::declare_sensor(Arguments& arguments) {
   declare_cloud_topics(arguments, topics_);
   arguments
       .add("--sensor", sensor_,
-           "X,Y,Z of the sensor for all clouds: rays from it carve free space. Without it "
+           "X,Y,Z of the sensor for all clouds, from where rays carve and ranges count. Without it "
            "the position that a cloud has for each point counts (fields or columns sensor_x "
            "sensor_y sensor_z, vp_x…, x_origin… or BeamOriginX…), else the viewpoint of a .pcd")
       .separated_by(',')
@@ -92,6 +93,7 @@ void CloudInputs::declare_sensor(Arguments& arguments) {
                          "qy qz qw; KITTI: 3 by 4 matrix): the clouds are in the sensor's frame, "
                          "and so are positions that they have for each point")
                     .reads());
+  if (!for_octree_) return;
   arguments.flag("--no-carving", no_carving_, "Only mark hits, whatever viewpoints the files name");
 }
 
@@ -127,6 +129,12 @@ std::optional<std::string> CloudInputs::only_octree() const {
 
 bool CloudInputs::hold_logs() const { return std::ranges::any_of(files_, map::is_log); }
 
+std::optional<std::int64_t> CloudInputs::drive_start_ns() const {
+  const auto log = std::ranges::find_if(files_, map::is_log);
+  if (log == files_.end()) return std::nullopt;
+  return map::drive_of_log(*log, topics_.poses).poses.front().stamp_ns;
+}
+
 void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
                            const Note& note) const {
   const std::vector<Eigen::Isometry3d> world_from_sensor = poses();
@@ -151,7 +159,7 @@ void CloudInputs::for_each(const std::function<void(map::PointCloud)>& use,
 
 void CloudInputs::pass_on(map::PointCloud cloud, const std::function<void(map::PointCloud)>& use,
                           const Note& note) const {
-  if (note) note_all(note, cloud);
+  if (note) note_all(note, cloud, for_octree_);
   if (!cloud.points.empty()) use(std::move(cloud));
 }
 
@@ -183,15 +191,16 @@ void CloudInputs::take_log(const std::filesystem::path& log,
   note_filtered(note, map::input_name(log), counts.filtered_out + filtered_out);
   for (const std::string& text : clouds.notes(counts)) note(map::input_name(log), text);
   note_left_out(note, map::input_name(log), counts.not_finite, points);
-  if (!have_sensor) note(map::input_name(log), kNoSensor);
+  if (for_octree_ && !have_sensor) note(map::input_name(log), kNoSensor);
 }
 
 map::PointCloud CloudInputs::cloud_of(std::size_t i,
                                       const std::vector<Eigen::Isometry3d>& poses) const {
   const std::string bytes = map::read_file(files_[i]);
-  if (map::is_occupancy_file(bytes)) refuse_octree(files_[i]);
-  map::PointCloud cloud = poses.empty() ? map::point_cloud_of(files_[i], bytes)
-                                        : map::parse_point_cloud(bytes, map::input_name(files_[i]));
+  if (map::is_occupancy_file(bytes)) refuse_octree(files_[i], for_octree_);
+  map::PointCloud cloud =
+      poses.empty() ? map::point_cloud_of(files_[i], bytes, filter_.filter())
+                    : map::parse_point_cloud(bytes, map::input_name(files_[i]), filter_.filter());
   if (scale_) cloud = map::scaled_to_metres(cloud, *scale_);
   if (!poses.empty()) cloud = map::placed(cloud, poses[i]);
   return prepared(std::move(cloud));

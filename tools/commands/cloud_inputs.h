@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -27,7 +28,9 @@ void declare_cloud_topics(Arguments& arguments, map::LogCloudTopics& topics);
 /// before they are measured.
 class CloudInputs {
  public:
-  void declare(Arguments& arguments);
+  /// @param for_octree  whether an octree is made of them: rays carve, and one octree may stand in
+  ///                    place of clouds.
+  void declare(Arguments& arguments, bool for_octree = true);
   /// From where they were measured.
   void declare_sensor(Arguments& arguments);
   /// Filters, scale, CRS.
@@ -41,6 +44,10 @@ class CloudInputs {
 
   /// Whether one of them is a log, whose clouds may be more than memory holds.
   bool hold_logs() const;
+
+  /// When the drive of the first log among them begins, as `audit --trajectory` counts its times;
+  /// none where there is no log. @throws InputError if the log does not say which drive is meant.
+  std::optional<std::int64_t> drive_start_ns() const;
 
   /// Takes what the user may want to know of an input.
   using Note = std::function<void(const std::string& name, const std::string& text)>;
@@ -67,7 +74,7 @@ class CloudInputs {
   FilterArguments filter_;
   map::CloudFilter of_neighbours_;  // what needs PCL
   std::string crs_;
-  bool no_carving_ = false;
+  bool no_carving_ = false, for_octree_ = true;
 };
 
 }  // namespace roadbed::tools::commands

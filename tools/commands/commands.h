@@ -38,6 +38,7 @@ std::unique_ptr<Command> make_occupancy_export_command();
 std::unique_ptr<Command> make_occupancy_diff_command();
 std::unique_ptr<Command> make_occupancy_crop_command();
 std::unique_ptr<Command> make_occupancy_merge_command();
+std::unique_ptr<Command> make_occupancy_objects_command();
 std::unique_ptr<Command> make_audit_command();
 std::unique_ptr<Command> make_figures_command();
 std::unique_ptr<Command> make_report_command();

@@ -34,12 +34,13 @@ class OccupancyCommand : public Command {
     std::unique_ptr<Command> command;
     std::optional<Arguments> arguments = {};
   };
-  std::array<Part, 6> parts_{Part{"build", make_occupancy_build_command()},
+  std::array<Part, 7> parts_{Part{"build", make_occupancy_build_command()},
                              Part{"info", make_occupancy_info_command()},
                              Part{"export", make_occupancy_export_command()},
                              Part{"diff", make_occupancy_diff_command()},
                              Part{"crop", make_occupancy_crop_command()},
-                             Part{"merge", make_occupancy_merge_command()}};
+                             Part{"merge", make_occupancy_merge_command()},
+                             Part{"objects", make_occupancy_objects_command()}};
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/short_number.h"
 #include "roadbed/tools/files/csv.h"
 
 namespace roadbed::tools::inline files {
@@ -20,6 +22,7 @@ struct ColumnRule {
   double least, most;
 };
 
+constexpr const char* kHeader = "t_s,id,x_m,y_m,heading_rad,length_m,width_m";
 constexpr double kFarthest = 1e9, kLongestBox_m = 1000.0;
 constexpr std::array<ColumnRule, 7> kRules{{
     {"t_s", -kFarthest, kFarthest},
@@ -36,7 +39,7 @@ using Places = std::array<std::size_t, kRules.size()>;
 Places places_of_columns(const CsvReader& table) {
   Places places{};
   for (std::size_t c = 0; c < kRules.size(); ++c) {
-    places[c] = table.column(kRules[c].name, "t_s,id,x_m,y_m,heading_rad,length_m,width_m");
+    places[c] = table.column(kRules[c].name, kHeader);
   }
   return places;
 }
@@ -101,6 +104,22 @@ std::vector<planning::ObstacleInSource> parse_obstacles_csv(std::string_view byt
   std::vector<planning::ObstacleInSource> obstacles = gathered.take();
   if (obstacles.empty()) table.refuse("row", "there is none", "at least one below the header");
   return obstacles;
+}
+
+std::string write_obstacles_csv(const std::vector<planning::ObstacleInSource>& obstacles) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}\n", kHeader);
+  for (const planning::ObstacleInSource& box : obstacles) {
+    const std::string id = map::csv_field(box.id), length = map::short_number(box.length_m),
+                      width = map::short_number(box.width_m);
+    for (const auto& row : box.motion.points()) {
+      fmt::format_to(out, "{},{},{},{},{},{},{}\n", map::number_within(row.t_s, 1e-9), id,
+                     map::short_number(row.x_m), map::short_number(row.y_m),
+                     map::number_within(row.heading_rad, 1e-9), length, width);
+    }
+  }
+  return fmt::to_string(text);
 }
 
 std::string obstacles_text(const std::vector<planning::ObstacleInSource>& obstacles) {

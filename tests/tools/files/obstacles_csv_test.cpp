@@ -41,6 +41,18 @@ TEST(ObstaclesCsv, TurnsTheShorterWayRound) {
   EXPECT_NEAR(obstacles[0].motion.at(0.5).heading_rad, M_PI, 1e-9);
 }
 
+TEST(ObstaclesCsv, AreReadAsTheyWereWritten) {
+  const std::string text =
+      "t_s,id,x_m,y_m,heading_rad,length_m,width_m\n"
+      "1,\"bus, red\",443210.25,2,0.5,12,2.5\n"
+      "3.000000001,\"bus, red\",443211,4,0.7,12,2.5\n"
+      "0,post,9,8,0,0.2,0.2\n";
+  const auto obstacles = parse_obstacles_csv(text, "a.csv");
+  EXPECT_EQ(write_obstacles_csv(obstacles), text);
+  EXPECT_EQ(obstacles_text(parse_obstacles_csv(write_obstacles_csv(obstacles), "b.csv")),
+            obstacles_text(obstacles));
+}
+
 TEST(ObstaclesCsv, RefusesARowWithItsPlaceAndReason) {
   const auto expect_refused = [](const std::string& rows, const char* reason) {
     try {
