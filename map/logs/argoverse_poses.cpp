@@ -1,38 +1,21 @@
 #include "roadbed/map/logs/argoverse_poses.h"
 
-#include <cmath>
+#include <span>
 
-#include "roadbed/map/files/input_error.h"
-#include "roadbed/map/logs/feather.h"
+#include "roadbed/map/logs/pose_columns.h"
 
 namespace roadbed::map::inline logs {
 
 std::vector<TimedPose> read_ego_poses(std::string_view bytes, const std::string& name) {
-  const auto columns =
-      parse_feather(bytes, name, {"timestamp_ns", "tx_m", "ty_m", "tz_m", "qw", "qx", "qy", "qz"});
-  const auto refuse = [&](const std::string& element, const std::string& found,
-                          const std::string& needed) {
-    throw InputError({.file = name,
-                      .element = element,
-                      .found = found,
-                      .needed = needed,
-                      .remedy = "give city_SE3_egovehicle.feather"});
-  };
-  if (!columns[0].is_whole) refuse("column timestamp_ns", "is not whole", "nanoseconds");
-  for (std::size_t c = 1; c < columns.size(); ++c) {
-    if (columns[c].is_whole) refuse("column " + columns[c].name, "is whole", "real numbers");
-  }
+  constexpr const char* remedy = "give city_SE3_egovehicle.feather";
+  std::vector<std::string> wanted{"timestamp_ns"};
+  wanted.insert(wanted.end(), kPoseColumns.begin(), kPoseColumns.end());
+  const std::vector<FeatherColumn> columns = parse_feather(bytes, name, wanted);
+  const std::vector<std::int64_t>& stamps_ns = stamps_in(columns[0], name, remedy);
+  const auto in_city = poses_in(std::span(columns).subspan(1), name, remedy);
   std::vector<TimedPose> poses;
-  for (std::size_t row = 0; row < columns[0].wholes.size(); ++row) {
-    const auto value = [&](std::size_t c) { return columns[c].reals[row]; };
-    const Eigen::Quaterniond turn(value(4), value(5), value(6), value(7));
-    if (!(std::abs(turn.norm() - 1.0) <= 0.01)) {
-      refuse("row " + std::to_string(row + 1), "has no rotation", "a quaternion of length 1");
-    }
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = turn.normalized().toRotationMatrix();
-    pose.translation() = Eigen::Vector3d(value(1), value(2), value(3));
-    poses.push_back({columns[0].wholes[row], pose});
+  for (std::size_t row = 0; row < stamps_ns.size(); ++row) {
+    poses.push_back({stamps_ns[row], in_city[row]});
   }
   return poses;
 }

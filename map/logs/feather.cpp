@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -14,7 +15,7 @@ namespace roadbed::map::inline logs {
 namespace {
 
 constexpr std::string_view kMagic = "ARROW1";
-constexpr std::uint8_t kIntType = 2, kFloatType = 3;
+constexpr std::uint8_t kIntType = 2, kFloatType = 3, kTextType = 5;
 /// Fields of Arrow's tables that are read [Schema.fbs, Message.fbs, File.fbs].
 namespace field {
 constexpr int footer_schema = 1, footer_batches = 3, schema_endianness = 0, schema_fields = 1,
@@ -36,7 +37,10 @@ class FeatherReader {
  public:
   FeatherReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-  std::vector<FeatherColumn> read(const std::vector<std::string>& wanted) {
+  std::vector<FeatherColumn> read(std::vector<std::string> wanted,
+                                  const std::vector<std::string>& texts) {
+    numbers_ = wanted.size();
+    wanted.insert(wanted.end(), texts.begin(), texts.end());
     constexpr std::size_t tail = 10;
     if (bytes_.size() < 8 + tail || !bytes_.ends_with(kMagic)) refuse("", "is cut off", kMagic);
     const std::size_t end = bytes_.size() - tail;
@@ -92,7 +96,8 @@ class FeatherReader {
       const auto kind = column.number<std::uint8_t>(field::type_kind, 0);
       for (std::size_t c = 0; c < wanted.size(); ++c) {
         if (column.text(field::name) != wanted[c]) continue;
-        places_[c] = place_of(column, kind, wanted[c]);
+        places_[c] =
+            c < numbers_ ? place_of(column, kind, wanted[c]) : place_of_text(kind, wanted[c]);
         places_[c].node = node;
         places_[c].first_buffer = buffer;
         columns_[c].is_whole = kind == kIntType;
@@ -102,8 +107,8 @@ class FeatherReader {
         refuse("schema", "has nested columns", "plain ones");
       }
       // Validity and values; texts and bytes have offsets between them.
-      constexpr std::uint8_t binary = 4, utf8 = 5, null = 1;
-      buffer += kind == null ? 0 : kind == binary || kind == utf8 ? 3 : 2;
+      constexpr std::uint8_t binary = 4, null = 1;
+      buffer += kind == null ? 0 : kind == binary || kind == kTextType ? 3 : 2;
       ++node;
     }
     for (std::size_t c = 0; c < wanted.size(); ++c) {
@@ -126,6 +131,12 @@ class FeatherReader {
     }
     if (place.bytes == 0) refuse("column " + name, "is of another type", "numbers");
     return place;
+  }
+
+  // Whose buffer of offsets has four bytes a row.
+  Place place_of_text(std::uint8_t kind, const std::string& name) const {
+    if (kind != kTextType) refuse("column " + name, "is of another type", "texts");
+    return {.kind = kind, .bytes = sizeof(std::int32_t)};
   }
 
   void read_batch(std::uint64_t offset, std::uint64_t metadata_size, std::uint64_t body_size) {
@@ -154,25 +165,48 @@ class FeatherReader {
   void read_column(const FlatTable& batch, std::uint64_t rows, std::size_t c) {
     const std::string element = "column " + columns_[c].name;
     const Place& place = places_[c];
+    const std::uint32_t last_buffer = place.first_buffer + (place.kind == kTextType ? 2 : 1);
     if (batch.count(field::nodes, kPairSize) <= place.node ||
-        batch.count(field::buffers, kPairSize) <= place.first_buffer + 1) {
+        batch.count(field::buffers, kPairSize) <= last_buffer) {
       refuse(element, "is missing in a record batch", "all columns");
     }
     if (batch.number_of<std::int64_t>(field::nodes, place.node, kPairSize, 8) != 0) {
-      refuse(element, "has rows without a value", "a number in each row");
+      refuse(element, "has rows without a value", "one in each row");
     }
     if (rows > most_unpacked(bytes_.size()) / place.bytes) {
       refuse(element, fmt::format("says that it has {} rows", rows), "fewer");
     }
-    const std::string_view values = values_of(batch, place, rows * place.bytes, element);
+    if (place.kind == kTextType) return read_texts(batch, rows, c, element);
+    const std::string_view values =
+        buffer_of(batch, place.first_buffer + 1, rows * place.bytes, element);
     for (std::uint64_t row = 0; row < rows; ++row) {
       append(values.data() + row * place.bytes, place, columns_[c]);
     }
   }
 
-  std::string_view values_of(const FlatTable& batch, const Place& place, std::uint64_t size,
+  void read_texts(const FlatTable& batch, std::uint64_t rows, std::size_t c,
+                  const std::string& element) {
+    if (rows == 0) return;
+    constexpr std::uint64_t step = sizeof(std::int32_t);
+    const std::uint32_t buffer = places_[c].first_buffer + 1;
+    const std::string offsets(buffer_of(batch, buffer, (rows + 1) * step, element));
+    const auto offset = [&](std::uint64_t row) { return at<std::int32_t>(&offsets[row * step]); };
+    const auto size = static_cast<std::uint64_t>(std::max(0, offset(rows)));
+    if (size > most_unpacked(bytes_.size())) refuse(element, "has too many bytes", "fewer");
+    const std::string_view texts = buffer_of(batch, buffer + 1, size, element);
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      const std::int32_t from = offset(row), to = offset(row + 1);
+      if (from < 0 || to < from || static_cast<std::uint64_t>(to) > size) {
+        refuse(element, fmt::format("row {} is from byte {} to {}", row + 1, from, to),
+               "texts one after the other");
+      }
+      columns_[c].texts.emplace_back(
+          texts.substr(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)));
+    }
+  }
+
+  std::string_view buffer_of(const FlatTable& batch, std::uint32_t index, std::uint64_t size,
                              const std::string& element) {
-    const std::uint32_t index = place.first_buffer + 1;
     const auto at = batch.number_of<std::uint64_t>(field::buffers, index, kPairSize, 0);
     const auto length = batch.number_of<std::uint64_t>(field::buffers, index, kPairSize, 8);
     if (at > body_.size() || length > body_.size() - at) {
@@ -236,6 +270,7 @@ class FeatherReader {
   std::string_view bytes_, body_;
   const std::string& name_;
   std::string unpacked_;
+  std::size_t numbers_ = 0;  // of the columns; texts are behind them
   std::vector<FeatherColumn> columns_;
   std::vector<Place> places_;
 };
@@ -245,8 +280,9 @@ class FeatherReader {
 bool is_feather(std::string_view bytes) { return bytes.starts_with(kMagic); }
 
 std::vector<FeatherColumn> parse_feather(std::string_view bytes, const std::string& name,
-                                         const std::vector<std::string>& columns) {
-  return FeatherReader(bytes, name).read(columns);
+                                         const std::vector<std::string>& columns,
+                                         const std::vector<std::string>& texts) {
+  return FeatherReader(bytes, name).read(columns, texts);
 }
 
 }  // namespace roadbed::map::logs

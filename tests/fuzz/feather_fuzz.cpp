@@ -1,4 +1,4 @@
-// Feather in, columns of an ego's poses or InputError out.
+// Feather in, columns of an ego's poses and of annotations or InputError out.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,6 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
     roadbed::map::parse_feather(bytes, "fuzz.feather", {"timestamp_ns", "tx_m", "qw"});
+    roadbed::map::parse_feather(bytes, "fuzz.feather", {"timestamp_ns"}, {"track_uuid"});
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

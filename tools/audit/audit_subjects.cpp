@@ -71,6 +71,16 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
                "Argoverse 2, TUM or KITTI. Or a folder: its .csv files, and each trajectory.csv "
                "below")
           .reads();
+  Argument log =
+      arguments
+          .add("--log", log_,
+               "Folder of a sensor log of Argoverse 2: its ego's drive, with --map the log's map, "
+               "--on drivable, and hits and boxes of its sweeps, where these are not given")
+          .reads();
+  boxes_argument_ = arguments.choice(
+      "--boxes", boxes_, {{"found", LogBoxes::found}, {"annotated", LogBoxes::annotated}},
+      "Of --log: dynamic obstacles are what is found in its sweeps and followed (as occupancy "
+      "objects does), or the boxes that people have annotated");
   const std::vector<Argument> of_files = of_drive_.declare(arguments);
   std::vector<Argument> of_sweeps = question_.declare(arguments, true);
   Argument lane = arguments.add(
@@ -91,31 +101,37 @@ std::vector<Argument> AuditSubjects::declare(Arguments& arguments) {
           .with_default());
   for (const Argument& other : of_sweeps) {
     trajectory.excludes(other);
+    log.excludes(other);
     for (Argument rule : of_files) rule.excludes(other);
   }
   return of_sweeps;
 }
 
 std::string AuditSubjects::fault(bool has_map) const {
-  const bool has_file = !trajectory_.empty(), has_lane = !lane_.empty();
-  if (has_file + has_lane + question_.has_any_place() != 1) {
-    return "needs just one of --trajectory, --lane, and --from with --to";
+  const bool has_file = !trajectory_.empty(), has_log = !log_.empty(), has_lane = !lane_.empty();
+  if (has_file + has_log + has_lane + question_.has_any_place() != 1) {
+    return "needs just one of --trajectory, --log, --lane, and --from with --to";
   }
-  if (has_file) return {};
+  if (boxes_argument_->given() && !has_log) return "--boxes needs --log";
+  if (has_file || has_log) return {};
   if (!has_lane && !question_.has_places()) return "--from and --to are required";
   return has_map ? "" : "--map is required";
 }
 
+fs::path AuditSubjects::file() const {
+  return log_.empty() ? trajectory_ : drive_of_argoverse_log(log_);
+}
+
 bool AuditSubjects::is_folder() const {
-  return fs::is_directory(trajectory_) && !map::is_log(trajectory_);
+  return log_.empty() && fs::is_directory(trajectory_) && !map::is_log(trajectory_);
 }
 
 std::vector<AuditSubject> AuditSubjects::list(const map::RoadMap* road_map,
                                               const geometry::VehicleShape& shape) const {
   if (is_folder()) return in_folder();
   if (!is_swept()) {
-    return {{.name = map::one_line(trajectory_.string()),
-             .file = trajectory_,
+    return {{.name = map::one_line(file().string()),
+             .file = file(),
              .options = of_drive_.options(shape)}};
   }
   return {lane_.empty() ? route(*road_map) : lane(*road_map)};

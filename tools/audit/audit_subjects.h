@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/tools/audit/argoverse_log.h"
 #include "roadbed/tools/cli/arguments.h"
 #include "roadbed/tools/cli/drive_arguments.h"
 #include "roadbed/tools/cli/inputs.h"
@@ -25,8 +27,8 @@ struct AuditSubject {
   geometry::Trajectory drive() const;
 };
 
-/// The options that say what is audited: `--trajectory` (a file or a folder), or a route or lane of
-/// the map, swept: `--from --to` with the rules of routes, `--lane`, `--speed --offset`.
+/// The options that say what is audited: `--trajectory` (a file or a folder), `--log`, or a route
+/// or lane of the map, swept: `--from --to` with the rules of routes, `--lane`, `--speed --offset`.
 class AuditSubjects {
  public:
   /// @returns what says how a line is found and swept, which drives of files do not have.
@@ -35,10 +37,15 @@ class AuditSubjects {
   /// What is wrong with the options together; empty if nothing is.
   std::string fault(bool has_map) const;
 
-  bool is_swept() const { return trajectory_.empty(); }
+  bool is_swept() const { return file().empty(); }
 
-  /// The file or folder that was given; may be empty.
-  const std::filesystem::path& file() const { return trajectory_; }
+  /// The file or folder that was given, or is the drive of the log; may be empty.
+  std::filesystem::path file() const;
+
+  /// The folder of a log of Argoverse 2, of which more than its drive counts; may be empty.
+  const std::filesystem::path& log() const { return log_; }
+  /// Where the boxes of that log come from.
+  LogBoxes log_boxes() const { return boxes_; }
 
   /// All files that end in .csv in the folder, and the trajectory.csv of folders below it, by name;
   /// one subject otherwise.
@@ -57,7 +64,9 @@ class AuditSubjects {
   AuditSubject lane(const map::RoadMap& road_map) const;
   std::string suffix() const;
 
-  std::filesystem::path trajectory_;
+  std::filesystem::path trajectory_, log_;
+  LogBoxes boxes_ = LogBoxes::found;
+  std::optional<Argument> boxes_argument_;
   DriveArguments of_drive_;
   RouteQuestion question_;
   std::string lane_;

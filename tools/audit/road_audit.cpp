@@ -10,6 +10,7 @@
 #include "roadbed/map/commonroad/scenario.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/formats.h"
 #include "roadbed/map/geojson/document.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/simulation/common_road_obstacles.h"
@@ -142,7 +143,7 @@ std::vector<planning::LightCycle> recorded_lights(const std::filesystem::path& f
   }
   const std::string start = map::read_file_start(file, 4096);
   const std::size_t sign = start.find_first_not_of(" \t\r\n");
-  if (sign == std::string::npos || start[sign] != '{') return {};
+  if (sign == std::string::npos || start[sign] != '{' || map::format_of(start)) return {};
   return read_scenario(file).lights;
 }
 

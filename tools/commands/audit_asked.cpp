@@ -155,6 +155,11 @@ std::string AuditAsked::fault() const {
   return {};
 }
 
+void AuditAsked::take_map_of_log(const std::filesystem::path& map_file) {
+  if (map_.empty()) map_ = map_file;
+  if (on_.empty()) on_ = "drivable";
+}
+
 Vehicle AuditAsked::read_vehicle() const {
   return vehicle_.empty() ? Vehicle{} : tools::read_vehicle(vehicle_);
 }

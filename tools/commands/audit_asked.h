@@ -28,6 +28,10 @@ class AuditAsked {
   const std::filesystem::path& map_file() const { return map_; }
   const std::filesystem::path& vehicle_file() const { return vehicle_; }
   const std::filesystem::path& obstacles_file() const { return obstacles_; }
+
+  /// Of a log, what the command line leaves out: its map, and that the drive is on it.
+  void take_map_of_log(const std::filesystem::path& map_file);
+
   bool about_road() const { return !on_.empty(); }
   const planning::AuditOptions& options() const { return options_; }
   double from_height_m() const { return from_height_m_; }

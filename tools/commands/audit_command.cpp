@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "roadbed/map/files/json_text.h"
+#include "roadbed/tools/audit/argoverse_log.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/cli/freed_memory.h"
@@ -45,6 +46,7 @@ class AuditCommand : public Command {
         "  roadbed audit --occupancy street.bt --trajectory drives --threads 4 --junit audit.xml\n"
         "  roadbed audit --occupancy street.bt --trajectory poses.txt --pose-frame rear-axle "
         "--save-drive poses.csv\n"
+        "  roadbed audit --log data/argoverse_log --boxes annotated --unknown free --svg log.svg\n"
         "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3\n"
         "  roadbed audit --map town.xodr --on drivable --margin 0.1 --trajectory "
         "drive/trajectory.csv\n"
@@ -59,11 +61,14 @@ class AuditCommand : public Command {
       return holds ? Exit::ok : Exit::no;
     }
     outputs_.check(asked_, subjects_);
+    const LogScene of_log = subjects_.log().empty() ? LogScene() : take_log(common);
     const Vehicle vehicle = asked_.read_vehicle();
     std::shared_ptr<const map::RoadMap> road_map;
     if (!asked_.map_file().empty()) road_map = common.inputs->road_map(asked_.map_file());
     AuditScene scene{.asked = asked_, .subjects = subjects_, .inputs = *common.inputs};
     scene.question = asked_.question(vehicle, road_map.get(), outputs_.certifies(), *common.inputs);
+    if (asked_.obstacles_file().empty()) scene.question.moving_in_source = of_log.obstacles;
+    scene.occupancy = of_log.occupancy;
     scene.shape = vehicle.shape;
     scene.road_map = road_map.get();
     const RoadQuestion road =
@@ -95,12 +100,22 @@ class AuditCommand : public Command {
 
   std::string missing() const {
     if (!check_.empty()) return {};
-    if (std::string fault = asked_.fault(); !fault.empty()) return fault;
+    const bool has_log = !subjects_.log().empty();
+    if (has_log && outputs_.certifies()) return "--certificate is about files, not about --log";
+    if (std::string fault = asked_.fault(); !has_log && !fault.empty()) return fault;
     const bool has_map = !asked_.map_file().empty();
     if (std::string fault = subjects_.fault(has_map); !fault.empty()) return fault;
     const bool proves_nothing =
         subjects_.is_swept() && outputs_.certifies() && !outputs_.saves_drive();
     return proves_nothing ? "--certificate needs --save-drive here, as it is about a file" : "";
+  }
+
+  // What is not given is the log's.
+  LogScene take_log(const CommonOptions& common) {
+    const ArgoverseLog log = argoverse_log(subjects_.log());
+    asked_.take_map_of_log(log.map);
+    if (!asked_.occupancy_file().empty() && !asked_.obstacles_file().empty()) return {};
+    return scene_of_log(log, subjects_.log_boxes(), common.threads);
   }
 
   void add_occupancy(AuditScene& scene, const Streams& streams, const CommonOptions& common) const {

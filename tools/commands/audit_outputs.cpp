@@ -92,7 +92,9 @@ ReportInput report_of(const AuditedDrive& audited, const AuditScene& scene) {
   if (scene.occupancy) {
     page.occupied =
         occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
-    page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
+    if (!scene.asked.occupancy_file().empty()) {
+      page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
+    }
   } else {
     page.clearance_m = scene.asked.margin_m();
     if (!scene.asked.map_file().empty())

@@ -28,6 +28,7 @@ constexpr std::size_t kMostFootprints = 400;
 constexpr std::string_view kAuditStyle = R"(<style>
 .ground{fill:#f4f4f1}.lane{fill:#dcdfe3;stroke:#c6cad0;stroke-width:.5}
 .occupied{fill:#4b3f33}.body{fill:#2f9be0;fill-opacity:.16;stroke:#2f7fb8;stroke-width:.7;stroke-opacity:.8}
+.standing{fill:#e69f00;fill-opacity:.35;stroke:#8a5f00;stroke-width:.7}.moving{fill:#d55e00;fill-opacity:.2;stroke:#d55e00;stroke-width:.7}
 .unknown{fill:#9467bd;fill-opacity:.25;stroke:#7b4fa6;stroke-width:.7}
 .conflict{fill:#d62728;fill-opacity:.28;stroke:#b01417;stroke-width:1}
 .worst{fill:none;stroke:#b01417;stroke-width:2.2}.witness{fill:#ffd400;stroke:#b01417;stroke-width:1}
@@ -88,6 +89,28 @@ std::string occupied_around_audit_svg(const AuditPicture& picture, const map::Pi
     if (drawn.insert(place).second) data += map::svg_ring(frame, ring_of(box));
   }
   return map::svg_path("occupied", data);
+}
+
+// Whoever stands, and who moves at every second of the drive.
+std::string obstacles_around_audit_svg(const AuditPicture& picture,
+                                       const map::PictureFrame& frame) {
+  std::string standing, moving;
+  const auto draw = [&](const planning::ObstacleInSource& obstacle, double t_s, std::string& data) {
+    const auto corners = planning::rectangle_at(obstacle, t_s).corners();
+    PictureBox box;
+    for (const Vector2d& corner : corners) box.extend(corner);
+    if (frame.shows(box)) data += map::svg_ring(frame, Ring(corners.begin(), corners.end()));
+  };
+  for (const planning::ObstacleInSource& obstacle : picture.moving) {
+    if (obstacle.is_static()) {
+      draw(obstacle, 0.0, standing);
+      continue;
+    }
+    const double from_s = std::max(picture.drive.start_s(), obstacle.validity.from_s);
+    const double to_s = std::min(picture.drive.end_s(), obstacle.validity.to_s);
+    for (double t_s = from_s; t_s <= to_s; t_s += 1.0) draw(obstacle, t_s, moving);
+  }
+  return map::svg_path("standing", standing) + map::svg_path("moving", moving);
 }
 
 std::string audited_lanes_svg(const AuditPicture& picture, const map::PictureFrame& frame) {
@@ -245,7 +268,8 @@ std::string audit_svg(const AuditPicture& picture) {
              "<rect class=\"ground\" width=\"{0}\" height=\"{1}\"/>\n",
              kAuditWidth_px, height, kAuditStyle) +
          audited_lanes_svg(picture, frame) + occupied_around_audit_svg(picture, frame) +
-         drive_svg(picture, frame) + conflicts_svg(picture, frame) + header_svg(picture, frame) +
+         obstacles_around_audit_svg(picture, frame) + drive_svg(picture, frame) +
+         conflicts_svg(picture, frame) + header_svg(picture, frame) +
          panel_svg(picture, frame.size_px.y()) + "</svg>\n";
 }
 

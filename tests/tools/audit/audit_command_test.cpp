@@ -260,7 +260,7 @@ TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
     EXPECT_THAT(run.out + run.err, HasSubstr(reason));
   };
   const std::string one = folder_ / "drives/near.csv";
-  expect(audit({}), 2, "just one of --trajectory, --lane, and --from with --to");
+  expect(audit({}), 2, "just one of --trajectory, --log, --lane, and --from with --to");
   expect(audit({"--trajectory", one, "--lane", "lane:1"}), 2, "just one of");
   expect(audit({"--lane", "lane:1/0/-1"}), 2, "--map");
   expect(audit({"--trajectory", drives_, "--save-drive", folder_ / "x.csv"}), 3, "one drive");
