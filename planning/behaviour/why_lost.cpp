@@ -2,18 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
 #include <string>
 
 namespace roadbed::planning::inline behaviour {
 namespace {
 
-std::string whom_it_meets(const ManeuverHypothesis& hypothesis, const Traffic& traffic) {
-  const auto& meeting = hypothesis.meeting;
-  if (!hypothesis.by_cruise_law || !meeting || meeting->obstacle >= traffic.obstacles.size()) {
-    return "something";
+/// Who blocks the place at which a drive is no longer free; none: nobody is found there.
+std::optional<std::size_t> met(const ManeuverHypothesis& hypothesis) {
+  if (hypothesis.by_cruise_law && hypothesis.meeting) return hypothesis.meeting->obstacle;
+  const SpeedSearchAnswer& answer = hypothesis.answer;
+  if (!hypothesis.occupancy) return std::nullopt;
+  for (const SpeedState& state : answer.plan) {
+    const int step = static_cast<int>(std::lround(state.t_s / StGraph::kStep_s));
+    for (const StInterval& part : hypothesis.occupancy->at(step)) {
+      const bool is_in = state.ahead_m > part.from_m && state.ahead_m < part.to_m;
+      if (is_in && part.obstacle != StInterval::kNoObstacle) return part.obstacle;
+    }
   }
-  const Obstacle& other = traffic.obstacles[meeting->obstacle];
-  return fmt::format("{} {}", other.kind, other.id);
+  return std::nullopt;
+}
+
+std::string whom_it_meets(const ManeuverHypothesis& hypothesis, const Traffic& traffic) {
+  const std::optional<std::size_t> obstacle = met(hypothesis);
+  if (!obstacle || *obstacle >= traffic.obstacles.size()) return "something";
+  const Obstacle& other = traffic.obstacles[*obstacle];
+  return other.id.empty() ? other.kind : fmt::format("{} {}", other.kind, other.id);
 }
 
 /// In the order in which is_better() compares.
@@ -37,7 +52,7 @@ HypothesisOutcome outcome_of(const ManeuverHypothesis& hypothesis) {
   if (const std::optional<Candidate>& chosen = hypothesis.proposal.plan.chosen) {
     outcome.end_d_m = chosen->end_d_m;
     outcome.end_l_m = chosen->end_l_m;
-    outcome.path_cost = chosen->cost;
+    if (!hypothesis.proposal.knots) outcome.path_cost = chosen->cost;
   }
   if (hypothesis.risk_level && !hypothesis.by_cruise_law) outcome.drive_cost = hypothesis.cost;
   if (hypothesis.occupancy) {

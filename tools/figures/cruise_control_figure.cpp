@@ -112,8 +112,8 @@ class NoisyFollowing {
                         "Its Riccati equation "
                         "(eq. 30) has a wrong sign and mixes continuous and discrete time; the "
                         "gain here is that of "
-                        "the discrete one. The filter predicts with the command that is sent, "
-                        "beyond its limit or not.",
+                        "the discrete one. The filter predicts with the command after its "
+                        "limit, which is not reached here.",
                         distance_.rms(distance_.estimated), distance_.rms(distance_.measured)),
             2};
   }

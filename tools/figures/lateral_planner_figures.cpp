@@ -181,13 +181,20 @@ Figure candidates() {
     }
     panel.series.push_back(std::move(series));
   };
-  std::size_t colliding = 0;
+  std::size_t colliding = 0, others = 0;
   for (const planning::Candidate& candidate : plan.candidates) {
-    const bool is_free = candidate.rejection == planning::Rejection::none;
-    if (!is_free) ++colliding;
-    draw(candidate, 15,
-         is_free ? Series{"free of collision", Mark::thin, kBlue, {}}
-                 : Series{"in collision, or not feasible", Mark::thin, kOrange, {}});
+    switch (candidate.rejection) {
+      case planning::Rejection::none:
+        draw(candidate, 15, {"feasible, free of collision", Mark::thin, kBlue, {}});
+        break;
+      case planning::Rejection::collision:
+        ++colliding;
+        draw(candidate, 15, {"in collision", Mark::thin, kOrange, {}});
+        break;
+      default:
+        ++others;
+        draw(candidate, 15, {"not feasible", Mark::thin, kGrey, {}});
+    }
   }
   if (plan.chosen) draw(*plan.chosen, 60, {"optimal", Mark::line, kRed, {}});
   const double from_m = line.at(start.s_m).in_map.x();
@@ -199,9 +206,10 @@ Figure candidates() {
       {std::move(panel)},
       fmt::format(
           "d_e from 2 to 4 m every 0.1 m, l_e from 15 to 30 m every 0.2 m, as in the paper, which "
-          "shows no obstacle. {} of them cannot be driven past the parked car; of the others "
-          "the cheapest is taken.",
-          colliding)};
+          "shows no obstacle. {} of them would touch the parked car or come too near, {} turn or "
+          "swing "
+          "too sharply; of the others the cheapest is taken.",
+          colliding, others)};
 }
 
 }  // namespace

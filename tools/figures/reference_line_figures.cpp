@@ -96,7 +96,8 @@ Figure path_model() {
                    {"smoothed: reference line", Mark::line, kBlue, smoothed}}}},
       "The map gives the road's width, its speed limit, traffic lights and a centreline of "
       "way-points "
-      "that were measured every 3 to 8 m, each up to 0.5 m off. The paper interpolates them (eq. 1 "
+      "that were measured every 3 to 8 m, each up to 0.5 m off in x and in y. The paper "
+      "interpolates them (eq. 1 "
       "to 5); "
       "a spline through noise bends where the road does not. The line that is planned along is "
       "smoothed, "

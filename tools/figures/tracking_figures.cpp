@@ -243,9 +243,9 @@ Figure offset_start() {
           std::move(panels),
           "Not in the paper, whose tests start on the course. CommonRoad's vehicle 2 on its tyres. "
           "Eq. 31 divides by "
-          "the speed: near standstill it turns the wheels as far as they go, and at 30 m/s it "
-          "comes back late. "
-          "Eq. 32 divides by L_x(v), and needs about the same way at any speed.",
+          "the speed: near standstill it turns the wheels nearly as far as they go, and is back "
+          "soonest there; at "
+          "30 m/s it comes back late. Eq. 32 divides by L_x(v), and needs 33 to 46 m at any speed.",
           2,
           true};
 }
@@ -266,10 +266,11 @@ Figure noise() {
           "Fig. 14, added: noise of 2 cm and 1 mrad, a car that slips",
           std::move(panels),
           "Not in the paper. CommonRoad's vehicle 2 on its tyres, pose measured with white noise, "
-          "seeded. The modified "
-          "law steers less below 2 m/s, where the original one divides by the speed, and keeps "
-          "nearer to the path "
-          "above 20 m/s; in between the original one keeps nearer.",
+          "seeded. Up to 5 m/s "
+          "the modified law steers less, as the original one divides by the speed, which keeps "
+          "that one nearer to "
+          "the path; from 10 m/s on it is the other way round. Pure pursuit keeps nearest from 15 "
+          "m/s on.",
           2,
           true};
 }

@@ -142,5 +142,6 @@ function showCycle(page, names) {
     figure.append(causeLegend(names.causes, plan.grid));
     box.append(figure);
   }
-  if (plan.chosen) box.append(costTable(names.costs, plan));
+  // A path through knots was not among the candidates, and has no costs.
+  if (plan.chosen?.costs.some((cost) => cost !== 0)) box.append(costTable(names.costs, plan));
 }

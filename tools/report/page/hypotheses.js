@@ -1,6 +1,7 @@
 // What the planner considered in a cycle: a table with why each lost, and the s–t picture of one of them.
 
-const ST_STEP = 0.5;                                // s, between the times of a picture
+const ST_STEP = 0.5;         // s, between the times of a picture: planning::StPicture::kStep_s
+const SAME_PART = 15;        // metres that a part may have moved on between two of them
 const ST_MARGINS = {left: 44, right: 10, top: 8, bottom: 30};  // pixels, for the axes
 
 function decodeSt({drive, parts}) {
@@ -15,7 +16,7 @@ function decodeSt({drive, parts}) {
 function ringsOfParts(parts) {
   const rings = [], open = new Map();
   for (const {obstacle, step, from, to} of parts) {
-    const before = (open.get(obstacle) ?? []).find((one) => one.last === step - 1 && !one.continued && from < one.to + 15 && to > one.from - 15);
+    const before = (open.get(obstacle) ?? []).find((one) => one.last === step - 1 && !one.continued && from < one.to + SAME_PART && to > one.from - SAME_PART);
     const ring = before ? before.ring : {obstacle, low: [], high: []};
     if (before) before.continued = true;
     else rings.push(ring);
@@ -128,8 +129,8 @@ function addHypothesis(rows, one, choose) {
   button.type = "button";
   button.textContent = one.maneuver;
   button.disabled = !one.st;
-  button.addEventListener("click", () => choose(one, button));
-  const end = one.d === null ? "no path" : `d ${one.d.toFixed(1)} m, l ${one.l.toFixed(1)} m`;
+  button.addEventListener("click", () => choose(one, button, true));
+  const end = one.d === null ? (one.st ? "on the path that is kept" : "no path") : `d ${one.d.toFixed(1)} m, l ${one.l.toFixed(1)} m`;
   addText(row, "td", "", end);
   for (const cost of [one.path, one.drive]) addText(row, "td", "number", costText(cost));
   addText(row, "td", one.driven ? "passed" : "", one.driven ? "✔ driven" : one.reason);
@@ -143,7 +144,8 @@ function hypothesesBox(page, plan) {
   box.className = "hypotheses";
   canvas.className = "st";
   const nameOf = (obstacle) => (obstacle < 0 ? "light or stop" : scene.obstacles[obstacle]?.id || "obstacle");
-  const choose = (one, button) => {
+  const choose = (one, button, isWanted) => {
+    if (isWanted) page.wantedManeuver = one.driven ? null : one.maneuver;
     buttons.forEach((each) => each.setAttribute("aria-pressed", String(each === button)));
     caption.textContent = `${one.maneuver}: what is in the way when (orange), and its drive (green)`;
     drawSt(canvas, one.st, nameOf, (name) => inkOf(stage, name));
@@ -155,7 +157,8 @@ function hypothesesBox(page, plan) {
   const rows = table.createTBody();
   for (const one of plan.hypotheses) buttons.push(addHypothesis(rows, one, choose));
   box.append(table);
-  const first = plan.hypotheses.findIndex((one) => one.driven && one.st), shown = first >= 0 ? first : plan.hypotheses.findIndex((one) => one.st);
+  const find = (wanted) => plan.hypotheses.findIndex((one) => one.st && wanted(one));
+  const shown = [(one) => one.maneuver === page.wantedManeuver, (one) => one.driven, () => true].map(find).find((index) => index >= 0) ?? -1;
   if (shown < 0) return [box];
   figure.prepend(canvas);
   return [box, figure, () => choose(plan.hypotheses[shown], buttons[shown])];

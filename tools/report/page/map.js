@@ -90,7 +90,11 @@ function addLayer(key, text, shown, change) {
 
 /** Only what there is. */
 function listLayers(map) {
-  const {scene, layers} = map, isThere = (key) => (scene.map[key === "markings" || key === "arrows" ? "lanes" : key].count ?? scene.map[key].length) > 0;
+  const {scene, layers} = map, {plans, obstacles, drive} = scene;
+  const empty = {candidates: !plans.some((plan) => plan.grid), foreseen: !plans.some((plan) => plan.foreseen.length > 0),
+                 ahead: !obstacles.some(moves), obstacles: obstacles.length === 0, plan: plans.length === 0,
+                 drive: drive.t.length === 0, footprints: drive.t.length === 0, vehicle: drive.t.length === 0};
+  const isThere = (key) => (scene.map[key === "markings" || key === "arrows" ? "lanes" : key].count ?? scene.map[key].length) > 0;
   for (const [key, text] of Object.entries(STILL_LAYERS).filter(([one]) => isThere(one))) {
     addLayer(key, text, true, (shown) => {
       layers[key] = shown;
@@ -103,7 +107,7 @@ function listLayers(map) {
       repaint(map);
     });
   }
-  for (const layer of LAYERS.filter((one) => one.label !== "")) {
+  for (const layer of LAYERS.filter((one) => one.label !== "" && !empty[one.key])) {
     addLayer(layer.key, layer.label, layer.shown, (shown) => {
       layer.shown = shown;
       redraw(map.stage);
