@@ -26,7 +26,7 @@ class OccupancyMergeCommand : public Command {
     arguments.require([this] { return output_.fault(); });
     arguments.says_no_if("nothing was measured in any of them");
     arguments.example(
-        "  roadbed occupancy merge north.bt south.bt -o town.bt\n"
+        "  roadbed occupancy merge north.bt south.bt -o both.bt\n"
         "  roadbed occupancy merge monday.ot tuesday.ot --no-sticky -o both.ot\n"
         "  roadbed occupancy merge city.tiles street.bt -o new.tiles");
   }
