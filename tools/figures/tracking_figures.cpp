@@ -192,22 +192,24 @@ struct OverSpeed {
 
 /// Each run is driven once for all panels.
 template <typename Drive>
-std::vector<Panel> over_speed(const std::vector<OverSpeed>& asked, const Drive& drive) {
-  std::vector<Panel> panels;
+void add_over_speed(std::vector<Panel>& panels, const std::vector<OverSpeed>& asked,
+                    const Drive& drive) {
+  const std::size_t first = panels.size();
   for (const OverSpeed& one : asked) {
     panels.push_back(
         {.title = one.title, .x_label = "v [m/s]", .y_label = one.label, .series = {}});
   }
   for (const LawLook& law : kLaws) {
-    for (Panel& panel : panels) panel.series.push_back({law.name, law.mark, law.colour, {}});
+    for (std::size_t i = first; i < panels.size(); ++i) {
+      panels[i].series.push_back({law.name, law.mark, law.colour, {}});
+    }
     for (const double speed_mps : kFromCrawling_mps) {
       const Run run = drive(law.law, speed_mps);
       for (std::size_t i = 0; i < asked.size(); ++i) {
-        panels[i].series.back().points.push_back({speed_mps, asked[i].value(run)});
+        panels[first + i].series.back().points.push_back({speed_mps, asked[i].value(run)});
       }
     }
   }
-  return panels;
 }
 
 Panel return_to_path(double speed_mps) {
@@ -231,13 +233,11 @@ Panel return_to_path(double speed_mps) {
 
 Figure offset_start() {
   std::vector<Panel> panels{return_to_path(0.2), return_to_path(30.0)};
-  for (Panel& panel :
-       over_speed({{"largest steering angle", "max |δ| [rad]",
-                    [](const Run& run) { return control::summarise(run).largest_steering_rad; }},
-                   {"way until |e_{fa}| stays below 0.1 m", "way [m]", settling_m}},
-                  from_beside)) {
-    panels.push_back(std::move(panel));
-  }
+  add_over_speed(panels,
+                 {{"largest steering angle", "max |δ| [rad]",
+                   [](const Run& run) { return control::summarise(run).largest_steering_rad; }},
+                  {"way until |e_{fa}| stays below 0.1 m", "way [m]", settling_m}},
+                 from_beside);
   return {"figure_14_offset_start",
           "Fig. 14, added: start 1 m beside a straight, a car that slips",
           std::move(panels),
@@ -253,14 +253,13 @@ Figure offset_start() {
 Figure noise() {
   std::vector<Panel> panels;
   for (const Test& test : kTests) {
-    for (Panel& panel : over_speed(
-             {{fmt::format("{}: cross-track error", test.title), "RMS of e_{fa} [m]",
-               [](const Run&run) { return control::summarise(run).cross_track_rms_m; }},
-              {fmt::format("{}: steering rate", test.title), "RMS of dδ/dt [rad/s]",
-               [](const Run&run) { return control::summarise(run).steering_rate_rms_radps; }}},
-             [&](SteeringLaw law, double speed_mps) { return with_noise(test, law, speed_mps); })) {
-      panels.push_back(std::move(panel));
-    }
+    add_over_speed(
+        panels,
+        {{fmt::format("{}: cross-track error", test.title), "RMS of e_{fa} [m]",
+          [](const Run& run) { return control::summarise(run).cross_track_rms_m; }},
+         {fmt::format("{}: steering rate", test.title), "RMS of dδ/dt [rad/s]",
+          [](const Run& run) { return control::summarise(run).steering_rate_rms_radps; }}},
+        [&](SteeringLaw law, double speed_mps) { return with_noise(test, law, speed_mps); });
   }
   return {"figure_14_noise",
           "Fig. 14, added: noise of 2 cm and 1 mrad, a car that slips",

@@ -106,13 +106,15 @@ TEST(ReportInBrowser, NamesTheLaneUnderThePointerAsTheMapDoes) {
   ROADBED_BROWSER_OR_SKIP(browser);
   std::string html = drive_report_html(tests::sample_report());
   html.insert(html.rfind("</body>"), R"(<script>
-const map = document.getElementById("map"), box = map.getBoundingClientRect(), named = new Set();
-for (let y = 2; y < box.height; y += 2) {
-  const at = {clientX: box.left + box.width / 2, clientY: box.top + y, bubbles: true};
-  map.dispatchEvent(new PointerEvent("pointermove", at));
-  named.add(/lane (\S+)/.exec(document.getElementById("place").textContent)?.[1] ?? "none");
-}
-document.documentElement.dataset.named = [...named].sort().join(" ");
+setTimeout(() => {  // when the view has gone to the vehicle
+  const map = document.getElementById("map"), box = map.getBoundingClientRect(), named = new Set();
+  for (let y = 2; y < box.height; y += 2) {
+    const at = {clientX: box.left + box.width / 2, clientY: box.top + y, bubbles: true};
+    map.dispatchEvent(new PointerEvent("pointermove", at));
+    named.add(/lane (\S+)/.exec(document.getElementById("place").textContent)?.[1] ?? "none");
+  }
+  document.documentElement.dataset.named = [...named].sort().join(" ");
+}, 500);
 </script>)");
   const std::string page = page_after_scripts(browser, html, "#t=5&follow");
   EXPECT_TRUE(holds(page, "data-named=\"12/0/-1 12/0/-2 12/0/1 12/0/2 none\""))

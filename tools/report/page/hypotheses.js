@@ -47,7 +47,7 @@ function axesOfSt(width, height, ranges) {
   return {
     x: (t) => left + wide * (t - ranges.t[0]) / (ranges.t[1] - ranges.t[0]),
     y: (s) => top + high * (ranges.s[1] - s) / (ranges.s[1] - ranges.s[0]),
-    box: [left, top, wide, high],
+    box: [left, top, wide, high], least: ranges.s[0],
   };
 }
 
@@ -94,7 +94,12 @@ function drawBlockedParts(ctx, axes, st, nameOf, ink) {
     const [t, s] = points[0];
     ctx.textAlign = "left";
     ctx.fillStyle = ink("text");
-    ctx.fillText(shortened(nameOf(obstacle), 18), axes.x(t) + 3, axes.y(s) - 3);
+    ctx.strokeStyle = ink("card");
+    ctx.lineWidth = 3;
+    const at = [axes.x(t) + 4, Math.min(axes.y(Math.max(s, axes.least)) - 5, axes.box[1] + axes.box[3] - 5)];
+    ctx.strokeText(shortened(nameOf(obstacle), 18), ...at);
+    ctx.fillText(shortened(nameOf(obstacle), 18), ...at);
+    ctx.lineWidth = 1;
   }
 }
 
@@ -147,7 +152,8 @@ function hypothesesBox(page, plan) {
   const choose = (one, button, isWanted) => {
     if (isWanted) page.wantedManeuver = one.driven ? null : one.maneuver;
     buttons.forEach((each) => each.setAttribute("aria-pressed", String(each === button)));
-    caption.textContent = `${one.maneuver}: what is in the way when (orange), and its drive (green)`;
+    const lights = one.st.parts.some(({obstacle}) => obstacle < 0) ? ", lights and stops in red" : "";
+    caption.textContent = `${one.maneuver}: what is in the way when, in orange${lights}, and its drive, in green`;
     drawSt(canvas, one.st, nameOf, (name) => inkOf(stage, name));
   };
   const head = table.createTHead().insertRow();

@@ -50,7 +50,12 @@ function start() {
   makePlots(data.plots, page);
   makePlayer(data, page);
   clock.listeners.push(() => showState(page));
-  clock.listeners.push(() => showCycle(page, {costs: data.costNames, causes: data.causeNames}));
+  const showPlan = () => showCycle(page, {costs: data.costNames, causes: data.causeNames});
+  clock.listeners.push(showPlan);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    page.shownPlan = undefined;  // drawn anew, in other colours
+    showPlan();
+  });
   setFollow(page.map, followInFragment(location.hash));
   seek(clock, timeInFragment(location.hash) ?? clock.start);
   playOn(clock);
