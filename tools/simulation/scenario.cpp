@@ -106,8 +106,9 @@ TrafficObstacle traffic(const JsonNode& node) {
   return obstacle;
 }
 
-ScenarioObstacle obstacle(const JsonNode& node) {
-  node.require_object({"id", "kind", "length_m", "width_m", "parked", "scripted", "traffic"});
+ScenarioObstacle obstacle(const JsonNode& node, const std::filesystem::path& folder) {
+  node.require_object(
+      {"id", "kind", "length_m", "width_m", "parked", "scripted", "traffic", "recorded"});
   ScenarioObstacle result;
   result.id = node.at("id").name();
   if (const auto kind = node.find("kind")) result.kind = kind->name();
@@ -116,21 +117,23 @@ ScenarioObstacle obstacle(const JsonNode& node) {
   const auto stands = node.find("parked");
   const auto moves = node.find("scripted");
   const auto drives = node.find("traffic");
-  if (stands.has_value() + moves.has_value() + drives.has_value() != 1) {
-    node.refuse("does not say how it moves", "exactly one of parked, scripted, traffic",
+  const auto drove = node.find("recorded");
+  if (stands.has_value() + moves.has_value() + drives.has_value() + drove.has_value() != 1) {
+    node.refuse("does not say how it moves", "exactly one of parked, scripted, traffic, recorded",
                 "keep one of them");
   }
   if (stands) result.motion = parked(*stands);
   if (moves) result.motion = scripted(*moves);
   if (drives) result.motion = traffic(*drives);
+  if (drove) result.motion = recorded_obstacle_in(*drove, folder, result.length_m);
   return result;
 }
 
-std::vector<ScenarioObstacle> obstacles(const JsonNode& list) {
+std::vector<ScenarioObstacle> obstacles(const JsonNode& list, const std::filesystem::path& folder) {
   std::vector<ScenarioObstacle> result;
   std::map<std::string, std::string> pointer_of_id;
   for (const JsonNode& node : list.elements()) {
-    result.push_back(obstacle(node));
+    result.push_back(obstacle(node, folder));
     const auto [other, is_new] = pointer_of_id.emplace(result.back().id, node.pointer());
     if (!is_new) {
       node.at("id").refuse(fmt::format("is \"{}\" again, as {}", result.back().id, other->second),
@@ -257,7 +260,9 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
     scenario.pedals = has_pedals(*node, scenario.pedals);
   }
   if (const auto node = root.find("lights")) scenario.lights = lights(*node);
-  if (const auto node = root.find("obstacles")) scenario.obstacles = obstacles(*node);
+  if (const auto node = root.find("obstacles")) {
+    scenario.obstacles = obstacles(*node, scenario.file.parent_path());
+  }
   if (const auto node = root.find("obstacles_file")) {
     scenario.obstacles_file = beside(*node, scenario.file.parent_path());
   }
@@ -327,6 +332,10 @@ std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem
     files.push_back(scenario.map_file);
     for (const auto& named : {scenario.vehicle_file, scenario.obstacles_file}) {
       if (!named.empty()) files.push_back(named);
+    }
+    for (const ScenarioObstacle& obstacle : scenario.obstacles) {
+      const auto* recorded = std::get_if<RecordedObstacle>(&obstacle.motion);
+      if (recorded != nullptr) files.push_back(recorded->file);
     }
   } catch (const map::InputError&) {
     return {};

@@ -12,6 +12,7 @@
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/tools/simulation/planner_options.h"
+#include "roadbed/tools/simulation/recorded_obstacle.h"
 
 namespace roadbed::tools::inline simulation {
 
@@ -69,7 +70,7 @@ struct ScenarioObstacle {
   std::string kind = "car";
   double length_m = 4.5;
   double width_m = 1.8;
-  std::variant<ParkedObstacle, ScriptedObstacle, TrafficObstacle> motion;
+  std::variant<ParkedObstacle, ScriptedObstacle, TrafficObstacle, RecordedObstacle> motion;
 };
 
 /// Standard deviations of what is measured; white and Gaussian.
@@ -112,9 +113,9 @@ Scenario read_scenario(const std::filesystem::path& file);
 /// opened: a vehicle's is left to the caller.
 Scenario parse_scenario(std::string_view bytes, const std::filesystem::path& file);
 
-/// The map, the clouds, and the files of vehicle and obstacles that a scenario names, or those of
-/// all scenarios (.json) right in a folder. A file that is no such scenario names none, as a
-/// CommonRoad one, which holds its map.
+/// The map, the clouds, the files of vehicle and obstacles, and the recorded drives that a scenario
+/// names, or those of all scenarios (.json) right in a folder. A file that is no such scenario
+/// names none, as a CommonRoad one, which holds its map.
 std::vector<std::filesystem::path> files_named_by_scenario(const std::filesystem::path& file);
 
 /// What a scenario is driven with otherwise than its file says.

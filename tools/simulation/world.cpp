@@ -130,6 +130,9 @@ class ObstacleMaker {
                       .width_m = from.width_m,
                       .motion = {}};
     obstacle.motion = std::visit([&](const auto& how) { return motion(how); }, from.motion);
+    if (std::holds_alternative<RecordedObstacle>(from.motion) && !obstacle.is_static()) {
+      obstacle.validity = {obstacle.motion.start_s(), obstacle.motion.end_s()};
+    }
     return obstacle;
   }
 
@@ -174,6 +177,23 @@ class ObstacleMaker {
     std::vector<TimedPose> poses = scripted.poses;
     for (TimedPose& timed : poses) timed.pose = to_map(timed.pose);
     return drive_through(poses);
+  }
+
+  geometry::Trajectory motion(const RecordedObstacle& recorded) const {
+    std::vector<geometry::TrajectoryPoint> rows = motion_of(recorded).points();
+    const double from_s = rows.front().t_s, to_s = rows.back().t_s;
+    if (rows.size() > 1 && (from_s > scenario_.duration_s || to_s < 0.0)) {
+      refuse(scenario_, recorded.pointer,
+             fmt::format("is there from {} s to {} s, and the scenario lasts {} s", from_s, to_s,
+                         scenario_.duration_s),
+             "shift its times by offset_s");
+    }
+    for (geometry::TrajectoryPoint& row : rows) {
+      const Eigen::Vector2d place = road_map_.to_map(row.pose().position());
+      row.x_m = place.x();
+      row.y_m = place.y();
+    }
+    return geometry::Trajectory(std::move(rows));
   }
 
   geometry::Trajectory motion(const TrafficObstacle& traffic) const {
