@@ -10,6 +10,7 @@ namespace roadbed::map::opendrive {
 namespace {
 
 constexpr double kLongest_m = 10.0;  // of a chord: over more, the road may bend both ways
+constexpr double kAtEnd_m = 1e-4;    // a border that ends so near to the road's end ends there
 
 class BorderPlacer {
  public:
@@ -23,11 +24,11 @@ class BorderPlacer {
     const RoadPosition start = foot(points[border.own_from].head<2>(), from_m);
     const BesidePoint first{start.s_m, start.t_m, points[border.own_from].z()};
     BesideLine before{first}, line{first};
-    for (std::size_t i = border.own_from; i > 0 && before.back().s_m > from_m; --i) {
+    for (std::size_t i = border.own_from; i > 0 && before.back().s_m > from_m + kAtEnd_m; --i) {
       add(points[i], points[i - 1], -1.0, before);
     }
     for (std::size_t i = border.own_from + 1;
-         i < points.size() && (i <= border.own_to || line.back().s_m < to_m); ++i) {
+         i < points.size() && (i <= border.own_to || line.back().s_m < to_m - kAtEnd_m); ++i) {
       add(points[i - 1], points[i], 1.0, line);
     }
     std::reverse(before.begin(), before.end());
@@ -71,7 +72,6 @@ class BorderPlacer {
       const double share = (s_m - a.s_m) / (b.s_m - a.s_m);
       return BesidePoint{s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
     };
-    constexpr double least_m = 1e-4;
     const BesidePoint* before = nullptr;
     for (const BesidePoint& point : line) {
       if (before != nullptr && point.s_m <= before->s_m) continue;  // runs back
@@ -80,7 +80,7 @@ class BorderPlacer {
                            ? BesidePoint{from_m, point.t_m, point.z_m}
                            : between(*before, point, from_m));
       }
-      if (!kept.empty() && point.s_m > kept.back().s_m + least_m && point.s_m < to_m - least_m) {
+      if (!kept.empty() && point.s_m > kept.back().s_m + kAtEnd_m && point.s_m < to_m - kAtEnd_m) {
         kept.push_back(point);
       }
       if (before != nullptr && point.s_m >= to_m) {

@@ -6,6 +6,7 @@
 
 #include "roadbed/map/opendrive/write/clothoid.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
+#include "roadbed/map/opendrive/write/facing_ends.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -64,8 +65,10 @@ struct EndPoints {
 
 class EndLineFinder {
  public:
-  EndLineFinder(const RoadMap& road_map, const RoadPlan& plan)
-      : road_map_(road_map), plan_(plan), roles_(find_end_roles(road_map, plan)) {
+  EndLineFinder(const RoadMap& road_map, const RoadPlan& plan) : road_map_(road_map), plan_(plan) {
+    const EndRoles ends = find_end_roles(road_map, plan);
+    groups_ = ends.groups;
+    unite_facing_ends(road_map, plan, groups_);
     const std::size_t count = 2 * plan.roads.size();
     together_.resize(count);
     hubs_.resize(count);
@@ -73,13 +76,13 @@ class EndLineFinder {
     is_free_.resize(count);
     for (std::uint32_t end = 0; end < count; ++end) {
       own_.push_back(points_at(plan.roads[end / 2], end % 2 == 1));
-      EndPoints& group = together_[roles_.groups[end]];
+      EndPoints& group = together_[groups_[end]];
       group.add(own_[end], group.along.dot(own_[end].along) < 0.0);
-      const EndRole role = roles_.roles[end];
-      if (role == EndRole::hub) hubs_[roles_.groups[end]] = end;
-      if (role == EndRole::free) is_free_[roles_.groups[end]] = true;
+      const EndRole role = ends.roles[end];
+      if (role == EndRole::hub) hubs_[groups_[end]] = end;
+      if (role == EndRole::free) is_free_[groups_[end]] = true;
       if (role == EndRole::mesh_entry || role == EndRole::mesh_exit) {
-        is_mesh_[roles_.groups[end]] = true;
+        is_mesh_[groups_[end]] = true;
       }
     }
   }
@@ -91,10 +94,10 @@ class EndLineFinder {
     for (std::uint32_t end = 0; end < own_.size(); ++end) {
       // A road of the map has its own straight ends.
       const bool is_alone = plan_.roads[end / 2].source.has_value();
-      auto& known = number[roles_.groups[end]];
+      auto& known = number[groups_[end]];
       if (is_alone || !known) {
         lines.choices.push_back(is_alone ? std::vector{own_[end].through()}
-                                         : choices(roles_.groups[end]));
+                                         : choices(groups_[end]));
         if (!is_alone) known = static_cast<std::uint32_t>(lines.choices.size() - 1);
       }
       lines.group_of_end[end] =
@@ -183,7 +186,7 @@ class EndLineFinder {
 
   const RoadMap& road_map_;
   const RoadPlan& plan_;
-  EndRoles roles_;
+  std::vector<std::uint32_t> groups_;               // by end: those that share a line
   std::vector<EndPoints> own_, together_;           // by end, by group
   std::vector<std::optional<std::uint32_t>> hubs_;  // by group
   std::vector<bool> is_mesh_, is_free_;             // likewise

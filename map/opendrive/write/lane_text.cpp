@@ -100,15 +100,25 @@ class LanesWriter {
     const PlannedSection& planned = road_.sections[section];
     const bool is_left = place < planned.left_lanes;
     const Lane& lane = road_map_.lane(planned.lanes[place].lane);
+    if (std::ranges::find(part_.bare_lanes, place) != part_.bare_lanes.end()) {
+      add("<lane id=\"{}\" type=\"none\">", lane_id(planned, place));
+      add_widths(section, place);
+      text_ += "</lane>\n";
+      return;
+    }
     add("<lane id=\"{}\" type=\"{}\"{}>", lane_id(planned, place), type_word(lane, minor_),
         direction(lane, planned.lanes[place].forward, is_left));
     add_links(section, place);
-    add_records(shape_.sections[section].widths[place], begin_m(section), end_m(section),
-                begin_m(section), "width", "sOffset", text_);
+    add_widths(section, place);
     text_ += marks(section, is_left ? place : place + 1);
     add_speeds(section, place, lane);
     add_access(lane);
     text_ += "</lane>\n";
+  }
+
+  void add_widths(std::size_t section, std::size_t place) {
+    add_records(shape_.sections[section].widths[place], begin_m(section), end_m(section),
+                begin_m(section), "width", "sOffset", text_);
   }
 
   std::string direction(const Lane& lane, bool forward, bool is_left) {

@@ -1,13 +1,13 @@
 #include "roadbed/map/opendrive/write/road_network.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
+#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
+#include "roadbed/map/opendrive/write/id_giver.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -15,24 +15,14 @@ namespace {
 constexpr double kCut_m = 20.0;    // length of a connecting road that is cut off
 constexpr double kLong_m = 100.0;  // of a road between two junctions
 constexpr double kCopied_m = 5.0;  // length of connecting roads that overlap
+constexpr double kTurnsBack_rad = 150.0 * geometry::kRadiansPerDegree;
 
-/// Gives out ids: whole numbers, none twice.
-class IdGiver {
- public:
-  std::string give(const std::string& wanted) {
-    long long number = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    const bool is_number = error == std::errc() && end == wanted.data() + wanted.size() &&
-                           !wanted.empty() && number >= 0 && wanted == std::to_string(number);
-    if (is_number && taken_.insert(wanted).second) return wanted;
-    while (!taken_.insert(std::to_string(next_)).second) ++next_;
-    return std::to_string(next_++);
-  }
-
- private:
-  std::set<std::string> taken_;
-  long long next_ = 1;
-};
+bool turns_back(const RoadShape& shape) {
+  const geometry::PlanPiece& last = shape.plan_view.back();
+  const double from_rad = shape.plan_view.front().start.heading_rad;
+  const double to_rad = geometry::plan_point(last, last.s_m + last.length_m).pose.heading_rad;
+  return std::abs(geometry::wrap_angle(to_rad - from_rad)) > kTurnsBack_rad;
+}
 
 class NetworkBuilder {
  public:
@@ -121,6 +111,7 @@ class NetworkBuilder {
     const std::uint32_t start = 2 * road, end = start + 1;
     const double length_m = shapes_[road].length_m;
     auto& parts = network_.parts_of[road];
+    if (add_whole_copies(road)) return;
     if (has_spoke(road) && stays_whole(road)) {
       parts.push_back(add_part(road, 0.0, length_m, whole_cluster(road)));
       return;
@@ -144,19 +135,64 @@ class NetworkBuilder {
     if (role(end) == EndRole::mesh_entry) add_copies(end, to_m, length_m, middle);
   }
 
+  // A short road that turns back from a mesh into a junction, or to a road that is no connecting
+  // road, is whole in each of its copies: no piece of it would be a U-turn.
+  bool add_whole_copies(std::uint32_t road) {
+    const double length_m = shapes_[road].length_m;
+    if (length_m > kLong_m || !turns_back(shapes_[road])) return false;
+    for (const std::uint32_t entry : {2 * road, 2 * road + 1}) {
+      const std::uint32_t other = entry ^ 1U;
+      const bool ends_here = is_spoke(other) || leads_to_plain_road(other);
+      if (role(entry) != EndRole::mesh_entry || !ends_here) continue;
+      add_copies(entry, 0.0, length_m, std::nullopt);
+      if (is_spoke(other)) unite(ends_.groups[entry], ends_.groups[other]);
+      return true;
+    }
+    return false;
+  }
+
+  // Which has connecting roads at neither end.
+  bool leads_to_plain_road(std::uint32_t end) const {
+    if (role(end) != EndRole::plain) return false;
+    const std::uint32_t other = ends_.partner[end] / 2;
+    return !has_spoke(other) && role(2 * other) != EndRole::mesh_entry &&
+           role(2 * other + 1) != EndRole::mesh_entry;
+  }
+
   bool is_cut(std::uint32_t end) const { return is_spoke(end) || role(end) == EndRole::mesh_entry; }
 
   // A connecting road for each end that leads to this one.
-  void add_copies(std::uint32_t end, double from_m, double to_m, std::uint32_t middle) {
+  // @param middle  what is left of the road between its ends, if anything is.
+  void add_copies(std::uint32_t end, double from_m, double to_m,
+                  std::optional<std::uint32_t> middle) {
     for (const std::uint32_t from : meeting_[end]) {
       const std::uint32_t copy = add_part(end / 2, from_m, to_m, ends_.groups[end]);
       copies_[{from, end}] = copy;
-      if (end % 2 == 0) {
-        cuts_.emplace_back(copy, middle);
+      network_.parts[copy].bare_lanes = lanes_of_other_copies(from, end);
+      if (!middle) {
+        network_.parts_of[end / 2].push_back(copy);
+      } else if (end % 2 == 0) {
+        cuts_.emplace_back(copy, *middle);
       } else {
-        cuts_.emplace_back(middle, copy);
+        cuts_.emplace_back(*middle, copy);
       }
     }
+  }
+
+  // Lanes that are entered from others of the ends that lead to this one.
+  std::vector<std::uint32_t> lanes_of_other_copies(std::uint32_t from, std::uint32_t end) const {
+    std::vector<std::uint32_t> own, others;
+    for (const std::uint32_t one : meeting_.at(end)) {
+      for (const auto& [leaving, entering] : ends_.joints.at({one, end})) {
+        (one == from ? own : others).push_back(plan_.places[entering.index]->lane);
+      }
+    }
+    std::erase_if(others, [&](std::uint32_t lane) { return contains(own, lane); });
+    return others;
+  }
+
+  static bool contains(const std::vector<std::uint32_t>& lanes, std::uint32_t lane) {
+    return std::find(lanes.begin(), lanes.end(), lane) != lanes.end();
   }
 
   std::uint32_t whole_cluster(std::uint32_t road) {
@@ -196,9 +232,12 @@ class NetworkBuilder {
     }
   }
 
-  std::uint32_t part_at(std::uint32_t end) const {
+  // Several where each copy of the road is whole.
+  std::vector<std::uint32_t> parts_at(std::uint32_t end) const {
     const auto& parts = network_.parts_of[end / 2];
-    return end % 2 == 0 ? parts.front() : parts.back();
+    const RoadPart &first = network_.parts[parts.front()], &last = network_.parts[parts.back()];
+    if (first.from_m == last.from_m && first.to_m == last.to_m) return parts;
+    return {end % 2 == 0 ? parts.front() : parts.back()};
   }
 
   const PlannedSection& section_at(std::uint32_t part, bool at_end) const {
@@ -208,13 +247,18 @@ class NetworkBuilder {
 
   void add_joint(std::uint32_t from, std::uint32_t to, const LanePairs& lanes) {
     const auto copy = copies_.find({from, to});
-    const std::uint32_t a = part_at(from), b = copy != copies_.end() ? copy->second : part_at(to);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
     for (const auto& [leaving, entering] : lanes) {
       places.emplace_back(plan_.places[leaving.index]->lane, plan_.places[entering.index]->lane);
     }
-    join({a, from % 2 == 1, &section_at(a, from % 2 == 1)},
-         {b, to % 2 == 1, &section_at(b, to % 2 == 1)}, places);
+    const auto entered =
+        copy != copies_.end() ? std::vector<std::uint32_t>{copy->second} : parts_at(to);
+    for (const std::uint32_t a : parts_at(from)) {
+      for (const std::uint32_t b : entered) {
+        join({a, from % 2 == 1, &section_at(a, from % 2 == 1)},
+             {b, to % 2 == 1, &section_at(b, to % 2 == 1)}, places);
+      }
+    }
   }
 
   // Two parts of one road, the second behind the first.
@@ -241,6 +285,10 @@ class NetworkBuilder {
 
   // Lanes leave the first end and enter the second.
   void join(const PartEnd& from, const PartEnd& to, Places places) {
+    std::erase_if(places, [&](const auto& pair) {
+      return contains(network_.parts[from.part].bare_lanes, pair.first) ||
+             contains(network_.parts[to.part].bare_lanes, pair.second);
+    });
     std::erase_if(places, [&](const auto& pair) {
       const bool lost = !has_width(from, pair.first) || !has_width(to, pair.second);
       network_.lost_links += lost ? 1 : 0;

@@ -28,6 +28,8 @@ struct RoadPart {
   /// At its start and end: pairs of one of its lanes, by its place in the section there, and the id
   /// of a lane of the other road.
   std::array<std::vector<std::pair<std::uint32_t, int>>, 2> lane_links{};
+  /// Places of lanes that another copy of this piece has: they only take their width.
+  std::vector<std::uint32_t> bare_lanes;
 };
 
 struct WrittenConnection {

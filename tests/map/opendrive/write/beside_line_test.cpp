@@ -81,5 +81,17 @@ TEST(BesideLine, MeasuresWhatIsWrongWithABorder) {
   EXPECT_NEAR(faults.sideways_m, 1.0, 1e-9);
 }
 
+TEST(BesideLine, EndsWhereTheBorderEndsThoughItGoesOnSideways) {
+  // Rounding puts both ends of the border just inside of the road.
+  const geometry::PlanView view({{0.0, 0.2, {5.0, -3.0, 0.4}, geometry::LineCurve{}}});
+  RoadBorder border = border_at(view, {{-1e-8, 9}, {1e-8, 5}, {0.2 - 1e-8, 5}, {0.2 + 1e-8, -4}});
+  border.own_from = 1;
+  border.own_to = 2;
+  BesideFaults faults;
+  for (const BesidePoint& point : line_beside(view, border, 0.0, 0.2, faults)) {
+    EXPECT_NEAR(point.t_m, 5.0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace roadbed::map::opendrive

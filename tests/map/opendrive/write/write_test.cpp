@@ -228,6 +228,120 @@ TEST(WriteOpenDrive, LanesMeetWhereTheMapLeavesAGap) {
   }
 }
 
+/// Lanes of 3.5 m between ways that share the nodes at their ends.
+class GateLanes {
+ public:
+  using Gate = std::pair<std::int64_t, std::int64_t>;  ///< left, right
+
+  Gate gate(tests::MadeLanelet2::Point left, tests::MadeLanelet2::Point right) {
+    return {made_.node(left), made_.node(right)};
+  }
+
+  void lane(const Gate& from, const std::vector<tests::MadeLanelet2::Point>& left,
+            const std::vector<tests::MadeLanelet2::Point>& right, const Gate& to,
+            const tests::MadeLanelet2::Tags& tags = {{"subtype", "road"}, {"one_way", "yes"}}) {
+    lanelet(way(from.first, left, to.first), way(from.second, right, to.second), tags);
+  }
+
+  void lanelet(std::int64_t left, std::int64_t right,
+               const tests::MadeLanelet2::Tags& tags = {{"subtype", "road"}, {"one_way", "yes"}}) {
+    made_.lanelet(left, right, tags);
+  }
+
+  RoadMap road_map() const { return parse_map(made_.text(), "made.osm"); }
+
+  std::int64_t way(std::int64_t from, const std::vector<tests::MadeLanelet2::Point>& between,
+                   std::int64_t to) {
+    std::vector<std::int64_t> nodes{from};
+    for (const auto& point : between) nodes.push_back(made_.node(point));
+    nodes.push_back(to);
+    return made_.way(nodes);
+  }
+
+ private:
+  tests::MadeLanelet2 made_;
+};
+
+TEST(WriteOpenDrive, LanesThatFaceEachOtherKeepTheirCorners) {
+  // A lane leads over an askew gate into one of both ways, against which another one leads back.
+  GateLanes lanes;
+  const GateLanes::Gate middle = lanes.gate({1.5, 3.5}, {0, 0});
+  lanes.lane(lanes.gate({-30, 3.5}, {-30, 0}), {}, {}, middle);
+  lanes.lane(middle, {}, {}, lanes.gate({30, 3.5}, {30, 0}),
+             {{"subtype", "road"}, {"one_way", "no"}});
+  lanes.lane({middle.second, middle.first}, {}, {}, lanes.gate({-30, -3}, {-30, 0.5}));
+  const RoadMap after = parse_map(file_of(lanes.road_map()).bytes, "written.xodr");
+  const auto faced = std::ranges::find(after.lanes(), false, &Lane::one_way);
+  ASSERT_NE(faced, after.lanes().end());
+  const auto corner = [](const LaneLine& line) { return line.in_map.points().front(); };
+  EXPECT_TRUE(std::ranges::any_of(after.lanes(), [&](const Lane& lane) {
+    return (corner(lane.left) - corner(faced->right)).norm() <= 1e-3 &&
+           (corner(lane.right) - corner(faced->left)).norm() <= 1e-3;
+  }));
+}
+
+std::vector<tests::MadeLanelet2::Point> half_circle(double radius_m) {
+  std::vector<tests::MadeLanelet2::Point> points;
+  for (double angle = 0.1; angle < 3.1; angle += 0.1) {
+    points.emplace_back(radius_m * std::sin(angle), 15.0 - radius_m * std::cos(angle));
+  }
+  return points;
+}
+
+// Two lanes lead to one that goes on and one that turns back, where another one joins it.
+RoadMap turning_back() {
+  GateLanes lanes;
+  const GateLanes::Gate in = lanes.gate({0, 5}, {0, 1.5}), out = lanes.gate({0, 25}, {0, 28.5});
+  lanes.lane(lanes.gate({-40, 5}, {-40, 1.5}), {}, {}, in);
+  lanes.lane(lanes.gate({-40, -5}, {-40, -8.5}), {{-20, 0}}, {{-20, -3.5}}, in);
+  lanes.lane(in, {}, {}, lanes.gate({60, 5}, {60, 1.5}));
+  lanes.lane(in, half_circle(10), half_circle(13.5), out);
+  lanes.lane(lanes.gate({60, 25}, {60, 28.5}), {}, {}, out);
+  lanes.lane(out, {}, {}, lanes.gate({-40, 25}, {-40, 28.5}));
+  return lanes.road_map();
+}
+
+TEST(WriteOpenDrive, ALaneThatTurnsBackStaysInOnePiece) {
+  const auto turning = [](const RoadMap& road_map) {
+    return std::ranges::count_if(road_map.lanes(), [](const Lane& lane) {
+      return std::cos(lane.pose_at(0.0).heading_rad - lane.pose_at(lane.length_m()).heading_rad) <
+             std::cos(2.6);
+    });
+  };
+  const RoadMap before = turning_back();
+  ASSERT_EQ(turning(before), 1);
+  const opendrive::OpenDriveFile file = file_of(before);
+  const RoadMap after = parse_map(file.bytes, "written.xodr");
+  EXPECT_EQ(turning(after), 2);  // from each of the lanes that lead to it
+  EXPECT_EQ(lost_links(before, after), 0);
+  EXPECT_EQ(errors_in(file), std::vector<std::string>{});
+}
+
+std::ptrdiff_t begin_nowhere(const RoadMap& road_map) {
+  return std::ranges::count_if(road_map.lanes(), [&](const Lane& lane) {
+    return is_drivable(lane.type) && road_map.graph().of(lane.id).predecessors.empty();
+  });
+}
+
+TEST(WriteOpenDrive, NoLaneOfACopyBeginsNowhere) {
+  // Two lanes beside each other come from two roads, one of which forks.
+  GateLanes lanes;
+  const auto [left, middle] = lanes.gate({0, 7}, {0, 3.5});
+  const auto [right, end] = lanes.gate({0, 0}, {60, 3.5});
+  lanes.lane(lanes.gate({-40, 7}, {-40, 3.5}), {}, {}, {left, middle});
+  lanes.lane(lanes.gate({-40, -6}, {-40, -9.5}), {{-20, 0}}, {{-20, -3.5}}, {middle, right});
+  lanes.lane({middle, right}, {{20, 1.5}}, {{20, -2}}, lanes.gate({60, -8}, {60, -11.5}));
+  const auto [upper, lower] = lanes.gate({60, 7}, {60, 0});
+  const std::int64_t between = lanes.way(middle, {}, end);
+  lanes.lanelet(lanes.way(left, {}, upper), between);
+  lanes.lanelet(between, lanes.way(right, {}, lower));
+  const RoadMap before = lanes.road_map();
+  ASSERT_EQ(begin_nowhere(before), 2);
+  const RoadMap after = parse_map(file_of(before).bytes, "written.xodr");
+  EXPECT_EQ(begin_nowhere(after), 2);
+  EXPECT_EQ(lost_links(before, after), 0);
+}
+
 TEST(WriteOpenDrive, RealMapsAreWrittenWithoutErrors) {
   ROADBED_REAL_DATA_OR_SKIP(folder);
   const std::filesystem::path autoware = folder / "lanelet2/autowarefoundation+autoware_core";
