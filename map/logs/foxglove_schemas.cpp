@@ -160,6 +160,22 @@ constexpr SchemaField kDriveStateFields[] = {{1, "timestamp", kTimeType},
 constexpr SchemaField kClearanceFields[] = {{1, "timestamp", kTimeType},
                                             {2, "clearance_m", "double"}};
 
+constexpr SchemaField kHypothesisFields[] = {
+    {1, "maneuver", "string"},  {2, "end_d_m", "double"},    {3, "end_l_m", "double"},
+    {4, "path_cost", "double"}, {5, "drive_cost", "double"}, {6, "is_driven", "bool"},
+    {7, "reason", "string"}};
+constexpr SchemaField kHypothesesFields[] = {{1, "timestamp", kTimeType},
+                                             {2, "hypotheses", "roadbed.Hypothesis", true}};
+constexpr SchemaField kCandidatesFields[] = {{1, "timestamp", kTimeType},
+                                             {2, "start_s_m", "double"},
+                                             {3, "start_d_m", "double"},
+                                             {4, "start_d_slope", "double"},
+                                             {5, "start_d_curvature_per_m", "double"},
+                                             {6, "end_d_m", "double", true},
+                                             {7, "end_l_m", "double", true},
+                                             {8, "causes", "bytes"},
+                                             {9, "cause_names", "string", true}};
+
 constexpr SchemaMessage kSchemaMessages[] = {
     {"google.protobuf", "Timestamp", kSecondsFields},
     {"google.protobuf", "Duration", kSecondsFields},
@@ -188,6 +204,9 @@ constexpr SchemaMessage kSchemaMessages[] = {
     {"foxglove", "Log", kLogFields, kLogEnums},
     {"roadbed", "DriveState", kDriveStateFields},
     {"roadbed", "Clearance", kClearanceFields},
+    {"roadbed", "Hypothesis", kHypothesisFields},
+    {"roadbed", "Hypotheses", kHypothesesFields},
+    {"roadbed", "Candidates", kCandidatesFields},
 };
 
 const SchemaMessage* find_message(std::string_view type) {

@@ -13,7 +13,8 @@ namespace roadbed::map::inline logs {
 //   Foxglove, Lichtblick and, in part, Rerun show: foxglove.FrameTransform, PosesInFrame,
 //   SceneUpdate, PointCloud, LocationFix, Log;
 // - roadbed's own: `roadbed.DriveState`, a row of a drive, all of it and bit for bit;
-//   `roadbed.Clearance`, the distance to the nearest thing at a time.
+//   `roadbed.Clearance`, the distance to the nearest thing at a time; `roadbed.Hypotheses` and
+//   `roadbed.Candidates`, what a planning cycle considered.
 
 inline constexpr std::string_view kDriveStateType = "roadbed.DriveState";
 

@@ -15,6 +15,7 @@
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/rule_index.h"
 #include "roadbed/map/elements/side.h"
+#include "roadbed/planning/rules/speed_limit.h"
 
 namespace roadbed::planning::inline rules {
 namespace {
@@ -179,26 +180,19 @@ class RuleAudit {
     Violations found;
     RuleReport report{.rule = TrafficRule::speed, .violations = {}, .unknown = {}};
     for (std::size_t i = 0; i < moments_.size(); ++i) {
-      std::optional<double> limit_mps;
-      const Lane* of = nullptr;
-      for (const LaneMatch& match : at_axle_.of(i)) {
-        if (!is_along(moments_[i].state.heading_rad, match, 0.5 * std::numbers::pi)) continue;
-        const Lane& lane = road_map_.lane(match.place.lane);
-        const auto here_mps = lane.speed_limit_at_mps(match.place.s_m);
-        if (!here_mps || (limit_mps && *limit_mps >= *here_mps)) continue;
-        limit_mps = here_mps;
-        of = &lane;
-      }
-      if (!limit_mps) {
+      const std::optional<LaneLimit> limit =
+          limit_along(road_map_, at_axle_.of(i), moments_[i].state.heading_rad);
+      if (!limit) {
         report.unknown.push_back({previous_s(i), moments_[i].state.t_s});
         continue;
       }
-      const double over_mps = moments_[i].speed_mps - *limit_mps;
+      const double over_mps = moments_[i].speed_mps - limit->limit_mps;
       if (over_mps <= least_over_mps) continue;
-      found.add(previous_s(i), violation(i, of->name,
-                                         fmt::format("{:.1f} km/h, limit {:.1f} km/h",
-                                                     3.6 * moments_[i].speed_mps, 3.6 * *limit_mps),
-                                         over_mps));
+      found.add(previous_s(i),
+                violation(i, limit->lane->name,
+                          fmt::format("{:.1f} km/h, limit {:.1f} km/h", 3.6 * moments_[i].speed_mps,
+                                      3.6 * limit->limit_mps),
+                          over_mps));
     }
     report.violations = found.take();
     if (!report.unknown.empty()) report.reason = "the map has no speed limit there";

@@ -3,7 +3,8 @@ Lets ROADBED drive a scenario of the folder DATA and audit it, each with a log (
 logs by the packages `mcap`, `mcap-protobuf-support` and `rerun-sdk`:
 - every message, by its schema, in order of time, as many as statistics, index and topics say;
 - fields of the schemas have the numbers and types that `foxglove-schemas-protobuf` gives them;
-- rows, transforms and path are those of trajectory.csv; plans those of cycles.jsonl; clearances,
+- rows, transforms and path are those of trajectory.csv; plans and hypotheses those of cycles.jsonl,
+  among the candidates the chosen end states are feasible ones; clearances,
   stretches and conflicts those of `audit --json`; occupied points those of `occupancy export`;
 - what Rerun shows of them: entities, their archetypes, and how many rows each has.
 Exit status 1 where they differ.
@@ -30,6 +31,7 @@ FIELDS = ["t_s", "x_m", "y_m", "heading_rad", "speed_mps", "acceleration_mps2", 
 SHOWN = {"/tf": "Transform3D:translation", "/occupancy": "Points3D:positions", "/log": "TextLog:text",
          "/fix": "GeoPoints:positions", "/drive/path": "InstancePoses3D:translations",
          "/plan": "InstancePoses3D:translations", "/drive": "roadbed.DriveState:message",
+         "/plan/hypotheses": "roadbed.Hypotheses:message", "/plan/candidates": "roadbed.Candidates:message",
          "/audit/clearance": "roadbed.Clearance:message"}
 
 
@@ -130,9 +132,34 @@ def plan_faults(log, folder):
         plan = plans.get(round(1e9 * cycle["t_s"]))
         if plan is None or len(plan.poses) < 2:
             yield f"/plan has none at {cycle['t_s']} s"
+    yield from considered_faults(log, cycles)
     texts = [text.name for _, text in log.by_topic["/log"]]
     if "verdict" not in texts or len(texts) < 2:
         yield f"/log says {texts}"
+
+
+def considered_faults(log, cycles):
+    def number(value):
+        return None if math.isnan(value) else value
+
+    told = {time: [{"maneuver": one.maneuver, "d_e_m": number(one.end_d_m), "l_e_m": number(one.end_l_m),
+                    "path_cost": number(one.path_cost), "drive_cost": number(one.drive_cost),
+                    "driven": one.is_driven, "reason": one.reason} for one in message.hypotheses]
+            for time, message in log.by_topic["/plan/hypotheses"]}
+    if told != {round(1e9 * cycle["t_s"]): cycle["hypotheses"] for cycle in cycles if cycle["hypotheses"]}:
+        yield "/plan/hypotheses are not those of cycles.jsonl"
+    grids = {time: message for time, message in log.by_topic["/plan/candidates"]}
+    chosen = [cycle for cycle in cycles if cycle.get("chosen")]
+    if len(grids) < len(chosen):
+        yield f"/plan/candidates has {len(grids)} messages for {len(chosen)} plans"
+    for cycle in chosen:
+        grid = grids[round(1e9 * cycle["t_s"])]
+        causes = np.frombuffer(grid.causes, np.uint8)
+        feasible = list(grid.cause_names).index("none")
+        if len(causes) != len(grid.end_d_m) * len(grid.end_l_m) or causes.max() >= len(grid.cause_names):
+            yield f"/plan/candidates at {cycle['t_s']} s has {len(causes)} causes"
+        elif feasible not in causes:
+            yield f"/plan/candidates at {cycle['t_s']} s has no feasible one, and one was chosen"
 
 
 def scene_faults(log):
@@ -197,9 +224,9 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         drive = folder / "drive"
-        run(program, "--quiet", "simulate", data / "drive.json", "--mcap", "-o", drive)
+        run(program, "--quiet", "simulate", data / "drive.json", "--candidates", "--mcap", "-o", drive)
         again = folder / "again"
-        run(program, "--quiet", "simulate", data / "drive.json", "--mcap", "-o", again)
+        run(program, "--quiet", "simulate", data / "drive.json", "--candidates", "--mcap", "-o", again)
         if (drive / "drive.mcap").read_bytes() != (again / "drive.mcap").read_bytes():
             faults.append("another drive.mcap the second time")
         question = ["--occupancy", data / "town.bt", "--map", data / "town.xodr", "--clearance", "0.4", "--trajectory"]

@@ -90,6 +90,7 @@ class ExitStatus : public testing::Test {
         {"audit", {"--occupancy", none, "--trajectory", drive_, "--svg", fresh(".svg")}},
         {"figures", {"-o", folder_.path()}},
         {"report compare", {none, none}},
+        {"report drive", {none, "-o", fresh(".html")}},
         {"batch", {none, "-o", fresh("")}},
         {"jobs import", {none, "-o", fresh(".jsonl")}},
         {"jobs validate", {none, "-o", fresh(".jsonl")}},

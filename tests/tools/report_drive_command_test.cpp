@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,16 @@ TEST_F(ReportDrive, IsAuditedAgainstOccupancyAndObstacles) {
   EXPECT_EQ(into.status, 1);
   EXPECT_THAT(into.out, HasSubstr("obstacle wall"));
   EXPECT_THAT(bytes_of(page_), HasSubstr("conflict begins: obstacle wall"));
+}
+
+TEST_F(ReportDrive, AsALogHoldsTheRowsThatWereRecorded) {
+  const std::string played = folder_ / "played.mcap";
+  ASSERT_EQ(report({"--map", town_, "--mcap", played}).status, 0);
+  const auto drive_in = [](const std::string& file) {
+    return nlohmann::json::parse(run_roadbed({"drive", "info", file, "--json"}).out)["drive"];
+  };
+  EXPECT_EQ(drive_in(played), drive_in(log()));
+  EXPECT_EQ(drive_in(played)["rows"], 51);
 }
 
 TEST_F(ReportDrive, RefusesWhatItCannotShowAndLeavesNoOutput) {

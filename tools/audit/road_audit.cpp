@@ -151,12 +151,16 @@ planning::Verdict RoadAudit::verdict() const {
   using planning::Verdict;
   std::vector<Verdict> verdicts{surface.verdict};
   for (const planning::RuleReport& rule : rules) {
-    if (std::ranges::count(counted, rule.rule) > 0) verdicts.push_back(rule.verdict);
+    if (counts(rule.rule)) verdicts.push_back(rule.verdict);
   }
   for (const Verdict grave : {Verdict::conflict, Verdict::unknown, Verdict::undecided}) {
     if (std::ranges::count(verdicts, grave) > 0) return grave;
   }
   return Verdict::clear;
+}
+
+bool RoadAudit::counts(planning::TrafficRule rule) const {
+  return std::ranges::count(counted, rule) > 0;
 }
 
 RoadAudit audit_road(const geometry::Trajectory& drive, std::span<const geometry::BodyPart> parts,

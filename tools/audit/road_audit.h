@@ -65,6 +65,7 @@ struct RoadAudit {
 
   /// The gravest of the surface's and those of the rules that count.
   planning::Verdict verdict() const;
+  bool counts(planning::TrafficRule rule) const;
 };
 
 /// @param parts  of the vehicle, with the margin around it.

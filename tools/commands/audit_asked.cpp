@@ -144,7 +144,6 @@ void AuditAsked::declare_road(Arguments& arguments) {
 
 std::string AuditAsked::fault() const {
   if (ground_ == "map" && map_.empty()) return "--ground map needs --map";
-  if (occupancy_.empty() && on_.empty()) return "--occupancy or --on is required";
   if (on_.empty() && (margin_argument_->given() || !rules_.empty())) {
     return "--margin and --rules need --on";
   }
@@ -157,6 +156,10 @@ std::string AuditAsked::fault() const {
 
 void AuditAsked::take_map_of_log(const std::filesystem::path& map_file) {
   if (map_.empty()) map_ = map_file;
+  take_road();
+}
+
+void AuditAsked::take_road() {
   if (on_.empty()) on_ = "drivable";
 }
 

@@ -31,7 +31,10 @@ class AuditAsked {
 
   /// Of a log, what the command line leaves out: its map, and that the drive is on it.
   void take_map_of_log(const std::filesystem::path& map_file);
+  /// That the drive is on the map's drivable surface, where nothing else is said of the road.
+  void take_road();
 
+  bool asks() const { return !occupancy_.empty() || about_road(); }
   bool about_road() const { return !on_.empty(); }
   const planning::AuditOptions& options() const { return options_; }
   double from_height_m() const { return from_height_m_; }

@@ -62,19 +62,12 @@ class AuditCommand : public Command {
     }
     outputs_.check(asked_, subjects_);
     const LogScene of_log = subjects_.log().empty() ? LogScene() : take_log(common);
-    const Vehicle vehicle = asked_.read_vehicle();
-    std::shared_ptr<const map::RoadMap> road_map;
-    if (!asked_.map_file().empty()) road_map = common.inputs->road_map(asked_.map_file());
-    AuditScene scene{.asked = asked_, .subjects = subjects_, .inputs = *common.inputs};
-    scene.question = asked_.question(vehicle, road_map.get(), outputs_.certifies(), *common.inputs);
+    AuditScene scene = audit_scene(asked_, outputs_.certifies(), common);
+    scene.command = "roadbed audit " + asked_.against();
     if (asked_.obstacles_file().empty()) scene.question.moving_in_source = of_log.obstacles;
     scene.occupancy = of_log.occupancy;
-    scene.shape = vehicle.shape;
-    scene.road_map = road_map.get();
-    const RoadQuestion road =
-        asked_.about_road() ? asked_.road_question(road_map.get()) : RoadQuestion{};
-    if (asked_.about_road()) scene.road = &road;
-    const std::vector<AuditSubject> subjects = subjects_.list(road_map.get(), vehicle.shape);
+    if (!subjects_.is_swept()) scene.drive_file = subjects_.file();
+    const std::vector<AuditSubject> subjects = subjects_.list(scene.road_map.get(), scene.shape);
     add_occupancy(scene, streams, common);
     return subjects_.is_folder() ? run_folder(subjects, scene, streams, common)
                                  : run_one(subjects.front(), scene, streams, common);
@@ -103,6 +96,7 @@ class AuditCommand : public Command {
     const bool has_log = !subjects_.log().empty();
     if (has_log && outputs_.certifies()) return "--certificate is about files, not about --log";
     if (std::string fault = asked_.fault(); !has_log && !fault.empty()) return fault;
+    if (!has_log && !asked_.asks()) return "--occupancy or --on is required";
     const bool has_map = !asked_.map_file().empty();
     if (std::string fault = subjects_.fault(has_map); !fault.empty()) return fault;
     const bool proves_nothing =
@@ -116,25 +110,6 @@ class AuditCommand : public Command {
     asked_.take_map_of_log(log.map);
     if (!asked_.occupancy_file().empty() && !asked_.obstacles_file().empty()) return {};
     return scene_of_log(log, subjects_.log_boxes(), common.threads);
-  }
-
-  void add_occupancy(AuditScene& scene, const Streams& streams, const CommonOptions& common) const {
-    if (asked_.occupancy_file().empty()) return;
-    scene.occupancy = common.inputs->occupancy(asked_.occupancy_file());
-    if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
-      fmt::print(streams.err,
-                 "note: {} was built with --remove-seen-through {}: {} cells with points count as "
-                 "free\n",
-                 asked_.occupancy_file().string(), removed->clouds, removed->cells);
-    }
-    if (scene.road_map == nullptr) return;
-    check_overlap(road_bounds(*scene.road_map), measured_bounds(*scene.occupancy),
-                  asked_.occupancy_file().string());
-    const std::string &of_map = scene.road_map->crs(), &of_occupancy = scene.occupancy->crs();
-    if (!common.quiet && !of_map.empty() && !of_occupancy.empty() && of_map != of_occupancy) {
-      fmt::print(streams.err, "note: the map's CRS is \"{}\", the occupancy's \"{}\"\n", of_map,
-                 of_occupancy);
-    }
   }
 
   Exit run_folder(const std::vector<AuditSubject>& subjects, const AuditScene& scene,

@@ -23,6 +23,9 @@ std::string audit_text(const AuditedDrive& audited);
 std::string surface_text(const RoadAudit& road);
 std::string rule_text(const planning::RuleReport& rule, bool counts);
 
+/// The least clearance, or without an occupancy the least margin to the edge, in a line.
+std::string least_text(const AuditedDrive& audited);
+
 /// `{"verdict":…,"counts":{…},"audits":[…]}`: each audit as above with the name of its drive, or
 /// why there is none. The verdict is the gravest.
 nlohmann::ordered_json audits_json(const std::vector<AuditedDrive>& audits);

@@ -20,14 +20,6 @@
 namespace roadbed::tools::inline commands {
 namespace {
 
-// What a picture of a drive can show.
-map::Box2 drawn(const AuditedDrive& audited, const AuditScene& scene) {
-  const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(60.0);
-  const map::Box2 around =
-      planning::audited_region(audited.drive, scene.question.parts, scene.asked.options()).around;
-  return {around.min_in_source - margin_m, around.max_in_source + margin_m};
-}
-
 // Lanes that a picture of a drive can show: it is wider or higher than the drive's box by less
 // than three times the box's longer side.
 std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited, const AuditScene& scene) {
@@ -56,55 +48,8 @@ std::vector<geometry::Ring> drawn_ground(const AuditedDrive& audited, const Audi
   return rings;
 }
 
-// The vehicle's rectangle, grown by the margin on every side.
-geometry::VehicleShape inflated(geometry::VehicleShape grown, double margin_m) {
-  grown.length_m += 2.0 * margin_m;
-  grown.width_m += 2.0 * margin_m;
-  grown.rear_overhang_m += margin_m;
-  return grown;
-}
-
-ReportSource source(const char* role, const CertifiedFile& file) {
-  return {.role = role, .name = file.name, .sha256 = file.sha256};
-}
-
-// Of what many audits share.
-CertifiedFile hashed_once(const AuditScene& scene, const std::filesystem::path& file) {
-  return *scene.inputs.of<CertifiedFile>("hashed input", {file}, [&] {
-    return std::make_shared<const CertifiedFile>(hashed_input(file));
-  });
-}
-
-ReportInput report_of(const AuditedDrive& audited, const AuditScene& scene) {
-  const map::Box2 around = drawn(audited, scene);
-  const Eigen::AlignedBox2d box(around.min_in_source, around.max_in_source);
-  AuditSurroundings page{.name = audited.name,
-                         .body = inflated(scene.shape, scene.asked.options().inflate_m),
-                         .parts = scene.question.inflated_parts(),
-                         .clearance_m = scene.asked.options().clearance_m,
-                         .occupied = {},
-                         .road_map = {},
-                         .moving = scene.question.moving_in_source,
-                         .command = "roadbed audit " + scene.asked.against(),
-                         .version = name_and_version(),
-                         .crs = scene.crs(),
-                         .sources = {}};
-  if (scene.occupancy) {
-    page.occupied =
-        occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
-    if (!scene.asked.occupancy_file().empty()) {
-      page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
-    }
-  } else {
-    page.clearance_m = scene.asked.margin_m();
-    if (!scene.asked.map_file().empty())
-      page.sources.push_back(source("map", hashed_once(scene, scene.asked.map_file())));
-  }
-  if (scene.road_map != nullptr) page.road_map = map_around(*scene.road_map, box);
-  if (!scene.subjects.is_swept() && !std::filesystem::is_directory(scene.subjects.file())) {
-    page.sources.push_back(source("trajectory", hashed_input(scene.subjects.file())));
-  }
-  return report_of_audit(audited.drive, audited.whole(), page);
+ReportInput page_of(const AuditedDrive& audited, const AuditScene& scene) {
+  return report_of_audit(audited.drive, audited.whole(), surroundings_of(audited, scene));
 }
 
 // Who checks a certificate hashes its files again.
@@ -125,15 +70,6 @@ void refuse_certificate_of_logs(const AuditSubjects& subjects) {
 }
 
 }  // namespace
-
-std::string AuditScene::crs() const {
-  if (occupancy) return occupancy->crs();
-  return road_map == nullptr ? std::string() : road_map->crs();
-}
-
-AuditDemand AuditScene::demand() const {
-  return {.occupancy = occupancy.get(), .question = question, .road = road};
-}
 
 std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
   const Argument svg =
@@ -221,17 +157,12 @@ void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& 
 
 void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
   if (report_.empty()) return;
-  map::write_output(report_, drive_report_html(report_of(audited, scene)), force_);
+  map::write_output(report_, drive_report_html(page_of(audited, scene)), force_);
 }
 
 void AuditOutputs::write_log(const AuditedDrive& audited, const AuditScene& scene) const {
   if (mcap_.empty()) return;
-  DriveSpace space;
-  space.parts = scene.question.parts;
-  space.occupancy = scene.occupancy.get();
-  space.ground = &audited.audit.ground;
-  space.audit = audited.whole();
-  map::write_output(mcap_, drive_mcap(report_of(audited, scene), space), force_);
+  map::write_output(mcap_, drive_mcap(page_of(audited, scene), space_of(audited, scene)), force_);
 }
 
 void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
@@ -253,7 +184,7 @@ void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
 
 void AuditOutputs::write_certificate(const AuditedDrive& audited, const AuditScene& scene) const {
   if (certificate_.empty()) return;
-  const std::filesystem::path& drive = saved_drive_.empty() ? scene.subjects.file() : saved_drive_;
+  const std::filesystem::path& drive = saved_drive_.empty() ? scene.drive_file : saved_drive_;
   CertificateFile file{.program = name_and_version(),
                        .trajectory = certified_file(drive),
                        .underside_m = scene.asked.from_height_m(),

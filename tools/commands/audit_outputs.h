@@ -1,35 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "roadbed/geometry/motion/vehicle_shape.h"
-#include "roadbed/map/model/road_map.h"
-#include "roadbed/map/occupancy/octree/occupancy_source.h"
+#include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
-#include "roadbed/tools/audit/certificate_json.h"
 #include "roadbed/tools/cli/arguments.h"
-#include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/commands/audit_asked.h"
+#include "roadbed/tools/commands/audit_scene.h"
 
 namespace roadbed::tools::inline commands {
-
-/// What all drives are audited against.
-struct AuditScene {
-  const AuditAsked& asked;
-  const AuditSubjects& subjects;
-  const Inputs& inputs;
-  planning::AuditQuestion question = {};
-  geometry::VehicleShape shape = {};
-  std::shared_ptr<const map::OccupancySource> occupancy = nullptr;  ///< null: the road only
-  const map::RoadMap* road_map = nullptr;
-  const RoadQuestion* road = nullptr;  ///< null: the occupancy only
-
-  std::string crs() const;
-  AuditDemand demand() const;
-};
 
 /// The files that an audit writes.
 class AuditOutputs {

@@ -140,4 +140,13 @@ AuditSurroundings surroundings_of(const AuditedDrive& audited, const AuditScene&
   return page;
 }
 
+DriveSpace space_of(const AuditedDrive& audited, const AuditScene& scene) {
+  DriveSpace space;
+  space.parts = scene.question.parts;
+  space.occupancy = scene.occupancy.get();
+  space.ground = &audited.audit.ground;
+  if (scene.occupancy || scene.road) space.audit = audited.whole();
+  return space;
+}
+
 }  // namespace roadbed::tools::commands

@@ -13,6 +13,7 @@
 #include "roadbed/tools/cli/command.h"
 #include "roadbed/tools/commands/audit_asked.h"
 #include "roadbed/tools/report/audit_pages.h"
+#include "roadbed/tools/report/drive_space.h"
 
 namespace roadbed::tools::inline commands {
 
@@ -46,6 +47,10 @@ map::Box2 drawn(const AuditedDrive& audited, const AuditScene& scene);
 
 /// What the page of a drive shows around it, and what was asked besides its clearance.
 AuditSurroundings surroundings_of(const AuditedDrive& audited, const AuditScene& scene);
+
+/// What the log of a drive shows besides.
+/// @pre the scene stays as long as the space
+DriveSpace space_of(const AuditedDrive& audited, const AuditScene& scene);
 
 /// A file by its hash, taken once for many audits.
 CertifiedFile hashed_once(const AuditScene& scene, const std::filesystem::path& file);

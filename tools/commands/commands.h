@@ -42,6 +42,7 @@ std::unique_ptr<Command> make_occupancy_objects_command();
 std::unique_ptr<Command> make_audit_command();
 std::unique_ptr<Command> make_figures_command();
 std::unique_ptr<Command> make_report_command();
+std::unique_ptr<Command> make_report_drive_command();
 std::unique_ptr<Command> make_batch_command();
 std::unique_ptr<Command> make_jobs_command();
 

@@ -91,7 +91,7 @@ ordered_json json_of(const std::optional<double>& value) {
 class ReportCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
-    arguments.description("Compare the metrics of drives");
+    arguments.description("Compare the metrics of drives, show a recorded drive");
     Arguments compare = arguments.part("compare");
     compare.description("Set the metrics of two drives side by side");
     compare.add("A", a_, "Folder of a drive, or its metrics.json").required();
@@ -107,10 +107,15 @@ class ReportCommand : public Command {
     compare.flag("-j,--json", json_, "Print one JSON document");
     compare.says_no_if("a metric of B is above its bound");
     compare.example("  roadbed report compare before after --max largest_cross_track_m=0.2");
-    arguments.example("  roadbed report compare before after");
+    arguments.example(
+        "  roadbed report compare before after\n"
+        "  roadbed report drive drive/trajectory.csv --map town.xodr -o drive.html");
+    drive_arguments_ = arguments.part("drive");
+    drive_->declare(*drive_arguments_);
   }
 
-  Exit run(const Streams& streams, const CommonOptions& /*common*/) override {
+  Exit run(const Streams& streams, const CommonOptions& common) override {
+    if (drive_arguments_->given()) return drive_->run(streams, common);
     const Metrics a = read_metrics(a_), b = read_metrics(b_);
     std::vector<Bound> exceeded;
     for (const std::string& text : bounds_) {
@@ -167,6 +172,8 @@ class ReportCommand : public Command {
         << '\n';
   }
 
+  std::unique_ptr<Command> drive_ = make_report_drive_command();
+  std::optional<Arguments> drive_arguments_;
   fs::path a_, b_;
   std::vector<std::string> bounds_;
   bool json_ = false;

@@ -8,7 +8,7 @@
 #include "roadbed/tools/commands/audit_output.h"
 #include "roadbed/tools/commands/audit_scene.h"
 #include "roadbed/tools/commands/commands.h"
-#include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/report/drive_mcap.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
@@ -25,6 +25,11 @@ class ReportDriveCommand : public Command {
         .reads()
         .ending(".db3 .mcap .csv .xml .feather .txt");
     arguments.add("-o,--output", output_, "Page (.html)").required().writes(".html");
+    arguments
+        .add("--mcap", mcap_,
+             "Write a log, too, that plays the drive in Foxglove, Lichtblick and Rerun (.mcap): "
+             "poses, lanes, obstacles, occupied space, stretches by verdict")
+        .writes(".mcap");
     of_drive_.declare(arguments);
     arguments.heading("Audit");
     asked_.declare_occupancy(arguments);
@@ -43,6 +48,7 @@ class ReportDriveCommand : public Command {
 
   Exit run(const Streams& streams, const CommonOptions& common) override {
     map::check_writable(output_, force_);
+    if (!mcap_.empty()) map::check_writable(mcap_, force_);
     AuditScene scene = audit_scene(asked_, false, common);
     scene.drive_file = drive_;
     scene.command = "roadbed report drive " + drive_.string();
@@ -50,19 +56,27 @@ class ReportDriveCommand : public Command {
                          .drive = read_drive(drive_, of_drive_.options(scene.shape))};
     add_occupancy(scene, streams, common);
     audit_one(scene.demand(), audited);
-    const bool is_asked = scene.occupancy || scene.road;
-    ReportInput page =
-        report_of_recording(audited.drive, is_asked ? std::optional(audited.whole()) : std::nullopt,
-                            surroundings_of(audited, scene));
-    page.title = map::one_line(drive_.filename().string());
-    map::write_output(output_, drive_report_html(page), force_);
-    if (!is_asked) return Exit::ok;
+    write(audited, scene);
+    if (!is_asked(scene)) return Exit::ok;
     streams.out << audit_text(audited);
     return audited.is_clear() ? Exit::ok : Exit::no;
   }
 
  private:
-  std::filesystem::path drive_, output_;
+  static bool is_asked(const AuditScene& scene) { return scene.occupancy || scene.road; }
+
+  void write(const AuditedDrive& audited, const AuditScene& scene) const {
+    std::optional<planning::AuditReport> report;
+    if (is_asked(scene)) report = audited.whole();
+    ReportInput page = report_of_recording(audited.drive, report, surroundings_of(audited, scene));
+    page.title = map::one_line(drive_.filename().string());
+    map::write_output(output_, drive_report_html(page), force_);
+    if (mcap_.empty()) return;
+    page.drive.trajectory = audited.drive;  // as it was recorded, to be read again
+    map::write_output(mcap_, drive_mcap(page, space_of(audited, scene)), force_);
+  }
+
+  std::filesystem::path drive_, output_, mcap_;
   DriveArguments of_drive_;
   AuditAsked asked_;
   bool force_ = false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,12 @@ struct AuditSurroundings {
   geometry::VehicleShape body;            ///< the rectangle of the vehicle, with its margin
   std::vector<geometry::BodyPart> parts;  ///< as audited, with the margin
   double clearance_m = 0.0;               ///< asked for
+  bool is_of_surface = false;  ///< distances are those to the edge of what the drive has to stay on
   std::vector<map::Box2> occupied;
   std::shared_ptr<const map::RoadMap> road_map;  ///< near the drive; none: no map was given
   std::vector<planning::ObstacleInSource> moving;
+  std::vector<ReportCheck> checks;  ///< of what else was asked
+  std::vector<DriveEvent> events;   ///< the same
   std::string command, version, crs;
   std::vector<ReportSource> sources;
 };
@@ -29,6 +33,14 @@ struct AuditSurroundings {
 /// each stretch, an event where each conflict begins and where it is nearest.
 ReportInput report_of_audit(const geometry::Trajectory& drive, const planning::AuditReport& report,
                             const AuditSurroundings& around);
+
+/// A page that plays a drive that was recorded, as far as it tells of itself: speed with the limits
+/// of the map, accelerations and curvature (`derived_dynamics.h`), what passengers bear; and what
+/// its audit found.
+/// @param report  none: it was not audited.
+ReportInput report_of_recording(const geometry::Trajectory& drive,
+                                const std::optional<planning::AuditReport>& report,
+                                const AuditSurroundings& around);
 
 /// An audited drive, as a page of many lists it.
 struct IndexedAudit {

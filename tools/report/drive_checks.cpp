@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
+
+#include "roadbed/tools/report/comfort.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -14,38 +17,15 @@ using Row = geometry::TrajectoryPoint;
 
 constexpr double kOverLimitTolerance_mps = 0.5;  // a controller overshoots a little
 
-struct Worst {
-  double value = -std::numeric_limits<double>::infinity();
-  double at_s = 0.0;
-};
-
 // The largest value of all rows, and the first time of it.
 template <typename Value>
 Worst largest(const Drive& drive, Value value) {
-  Worst worst;
+  Worst worst{-std::numeric_limits<double>::infinity(), 0.0};
   for (std::size_t i = 0; i < drive.samples.size(); ++i) {
     const double found = value(drive.trajectory.points()[i], drive.samples[i]);
     if (found > worst.value) worst = {found, drive.samples[i].t_s};
   }
   return worst;
-}
-
-// Where nothing is exceeded at any time, no moment is worth a visit.
-std::optional<double> time_of(const Worst& worst) {
-  return worst.value > 0.0 ? std::optional<double>(worst.at_s) : std::nullopt;
-}
-
-constexpr const char* kComfort = "comfort, nuPlan";
-
-ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit,
-                    const char* bound_from = kComfort) {
-  return {.name = std::move(name),
-          .value = worst.value,
-          .unit = std::move(unit),
-          .bound = fmt::format("≤ {}", bound),
-          .passed = worst.value <= bound,
-          .at_s = time_of(worst),
-          .bound_from = bound_from};
 }
 
 ReportCheck noted(std::string name, double value, std::string unit, std::optional<double> at_s) {
@@ -95,35 +75,16 @@ ReportCheck audit_check(const planning::AuditReport& audit) {
           .bound_from = "the audit"};
 }
 
-ReportCheck braking_check(const Drive& drive) {
-  const Worst braking =
-      largest(drive, [](const Row& p, const DriveSample&) { return -p.acceleration_mps2; });
-  return at_most("strongest braking", braking, -kLeastAcceleration_mps2, "m/s²");
-}
-
 void append_motion_checks(const Drive& drive, std::vector<ReportCheck>& checks) {
   const auto off_road = [](const Row&, const DriveSample& s) { return s.off_road_m; };
   const auto over_limit = [](const Row& p, const DriveSample& s) {
     return p.speed_mps - s.speed_limit_mps;
   };
-  const auto speeding_up = [](const Row& p, const DriveSample&) { return p.acceleration_mps2; };
-  const auto across = [](const Row& p, const DriveSample&) {
-    return std::abs(p.speed_mps * p.speed_mps * p.curvature_per_m);
-  };
-  const auto yaw_rate = [](const Row& p, const DriveSample&) {
-    return std::abs(p.speed_mps * p.curvature_per_m);
-  };
   checks.push_back(
       at_most("farthest off the road", largest(drive, off_road), 0.0, "m", "the map's surface"));
   checks.push_back(at_most("speed above the limit", largest(drive, over_limit),
                            kOverLimitTolerance_mps, "m/s", "the map's limit, overshoot"));
-  checks.push_back(at_most("strongest acceleration", largest(drive, speeding_up),
-                           kMostAcceleration_mps2, "m/s²"));
-  checks.push_back(braking_check(drive));
-  checks.push_back(at_most("largest lateral acceleration", largest(drive, across),
-                           kMostLateralAcceleration_mps2, "m/s²"));
-  checks.push_back(
-      at_most("largest yaw rate", largest(drive, yaw_rate), kMostYawRate_radps, "rad/s"));
+  std::ranges::move(comfort_checks(drive.trajectory), std::back_inserter(checks));
 }
 
 void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {

@@ -73,6 +73,8 @@ class DriveLog {
   /// At rows of the drive, twenty in a second at most; what stands for ever once.
   void add_obstacles();
   void add_plans();
+  /// The hypotheses of a cycle, and its candidates if they were kept.
+  void add_considered(const DriveCycle& cycle, std::int64_t time_ns);
   void add_text(double t_s, FoxgloveLevel level, const std::string& name, const std::string& text);
   void add_texts();
   LineInSource path_between(double from_s, double to_s) const;

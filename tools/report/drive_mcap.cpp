@@ -129,15 +129,6 @@ void DriveLog::add_fixes(std::vector<Vector2d> lon_lat_deg) {
   }
 }
 
-void DriveLog::add_plans() {
-  for (const DriveCycle& cycle : input_.drive.cycles) {
-    if (cycle.path.empty()) continue;
-    const std::int64_t time_ns = at_ns(cycle.t_s);
-    add("/plan", "foxglove.PosesInFrame", time_ns,
-        poses_along(time_ns, kSceneFrame, in_scene(cycle.path, 0.05)));
-  }
-}
-
 void DriveLog::add_text(double t_s, FoxgloveLevel level, const std::string& name,
                         const std::string& text) {
   const std::int64_t time_ns = at_ns(t_s);

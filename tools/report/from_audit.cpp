@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "roadbed/planning/audit/audit_report.h"
 #include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/report/comfort.h"
+#include "roadbed/tools/report/derived_dynamics.h"
+#include "roadbed/tools/report/motion_plots.h"
 #include "roadbed/tools/report/surroundings.h"
 
 namespace roadbed::tools::inline report {
@@ -18,20 +22,21 @@ using planning::Verdict;
 
 constexpr double kShownBelow_m = 5.0;  // more room is a gap in the plot
 
-std::string thing_of(const std::string& obstacle) {
-  return obstacle.empty() ? "occupied space" : "obstacle " + obstacle;
+std::string thing_of(const std::string& obstacle, bool is_of_surface) {
+  if (!obstacle.empty()) return "obstacle " + obstacle;
+  return is_of_surface ? "the edge of its surface" : "occupied space";
 }
 
-ReportVerdict verdict_of(const AuditReport& report) {
+ReportVerdict verdict_of(const AuditReport& report, bool is_of_surface) {
   if (report.beyond_horizon) {
     return {tone_of(report.verdict),
             fmt::format("{}: nothing within {:.0f} m", to_string(report.verdict),
                         report.least_clearance_m)};
   }
-  return {tone_of(report.verdict),
-          fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}",
-                      to_string(report.verdict), report.least_clearance_m,
-                      report.least_clearance_at_s, report.part, thing_of(report.obstacle))};
+  return {tone_of(report.verdict), fmt::format("{}: least clearance {:.2f} m at {:.2f} s, {} to {}",
+                                               to_string(report.verdict), report.least_clearance_m,
+                                               report.least_clearance_at_s, report.part,
+                                               thing_of(report.obstacle, is_of_surface))};
 }
 
 ReportPlot clearance_by_row(const AuditReport& report, double clearance_m) {
@@ -50,29 +55,17 @@ ReportPlot clearance_by_row(const AuditReport& report, double clearance_m) {
   return plot;
 }
 
-ReportPlot speed_by_row(const geometry::Trajectory& drive) {
-  ReportPlot plot;
-  plot.title = "Speed";
-  plot.unit = "m/s";
-  ReportSeries series{.name = "speed", .values = {}};
-  for (const geometry::TrajectoryPoint& row : drive.points()) {
-    plot.t_s.push_back(row.t_s);
-    series.values.push_back(row.speed_mps);
-  }
-  plot.series.push_back(std::move(series));
-  return plot;
-}
-
 std::string nearness_text(const planning::Conflict& conflict) {
   const double depth_m = conflict.deepest.overlap.depth_m;
   return depth_m > 0.0 ? fmt::format("{:.2f} m deep in", depth_m)
                        : fmt::format("{:.2f} m from", conflict.least_clearance_m);
 }
 
-std::vector<DriveEvent> events_of_audit(const AuditReport& report) {
+std::vector<DriveEvent> events_of_audit(const AuditReport& report, bool is_of_surface) {
   std::vector<DriveEvent> events;
   for (const planning::Conflict& conflict : report.conflicts) {
-    const std::string with = fmt::format("{}, {}", thing_of(conflict.obstacle), conflict.part);
+    const std::string with =
+        fmt::format("{}, {}", thing_of(conflict.obstacle, is_of_surface), conflict.part);
     events.push_back({conflict.from_s, EventLevel::fault, "conflict begins: " + with});
     events.push_back(
         {conflict.at.t_s, EventLevel::fault, fmt::format("{} {}", nearness_text(conflict), with)});
@@ -85,7 +78,6 @@ std::vector<DriveEvent> events_of_audit(const AuditReport& report) {
   for (const planning::Stretch& stretch : report.unknown) {
     events.push_back({stretch.from_s, EventLevel::warning, "near space that was not measured"});
   }
-  std::ranges::stable_sort(events, {}, &DriveEvent::t_s);
   return events;
 }
 
@@ -143,14 +135,9 @@ std::vector<ReportCheck> checks_of(const AuditReport& report, double clearance_m
            .bound_from = "the audit"}};
 }
 
-}  // namespace
-
-ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport& report,
-                            const AuditSurroundings& around) {
+ReportInput drive_among(const AuditSurroundings& around, const geometry::Trajectory& drive) {
   ReportInput input;
-  input.title = "Audit of " + around.name;
-  input.scenario = around.name;
-  input.verdict = verdict_of(report);
+  input.title = input.scenario = around.name;
   input.scene.road_map = around.road_map;
   input.scene.occupied = around.occupied;
   input.scene.vehicle = around.body;
@@ -159,19 +146,50 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
       input.scene.parts_in_vehicle.push_back(part.outline_at({0.0, 0.0, 0.0}));
     }
   }
-  input.drive.trajectory = drive;
   input.scene.obstacles = around.moving;
-  input.plots = {clearance_by_row(report, around.clearance_m), speed_by_row(drive)};
-  input.drive.events = events_of_audit(report);
+  input.drive.trajectory = drive;
+  input.origin = {around.command, around.version, around.crs, around.sources};
+  return input;
+}
+
+}  // namespace
+
+ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport& report,
+                            const AuditSurroundings& around) {
+  ReportInput input = drive_among(around, drive);
+  input.title = "Audit of " + around.name;
+  input.verdict = verdict_of(report, around.is_of_surface);
+  input.plots = {clearance_by_row(report, around.clearance_m),
+                 speed_plot(drive, around.road_map.get())};
+  input.drive.events = events_of_audit(report, around.is_of_surface);
+  std::ranges::copy(around.events, std::back_inserter(input.drive.events));
+  std::ranges::stable_sort(input.drive.events, {}, &DriveEvent::t_s);
   for (const auto& stretch : judged_stretches(report, drive.start_s(), drive.end_s())) {
     input.decisions.push_back({stretch.from_s, stretch.to_s,
                                std::string(to_string(stretch.verdict)),
                                reason_of(stretch.verdict)});
   }
   input.checks = checks_of(report, around.clearance_m);
+  std::ranges::copy(around.checks, std::back_inserter(input.checks));
   input.pictures = close_ups(report, {drive, around.parts, around.occupied,
                                       rings_of(around.road_map.get()), around.moving});
-  input.origin = {around.command, around.version, around.crs, around.sources};
+  return input;
+}
+
+ReportInput report_of_recording(const geometry::Trajectory& recorded,
+                                const std::optional<AuditReport>& report,
+                                const AuditSurroundings& around) {
+  const geometry::Trajectory drive = with_dynamics(recorded, around.body.wheelbase_m);
+  ReportInput input = drive_among(around, drive);
+  if (report) {
+    input = report_of_audit(drive, *report, around);
+  } else {
+    input.verdict = {Tone::open, "recorded; nothing was asked of it"};
+    input.plots = {speed_plot(drive, around.road_map.get())};
+  }
+  input.plots.push_back(acceleration_plot(drive));
+  input.plots.push_back(curvature_plot(drive));
+  std::ranges::move(comfort_checks(drive), std::back_inserter(input.checks));
   return input;
 }
 

@@ -28,13 +28,6 @@ ReportInput report_of(const Scenario& scenario, const World& world, const Drive&
 /// Stretches of equal behaviour, each with the reason of its first cycle.
 std::vector<ReportDecision> decisions_of(const Drive& drive);
 
-// What passengers bear, from nuPlan's comfort metrics (motional/nuplan-devkit,
-// ego_is_comfortable.yaml).
-inline constexpr double kLeastAcceleration_mps2 = -4.05;
-inline constexpr double kMostAcceleration_mps2 = 2.40;
-inline constexpr double kMostLateralAcceleration_mps2 = 4.89;
-inline constexpr double kMostYawRate_radps = 0.95;
-
 /// What is checked of a drive: outcome, clearance, road, speed limit, accelerations, yaw rate; and
 /// what is only noted: tracking errors, saturation, cycles without a plan. A drive with no row has
 /// its outcome checked alone.
