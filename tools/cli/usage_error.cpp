@@ -54,8 +54,8 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
 
 /// What is wrong with the first word that nothing takes: an option before all else.
 std::string unknown_word(const CLI::App& app, std::vector<std::string> rest) {
-  std::ranges::stable_partition(rest,
-                                [](const std::string& word) { return word.starts_with('-'); });
+  std::stable_partition(rest.begin(), rest.end(),
+                        [](const std::string& word) { return word.starts_with('-'); });
   const std::string& word = rest.front();
   if (word.starts_with('-')) {
     const std::string name = word.substr(0, word.find('='));

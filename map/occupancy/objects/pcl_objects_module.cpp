@@ -48,8 +48,8 @@ bool roadbed_pcl_plane(const float* xyz, std::size_t count, float slope, float n
   pcl::ModelCoefficients found;
   segmentation.segment(inliers, found);
   if (inliers.indices.empty() || found.values.size() != 4 || found.values[2] == 0.0f) return false;
-  const int terms[] = {0, 1, 3};
-  for (int i = 0; i < 3; ++i) plane[i] = -found.values[terms[i]] / found.values[2];
+  const std::size_t terms[] = {0, 1, 3};
+  for (std::size_t i = 0; i < 3; ++i) plane[i] = -found.values[terms[i]] / found.values[2];
   return true;
 }
 
