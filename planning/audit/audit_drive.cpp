@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "roadbed/planning/audit/vehicle_audit.h"
-
 namespace roadbed::planning::inline audit {
 namespace {
 
@@ -40,6 +38,11 @@ map::HeightBand AuditQuestion::heights(const GroundUnder& under) const {
   return under.band(all.from_m, all.to_m);
 }
 
+GroundUnder AuditQuestion::ground_of(const map::OccupancySource& occupancy,
+                                     const geometry::Trajectory& drive_in_source) const {
+  return ground_under(occupancy, drive_in_source, ground, reach_of(*this));
+}
+
 std::vector<geometry::BodyPart> AuditQuestion::inflated_parts() const {
   std::vector<geometry::BodyPart> inflated;
   for (const geometry::BodyPart& part : parts) {
@@ -51,12 +54,17 @@ std::vector<geometry::BodyPart> AuditQuestion::inflated_parts() const {
 DriveAudit audit_drive(const map::OccupancySource& occupancy,
                        const geometry::Trajectory& drive_in_source, const AuditQuestion& question,
                        const std::function<void(const GroundUnder&)>& on_ground) {
-  DriveAudit audit{
-      .ground = ground_under(occupancy, drive_in_source, question.ground, reach_of(question))};
-  if (on_ground) on_ground(audit.ground);
-  map::FieldRegion region = audited_region(drive_in_source, question.parts, question.options);
-  region.most_cells /= question.drives_at_once;
-  const VehicleSurroundings around(occupancy, audit.ground, question.parts, region);
+  GroundUnder ground = question.ground_of(occupancy, drive_in_source);
+  if (on_ground) on_ground(ground);
+  const VehicleSurroundings around(
+      occupancy, ground, question.parts,
+      audited_region(drive_in_source, question.parts, question.options));
+  return audit_drive(around, std::move(ground), drive_in_source, question);
+}
+
+DriveAudit audit_drive(const VehicleSurroundings& around, GroundUnder ground,
+                       const geometry::Trajectory& drive_in_source, const AuditQuestion& question) {
+  DriveAudit audit{.ground = std::move(ground)};
   audit_within(around, drive_in_source, question, audit);
   return audit;
 }

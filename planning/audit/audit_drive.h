@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "roadbed/planning/audit/certificate.h"
 #include "roadbed/planning/audit/clearance_audit.h"
 #include "roadbed/planning/audit/ground_under.h"
+#include "roadbed/planning/audit/vehicle_audit.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 
 namespace roadbed::planning::inline audit {
@@ -22,11 +22,15 @@ struct AuditQuestion {
   GroundRule ground = {};
   AuditOptions options = {};
   std::vector<ObstacleInSource> moving_in_source = {};
-  std::size_t drives_at_once = 1;  ///< that share the memory for fields
-  bool certifies = false;          ///< whether certificates are asked for as well
+  bool certifies = false;  ///< whether certificates are asked for as well
 
   /// From the lowest part's underside to the highest top.
   map::HeightBand heights(const GroundUnder& under) const;
+
+  /// What the heights are above on a drive.
+  /// @throws InputError if that cannot be told.
+  GroundUnder ground_of(const map::OccupancySource& occupancy,
+                        const geometry::Trajectory& drive_in_source) const;
 
   /// The parts as audited, with the margin.
   std::vector<geometry::BodyPart> inflated_parts() const;
@@ -52,6 +56,11 @@ struct DriveAudit {
 DriveAudit audit_drive(const map::OccupancySource& occupancy,
                        const geometry::Trajectory& drive_in_source, const AuditQuestion& question,
                        const std::function<void(const GroundUnder&)>& on_ground = {});
+
+/// The same in what is around the question's parts over the ground: all of a region that the drive
+/// keeps within.
+DriveAudit audit_drive(const VehicleSurroundings& around, GroundUnder ground,
+                       const geometry::Trajectory& drive_in_source, const AuditQuestion& question);
 
 /// The same within one field for all parts, made of the heights that count. The ground is not asked
 /// for, and nothing says why space is unobserved.

@@ -5,27 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <exception>
 #include <optional>
 #include <utility>
-
-#include "roadbed/map/files/in_threads.h"
 
 namespace roadbed::tools::inline audit {
 namespace {
 
 using planning::GroundRule;
-
-AuditedDrive audit_subject(const AuditDemand& demand, const AuditSubject& subject) {
-  AuditedDrive audited{.name = subject.name};
-  try {
-    audited.drive = subject.drive();
-    audit_one(demand, audited);
-  } catch (const std::exception& error) {
-    audited.fault = error.what();
-  }
-  return audited;
-}
 
 void take_excursion(const planning::Excursion& out, planning::AuditReport& whole) {
   planning::Conflict& conflict = whole.conflicts.emplace_back();
@@ -116,6 +102,13 @@ planning::AuditReport AuditedDrive::whole() const {
   return whole;
 }
 
+void audit_on_road(const AuditDemand& demand, AuditedDrive& audited) {
+  if (demand.road != nullptr) {
+    audited.road = audit_road(audited.drive, demand.question.inflated_parts(), *demand.road,
+                              demand.question.certifies);
+  }
+}
+
 void audit_one(const AuditDemand& demand, AuditedDrive& audited,
                const std::function<void(const planning::GroundUnder&)>& on_ground) {
   audited.has_occupancy = demand.occupancy != nullptr;
@@ -123,24 +116,7 @@ void audit_one(const AuditDemand& demand, AuditedDrive& audited,
     audited.audit =
         planning::audit_drive(*demand.occupancy, audited.drive, demand.question, on_ground);
   }
-  if (demand.road != nullptr) {
-    audited.road = audit_road(audited.drive, demand.question.inflated_parts(), *demand.road,
-                              demand.question.certifies);
-  }
-}
-
-std::vector<AuditedDrive> audit_all(const AuditDemand& demand,
-                                    const std::vector<AuditSubject>& subjects, int threads,
-                                    const std::function<void()>& done_one) {
-  std::vector<AuditedDrive> audited(subjects.size());
-  AuditDemand shared = demand;
-  shared.question.drives_at_once =
-      std::clamp<std::size_t>(subjects.size(), 1, static_cast<std::size_t>(std::max(1, threads)));
-  map::in_threads(subjects.size(), threads, [&](std::size_t i) {
-    audited[i] = audit_subject(shared, subjects[i]);
-    done_one();
-  });
-  return audited;
+  audit_on_road(demand, audited);
 }
 
 }  // namespace roadbed::tools::audit

@@ -9,7 +9,6 @@
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 #include "roadbed/planning/audit/audit_drive.h"
-#include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/road_audit.h"
 
 namespace roadbed::tools::inline audit {
@@ -58,10 +57,7 @@ struct AuditedDrive {
 void audit_one(const AuditDemand& demand, AuditedDrive& audited,
                const std::function<void(const planning::GroundUnder&)>& on_ground = {});
 
-/// Audits each drive by itself; one that is unusable does not stop the others. The same for any
-/// number of threads. `done_one` is called in the threads.
-std::vector<AuditedDrive> audit_all(const AuditDemand& demand,
-                                    const std::vector<AuditSubject>& subjects, int threads,
-                                    const std::function<void()>& done_one);
+/// What a demand says of the road, if it does. Throws as `audit_road`.
+void audit_on_road(const AuditDemand& demand, AuditedDrive& audited);
 
 }  // namespace roadbed::tools::audit

@@ -12,6 +12,7 @@
 
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/tools/audit/argoverse_log.h"
+#include "roadbed/tools/audit/audit_all.h"
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/certificate_file_check.h"
 #include "roadbed/tools/cli/freed_memory.h"

@@ -31,10 +31,10 @@ std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited, const Audit
                         {box.min_in_source - margin_m, box.max_in_source + margin_m});
 }
 
-std::vector<map::Box2> occupied_around(const AuditedDrive& audited, const AuditScene& scene) {
+std::vector<map::Box2> boxes_in(const map::Box2& around, const AuditedDrive& audited,
+                                const AuditScene& scene) {
   if (!scene.occupancy) return {};
-  return occupied_boxes(*scene.occupancy, scene.question.heights(audited.audit.ground),
-                        drawn(audited, scene));
+  return occupied_boxes(*scene.occupancy, scene.question.heights(audited.audit.ground), around);
 }
 
 // The surface that the drive has to stay on; else lanes.
@@ -148,11 +148,12 @@ void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
 void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& scene) const {
   if (svg_.empty()) return;
   const planning::AuditReport whole = audited.whole();
-  map::write_output(svg_,
-                    audit_svg({audited.drive, scene.question.inflated_parts(), whole,
-                               occupied_around(audited, scene), drawn_ground(audited, scene),
-                               scene.question.moving_in_source, !scene.occupancy}),
-                    force_);
+  map::write_output(
+      svg_,
+      audit_svg({audited.drive, scene.question.inflated_parts(), whole,
+                 boxes_in(drawn(audited, scene), audited, scene), drawn_ground(audited, scene),
+                 scene.question.moving_in_source, !scene.occupancy}),
+      force_);
 }
 
 void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
@@ -173,7 +174,7 @@ void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
   for (const AuditedDrive& audited : audits) {
     index.push_back(indexed(audited));
     if (!audited.fault.empty()) continue;
-    const auto occupied = occupied_around(audited, scene);
+    const auto occupied = [&](const map::Box2& shown) { return boxes_in(shown, audited, scene); };
     const std::vector<geometry::Ring> lanes = drawn_ground(audited, scene);
     index.back().pictures = close_ups(
         audited.whole(), {audited.drive, parts, occupied, lanes, scene.question.moving_in_source});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ std::string audit_svg(const AuditPicture& picture);
 struct CloseUpScene {
   const geometry::Trajectory& drive;
   const std::vector<geometry::BodyPart>& parts;  ///< of the vehicle as audited, with the margin
-  const std::vector<map::Box2>& occupied;        ///< of the heights of the vehicle
-  const std::vector<geometry::Ring>& lanes;      ///< of a map; may be empty
+  /// Boxes of the heights of the vehicle that meet a box, and others perhaps.
+  const std::function<std::vector<map::Box2>(const map::Box2&)>& occupied_in;
+  const std::vector<geometry::Ring>& lanes;  ///< of a map; may be empty
   const std::vector<planning::ObstacleInSource>& moving;
 };
 

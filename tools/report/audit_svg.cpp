@@ -244,7 +244,8 @@ std::string clearance_svg(const AuditPicture& picture, double top_px) {
 std::string close_up_of(const AuditPicture& picture, double top_px) {
   const std::vector<ReportPicture> pictures =
       close_ups(picture.report,
-                {picture.drive, picture.parts, picture.occupied, picture.lanes, picture.moving});
+                {picture.drive, picture.parts, [&](const map::Box2&) { return picture.occupied; },
+                 picture.lanes, picture.moving});
   if (pictures.empty()) return {};
   return fmt::format("<g transform=\"translate({} {}) scale(.78)\">{}</g>\n",
                      map::svg_number(kPlotWidth_px + 2.0 * kMargin_px),

@@ -117,6 +117,11 @@ std::vector<Ring> rings_of(const std::vector<map::Box2>& boxes) {
   return rings;
 }
 
+map::Box2 shown_by(const map::PictureFrame& frame) {
+  const Vector2d half_m = 0.5 * frame.size_px / frame.px_per_m;
+  return {frame.centre_in_plane - half_m, frame.centre_in_plane + half_m};
+}
+
 // A line with a head at both ends, or a ring where the two overlap.
 std::string arrow_svg(const map::PictureFrame& frame, const Vector2d& from, const Vector2d& to) {
   const Vector2d a = frame.to_px(from), b = frame.to_px(to);
@@ -165,7 +170,7 @@ std::string picture(const Meeting& meeting, const CloseUpScene& scene) {
       "<rect class=\"up-ground\" width=\"{0}\" height=\"{1}\"/>\n",
       kPictureWidth_px, kPictureHeight_px, meeting.at.t_s, meeting.clearance_m);
   svg += rings_svg("up-lane", frame, scene.lanes) +
-         rings_svg("up-occupied", frame, rings_of(scene.occupied));
+         rings_svg("up-occupied", frame, rings_of(scene.occupied_in(shown_by(frame))));
   svg += rings_svg("up-other", frame, others) + rings_svg("up-part", frame, {near_part});
   svg += rings_svg("up-witness", frame, {thing});
   if (meeting.clearance_m > 0.0) svg += arrow_svg(frame, on_part, on_thing);

@@ -171,8 +171,9 @@ ReportInput report_of_audit(const geometry::Trajectory& drive, const AuditReport
   }
   input.checks = checks_of(report, around.clearance_m);
   std::ranges::copy(around.checks, std::back_inserter(input.checks));
-  input.pictures = close_ups(report, {drive, around.parts, around.occupied,
-                                      rings_of(around.road_map.get()), around.moving});
+  input.pictures =
+      close_ups(report, {drive, around.parts, [&](const map::Box2&) { return around.occupied; },
+                         rings_of(around.road_map.get()), around.moving});
   return input;
 }
 

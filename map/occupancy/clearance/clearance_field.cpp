@@ -76,9 +76,8 @@ struct ClearanceField::Grid {
     const CellRange held = slicer.range(region.around, slicer.cell_m());
     const auto margin = static_cast<std::int64_t>(std::ceil(horizon_m / slicer.cell_m())) + 3;
     const CellRange seen = held.grown(margin);
-    constexpr std::size_t most_at_once = 20'000'000;
     if (region.tile_m == 0.0 && is_small(seen) &&
-        seen.count() <= std::min(most_at_once, region.most_cells)) {
+        seen.count() <= std::min(kMostOfOneGrid, region.most_cells)) {
       whole = grid_of({held, seen, false});
     } else {
       make_tiles(region.tile_m, region.most_cells);

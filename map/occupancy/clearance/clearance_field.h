@@ -38,6 +38,7 @@ class ClearanceField {
   ClearanceField& operator=(ClearanceField&&) noexcept;
 
   static constexpr std::size_t kMostCells = 100'000'000;
+  static constexpr std::size_t kMostOfOneGrid = 20'000'000;  ///< around a region; else in tiles
 
   /// A lower bound of the distance from a point to the nearest box [m]; never above the true one,
   /// and among the boxes at most two cell diagonals below it. At most `horizon_m`. O(1).

@@ -39,6 +39,30 @@ TEST_F(AuditCommand, OfAFolderListsEveryDriveAndOneBrokenFileDoesNotStopTheRest)
                                    "1 unusable\n"));
 }
 
+TEST_F(AuditCommand, FindsInAFolderWhatItFindsOfEachDriveByItself) {
+  // One is far from the others, so that it has surroundings of its own.
+  folder_.write("drives/away.csv", "t_s,x_m,y_m,heading_rad\n0,900,0,0\n10,920,0,0\n");
+  std::size_t compared = 0;
+  for (const char* clearance : {"0", "0.3"}) {
+    const std::vector<std::string> asked{"--clearance", clearance, "--json", "--trajectory"};
+    const auto audit_of = [&](const std::string& drives) {
+      std::vector<std::string> arguments = asked;
+      arguments.push_back(drives);
+      return Json::parse(audit(arguments).out);
+    };
+    const Json all = audit_of(drives_);
+    for (Json one : all.at("audits")) {
+      if (one.contains("fault")) continue;
+      Json alone = audit_of(folder_ / "drives" / one.at("drive").get<std::string>());
+      alone.erase("roadbed_audit");
+      one.erase("drive");
+      EXPECT_EQ(one, alone);
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 8u);
+}
+
 TEST_F(AuditCommand, SaysTheSameForAnyNumberOfThreads) {
   for (const std::vector<std::string>& form : {std::vector<std::string>{}, {"--json"}}) {
     std::vector<std::string> one{"--trajectory", drives_, "--threads", "1"}, many = one;
