@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "roadbed/map/occupancy/clouds/attribute_filter.h"
@@ -52,12 +53,22 @@ Layout layout_of(const CloudMessage& message, const std::string& file, const std
   return {offsets, type == kFloat64, message.is_big_endian != kIsBigMachine};
 }
 
+// Bytes in the other order, in a form that compilers know.
+constexpr std::uint32_t turned(std::uint32_t bits) {
+  return bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
+}
+
+constexpr std::uint64_t turned(std::uint64_t bits) {
+  const auto low = static_cast<std::uint32_t>(bits), high = static_cast<std::uint32_t>(bits >> 32);
+  return std::uint64_t{turned(low)} << 32 | turned(high);
+}
+
 template <class Real, bool is_turned>
 double real_at(const char* bytes) {
-  std::array<char, sizeof(Real)> taken;
-  std::memcpy(taken.data(), bytes, sizeof(Real));
-  if constexpr (is_turned) std::ranges::reverse(taken);
-  return static_cast<double>(std::bit_cast<Real>(taken));
+  std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t> bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  if constexpr (is_turned) bits = turned(bits);
+  return static_cast<double>(std::bit_cast<Real>(bits));
 }
 
 class Decoder {
@@ -68,7 +79,8 @@ class Decoder {
         layout_(layout),
         time_(PointTime::of(message)),
         attributes_(attributes),
-        vehicle_box_(vehicle_box) {
+        vehicle_box_(vehicle_box),
+        is_filtered_(vehicle_box || !attributes.keeps_all()) {
     if (frames.pose_at) poses_.emplace(frames.pose_at, message.stamp_ns);
     if (vehicle_box && frames.in_vehicle) {
       in_vehicle_ = frames.in_vehicle(message.stamp_ns).value_or(Eigen::Isometry3d::Identity());
@@ -76,24 +88,20 @@ class Decoder {
   }
 
   MessagePoints points() {
-    const bool are_floats = !layout_.is_double && !layout_.is_turned;
-    if (!poses_ && are_floats && attributes_.keeps_all() && !vehicle_box_) {
+    if (!poses_ && !layout_.is_double && !layout_.is_turned && !is_filtered_) {
       return floats_as_they_stand();
     }
-    if (poses_ && !time_ && !poses_->at_stamp()) {
+    if (poses_ && !time_ && !poses_->knows_stamp()) {
       found_.without_pose = message_.height * message_.width;
       return std::move(found_);
     }
-    // Twice: floats can be written when it is known where they lie. A list of doubles between
-    // would take twice the memory of all points.
-    Box3 box{Eigen::Vector3d::Constant(INFINITY), Eigen::Vector3d::Constant(-INFINITY)};
-    std::size_t count = 0;
-    for_each([&](const Eigen::Vector3d& point, const Eigen::Vector3d*) {
-      box.min_in_source = box.min_in_source.cwiseMin(point);
-      box.max_in_source = box.max_in_source.cwiseMax(point);
-      ++count;
-    });
-    if (count > 0) take(box, count);
+    // Twice, if they turn out to lie far from 0. A list of doubles between would take twice the
+    // memory of all points.
+    take_relative_to(Eigen::Vector3d::Zero());
+    if (kept_ > 0) {
+      const Eigen::Vector3d origin = local_origin(box_);
+      if (!origin.isZero(0.0)) take_relative_to(origin);
+    }
     return std::move(found_);
   }
 
@@ -116,60 +124,63 @@ class Decoder {
     return std::move(found_);
   }
 
-  void take(const Box3& box, std::size_t count) {
+  void take_relative_to(const Eigen::Vector3d& origin_in_source) {
+    found_ = {};
+    kept_ = run_.count = 0;
+    box_ = {Eigen::Vector3d::Constant(INFINITY), Eigen::Vector3d::Constant(-INFINITY)};
     PointCloud& cloud = found_.cloud;
-    cloud.origin_in_source = local_origin(box);
-    cloud.points.reserve(count);
-    for_each([&](const Eigen::Vector3d& point, const Eigen::Vector3d* sensor) {
-      if (sensor != nullptr) add_sensor(*sensor);
-      cloud.points.emplace_back((point - cloud.origin_in_source).cast<float>());
-    });
+    cloud.origin_in_source = origin_in_source;
+    cloud.points.resize(message_.height * message_.width);  // a vector of Eigen's is left as it is
+    if (layout_.is_double) {
+      layout_.is_turned ? take_all<double, true>() : take_all<double, false>();
+    } else {
+      layout_.is_turned ? take_all<float, true>() : take_all<float, false>();
+    }
+    cloud.points.resize(kept_);
     if (cloud.scans.size() == 1) {
       cloud.sensor_in_source = cloud.scans.front().sensor_in_source;
       cloud.scans.clear();
     }
   }
 
-  void add_sensor(const Eigen::Vector3d& sensor) {
-    PointCloud& cloud = found_.cloud;
-    if (!cloud.scans.empty() && (sensor - *cloud.scans.back().sensor_in_source).squaredNorm() <
-                                    kSameSensor_m * kSameSensor_m) {
-      return;
-    }
-    cloud.scans.push_back({cloud.points.size(), sensor});
-  }
-
-  template <class Use>
-  void for_each(const Use& use) {
-    found_.cloud.dropped_not_finite = found_.cloud.filtered_out = 0;
-    found_.without_pose = found_.with_unlikely_times = 0;
-    if (layout_.is_double) {
-      layout_.is_turned ? for_each_of<double, true>(use) : for_each_of<double, false>(use);
-    } else {
-      layout_.is_turned ? for_each_of<float, true>(use) : for_each_of<float, false>(use);
-    }
-  }
-
-  template <class Real, bool is_turned, class Use>
-  void for_each_of(const Use& use) {
+  template <class Real, bool is_turned>
+  void take_all() {
     const auto [x, y, z] = layout_.offsets;
     for (std::size_t i = 0; i < message_.height; ++i) {
       const char* at = row(i);
       for (std::size_t k = 0; k < message_.width; ++k, at += message_.point_step) {
-        const Eigen::Vector3d point(real_at<Real, is_turned>(at + x),
-                                    real_at<Real, is_turned>(at + y),
-                                    real_at<Real, is_turned>(at + z));
-        if (!(point.cwiseAbs().maxCoeff() < RawCloud::kBeyondEarth) || !point.allFinite()) {
-          ++found_.cloud.dropped_not_finite;
-        } else if (is_filtered_out(at, point)) {
-          ++found_.cloud.filtered_out;
-        } else if (!poses_) {
-          use(point, nullptr);
-        } else {
-          use_placed(at, point, use);
-        }
+        take(at, {real_at<Real, is_turned>(at + x), real_at<Real, is_turned>(at + y),
+                  real_at<Real, is_turned>(at + z)});
       }
     }
+    finish_run();
+  }
+
+  static bool is_on_earth(double value) {
+    return std::abs(value) < RawCloud::kBeyondEarth;  // false for NaN
+  }
+
+  void take(const char* at, const Eigen::Vector3d& point) {
+    if (!is_on_earth(point.x()) || !is_on_earth(point.y()) || !is_on_earth(point.z())) {
+      ++found_.cloud.dropped_not_finite;
+      return;
+    }
+    if (is_filtered_ && is_filtered_out(at, point)) {
+      ++found_.cloud.filtered_out;
+      return;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      run_.at[axis][run_.count] = point[static_cast<Eigen::Index>(axis)];
+    }
+    if (time_ && poses_) run_.since_stamp_ns[run_.count] = likely_time_ns(at);
+    if (++run_.count == PointRun::kMost) finish_run();
+  }
+
+  double likely_time_ns(const char* at) {
+    const double since_stamp_ns = time_->since_stamp_ns(at);
+    if (std::abs(since_stamp_ns) < SweepPoses::kFarthest_ns) return since_stamp_ns;
+    ++found_.with_unlikely_times;
+    return 0.0;
   }
 
   bool is_filtered_out(const char* at, const Eigen::Vector3d& point) const {
@@ -180,23 +191,47 @@ class Decoder {
     });
   }
 
-  template <class Use>
-  void use_placed(const char* at, const Eigen::Vector3d& point, const Use& use) {
-    const std::optional<SweepPoses::Placing> timed = time_ ? placing(at) : std::nullopt;
-    const std::optional<SweepPoses::Placing>& placing = time_ ? timed : poses_->at_stamp();
-    if (!placing) {
-      ++found_.without_pose;
-      return;
+  void finish_run() {
+    if (!poses_) {
+      write(run_.at, run_.count);
+    } else {
+      poses_->place(run_, placed_);
+      found_.without_pose += run_.count - placed_.count;
+      add_sensors();
+      write(placed_.at, placed_.count);
     }
-    const Eigen::Vector3d sensor = placing->col(3);
-    use(placing->leftCols<3>() * point + sensor, &sensor);
+    run_.count = 0;
   }
 
-  std::optional<SweepPoses::Placing> placing(const char* at) {
-    const double since_stamp_ns = time_->since_stamp_ns(at);
-    if (std::abs(since_stamp_ns) < SweepPoses::kFarthest_ns) return poses_->at(since_stamp_ns);
-    ++found_.with_unlikely_times;
-    return poses_->at_stamp();
+  void add_sensors() {
+    std::vector<ScanStart>& scans = found_.cloud.scans;
+    for (std::size_t i = 0; i < placed_.count; ++i) {
+      const Eigen::Vector3d sensor(placed_.sensor[0][i], placed_.sensor[1][i],
+                                   placed_.sensor[2][i]);
+      if (!scans.empty() &&
+          (sensor - *scans.back().sensor_in_source).squaredNorm() < kSameSensor_m * kSameSensor_m) {
+        continue;
+      }
+      scans.push_back({kept_ + i, sensor});
+    }
+  }
+
+  void write(const std::array<PointRun::Values, 3>& at, std::size_t count) {
+    if (count == 0) return;
+    float* const to = found_.cloud.points[kept_].data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto row = static_cast<Eigen::Index>(axis);
+      const double origin = found_.cloud.origin_in_source[row];
+      double least = box_.min_in_source[row], most = box_.max_in_source[row];
+      for (std::size_t i = 0; i < count; ++i) {
+        least = std::min(least, at[axis][i]);
+        most = std::max(most, at[axis][i]);
+        to[3 * i + axis] = static_cast<float>(at[axis][i] - origin);
+      }
+      box_.min_in_source[row] = least;
+      box_.max_in_source[row] = most;
+    }
+    kept_ += count;
   }
 
   const CloudMessage& message_;
@@ -205,7 +240,12 @@ class Decoder {
   std::optional<SweepPoses> poses_;
   const AttributeFilter& attributes_;
   const std::optional<Box3>& vehicle_box_;
+  bool is_filtered_;
   Eigen::Isometry3d in_vehicle_ = Eigen::Isometry3d::Identity();
+  PointRun run_;
+  PlacedRun placed_;
+  std::size_t kept_ = 0;  // points that are written
+  Box3 box_;              // around them
   MessagePoints found_;
 };
 

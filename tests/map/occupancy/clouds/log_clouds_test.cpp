@@ -325,14 +325,21 @@ TEST(LogClouds, LeaveOutTheVehicleInItsOwnFrame) {
 
 TEST(LogClouds, TakeTheStampWhereTimesAreUnlikely) {
   MadeCloud cloud = sweep<float>("time", 7, false, [](int i) { return i == 3 ? 1e5f : 0.0f; });
-  std::vector<Recorded> log{{"/points", kCloud, cloud.message()},
-                            {"/odom", kOdometry, odometry(0.0, 0.0)},
-                            {"/odom", kOdometry, odometry(1.0, 10.0)}};
-  LogCloudCounts counts;
-  const auto clouds = clouds_of(log, {}, &counts);
-  ASSERT_EQ(clouds.size(), 1u);
-  EXPECT_EQ(counts.points_with_unlikely_times, 1u);
-  EXPECT_NEAR(clouds[0].in_source(3).x(), 10.0, 1e-5);
+  for (const double from_x_m : {0.0, 500'000.0}) {  // the latter needs an origin of its own
+    std::vector<Recorded> log{{"/points", kCloud, cloud.message()},
+                              {"/odom", kOdometry, odometry(0.0, from_x_m)},
+                              {"/odom", kOdometry, odometry(1.0, from_x_m + 10.0)}};
+    LogCloudCounts counts;
+    const auto clouds = clouds_of(log, {}, &counts);
+    ASSERT_EQ(clouds.size(), 1u);
+    ASSERT_EQ(clouds[0].points.size(), 1000u);
+    EXPECT_EQ(counts.points_with_unlikely_times, 1u);
+    for (std::size_t i = 0; i < 1000; ++i) {
+      EXPECT_NEAR(clouds[0].in_source(i).x(), from_x_m + 10.0, 1e-5) << i;
+    }
+    ASSERT_TRUE(clouds[0].sensor_in_source);
+    EXPECT_NEAR(clouds[0].sensor_in_source->x(), from_x_m + 5.0, 1e-9);
+  }
 }
 
 TEST(LogClouds, LeaveOutPointsOfASweepPastTheLastPose) {
