@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "roadbed/geometry/primitives/cross.h"
-#include "roadbed/map/opendrive/write/clothoid.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -14,9 +13,8 @@ constexpr double kAtEnd_m = 1e-4;    // a border that ends so near to the road's
 
 class BorderPlacer {
  public:
-  BorderPlacer(const geometry::PlanView& plan_view, BesideFaults& faults,
-               const BesideDensity& density)
-      : plan_view_(plan_view), faults_(faults), density_(density) {}
+  BorderPlacer(const ReferenceTable& reference, BesideFaults& faults, const BesideDensity& density)
+      : reference_(reference), faults_(faults), density_(density) {}
 
   // From the border's own start on, and before it, as far as the road goes.
   BesideLine place(const RoadBorder& border, double from_m, double to_m) {
@@ -46,7 +44,7 @@ class BorderPlacer {
   }
 
   RoadPosition foot(const Eigen::Vector2d& at, double hint_m) {
-    const RoadPosition position = position_beside(plan_view_, at, hint_m);
+    const RoadPosition position = position_beside(reference_, at, hint_m);
     faults_.least_bend = std::min(faults_.least_bend, position.bend);
     return position;
   }
@@ -117,27 +115,26 @@ class BorderPlacer {
                   begins ? from_m - line.front().s_m : 0.0, ends ? line.back().s_m - to_m : 0.0});
   }
 
-  const geometry::PlanView& plan_view_;
+  const ReferenceTable& reference_;
   BesideFaults& faults_;
   const BesideDensity density_;
 };
 
 }  // namespace
 
-RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::Vector2d& in_map,
+RoadPosition position_beside(const ReferenceTable& reference, const Eigen::Vector2d& in_map,
                              double s_m) {
-  const double end_m = plan_view.end_s_m();
+  const double end_m = reference.end_s_m();
   RoadPosition position;
   for (int step = 0; step < 30; ++step) {
     const double on_m = std::clamp(s_m, 0.0, end_m);
-    const geometry::PlanPoint point = plan_view.at(on_m);
-    const Eigen::Vector2d along = unit(point.pose.heading_rad);
-    const Eigen::Vector2d off = in_map - point.pose.position() - (s_m - on_m) * along;
-    position = {s_m, geometry::cross(along, off), 1.0};
+    const ReferenceTable::Point point = reference.at(on_m);
+    const Eigen::Vector2d off = in_map - point.in_map - (s_m - on_m) * point.along;
+    position = {s_m, geometry::cross(point.along, off), 1.0};
     if (on_m == s_m) position.bend -= point.curvature_per_m * position.t_m;
-    const double ahead_m = along.dot(off) / std::max(0.05, position.bend);
+    const double ahead_m = point.along.dot(off) / std::max(0.05, position.bend);
     s_m += std::clamp(ahead_m, -5.0, 5.0);
-    if (std::abs(ahead_m) < 1e-6) {  // what is left is smaller by as much again
+    if (std::abs(ahead_m) < 1e-5) {  // what is left is smaller by as much again
       position.s_m = s_m;
       break;
     }
@@ -152,9 +149,9 @@ BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint) {
   return {s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
 }
 
-BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
+BesideLine line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
                        double to_m, BesideFaults& faults, const BesideDensity& density) {
-  return BorderPlacer(plan_view, faults, density).place(border, from_m, to_m);
+  return BorderPlacer(reference, faults, density).place(border, from_m, to_m);
 }
 
 }  // namespace roadbed::map::opendrive

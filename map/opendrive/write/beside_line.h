@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "roadbed/geometry/curves/plan_view.h"
+#include "roadbed/map/opendrive/write/reference_table.h"
 #include "roadbed/map/opendrive/write/road_lines.h"
 
 namespace roadbed::map::opendrive {
@@ -14,7 +14,7 @@ struct RoadPosition {
   double s_m = 0.0, t_m = 0.0;
   double bend = 1.0;  ///< 1 − κ t: positive as long as cross-sections do not cross
 };
-RoadPosition position_beside(const geometry::PlanView& plan_view, const Eigen::Vector2d& in_map,
+RoadPosition position_beside(const ReferenceTable& reference, const Eigen::Vector2d& in_map,
                              double s_m);
 
 /// A point of a border beside the reference line.
@@ -48,7 +48,7 @@ struct BesideDensity {
 /// A border over [from, to] of the road, by growing s. Where it runs back its points are left out,
 /// where it does not reach it goes straight on.
 /// @param faults  grow by those of the border.
-BesideLine line_beside(const geometry::PlanView& plan_view, const RoadBorder& border, double from_m,
+BesideLine line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
                        double to_m, BesideFaults& faults, const BesideDensity& density = {});
 
 }  // namespace roadbed::map::opendrive

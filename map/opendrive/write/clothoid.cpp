@@ -17,13 +17,16 @@ struct Integrals {
 };
 
 Integrals integrate(double a, double delta, double phi0) {
-  const auto heading = [&](double tau) { return phi0 + tau * (delta - a + a * tau); };
-  const auto whole = [](const auto& of) {
-    return geometry::integrate(of, 0.0, 0.5) + geometry::integrate(of, 0.5, 1.0);
+  const auto integrand = [&](double tau) {
+    const double heading_rad = phi0 + tau * (delta - a + a * tau);
+    const double cosine = std::cos(heading_rad);
+    return Eigen::Array3d(cosine, std::sin(heading_rad), (tau * tau - tau) * cosine);
   };
-  return {whole([&](double tau) { return std::cos(heading(tau)); }),
-          whole([&](double tau) { return std::sin(heading(tau)); }),
-          whole([&](double tau) { return (tau * tau - tau) * std::cos(heading(tau)); })};
+  const bool is_gentle = std::abs(delta - a) + 2.0 * std::abs(a) < 1.0;
+  const Eigen::Array3d sums = is_gentle ? geometry::integrate(integrand, 0.0, 1.0)
+                                        : Eigen::Array3d(geometry::integrate(integrand, 0.0, 0.5) +
+                                                         geometry::integrate(integrand, 0.5, 1.0));
+  return {sums[0], sums[1], sums[2]};
 }
 
 geometry::PlanCurve curve_of(double k0, double k1, double length_m) {

@@ -72,10 +72,10 @@ class FurnitureWriter {
     fmt::format_to(std::back_inserter(text), words, std::forward<Values>(values)...);
   }
 
-  const geometry::PlanView& view(std::uint32_t road) {
-    const auto found = views_.find(road);
-    if (found != views_.end()) return found->second;
-    return views_.emplace(road, geometry::PlanView(shapes_[road].plan_view)).first->second;
+  const ReferenceTable& table(std::uint32_t road) {
+    const auto found = tables_.find(road);
+    if (found != tables_.end()) return found->second;
+    return tables_.emplace(road, ReferenceTable(shapes_[road].plan_view)).first->second;
   }
 
   std::optional<LaneSpot> spot(LaneId id, std::optional<double> station_m) const {
@@ -100,8 +100,7 @@ class FurnitureWriter {
 
   PartPlace place_beside(std::uint32_t road, const Eigen::Vector2d& in_map, double z_m,
                          double near_s_m) {
-    const geometry::PlanView& plan_view = view(road);
-    const RoadPosition at = position_beside(plan_view, in_map, near_s_m);
+    const RoadPosition at = position_beside(table(road), in_map, near_s_m);
     const RoadShape& shape = shapes_[road];
     PartPlace place;
     const double s_m = std::clamp(at.s_m, 0.0, shape.length_m);
@@ -109,7 +108,7 @@ class FurnitureWriter {
     place.part = part_at(road, s_m);
     place.section = section_before(shape, s_m);
     place.s_m = std::max(0.0, s_m - network_.parts[place.part].from_m);
-    place.heading_rad = plan_view.at(s_m).pose.heading_rad;
+    place.heading_rad = table(road).at(s_m).heading_rad();
     const double lean_rad = shape.superelevation.at(s_m).value;
     const double above_m = z_m - shape.elevation.at(s_m).value;
     place.t_m = at.t_m * std::cos(lean_rad) + above_m * std::sin(lean_rad);
@@ -321,8 +320,7 @@ class FurnitureWriter {
     const double s_m = part.from_m + place.s_m;
     const double lean_rad = shape.superelevation.at(s_m).value;
     const double t_m = place.t_m * std::cos(lean_rad) - place.z_offset_m * std::sin(lean_rad);
-    const geometry::Pose2 pose = view(part.road).at(s_m).pose;
-    return pose * Eigen::Vector2d(0.0, t_m);
+    return table(part.road).at(s_m).beside(t_m);
   }
 
   void add(const Controller& controller) {
@@ -359,7 +357,7 @@ class FurnitureWriter {
   const RoadNetwork& network_;
   int minor_;
   FurnitureText made_;
-  std::map<std::uint32_t, geometry::PlanView> views_;
+  std::map<std::uint32_t, ReferenceTable> tables_;
   std::map<std::uint32_t, std::string> references_;
   std::set<std::string> signal_ids_, object_ids_;
   std::size_t objects_named_ = 0;

@@ -138,7 +138,7 @@ class RoadPlacer {
 
   void take(std::vector<geometry::PlanPiece> line) {
     placed_.plan_view = std::move(line);
-    view_.emplace(placed_.plan_view);
+    reference_.emplace(placed_.plan_view);
   }
 
   // Stops where there are as many faults as may be. Along coarser chords it sees no more of them.
@@ -172,9 +172,7 @@ class RoadPlacer {
         std::size_t hint = 0;
         for (const geometry::PlanPiece& piece : placed_.plan_view) {
           const double steps = std::ceil(piece.length_m / step_m);
-          const double from_per_m = geometry::plan_point(piece, piece.s_m).curvature_per_m;
-          const double to_per_m =
-              geometry::plan_point(piece, piece.s_m + piece.length_m).curvature_per_m;
+          const auto [from_per_m, to_per_m] = curvatures_per_m(piece.curve);
           for (double k = 0.0; k <= steps; k += 1.0) {
             const double s_m = piece.s_m + k / steps * piece.length_m;
             if (s_m < placed_.section_from_m[i] || s_m > placed_.section_from_m[i + 1]) continue;
@@ -206,13 +204,13 @@ class RoadPlacer {
       if (i > 0) hint_m = boundary_s_m(i, hint_m);
       placed_.section_from_m.push_back(hint_m);
     }
-    placed_.section_from_m.push_back(view_->end_s_m());
+    placed_.section_from_m.push_back(reference_->end_s_m());
     const BesideDensity density{.chord_m = chord_m,
                                 .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m)};
     for (std::size_t i = 0; i < road_.sections.size(); ++i) {
       auto& lines = placed_.borders.emplace_back();
       for (const RoadBorder& border : borders_[i]) {
-        lines.push_back(line_beside(*view_, border, placed_.section_from_m[i],
+        lines.push_back(line_beside(*reference_, border, placed_.section_from_m[i],
                                     placed_.section_from_m[i + 1], placed_.faults, density));
         sum_faults(chord_m);
         if (placed_.fault_m >= most_m) return false;
@@ -226,21 +224,21 @@ class RoadPlacer {
     const RoadBorder& border = borders_[section][road_.sections[section].left_lanes];
     const Eigen::Vector2d at = border.points[border.own_from].head<2>();
     double nearest_m = from_m, least_m = 1e300;
-    for (double s_m = from_m; s_m <= view_->end_s_m(); s_m += 1.0) {
-      const double off_m = (view_->at(s_m).pose.position() - at).norm();
+    for (double s_m = from_m; s_m <= reference_->end_s_m(); s_m += 1.0) {
+      const double off_m = (reference_->at(s_m).in_map - at).norm();
       if (off_m < least_m) {
         least_m = off_m;
         nearest_m = s_m;
       }
     }
-    const double s_m = position_beside(*view_, at, nearest_m).s_m;
-    return std::clamp(s_m, from_m + 1e-3, std::max(from_m + 1e-3, view_->end_s_m() - 1e-3));
+    const double s_m = position_beside(*reference_, at, nearest_m).s_m;
+    return std::clamp(s_m, from_m + 1e-3, std::max(from_m + 1e-3, reference_->end_s_m() - 1e-3));
   }
 
   const PlannedRoad& road_;
   std::vector<std::vector<RoadBorder>> borders_;  // by section, from left to right
   std::vector<ReferenceTarget> targets_;          // what the reference line may follow
-  std::optional<geometry::PlanView> view_;
+  std::optional<ReferenceTable> reference_;
   PlacedRoad placed_;
 };
 

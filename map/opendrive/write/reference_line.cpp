@@ -157,16 +157,24 @@ class ClothoidCutter {
     return {best, good};
   }
 
+  // Within the tolerance at some points, those amid the piece first: there it is off most.
   bool keeps(const geometry::PlanPiece& piece, std::size_t from, std::size_t to) const {
     const std::size_t stride = std::max<std::size_t>(1, (to - from) / 24);
-    for (std::size_t i = from + stride; i < to; i += stride) {
-      const double s_m = piece.s_m + piece.length_m * double(i - from) / double(to - from);
-      const geometry::Pose2 pose = geometry::plan_point(piece, s_m).pose;
-      const Eigen::Vector2d off = poses_[i].position() - pose.position();
-      if (std::abs(geometry::cross(unit(pose.heading_rad), off)) > tolerance_m_) return false;
-      if (off.norm() > 1.0) return false;
+    const std::size_t count = (to - from - 1) / stride, middle = (count + 1) / 2;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t step = i < middle ? middle - i : i + 1;
+      if (!is_near(piece, from, to, from + step * stride)) return false;
     }
     return true;
+  }
+
+  bool is_near(const geometry::PlanPiece& piece, std::size_t from, std::size_t to,
+               std::size_t i) const {
+    const double s_m = piece.s_m + piece.length_m * double(i - from) / double(to - from);
+    const geometry::Pose2 pose = geometry::plan_point(piece, s_m).pose;
+    const Eigen::Vector2d off = poses_[i].position() - pose.position();
+    const double beside_m = std::abs(geometry::cross(unit(pose.heading_rad), off));
+    return beside_m <= tolerance_m_ && off.norm() <= 1.0;
   }
 
   double tolerance_m_;

@@ -13,9 +13,9 @@ constexpr double kFlat_m = 0.004;  // what leans less lies flat
 class RoadShaper {
  public:
   RoadShaper(const RoadMap& road_map, const PlannedRoad& road, const PlacedRoad& placed)
-      : road_map_(road_map), road_(road), placed_(placed), view_(placed.plan_view) {
+      : road_map_(road_map), road_(road), placed_(placed), reference_(placed.plan_view) {
     shape_.plan_view = placed.plan_view;
-    shape_.length_m = view_.end_s_m();
+    shape_.length_m = reference_.end_s_m();
   }
 
   RoadShape shape() {
@@ -173,7 +173,7 @@ class RoadShaper {
     if (!plain) {
       double hint_m = samples[0].value;
       for (std::size_t i = 0; i < lane.centre.in_map.points().size(); ++i) {
-        hint_m = position_beside(view_, lane.centre.in_map.points()[i], hint_m).s_m;
+        hint_m = position_beside(reference_, lane.centre.in_map.points()[i], hint_m).s_m;
         const double s_m = std::clamp(hint_m, from_m, to_m);
         const bool on = planned.forward ? s_m > samples.back().value : s_m < samples.back().value;
         if (on && lane.centre.station_m[i] > samples.back().s_m) {
@@ -190,7 +190,7 @@ class RoadShaper {
   const RoadMap& road_map_;
   const PlannedRoad& road_;
   const PlacedRoad& placed_;
-  geometry::PlanView view_;
+  ReferenceTable reference_;
   RoadShape shape_;
 };
 

@@ -22,6 +22,8 @@ geometry::PlanView bend() {
   return geometry::PlanView(pieces);
 }
 
+ReferenceTable table(const geometry::PlanView& view) { return ReferenceTable(view.pieces()); }
+
 Eigen::Vector2d place(const geometry::PlanView& view, double s_m, double t_m) {
   return view.at(s_m).pose * Eigen::Vector2d(0.0, t_m);
 }
@@ -32,7 +34,7 @@ TEST(BesideLine, FindsThePlaceThatAPointWasPutAt) {
   std::uniform_real_distribution<double> s(0.0, 80.0), t(-15.0, 20.0), off(-3.0, 3.0);
   for (int run = 0; run < 1000; ++run) {
     const double s_m = s(random), t_m = t(random);
-    const RoadPosition at = position_beside(view, place(view, s_m, t_m), s_m + off(random));
+    const RoadPosition at = position_beside(table(view), place(view, s_m, t_m), s_m + off(random));
     EXPECT_NEAR(at.s_m, s_m, 1e-6);
     EXPECT_NEAR(at.t_m, t_m, 1e-6);
     EXPECT_NEAR(at.bend, 1.0 - view.at(s_m).curvature_per_m * t_m, 1e-6);
@@ -54,7 +56,7 @@ TEST(BesideLine, ReachesFromEndToEndAndStaysOnTheBorder) {
   const geometry::PlanView view = bend();
   const RoadBorder border = border_at(view, {{-1, 4}, {20, 5}, {41, 6}, {55, 5}, {66, 5}, {81, 4}});
   BesideFaults faults;
-  const BesideLine line = line_beside(view, border, 0.0, 80.0, faults);
+  const BesideLine line = line_beside(table(view), border, 0.0, 80.0, faults);
   EXPECT_EQ(line.front().s_m, 0.0);
   EXPECT_EQ(line.back().s_m, 80.0);
   for (const BesidePoint& point : line) {
@@ -74,8 +76,8 @@ TEST(BesideLine, ReachesFromEndToEndAndStaysOnTheBorder) {
 TEST(BesideLine, MeasuresWhatIsWrongWithABorder) {
   const geometry::PlanView view({{0.0, 50.0, {0.0, 0.0, 0.0}, geometry::LineCurve{}}});
   BesideFaults faults;
-  static_cast<void>(
-      line_beside(view, border_at(view, {{2, 4}, {30, 4}, {27, 5}, {45, 5}}), 0.0, 50.0, faults));
+  static_cast<void>(line_beside(table(view), border_at(view, {{2, 4}, {30, 4}, {27, 5}, {45, 5}}),
+                                0.0, 50.0, faults));
   EXPECT_NEAR(faults.back_m, 3.0, 1e-9);
   EXPECT_NEAR(faults.missing_m, 5.0, 1e-9);
   EXPECT_NEAR(faults.sideways_m, 1.0, 1e-9);
@@ -88,7 +90,7 @@ TEST(BesideLine, EndsWhereTheBorderEndsThoughItGoesOnSideways) {
   border.own_from = 1;
   border.own_to = 2;
   BesideFaults faults;
-  for (const BesidePoint& point : line_beside(view, border, 0.0, 0.2, faults)) {
+  for (const BesidePoint& point : line_beside(table(view), border, 0.0, 0.2, faults)) {
     EXPECT_NEAR(point.t_m, 5.0, 1e-6);
   }
 }
