@@ -117,19 +117,8 @@ class Lanelet2Proposer {
   }
 
   void swap_borders() {
-    std::set<Edge> starts, ends;
-    for (const Lanelet& lanelet : source_.lanelets) {
-      if (!lanelet.start) continue;
-      starts.insert(*lanelet.start);
-      ends.insert(*lanelet.end);
-    }
-    const auto crossed = [](const Edge& edge) { return Edge{edge.right, edge.left}; };
-    for (const Lanelet& lanelet : source_.lanelets) {
-      if (!lanelet.start || lanelet.tag("one_way") == "no") continue;
-      const bool goes_on = starts.contains(*lanelet.end) || ends.contains(*lanelet.start);
-      const bool collides =
-          ends.contains(crossed(*lanelet.end)) && starts.contains(crossed(*lanelet.start));
-      if (!goes_on && collides) swap_roles(lanelet);
+    for (const Lanelet* lanelet : lanelet2::rules::lanelets_with_swapped_borders(source_)) {
+      swap_roles(*lanelet);
     }
   }
 

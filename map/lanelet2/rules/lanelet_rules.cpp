@@ -92,23 +92,10 @@ void missing_locations(const Source& source, const validation::ValidateOptions&,
       .line = source.document.line_of(first->at);
 }
 
-Edge crossed(const Edge& edge) { return {edge.right, edge.left}; }
-
 void swapped_borders(const Source& source, const validation::ValidateOptions&,
                      validation::Report& report) {
-  std::set<Edge> starts, ends;
-  for (const Lanelet& lanelet : source.lanelets) {
-    if (!lanelet.start) continue;
-    starts.insert(*lanelet.start);
-    ends.insert(*lanelet.end);
-  }
-  for (const Lanelet& lanelet : source.lanelets) {
-    if (!lanelet.start || lanelet.tag("one_way") == "no") continue;
-    const bool goes_on = starts.contains(*lanelet.end) || ends.contains(*lanelet.start);
-    const bool collides =
-        ends.contains(crossed(*lanelet.end)) && starts.contains(crossed(*lanelet.start));
-    if (goes_on || !collides) continue;
-    add_at(report, source, lanelet,
+  for (const Lanelet* lanelet : lanelets_with_swapped_borders(source)) {
+    add_at(report, source, *lanelet,
            "runs against the lanelets before and behind it; swap its left and right border");
   }
 }

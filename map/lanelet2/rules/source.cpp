@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "roadbed/map/lanelet2/traffic_rules.h"
 
 namespace roadbed::map::lanelet2::rules {
@@ -62,6 +64,26 @@ validation::Finding& add_at(validation::Report& report, const Source& source,
   validation::Finding& finding = add(report, source, lanelet.relation, "lane", std::move(message));
   if (lanelet.start) finding.in_map = source.local_place(lanelet.start->left);
   return finding;
+}
+
+std::vector<const Lanelet*> lanelets_with_swapped_borders(const Source& source) {
+  std::set<Edge> starts, ends;
+  for (const Lanelet& lanelet : source.lanelets) {
+    if (!lanelet.start) continue;
+    starts.insert(*lanelet.start);
+    ends.insert(*lanelet.end);
+  }
+  const auto crossed = [](const Edge& edge) { return Edge{edge.right, edge.left}; };
+  const auto is_point = [](const Edge& edge) { return edge.left == edge.right; };
+  std::vector<const Lanelet*> found;
+  for (const Lanelet& lanelet : source.lanelets) {
+    if (!lanelet.start || lanelet.tag("one_way") == "no") continue;
+    const Edge &start = *lanelet.start, &end = *lanelet.end;
+    const bool goes_on = starts.contains(end) || ends.contains(start);
+    const bool collides = ends.contains(crossed(end)) && starts.contains(crossed(start));
+    if (!goes_on && collides && !is_point(start) && !is_point(end)) found.push_back(&lanelet);
+  }
+  return found;
 }
 
 std::vector<SourceRule> source_rules() {

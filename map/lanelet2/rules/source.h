@@ -41,6 +41,10 @@ struct Source {
   std::optional<Eigen::Vector2d> local_place(std::uint32_t node) const;
 };
 
+/// One-way lanelets that run against those before and behind them. One that begins or ends in a
+/// point, where it has no sides, is none.
+std::vector<const Lanelet*> lanelets_with_swapped_borders(const Source& source);
+
 struct SourceRule {
   validation::RuleInfo info;
   void (*check)(const Source& source, const validation::ValidateOptions& options,

@@ -103,6 +103,17 @@ TEST(Lanelet2Rules, PassOverWhatAnEditorDeleted) {
   EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.short-way").empty());
 }
 
+TEST(Lanelet2Rules, LeaveALaneletAloneThatBeginsAndEndsInAPoint) {
+  std::string text = clean_file();
+  text.insert(text.find("<relation"), way("23", "41", "42"));
+  text.insert(text.find("<way"), nodes(60, -3.0));
+  text.insert(text.find("<relation"),
+              "<way id=\"24\"><nd ref=\"41\"/><nd ref=\"61\"/><nd ref=\"42\"/>"
+              "<tag k=\"type\" v=\"line_thin\"/></way>\n" +
+                  lanelet("103", "23", "24"));
+  EXPECT_TRUE(tests::source_findings(text, "file.osm", "lanelet2.swapped-borders").empty());
+}
+
 TEST(Lanelet2Rules, TakeTwoWayLaneletsForWhatTheyAre) {
   std::string text = clean_file();
   const std::string road = R"(<tag k="type" v="lanelet"/>)";
