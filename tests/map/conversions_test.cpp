@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roadbed/map/files/read_file.h"
@@ -15,6 +17,8 @@
 #include "roadbed/map/lane_table/read.h"
 #include "roadbed/map/lanelet2/write/autoware/write.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/sumo/net.h"
+#include "roadbed/map/sumo/write.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -143,6 +147,96 @@ std::vector<Target> targets() {
           {"CommonRoad", [](const RoadMap& m) { return written_by(".xml", m); }}};
 }
 
+/// What a net for SUMO has of a map, which is not read back.
+class InNet {
+ public:
+  explicit InNet(const RoadMap& road_map)
+      : road_map_(road_map),
+        net_(sumo::build_net(road_map, sumo::DirectedLanes(road_map), find_conflicts(road_map))) {
+    for (const sumo::NetEdge& edge : net_.edges) {
+      for (const sumo::DirectedLane& way : edge.lanes) lanes_.insert(way.lane);
+      for (std::size_t i = 1; i < edge.lanes.size(); ++i) {
+        beside_.insert({edge.lanes[i - 1].lane, edge.lanes[i].lane});
+        beside_.insert({edge.lanes[i].lane, edge.lanes[i - 1].lane});
+      }
+    }
+    for (const sumo::NetConnection& connection : net_.connections) {
+      LaneId before = net_.from_lane(connection).lane;
+      for (const sumo::DirectedLane& way : connection.across) {
+        lanes_.insert(way.lane);
+        links_.insert({std::exchange(before, way.lane), way.lane});
+      }
+      links_.insert({before, net_.to_lane(connection).lane});
+    }
+    for (const auto& [what, count] : sumo::write_sumo(road_map, {"map", "", {}}).lost) {
+      if (what.starts_with("traffic lights")) lost_lights_ = count;
+    }
+  }
+
+  std::size_t count(const std::string& kind) const {
+    if (kind == "driving lanes") return lanes([](const Lane&) { return true; });
+    if (kind == "their links") return links();
+    if (kind == "lane changes") return changes();
+    if (kind == "limits") return lanes([](const Lane& l) { return !l.speed_limits.empty(); });
+    if (kind == "heights") return lanes(is_raised);
+    if (kind == "other lanes") return lanes_.size() - count("driving lanes");
+    if (kind == "junctions") return junctions();
+    if (kind == "lights") return signals_of(road_map_, true) - lost_lights_;
+    return 0;
+  }
+
+ private:
+  template <typename Fits>
+  std::size_t lanes(const Fits& fits) const {
+    return count_lanes(road_map_,
+                       [&](const Lane& l) { return lanes_.contains(l.id) && fits(l) ? 1U : 0U; });
+  }
+
+  std::size_t links() const {
+    return count_lanes(road_map_, [&](const Lane& lane) {
+      return std::ranges::count_if(road_map_.graph().of(lane.id).successors, [&](LaneId next) {
+        return links_.contains({lane.id, next});
+      });
+    });
+  }
+
+  std::size_t changes() const {
+    return count_lanes(road_map_, [&](const Lane& lane) {
+      const LaneLinks& links = road_map_.graph().of(lane.id);
+      std::size_t count = 0;
+      for (const auto& neighbour : {links.left, links.right}) {
+        count += neighbour && neighbour->same_direction && neighbour->change_allowed() &&
+                 beside_.contains({lane.id, neighbour->lane});
+      }
+      return count;
+    });
+  }
+
+  std::size_t junctions() const {
+    std::size_t count = 0;
+    for (const Junction& junction : road_map_.junctions()) {
+      count += std::ranges::count(net_.nodes, junction.source_id, &sumo::NetNode::id);
+    }
+    return count;
+  }
+
+  const RoadMap& road_map_;
+  sumo::Net net_;
+  std::set<LaneId> lanes_;
+  std::set<std::pair<LaneId, LaneId>> links_, beside_;
+  std::size_t lost_lights_ = 0;
+};
+
+template <typename Count>
+std::string row(const Source& source, const char* target, const RoadMap& before,
+                const Count& count_after) {
+  std::string text = fmt::format("| {} | {} |", source.name, target);
+  for (const Kind& kind : kinds()) {
+    text += fmt::format(" {} |", survival(kind.count(before), count_after(kind)));
+  }
+  return text + "\n";
+}
+
 std::string table() {
   std::string text = "| from | to |", rule = "|---|---|";
   for (const Kind& kind : kinds()) {
@@ -155,12 +249,10 @@ std::string table() {
     for (const Target& target : targets()) {
       if (std::string(source.name) == target.name) continue;
       const RoadMap after = parse_map(target.write(before), "written");
-      text += fmt::format("| {} | {} |", source.name, target.name);
-      for (const Kind& kind : kinds()) {
-        text += fmt::format(" {} |", survival(kind.count(before), kind.count(after)));
-      }
-      text += "\n";
+      text += row(source, target.name, before, [&](const Kind& kind) { return kind.count(after); });
     }
+    const InNet net(before);
+    text += row(source, "SUMO", before, [&](const Kind& kind) { return net.count(kind.name); });
   }
   return text;
 }
