@@ -12,7 +12,7 @@ namespace {
 
 // Of half a cell, at most: how far it turns, and how much of that by its curvature's rate.
 constexpr double kHalfTurn_rad = 0.2, kByRate_rad = 0.02;
-constexpr double kLongest_m = 2.0;
+constexpr double kLongestCell_m = 2.0;
 constexpr double kBucketsPerMetre = 2.0;
 
 Eigen::Vector2d turned_left(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
@@ -47,7 +47,7 @@ void ReferenceTable::add_piece(const geometry::PlanPiece& piece) {
   const double rate_per_m2 = (end_per_m - start_per_m) / piece.length_m;
   const double turn_per_m = std::max(std::abs(start_per_m), std::abs(end_per_m));
   const double half_m =
-      std::min({0.5 * kLongest_m, kHalfTurn_rad / std::max(turn_per_m, 1e-9),
+      std::min({0.5 * kLongestCell_m, kHalfTurn_rad / std::max(turn_per_m, 1e-9),
                 std::sqrt(2.0 * kByRate_rad / std::max(std::abs(rate_per_m2), 1e-9))});
   const double count = std::ceil(0.5 * piece.length_m / half_m), step_m = piece.length_m / count;
   for (double i = 0.0; i < count; i += 1.0) {
