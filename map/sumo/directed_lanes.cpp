@@ -11,7 +11,7 @@
 namespace roadbed::map::sumo {
 namespace {
 
-constexpr double kLeastLength_m = 0.2, kLeastWidth_m = 0.2;
+constexpr double kLeastLength_m = 0.05, kLeastWidth_m = 0.2;
 constexpr double kCorner_m = 0.05;  // how far apart corners of lanes that meet may be
 
 /// The corners of a lane's end, as its driver sees them.

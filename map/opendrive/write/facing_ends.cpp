@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/map/opendrive/write/road_lines.h"
 
 namespace roadbed::map::opendrive {
@@ -40,10 +41,8 @@ std::vector<Gate> gates_by_left_x(const RoadMap& road_map, const RoadPlan& plan)
 
 void unite_facing_ends(const RoadMap& road_map, const RoadPlan& plan,
                        std::vector<std::uint32_t>& group) {
-  const auto find = [&](std::uint32_t end) {
-    while (group[end] != end) end = group[end] = group[group[end]];
-    return end;
-  };
+  geometry::DisjointSets sets(group.size());
+  for (std::uint32_t end = 0; end < group.size(); ++end) sets.join(end, group[end]);
   const std::vector<Gate> gates = gates_by_left_x(road_map, plan);
   for (const Gate& gate : gates) {
     if (gate.one_way) continue;
@@ -51,12 +50,12 @@ void unite_facing_ends(const RoadMap& road_map, const RoadPlan& plan,
     for (auto other = std::ranges::lower_bound(gates, from_m, {},
                                                [](const Gate& one) { return one.left.x(); });
          other != gates.end() && other->left.x() <= to_m; ++other) {
-      if (!gate.faces(*other)) continue;
-      const std::uint32_t a = find(gate.end), b = find(other->end);
-      group[std::max(a, b)] = std::min(a, b);
+      if (gate.faces(*other)) sets.join(gate.end, other->end);
     }
   }
-  for (std::uint32_t end = 0; end < group.size(); ++end) group[end] = find(end);
+  for (std::uint32_t end = 0; end < group.size(); ++end) {
+    group[end] = static_cast<std::uint32_t>(sets.of(end));
+  }
 }
 
 }  // namespace roadbed::map::opendrive

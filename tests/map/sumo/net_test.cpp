@@ -199,6 +199,22 @@ class Crossing {
   tests::MadeLanelet2 file_;
 };
 
+TEST(SumoNet, ALaneOfTenCentimetresIsPassed) {
+  tests::MadeLanelet2 made;
+  std::vector<std::int64_t> left, right;
+  for (const double x_m : {0.0, 30.0, 30.1, 60.0}) {
+    left.push_back(made.node({x_m, 3.5}));
+    right.push_back(made.node({x_m, 0.0}));
+  }
+  for (std::size_t i = 1; i < left.size(); ++i) {
+    made.lanelet(made.way({left[i - 1], left[i]}), made.way({right[i - 1], right[i]}));
+  }
+  const Made lanes(parse_map(made.text(), "made.osm"));
+  const LaneId first = lanes.road_map.lanes().front().id;
+  EXPECT_EQ(reached(lanes.net, first), reached(lanes.road_map, first));
+  EXPECT_EQ(reached(lanes.net, first).size(), 2u);
+}
+
 TEST(SumoNet, LanesThatCrossAreInsideOneJunction) {
   const Made made(Crossing().map(true));
   const auto inner = find_inner_lanes(made.road_map, made.ways, made.conflicts);
