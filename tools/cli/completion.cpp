@@ -4,7 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <functional>
-#include <ranges>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,9 +42,9 @@ Words names_of(const PageOption& option) {
 /// Endings of files: as they are, and packed.
 Words endings_of(std::string_view endings) {
   Words list;
-  for (const auto part : std::views::split(endings, ' ')) {
-    const std::string ending(part.begin(), part.end());
-    if (!ending.empty()) list.insert(list.end(), {ending, ending + ".gz", ending + ".zst"});
+  std::istringstream words{std::string(endings)};
+  for (std::string ending; words >> ending;) {
+    list.insert(list.end(), {ending, ending + ".gz", ending + ".zst"});
   }
   return list;
 }

@@ -21,11 +21,12 @@ void read_cut(const std::string& text, WayPart& part) {
     return;
   cut.whole = whole;
   const bool fits = cut.from >= 0.0 && cut.from < cut.to && cut.points < 100'000'000 &&
-                    cut.to <= static_cast<double>(cut.points - 1);
+                    cut.to + 1.0 <= static_cast<double>(cut.points);
+  if (!fits) return;
   const double inner = std::floor(cut.to) - std::ceil(cut.from) + 1.0;
   const auto nodes = static_cast<std::size_t>(std::max(0.0, inner)) +
                      (cut.starts_at_cut() ? 1 : 0) + (cut.ends_at_cut() ? 1 : 0);
-  if (fits && nodes == part.nodes.size()) part = cut;
+  if (nodes == part.nodes.size()) part = cut;
 }
 
 }  // namespace
