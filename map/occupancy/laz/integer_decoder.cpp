@@ -30,7 +30,8 @@ std::uint32_t IntegerDecoder::correction(ArithmeticDecoder& from) {
     value = value << below | from.raw_bits(below);
   }
   // The upper half is [2ᵏ⁻¹ + 1, 2ᵏ], the lower one [-(2ᵏ - 1), -2ᵏ⁻¹].
-  return value >= 1u << (k_ - 1) ? value + 1 : value - ((1u << k_) - 1);
+  const std::uint32_t is_lower = value >> (k_ - 1) ^ 1u;
+  return value + 1 - (is_lower << k_);
 }
 
 }  // namespace roadbed::map::occupancy::laz
