@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -118,23 +119,19 @@ std::optional<std::uint32_t> entry_end(const RoadPlan& plan, LaneId lane) {
 }
 
 std::vector<std::uint32_t> joined_ends(const RoadMap& road_map, const RoadPlan& plan) {
-  std::vector<std::uint32_t> group(2 * plan.roads.size());
-  std::iota(group.begin(), group.end(), 0U);
-  const auto find = [&](std::uint32_t end) {
-    while (group[end] != end) end = group[end] = group[group[end]];
-    return end;
-  };
+  geometry::DisjointSets sets(2 * plan.roads.size());
   for (const Lane& lane : road_map.lanes()) {
     const auto from = exit_end(plan, lane.id);
     if (!from) continue;
     for (const LaneId next : road_map.graph().of(lane.id).successors) {
       const auto to = entry_end(plan, next);
-      if (!to) continue;
-      const std::uint32_t a = find(*from), b = find(*to);
-      group[std::max(a, b)] = std::min(a, b);
+      if (to) sets.join(*from, *to);
     }
   }
-  for (std::uint32_t end = 0; end < group.size(); ++end) group[end] = find(end);
+  std::vector<std::uint32_t> group;
+  for (std::size_t end = 0; end < 2 * plan.roads.size(); ++end) {
+    group.push_back(static_cast<std::uint32_t>(sets.of(end)));
+  }
   return group;
 }
 

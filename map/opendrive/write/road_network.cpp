@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/geometry/primitives/disjoint_sets.h"
 #include "roadbed/map/opendrive/write/end_roles.h"
 #include "roadbed/map/opendrive/write/id_giver.h"
 
@@ -33,7 +33,6 @@ class NetworkBuilder {
         shapes_(shapes),
         ends_(find_end_roles(road_map, plan)),
         clusters_(2 * plan.roads.size() + crossings()) {
-    std::iota(clusters_.begin(), clusters_.end(), 0U);
     network_.parts_of.resize(plan.roads.size());
     network_.lost_links = ends_.lost_links;
     for (const auto& [ends, lanes] : ends_.joints) meeting_[ends.second].push_back(ends.first);
@@ -55,17 +54,6 @@ class NetworkBuilder {
       if (road.crossing) count = std::max<std::size_t>(count, *road.crossing + 1);
     }
     return count;
-  }
-
-  // Groups of ends that lie in one junction: numbers of groups, then crossings of the map.
-  std::uint32_t cluster(std::uint32_t of) {
-    while (clusters_[of] != of) of = clusters_[of] = clusters_[clusters_[of]];
-    return of;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = cluster(a);
-    b = cluster(b);
-    clusters_[std::max(a, b)] = std::min(a, b);
   }
 
   EndRole role(std::uint32_t end) const { return ends_.roles[end]; }
@@ -145,7 +133,7 @@ class NetworkBuilder {
       const bool ends_here = is_spoke(other) || leads_to_plain_road(other);
       if (role(entry) != EndRole::mesh_entry || !ends_here) continue;
       add_copies(entry, 0.0, length_m, std::nullopt);
-      if (is_spoke(other)) unite(ends_.groups[entry], ends_.groups[other]);
+      if (is_spoke(other)) clusters_.join(ends_.groups[entry], ends_.groups[other]);
       return true;
     }
     return false;
@@ -198,8 +186,8 @@ class NetworkBuilder {
   std::uint32_t whole_cluster(std::uint32_t road) {
     const std::uint32_t start = 2 * road, end = start + 1;
     const std::uint32_t group = ends_.groups[is_spoke(start) ? start : end];
-    if (is_spoke(start) && is_spoke(end)) unite(ends_.groups[start], ends_.groups[end]);
-    if (plan_.roads[road].crossing) unite(group, crossing_cluster(road));
+    if (is_spoke(start) && is_spoke(end)) clusters_.join(ends_.groups[start], ends_.groups[end]);
+    if (plan_.roads[road].crossing) clusters_.join(group, crossing_cluster(road));
     return group;
   }
 
@@ -208,11 +196,11 @@ class NetworkBuilder {
   }
 
   void number_junctions() {
-    std::map<std::uint32_t, std::uint32_t> numbers;
+    std::map<std::size_t, std::uint32_t> numbers;
     std::map<std::uint32_t, const Junction*> sources;
     for (std::uint32_t i = 0; i < network_.parts.size(); ++i) {
       if (!cluster_of_[i]) continue;
-      const std::uint32_t key = cluster(*cluster_of_[i]);
+      const std::size_t key = clusters_.of(*cluster_of_[i]);
       const auto next = static_cast<std::uint32_t>(numbers.size());
       const std::uint32_t number = numbers.emplace(key, next).first->second;
       network_.parts[i].junction = number;
@@ -345,7 +333,8 @@ class NetworkBuilder {
   const RoadPlan& plan_;
   const std::vector<RoadShape>& shapes_;
   EndRoles ends_;
-  std::vector<std::uint32_t> clusters_;
+  // Groups of ends that lie in one junction: numbers of groups, then crossings of the map.
+  geometry::DisjointSets clusters_;
   std::vector<std::optional<std::uint32_t>> cluster_of_;  // by part
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cuts_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> meeting_;  // ends that lead to an end
