@@ -13,7 +13,7 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-constexpr double kScales_m[] = {0.7, 1.4, 2.5, 4.0, 8.0, 16.0, 40.0};
+constexpr double kScales_m[] = {0.7, 2.0, 6.0, 20.0};
 constexpr double kReferenceTolerance_m = 0.004;
 constexpr double kLeastBend = 0.1;
 constexpr double kBack_m = 0.005, kMissing_m = 0.01, kSideways_m = 0.3, kCrossing_m = 0.005;
