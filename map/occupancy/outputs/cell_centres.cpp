@@ -44,21 +44,29 @@ void append_leaf(const OccupancyCell& leaf, double resolution_m,
 }
 
 template <typename Number>
-std::string coordinates(const std::vector<Eigen::Vector3d>& points) {
+void append_number(Number number, std::string& bytes) {
   static_assert(std::endian::native == std::endian::little);
-  std::string bytes;
-  bytes.reserve(points.size() * 3 * sizeof(Number));
-  for (const Eigen::Vector3d& point : points) {
-    for (const double value : point) {
-      const auto number = static_cast<Number>(value);
-      bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
-    }
-  }
-  return bytes;
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
 }
 
-std::string coordinates(const std::vector<Eigen::Vector3d>& points, bool as_floats) {
-  return as_floats ? coordinates<float>(points) : coordinates<double>(points);
+std::string records(const std::vector<Eigen::Vector3d>& points,
+                    const std::vector<Eigen::Vector3f>& normals, bool as_floats) {
+  std::string bytes;
+  bytes.reserve(
+      points.size() * 3 *
+      ((as_floats ? sizeof(float) : sizeof(double)) + (normals.empty() ? 0 : sizeof(float))));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const double value : points[i]) {
+      if (as_floats) {
+        append_number(static_cast<float>(value), bytes);
+      } else {
+        append_number(value, bytes);
+      }
+    }
+    if (normals.empty()) continue;
+    for (const float value : normals[i]) append_number(value, bytes);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -88,25 +96,31 @@ bool fit_in_floats(const std::vector<Eigen::Vector3d>& points) {
   });
 }
 
-std::string points_as_pcd(const std::vector<Eigen::Vector3d>& points) {
-  const bool as_floats = fit_in_floats(points);
+std::string points_as_pcd(const std::vector<Eigen::Vector3d>& points,
+                          const std::vector<Eigen::Vector3f>& normals) {
+  const bool as_floats = fit_in_floats(points), has_normals = !normals.empty();
   const int size = as_floats ? 4 : 8;
   return fmt::format(
-             "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\n"
-             "SIZE {0} {0} {0}\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {1}\nHEIGHT 1\n"
+             "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z{2}\n"
+             "SIZE {0} {0} {0}{3}\nTYPE F F F{4}\nCOUNT 1 1 1{5}\nWIDTH {1}\nHEIGHT 1\n"
              "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
-             size, points.size()) +
-         coordinates(points, as_floats);
+             size, points.size(), has_normals ? " normal_x normal_y normal_z" : "",
+             has_normals ? " 4 4 4" : "", has_normals ? " F F F" : "",
+             has_normals ? " 1 1 1" : "") +
+         records(points, normals, as_floats);
 }
 
-std::string points_as_ply(const std::vector<Eigen::Vector3d>& points) {
+std::string points_as_ply(const std::vector<Eigen::Vector3d>& points,
+                          const std::vector<Eigen::Vector3f>& normals) {
   const bool as_floats = fit_in_floats(points);
   const char* type = as_floats ? "float" : "double";
+  const char* of_normals =
+      normals.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n";
   return fmt::format(
              "ply\nformat binary_little_endian 1.0\nelement vertex {1}\nproperty {0} x\n"
-             "property {0} y\nproperty {0} z\nend_header\n",
-             type, points.size()) +
-         coordinates(points, as_floats);
+             "property {0} y\nproperty {0} z\n{2}end_header\n",
+             type, points.size(), of_normals) +
+         records(points, normals, as_floats);
 }
 
 }  // namespace roadbed::map::occupancy::outputs

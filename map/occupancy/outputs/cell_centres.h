@@ -20,9 +20,12 @@ bool fit_in_floats(const std::vector<Eigen::Vector3d>& points);
 
 /// Points as binary PCD 0.7: floats where these do, else doubles, which PCL's own reader takes for
 /// zeros.
-std::string points_as_pcd(const std::vector<Eigen::Vector3d>& points);
+/// @param normals  of each point, as normal_x normal_y normal_z; empty: none are written.
+std::string points_as_pcd(const std::vector<Eigen::Vector3d>& points,
+                          const std::vector<Eigen::Vector3f>& normals = {});
 
-/// The same as binary PLY 1.0, little-endian.
-std::string points_as_ply(const std::vector<Eigen::Vector3d>& points);
+/// The same as binary PLY 1.0, little-endian; normals are nx ny nz.
+std::string points_as_ply(const std::vector<Eigen::Vector3d>& points,
+                          const std::vector<Eigen::Vector3f>& normals = {});
 
 }  // namespace roadbed::map::occupancy::outputs
