@@ -131,6 +131,10 @@ def main():
         "qw": [pose[2][0] for pose in poses], "qx": none, "qy": [pose[2][1] for pose in poses], "qz": none,
         **{f"t{axis}_m": [pose[1][i] for pose in poses] for i, axis in enumerate("xyz")},
     })  # fmt: skip
+    write("calibration/egovehicle_SE3_sensor.feather", {
+        "sensor_name": ["up_lidar", "down_lidar"], "qw": [1.0, 0.0], "qx": [0.0, 1.0], "qy": [0.0] * 2, "qz": [0.0] * 2,
+        **{f"t{axis}_m": [SCANNER[i]] * 2 for i, axis in enumerate("xyz")},
+    })  # fmt: skip
     rows = []
     for t in times[::2]:
         turn, place, _ = ego_at(t)

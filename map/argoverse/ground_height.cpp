@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "roadbed/map/files/files_named.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/parse_json.h"
 #include "roadbed/map/files/read_file.h"
@@ -33,15 +34,8 @@ using Json = nlohmann::json;
 /// The only file of a folder whose name holds and ends with these; none if there are more.
 std::optional<fs::path> only_file(const fs::path& folder, std::string_view part,
                                   std::string_view end) {
-  std::optional<fs::path> found;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.ends_with(end) || name.find(part) == std::string::npos) continue;
-    if (found) return {};
-    found = entry.path();
-  }
-  return found;
+  const std::vector<fs::path> files = files_named(folder, part, end);
+  return files.size() == 1 ? std::optional(files.front()) : std::nullopt;
 }
 
 std::vector<double> numbers(const fs::path& file, const Json& root, const char* key,

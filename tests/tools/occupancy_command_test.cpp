@@ -192,7 +192,8 @@ TEST_F(OccupancyCommands, RefuseUnusableInputInOneLineAndLeaveNothing) {
   expect_refused({"occupancy", "info", cut}, "ends after");
   expect_refused({"audit", "--occupancy", cut, "--trajectory", drive}, "cut.bt");
   expect_refused({"audit", "--occupancy", octree_, "--trajectory", backwards}, "back.csv:3");
-  expect_refused({"audit", "--occupancy", nan, "--trajectory", drive}, "roadbed occupancy build");
+  expect_refused({"audit", "--occupancy", nan, "--trajectory", drive},
+                 "none of its 1 points is finite");
   const std::string post = folder_.write("post.xyz", "1 2 3\n");
   const auto expect_wrong_usage = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"occupancy", "build", post});

@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "roadbed/geometry/motion/rectangle.h"
+#include "roadbed/map/files/files_named.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/logs/argoverse_annotations.h"
 #include "roadbed/map/logs/argoverse_poses.h"
 #include "roadbed/map/logs/transform_tree.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/tools/audit/obstacle_finder.h"
@@ -24,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using planning::ObstacleInSource;
 
-constexpr double kCell_m = 0.1;
+constexpr double kCell_m = 0.1, kCarveRange_m = 40.0;
 
 [[noreturn]] void refuse_log(const fs::path& folder, const std::string& found,
                              const std::string& needed) {
@@ -32,22 +35,6 @@ constexpr double kCell_m = 0.1;
                          .found = found,
                          .needed = needed,
                          .remedy = "name the folder of one sensor log of Argoverse 2"});
-}
-
-std::vector<fs::path> files_in(const fs::path& folder, std::string_view start,
-                               std::string_view suffix) {
-  std::vector<fs::path> files;
-  std::error_code unreadable;
-  for (const auto& entry : fs::directory_iterator(folder, unreadable)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(start) && name.ends_with(suffix)) files.push_back(entry.path());
-  }
-  // Times have no zeros in front.
-  std::ranges::sort(files, {}, [](const fs::path& file) {
-    const std::string name = file.filename().string();
-    return std::pair(name.size(), name);
-  });
-  return files;
 }
 
 /// One track in the city, over time.
@@ -124,10 +111,21 @@ std::vector<ObstacleInSource> annotated_obstacles(const ArgoverseLog& log) {
   return obstacles;
 }
 
-std::vector<ObstacleInSource> found_obstacles(const std::vector<map::PointCloud>& sweeps,
-                                              int threads) {
+/// Goes through the sweeps of a log, one after the other.
+void for_each_sweep(const ArgoverseLog& log, const std::function<void(map::PointCloud)>& use) {
+  for (const fs::path& file : log.sweeps) {
+    map::PointCloud sweep = map::read_point_cloud(file);
+    if (!sweep.stamp_ns) {
+      refuse_log(log.poses.parent_path(), fmt::format("has a sweep {}", file.filename().string()),
+                 "sweeps that are named by their times [ns]");
+    }
+    use(std::move(sweep));
+  }
+}
+
+std::vector<ObstacleInSource> found_obstacles(const ArgoverseLog& log, int threads) {
   ObstacleFinder finder({}, CloudClock([] { return std::nullopt; }, 0.1), threads);
-  for (const map::PointCloud& sweep : sweeps) finder.take(sweep);
+  for_each_sweep(log, [&](map::PointCloud sweep) { finder.take(std::move(sweep)); });
   return finder.obstacles();
 }
 
@@ -143,19 +141,15 @@ map::PointCloud without_movers(map::PointCloud sweep,
     if (obstacle.validity.from_s == planning::kAlways.from_s || !is_there) continue;
     boxes.push_back(rectangle_at(obstacle, t_s));
   }
-  constexpr double noise_m = 0.1;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
-    const Eigen::Vector2d point = sweep.in_source(i).head<2>();
-    const bool is_in_one = std::ranges::any_of(boxes, [&](const geometry::Rectangle& box) {
+  return map::leaving_out(std::move(sweep), [&](const Eigen::Vector3d& in_source) {
+    constexpr double noise_m = 0.1;
+    const Eigen::Vector2d point = in_source.head<2>();
+    return std::ranges::any_of(boxes, [&](const geometry::Rectangle& box) {
       const double reach_m = box.radius_m() + noise_m;
       return (point - box.centre).squaredNorm() <= reach_m * reach_m &&
              geometry::distance_m(box, point) <= noise_m;
     });
-    if (!is_in_one) sweep.points[kept++] = sweep.points[i];
-  }
-  sweep.points.resize(kept);
-  return sweep;
+  });
 }
 
 }  // namespace
@@ -172,11 +166,11 @@ ArgoverseLog argoverse_log(const fs::path& folder) {
   ArgoverseLog log{.poses = drive_of_argoverse_log(folder),
                    .map = {},
                    .annotations = folder / "annotations.feather",
-                   .sweeps = files_in(folder / "sensors" / "lidar", "", ".feather")};
+                   .sweeps = map::files_named(folder / "sensors" / "lidar", "", ".feather")};
   if (!fs::exists(log.poses, unreadable)) {
     refuse_log(folder, "has no city_SE3_egovehicle.feather", "the poses of its ego");
   }
-  const auto maps = files_in(folder / "map", "log_map_archive_", ".json");
+  const auto maps = map::files_named(folder / "map", "log_map_archive_", ".json");
   if (maps.size() != 1) {
     refuse_log(folder, fmt::format("has {} maps log_map_archive_*.json in its map", maps.size()),
                "one");
@@ -190,22 +184,17 @@ ArgoverseLog argoverse_log(const fs::path& folder) {
 }
 
 LogScene scene_of_log(const ArgoverseLog& log, LogBoxes boxes, int threads) {
-  std::vector<map::PointCloud> sweeps;
-  for (const fs::path& file : log.sweeps) {
-    sweeps.push_back(map::read_point_cloud(file));
-    if (sweeps.back().stamp_ns) continue;
-    refuse_log(log.poses.parent_path(), fmt::format("has a sweep {}", file.filename().string()),
-               "sweeps that are named by their times [ns]");
-  }
   LogScene scene;
   scene.obstacles =
-      boxes == LogBoxes::annotated ? annotated_obstacles(log) : found_obstacles(sweeps, threads);
-  for (map::PointCloud& sweep : sweeps) {
-    sweep = without_movers(std::move(sweep), scene.obstacles);
-  }
-  std::erase_if(sweeps, [](const map::PointCloud& sweep) { return sweep.points.empty(); });
+      boxes == LogBoxes::annotated ? annotated_obstacles(log) : found_obstacles(log, threads);
+  const map::CloudsInTurn in_turn([&](const std::function<void(const map::PointCloud&)>& use) {
+    for_each_sweep(log, [&](map::PointCloud sweep) {
+      sweep = without_movers(std::move(sweep), scene.obstacles);
+      if (!sweep.points.empty()) use(sweep);
+    });
+  });
   scene.occupancy = std::make_shared<const map::OccupancyMap>(
-      map::OccupancyMap::build(sweeps, {.resolution_m = kCell_m}));
+      map::OccupancyMap::build(in_turn, {.resolution_m = kCell_m, .carve_range_m = kCarveRange_m}));
   return scene;
 }
 

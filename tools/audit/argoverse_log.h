@@ -33,9 +33,11 @@ struct LogScene {
   std::vector<planning::ObstacleInSource> obstacles;
 };
 
-/// Points of a sweep that lie in a box which is there at that time, and not for ever, are not in
-/// the occupancy: the box stands for them, and where it has gone the space is free. Without the
-/// sensors' places nothing is carved: what has no point is unknown.
+/// Sweeps are read one after the other: once to find boxes in them, twice for the occupancy. Points
+/// of a sweep that lie in a box which is there at that time, and not for ever, are not in the
+/// occupancy: the box stands for them, and where it has gone the space is free. Up to 40 m from the
+/// lidars rays carve free space, if the log says where on the vehicle they are (its calibration);
+/// else what has no point is unknown.
 /// @throws InputError if a file is unusable, or there are no annotations and they are asked for.
 LogScene scene_of_log(const ArgoverseLog& log, LogBoxes boxes, int threads);
 

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/logs/log.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
+#include "roadbed/map/occupancy/clouds/log_clouds.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 
@@ -18,6 +22,17 @@ struct FieldWithOccupancy {
   map::ClearanceField field;
 };
 
+std::unique_ptr<map::OccupancySource> occupancy_in(const fs::path& path) {
+  if (map::is_log(path)) {
+    const map::LogClouds clouds(path, {});
+    return std::make_unique<map::OccupancyMap>(
+        map::OccupancyMap::build(map::CloudsInTurn([&](const auto& use) { clouds.for_each(use); }),
+                                 map::OccupancyOptions{}));
+  }
+  if (fs::is_directory(path)) return map::open_occupancy(path);
+  return std::make_unique<map::OccupancyMap>(map::load_occupancy(std::span(&path, 1)));
+}
+
 }  // namespace
 
 std::shared_ptr<const map::RoadMap> Inputs::road_map(const fs::path& file) const {
@@ -26,8 +41,7 @@ std::shared_ptr<const map::RoadMap> Inputs::road_map(const fs::path& file) const
 }
 
 std::shared_ptr<const map::OccupancySource> Inputs::occupancy(const fs::path& path) const {
-  return of<map::OccupancySource>("octree or tiles", {path},
-                                  [&] { return map::open_occupancy(path); });
+  return of<map::OccupancySource>("octree or tiles", {path}, [&] { return occupancy_in(path); });
 }
 
 std::shared_ptr<const map::OccupancyMap> Inputs::occupancy_of(

@@ -32,7 +32,8 @@ class Inputs {
   /// As `map::load_map`.
   std::shared_ptr<const map::RoadMap> road_map(const std::filesystem::path& file) const;
 
-  /// As `map::open_occupancy`: an octree, or a folder of tiles.
+  /// As `map::open_occupancy`: an octree, or a folder of tiles; or made of a cloud, or of the
+  /// clouds of a log, as `occupancy build` does with cells of 0.1 m.
   std::shared_ptr<const map::OccupancySource> occupancy(const std::filesystem::path& path) const;
 
   /// As `map::load_occupancy`: an octree, or clouds.

@@ -6,6 +6,7 @@
 
 #include "roadbed/tools/audit/audit_subjects.h"
 #include "roadbed/tools/audit/audited_drive.h"
+#include "roadbed/tools/commands/cloud_inputs.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline commands {
@@ -38,9 +39,10 @@ void AuditAsked::declare_occupancy(Arguments& arguments) {
   arguments
       .add("--occupancy", occupancy_,
            "Octree of obstacles (.bt .ot), or a folder of tiles, of which a drive reads those "
-           "that it meets")
+           "that it meets; or a cloud or a log of clouds, made one in memory as occupancy build "
+           "does, in cells of 0.1 m")
       .reads()
-      .ending(kOctreeEndings);
+      .ending(kCloudInputEndings);
 }
 
 void AuditAsked::declare(Arguments& arguments) {

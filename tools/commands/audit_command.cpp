@@ -95,7 +95,10 @@ class AuditCommand : public Command {
   std::string missing() const {
     if (!check_.empty()) return {};
     const bool has_log = !subjects_.log().empty();
-    if (has_log && outputs_.certifies()) return "--certificate is about files, not about --log";
+    if (has_log && outputs_.certifies())
+      return "--certificate is about files, not about --log: build its occupancy (occupancy "
+             "build), and "
+             "give that with its drive";
     if (std::string fault = asked_.fault(); !has_log && !fault.empty()) return fault;
     if (!has_log && !asked_.asks()) return "--occupancy or --on is required";
     const bool has_map = !asked_.map_file().empty();

@@ -60,7 +60,7 @@ map::PictureFrame look_at(const AuditPicture& picture) {
       for (const Vector2d& corner : part.outline_at(point.pose())) box.extend(corner);
     }
   }
-  const Vector2d around = Vector2d::Constant(std::max(3.0, 0.04 * box.sizes().maxCoeff()));
+  const Vector2d around = Vector2d::Constant(std::max(6.0, 0.08 * box.sizes().maxCoeff()));
   box = PictureBox(box.min() - around, box.max() + around);
   const Vector2d size = box.sizes();
   double scale = std::min((kAuditWidth_px - 2.0 * kMargin_px) / size.x(), kMostScale_px_per_m);

@@ -42,6 +42,14 @@ PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter) {
   return cloud;
 }
 
+PointCloud leaving_out(PointCloud cloud,
+                       const std::function<bool(const Eigen::Vector3d& in_source)>& leaves_out) {
+  keep(cloud, [&](const Eigen::Vector3d& point, const std::optional<Eigen::Vector3d>&) {
+    return !leaves_out(point);
+  });
+  return cloud;
+}
+
 PointCloud within_reach(PointCloud cloud, const CloudFilter& filter) {
   if (!filter.range_m && !filter.height_m) return cloud;
   const ValueRange height_m = filter.height_m.value_or(ValueRange());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -52,5 +53,9 @@ PointCloud within_reach(PointCloud cloud, const CloudFilter& filter);
 /// program starts, which would cost every command 50 ms.
 /// @throws InputError if roadbed was built without PCL, or no point is left.
 PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter);
+
+/// Without the points for which `leaves_out` says so; scans keep what is left of theirs.
+PointCloud leaving_out(PointCloud cloud,
+                       const std::function<bool(const Eigen::Vector3d& in_source)>& leaves_out);
 
 }  // namespace roadbed::map::occupancy::clouds

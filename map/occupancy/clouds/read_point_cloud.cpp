@@ -50,11 +50,8 @@ Parser choose_parser(std::string_view bytes, const std::string& name) {
                "convert it, or rename it to what it is");
 }
 
-}  // namespace
-
-PointCloud parse_point_cloud(std::string_view bytes, const std::string& name,
-                             const CloudFilter& filter) {
-  RawCloud raw = choose_parser(bytes, name)(bytes, name, filter);
+/// The cloud of what was parsed, of which something has to be there.
+PointCloud cloud_of(RawCloud raw, const std::string& name, const CloudFilter& filter) {
   if (raw.empty() && raw.filtered_out == 0) {
     refuse_cloud(name, "", "",
                  raw.dropped_not_finite == 0
@@ -67,10 +64,19 @@ PointCloud parse_point_cloud(std::string_view bytes, const std::string& name,
   return without_vehicle(std::move(cloud), filter);
 }
 
+}  // namespace
+
+PointCloud parse_point_cloud(std::string_view bytes, const std::string& name,
+                             const CloudFilter& filter) {
+  return cloud_of(choose_parser(bytes, name)(bytes, name, filter), name, filter);
+}
+
 PointCloud point_cloud_of(const std::filesystem::path& file, std::string_view bytes,
                           const CloudFilter& filter) {
-  PointCloud cloud = parse_point_cloud(bytes, input_name(file), filter);
-  return is_feather(bytes) ? in_city(std::move(cloud), file) : cloud;
+  const std::string name = input_name(file);
+  if (!is_feather(bytes)) return parse_point_cloud(bytes, name, filter);
+  SweepInLog sweep(file);
+  return sweep.in_city(cloud_of(sweep.parse(bytes, name, filter), name, filter));
 }
 
 PointCloud read_point_cloud(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "roadbed/map/files/input_error.h"
@@ -66,6 +67,29 @@ TEST(ArgoverseLog, LeavesPointsOfBoxesOutOfTheOccupancy) {
     EXPECT_FALSE(is_occupied(rear.x_m, rear.y_m)) << t_s;
   }
   EXPECT_TRUE(is_occupied(kStartX_m + 37.0, kStreetY_m + 10.0));  // a house
+}
+
+// Between the scanner, 1.9 m over the axle, and what it sees; behind a house it saw nothing.
+TEST(ArgoverseLog, HasFreeSpaceWhereTheLidarsSawThrough) {
+  const LogScene scene = scene_of_log(argoverse_log(made_log()), LogBoxes::annotated, 1);
+  const auto states_at = [&](double x_m, double y_m, double above_m) {
+    const double z_m = 30.0 + 0.02 * x_m + above_m;
+    const map::Box3 box{{kStartX_m + x_m - 0.2, kStreetY_m + y_m - 0.2, z_m - 0.2},
+                        {kStartX_m + x_m + 0.2, kStreetY_m + y_m + 0.2, z_m + 0.2}};
+    std::set<map::CellState> states;
+    for (const auto& cell : scene.occupancy->cells_in(box)) {
+      const double reach_m = 0.2 + 0.5 * cell.size_m;
+      const Eigen::Vector3d off_m =
+          cell.centre_in_source - 0.5 * (box.min_in_source + box.max_in_source);
+      if (off_m.cwiseAbs().maxCoeff() < reach_m) states.insert(cell.state);
+    }
+    return states;
+  };
+  using testing::Contains;
+  using testing::IsEmpty;
+  EXPECT_THAT(states_at(30.0, -1.75, 1.5), Contains(map::CellState::free));
+  EXPECT_THAT(states_at(28.0, 0.0, 0.8), Contains(map::CellState::free));
+  EXPECT_THAT(states_at(37.0, 14.0, 2.0), IsEmpty()) << "in a house";
 }
 
 TEST_F(ArgoverseLogTest, FindsWhatIsAnnotated) {

@@ -307,5 +307,36 @@ TEST_F(AuditCommand, RefusesWhatCannotBeAudited) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.svg"));
 }
 
+// In cells of 0.1 m, as build does.
+TEST_F(AuditCommand, TakesACloudInPlaceOfTheOctreeThatIsBuiltOfIt) {
+  const std::string cloud = folder_ / "post.pcd", drive = folder_ / "drives/near.csv";
+  const auto audit_over = [&](const std::string& occupancy) {
+    return run_roadbed(
+        {"audit", "--occupancy", occupancy, "--trajectory", drive, "--unknown", "free", "--json"});
+  };
+  const ProgramRun of_cloud = audit_over(cloud);
+  EXPECT_EQ(of_cloud.out, audit_over(octree_).out);
+  EXPECT_EQ(of_cloud.status, 0) << of_cloud.err;
+  const std::string proof = folder_ / "proof.json";
+  ASSERT_EQ(run_roadbed({"audit", "--occupancy", cloud, "--trajectory", drive, "--unknown", "free",
+                         "--certificate", proof})
+                .status,
+            0);
+  EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
+}
+
+TEST_F(AuditCommand, TakesALogOfCloudsInPlaceOfTheOctreeThatIsBuiltOfIt) {
+  const std::string log =
+      (data_folder() / "../tests/fuzz/corpus/log/clouds.mcap").lexically_normal().string();
+  const std::string octree = folder_ / "log.bt", drive = folder_ / "drives/near.csv";
+  ASSERT_EQ(run_roadbed({"occupancy", "build", log, "-o", octree, "-q"}).status, 0);
+  const auto audit_over = [&](const std::string& occupancy) {
+    return run_roadbed({"audit", "--occupancy", occupancy, "--trajectory", drive, "--json"});
+  };
+  const ProgramRun of_log = audit_over(log);
+  EXPECT_LE(of_log.status, 1) << of_log.err;
+  EXPECT_EQ(of_log.out, audit_over(octree).out);
+}
+
 }  // namespace
 }  // namespace roadbed::tests
