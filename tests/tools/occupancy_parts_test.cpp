@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "roadbed/map/files/projection.h"
@@ -106,6 +108,54 @@ TEST_F(OccupancyParts, AreCutAroundALaneOfTheirMap) {
   const auto leaves = [](const std::string& file) { return info(file).at("leaves").get<int>(); };
   EXPECT_GT(leaves(near), 0);
   EXPECT_LT(leaves(near), leaves(kTown) / 2);
+}
+
+// Of the street along y = 198.25, as far as the route goes.
+TEST_F(OccupancyParts, AreCutAlongARouteOfTheirMap) {
+  const std::string map = data_folder() / "town.xodr";
+  const std::string route = folder_.write(
+      "route.json",
+      run_roadbed({"route", map, "--from", "lane:1/3/1@6", "--to", "lane:1/3/1@45", "--json"}).out);
+  const std::string line = folder_ / "line.csv";
+  ASSERT_EQ(run_roadbed({"reference", map, "--from", "lane:1/3/1@6", "--to", "lane:1/3/1@45", "-o",
+                         line, "-q"})
+                .status,
+            0);
+  std::istringstream rows(bytes_of(line));
+  double west_m = 1e9, east_m = -1e9, s_m = 0, x_m = 0, y_m = 0;
+  char comma = 0;
+  std::string row;
+  for (std::getline(rows, row); std::getline(rows, row);) {
+    std::istringstream(row) >> s_m >> comma >> x_m >> comma >> y_m;
+    west_m = std::min(west_m, x_m);
+    east_m = std::max(east_m, x_m);
+  }
+  const Json box =
+      info(made({"crop", kTown, "--map", map, "--within", "route:" + route + ",5m"}, "along.bt"))
+          .at("bounds");
+  const double half_cell_m = 0.1, reach_m = 5.0;
+  EXPECT_NEAR(box.at("min_x_m").get<double>(), west_m - reach_m, 2.0 * half_cell_m);
+  EXPECT_NEAR(box.at("max_x_m").get<double>(), east_m + reach_m, 2.0 * half_cell_m);
+  EXPECT_NEAR(box.at("min_y_m").get<double>(), y_m - reach_m, 2.0 * half_cell_m);
+  EXPECT_NEAR(box.at("max_y_m").get<double>(), y_m + reach_m, 2.0 * half_cell_m);
+  const std::string other =
+      folder_.write("other.json", R"({"found": true, "lanes": [{"lane": "9"}]})");
+  const ProgramRun unknown = run({"crop", kTown, "--map", map, "--within", "route:" + other + ",5m",
+                                  "-o", folder_ / "none.bt"});
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("/lanes/0/lane: lane 9 is not in the map"));
+}
+
+TEST_F(OccupancyParts, InTilesAreComparedAsOne) {
+  const std::string tiles = made({"merge", kTown, "--tiles", "100"}, "town.tiles");
+  const ProgramRun same = run({"diff", tiles, kTown, "--json"});
+  EXPECT_EQ(same.status, 0) << same.err << same.out;
+  EXPECT_GT(Json::parse(same.out).at("stayed_cells").get<int>(), 100'000);
+  const std::string part = made({"crop", kTown, "--bbox=0,0,300,400"}, "part.bt");
+  const Json of_tiles = Json::parse(run({"diff", part, tiles, "--json"}).out),
+             of_octree = Json::parse(run({"diff", part, kTown, "--json"}).out);
+  EXPECT_EQ(of_tiles, of_octree);
+  EXPECT_GT(of_tiles.at("appeared_cells").get<int>(), 1000);
 }
 
 TEST_F(OccupancyParts, OfNothingAreAnEmptyOctreeAndANo) {

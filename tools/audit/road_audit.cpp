@@ -12,6 +12,7 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/map/geojson/document.h"
+#include "roadbed/tools/audit/route_file.h"
 #include "roadbed/tools/files/json.h"
 #include "roadbed/tools/simulation/common_road_obstacles.h"
 #include "roadbed/tools/simulation/scenario.h"
@@ -74,26 +75,10 @@ std::vector<Polygon> read_area(const std::filesystem::path& file) {
                          .remedy = "draw the area that the drive has to stay in"});
 }
 
-std::vector<map::LaneId> read_route(const std::filesystem::path& file,
-                                    const map::RoadMap& road_map) {
-  const std::string name = map::input_name(file);
-  const nlohmann::json document = parse_json_strictly(map::read_file(file), name);
-  const JsonNode route(document, name);
-  if (!route.at("found").boolean()) {
-    route.at("found").refuse("no route was found", "a route, as route --json prints it",
-                             "choose another start or goal");
-  }
+std::vector<map::LaneId> lanes_of_route(const std::filesystem::path& file,
+                                        const map::RoadMap& road_map) {
   std::vector<map::LaneId> lanes;
-  for (const JsonNode& leg : route.at("lanes").elements()) {
-    const JsonNode lane = leg.at("lane");
-    const auto id = road_map.find_lane(lane.text());
-    if (!id) {
-      lane.refuse(fmt::format("lane {} is not in the map", lane.name()), "a lane of --map",
-                  "find the route on the same map");
-    }
-    lanes.push_back(*id);
-  }
-  if (lanes.empty()) route.at("lanes").refuse("is empty", "a lane at least", "find a route");
+  for (const RouteFileLeg& leg : read_route_file(file, road_map)) lanes.push_back(leg.lane);
   return lanes;
 }
 
@@ -124,7 +109,7 @@ planning::SurfaceRule surface_rule(const std::string& text, const map::RoadMap* 
   rule.kind = words.kind;
   rule.road_map = road_map;
   if (words.kind == Kind::area) rule.area_in_source = read_area(words.file);
-  if (words.kind == Kind::route) rule.route = read_route(words.file, *road_map);
+  if (words.kind == Kind::route) rule.route = lanes_of_route(words.file, *road_map);
   return rule;
 }
 

@@ -38,7 +38,8 @@ class OccupancyCropCommand : public Command {
     region_.declare(arguments, "octree");
     arguments
         .add("--map", map_file_,
-             "The map whose lane --within names, in the octree's coordinates (.xodr .osm .rbm)")
+             "The map whose lane or route --within names, in the octree's coordinates (.xodr .osm "
+             ".rbm)")
         .reads()
         .ending(kMapEndings);
     arguments
@@ -56,7 +57,9 @@ class OccupancyCropCommand : public Command {
     arguments.example(
         "  roadbed occupancy crop town.bt --bbox=0,0,200,300 -o part.bt\n"
         "  roadbed occupancy crop city.tiles --polygon yard.geojson --heights=-1,3 -o yard.bt\n"
-        "  roadbed occupancy crop town.bt --map town.xodr --within lane:1/0/-1,50m -o near.bt");
+        "  roadbed occupancy crop town.bt --map town.xodr --within lane:1/0/-1,50m -o near.bt\n"
+        "  roadbed occupancy crop town.bt --map town.xodr --within route:route.json,30m -o "
+        "along.bt");
   }
 
   Exit run(const Streams& streams, const CommonOptions& common) override {

@@ -7,10 +7,13 @@
 
 #include "roadbed/map/files/json_text.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/occupancy/octree/occupancy_merge.h"
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/map/occupancy/outputs/cell_centres.h"
 #include "roadbed/map/occupancy/outputs/occupancy_changes.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/commands/commands.h"
+#include "roadbed/tools/commands/occupancy_output.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline commands {
@@ -20,11 +23,11 @@ class OccupancyDiffCommand : public Command {
  public:
   void declare(Arguments& arguments) override {
     arguments.description("Say what appeared between two octrees of one place, and what vanished");
-    arguments.add("A", before_, "Octree (.bt .ot) of before")
+    arguments.add("A", before_, "Octree (.bt .ot) of before, or folder of tiles")
         .required()
         .reads()
         .ending(kOctreeEndings);
-    arguments.add("B", now_, "Octree of now").required().reads().ending(kOctreeEndings);
+    arguments.add("B", now_, "The same of now").required().reads().ending(kOctreeEndings);
     arguments
         .add("--appeared", appeared_, "Cells occupied in B and not in A, as points (.pcd .ply)")
         .writes(".pcd");
@@ -42,14 +45,16 @@ class OccupancyDiffCommand : public Command {
     arguments.flag("-f,--force", force_, "Replace outputs that exist");
     arguments.flag("-j,--json", json_, "Print one JSON document");
     arguments.says_no_if("something appeared or vanished");
-    arguments.example("  roadbed occupancy diff town.bt street.bt --appeared new.pcd");
+    arguments.example(
+        "  roadbed occupancy diff town.bt street.bt --appeared new.pcd\n"
+        "  roadbed occupancy diff city.tiles town.bt");
   }
 
   Exit run(const Streams& streams, const CommonOptions&) override {
     for (const std::filesystem::path& output : {appeared_, vanished_}) {
       if (!output.empty()) map::check_writable(output, force_);
     }
-    const auto before = map::OccupancyMap::load(before_), now = map::OccupancyMap::load(now_);
+    const map::OccupancyMap before = octree_in(before_), now = octree_in(now_);
     const map::OccupancyChanges changes = map::changes_between(before, now);
     write(appeared_, changes.appeared);
     write(vanished_, changes.vanished);
@@ -71,6 +76,14 @@ class OccupancyDiffCommand : public Command {
   }
 
  private:
+  /// Of tiles all that they hold, as one.
+  static map::OccupancyMap octree_in(const std::filesystem::path& path) {
+    if (!map::is_tiled_occupancy(path)) return map::OccupancyMap::load(path);
+    const OccupancyInputs tiles({path});
+    return map::OccupancyMap::parse(map::OccupancyMerge(tiles.sources()).bt().bytes,
+                                    map::input_name(path));
+  }
+
   void write(const std::filesystem::path& output,
              const std::vector<Eigen::Vector3d>& points) const {
     if (output.empty()) return;

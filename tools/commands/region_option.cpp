@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -14,28 +16,38 @@
 #include "roadbed/map/geojson/document.h"
 #include "roadbed/map/gis/lon_lat.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/tools/audit/route_file.h"
 
 namespace roadbed::tools::inline commands {
 namespace {
 
-/// "lane:12/0/-1,500m": the lane's name and the distance.
+/// "lane:12/0/-1,500m": the lane's name and the distance; "route:F.json,30m": the route's file.
 struct Surroundings {
   std::string lane;
+  std::filesystem::path route_file;  // of no lane
   double distance_m = 0.0;
 };
 
 std::optional<Surroundings> surroundings_of(std::string_view text) {
   constexpr double kMost_m = 1e6;
-  constexpr std::string_view prefix = "lane:";
+  constexpr std::string_view of_lane = "lane:", of_route = "route:";
   const std::size_t comma = text.rfind(',');
-  if (!text.starts_with(prefix) || comma == text.npos) return {};
+  const bool is_route = text.starts_with(of_route);
+  if ((!text.starts_with(of_lane) && !is_route) || comma == text.npos) return {};
   const std::string_view number = text.substr(comma + 1);
-  Surroundings found{std::string(text.substr(prefix.size(), comma - prefix.size())), 0.0};
+  const std::size_t start = is_route ? of_route.size() : of_lane.size();
+  const std::string named(text.substr(start, comma - start));
+  Surroundings found;
+  if (is_route) {
+    found.route_file = named;
+  } else {
+    found.lane = named;
+  }
   const char* end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, found.distance_m);
   const bool fits = error == std::errc() && std::string_view(rest, end) == "m" &&
                     found.distance_m > 0.0 && found.distance_m <= kMost_m;
-  return fits && !found.lane.empty() ? std::optional(found) : std::nullopt;
+  return fits && !named.empty() ? std::optional(found) : std::nullopt;
 }
 
 /// All rings of a file of polygons, as they stand.
@@ -57,6 +69,39 @@ std::vector<geometry::Ring> rings_of(const map::geojson::Document& document,
   return rings;
 }
 
+std::vector<Eigen::Vector2d> line_of_lane(const std::string& lane, const map::RoadMap& road_map,
+                                          const std::string& map_name) {
+  if (const auto id = road_map.find_lane(lane)) return road_map.lane(*id).centre.in_map.points();
+  throw map::InputError({.file = map_name,
+                         .found = fmt::format("no lane {}", lane),
+                         .needed = "a lane of the map for --within",
+                         .remedy = "see the names with: roadbed locate MAP --at X,Y"});
+}
+
+/// The part of a lane's centre that is driven; against the lane from the greater station on.
+std::vector<Eigen::Vector2d> driven_part(const geometry::Polyline& centre,
+                                         const RouteFileLeg& leg) {
+  const auto [least_m, most_m] = std::minmax(leg.from_s_m, leg.to_s_m);
+  std::vector<Eigen::Vector2d> part{centre.at(least_m)};
+  for (std::size_t i = 0; i < centre.points().size(); ++i) {
+    const double s_m = centre.stations_m()[i];
+    if (s_m > least_m && s_m < most_m) part.push_back(centre.points()[i]);
+  }
+  part.push_back(centre.at(most_m));
+  if (leg.from_s_m > leg.to_s_m) std::ranges::reverse(part);
+  return part;
+}
+
+std::vector<Eigen::Vector2d> line_of_route(const std::filesystem::path& file,
+                                           const map::RoadMap& road_map) {
+  std::vector<Eigen::Vector2d> line;
+  for (const RouteFileLeg& leg : read_route_file(file, road_map)) {
+    std::ranges::copy(driven_part(road_map.lane(leg.lane).centre.in_map, leg),
+                      std::back_inserter(line));
+  }
+  return line;
+}
+
 }  // namespace
 
 void RegionOption::declare(Arguments& arguments, const std::string& what) {
@@ -70,9 +115,18 @@ void RegionOption::declare(Arguments& arguments, const std::string& what) {
                what + "'s coordinates where its member crs is null or names another system")
       .reads()
       .ending(".geojson");
-  arguments.add("--within", within_, "The part within a distance of a lane: lane:NAME,500m")
+  arguments
+      .add("--within", within_,
+           "The part within a distance of a lane, lane:NAME,500m, or of a route that route --json "
+           "printed, route:F.json,30m")
       .checked([](const std::string& text) {
-        return surroundings_of(text) ? "" : "is not lane:NAME,500m, of at most 1000000 m";
+        return surroundings_of(text)
+                   ? ""
+                   : "is not lane:NAME,500m or route:F.json,30m, of at most 1000000 m";
+      })
+      .may_read([](const std::string& text) {
+        const auto asked = surroundings_of(text);
+        return asked ? asked->route_file : std::filesystem::path();
       });
 }
 
@@ -89,7 +143,7 @@ std::string RegionOption::fault() const {
 }
 
 map::Region RegionOption::region(const std::string& map_bytes, const std::string& name) const {
-  if (!within_.empty()) return around_lane(map_bytes, name);
+  if (!within_.empty()) return around_line(map_bytes, name);
   if (!box_.empty()) return box();
   return from_polygons([&](std::span<Eigen::Vector2d> points) {
     map::lon_lat_to_source(map::parse_map(map_bytes, name), points);
@@ -127,20 +181,12 @@ map::Region RegionOption::from_polygons(const FromLonLat& from_lon_lat) const {
   return map::Region(std::move(rings));
 }
 
-map::Region RegionOption::around_lane(const std::string& map_bytes, const std::string& name) const {
+map::Region RegionOption::around_line(const std::string& map_bytes, const std::string& name) const {
   const Surroundings asked = surroundings_of(within_).value();
   const map::RoadMap road_map = map::parse_map(map_bytes, name);
-  const auto lane = road_map.find_lane(asked.lane);
-  if (!lane) {
-    throw map::InputError({.file = name,
-                           .found = fmt::format("no lane {}", asked.lane),
-                           .needed = "a lane of the map for --within",
-                           .remedy = "see the names with: roadbed locate MAP --at X,Y"});
-  }
-  std::vector<Eigen::Vector2d> line;
-  for (const Eigen::Vector2d& point : road_map.lane(*lane).centre.in_map.points()) {
-    line.push_back(road_map.to_source(point));
-  }
+  std::vector<Eigen::Vector2d> line = asked.lane.empty() ? line_of_route(asked.route_file, road_map)
+                                                         : line_of_lane(asked.lane, road_map, name);
+  for (Eigen::Vector2d& point : line) point = road_map.to_source(point);
   return map::region_around(line, asked.distance_m);
 }
 

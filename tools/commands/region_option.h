@@ -20,7 +20,7 @@ class RegionOption {
 
   bool given() const { return count_given() > 0; }
 
-  /// Whether it is around a lane.
+  /// Whether it is around a lane or a route.
   bool needs_map() const { return !within_.empty(); }
 
   /// What is missing; nothing if just one of them is given.
@@ -43,7 +43,7 @@ class RegionOption {
   int count_given() const;
   map::Region box() const;
   map::Region from_polygons(const FromLonLat& from_lon_lat) const;
-  map::Region around_lane(const std::string& map_bytes, const std::string& name) const;
+  map::Region around_line(const std::string& map_bytes, const std::string& name) const;
 
   std::vector<double> box_;
   std::filesystem::path polygon_file_;
