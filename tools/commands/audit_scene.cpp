@@ -6,6 +6,7 @@
 #include <iostream>
 #include <utility>
 
+#include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 #include "roadbed/planning/rules/rule_audit.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/commands/audit_frames.h"
@@ -122,8 +123,10 @@ AuditSurroundings surroundings_of(const AuditedDrive& audited, const AuditScene&
   if (scene.occupancy) {
     page.occupied =
         occupied_in(*scene.occupancy, scene.question.heights(audited.audit.ground), box);
-    if (!scene.asked.occupancy_file().empty()) {
-      page.sources.push_back(source("occupancy", hashed_once(scene, scene.asked.occupancy_file())));
+    const std::filesystem::path& file = scene.asked.occupancy_file();
+    const bool is_bag = std::filesystem::is_directory(file) && !map::is_tiled_occupancy(file);
+    if (!file.empty() && !is_bag) {
+      page.sources.push_back(source("occupancy", hashed_once(scene, file)));
     }
   } else {
     page.clearance_m = scene.asked.margin_m();

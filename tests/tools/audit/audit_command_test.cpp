@@ -336,6 +336,13 @@ TEST_F(AuditCommand, TakesALogOfCloudsInPlaceOfTheOctreeThatIsBuiltOfIt) {
   const ProgramRun of_log = audit_over(log);
   EXPECT_LE(of_log.status, 1) << of_log.err;
   EXPECT_EQ(of_log.out, audit_over(octree).out);
+  std::filesystem::create_directories(folder_ / "bag");
+  folder_.write("bag/metadata.yaml", "relative_file_paths:\n- clouds.mcap\n");
+  folder_.write("bag/clouds.mcap", bytes_of(log));
+  const ProgramRun of_bag = run_roadbed({"audit", "--occupancy", folder_ / "bag", "--trajectory",
+                                         drive, "--report", folder_ / "bag.html"});
+  EXPECT_LE(of_bag.status, 1) << of_bag.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "bag.html")) << of_bag.err;
 }
 
 }  // namespace
