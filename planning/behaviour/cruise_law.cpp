@@ -38,7 +38,8 @@ CruiseLaw::CruiseLaw(const PlannerSetup& setup)
 }
 
 std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view, double s_m,
-                                              const GoalLine& on, const Traffic& traffic) {
+                                              const GoalLine& on, const Traffic& traffic,
+                                              const Visibility* sight) {
   const PlannedPath path = on.replanner.expected_path();
   return right_of_way_.look({.t_s = view.t_s,
                              .s_m = s_m,
@@ -47,15 +48,16 @@ std::optional<StopConstraint> CruiseLaw::look(const PlannerView& view, double s_
                              .path_s_m = on.replanner.s_m(),
                              .ceiling = on.ceiling,
                              .traffic = traffic,
-                             .acceleration_mps2 = view.measured.acceleration_mps2});
+                             .acceleration_mps2 = view.measured.acceleration_mps2,
+                             .sight = sight});
 }
 
 PlannerCommand CruiseLaw::command(const Question& q) {
   const PlannerView& view = q.view;
   const double speed = view.measured.speed_mps;
   const std::optional<StopConstraint> halt = nearer_halt(q);
-  const std::optional<Lead> truth = lead_ahead(q, halt);
-  const std::optional<Lead> lead = known(q, truth);
+  const std::optional<Lead> ahead = lead_ahead(q, halt);
+  const std::optional<Lead> lead = known(q, ahead);
   const SpeedAnswer chosen = answer(q, lead, halt);
   PlannerCommand command;
   command.acceleration_mps2 = view.speed_controller.acceleration_mps2(view.measured, chosen.set);
@@ -64,8 +66,8 @@ PlannerCommand CruiseLaw::command(const Question& q) {
     command.acceleration_mps2 = std::min(command.acceleration_mps2, kHoldingBrake_mps2);
   }
   command.set_speed_mps = chosen.set.speed_mps;
-  if (truth) {
-    command.lead = {task_.obstacles[truth->obstacle].id, truth->gap_m, truth->speed_mps};
+  if (ahead) {
+    command.lead = {task_.obstacles[ahead->obstacle].id, ahead->gap_m, ahead->speed_mps};
   }
   follows_ = chosen.behaviour == Behaviour::follow;
   explain(q, chosen, command);
@@ -132,15 +134,15 @@ std::optional<Lead> CruiseLaw::lead_ahead(const Question& q,
   const bool stays_beside =
       q.maneuver == Maneuver::pass_in_lane || q.maneuver == Maneuver::pass_within_lane;
   const PlannedPath path = stays_beside ? replanner.path() : replanner.expected_path();
-  std::optional<Lead> lead = find_lead(path, replanner.s_m(), look_m, q.truth.obstacles, q.view.t_s,
-                                       vehicle_, kSideMargin_m, ignored_on(path, q));
+  std::optional<Lead> lead = find_lead(path, replanner.s_m(), look_m, q.traffic.obstacles,
+                                       q.view.t_s, vehicle_, kSideMargin_m, ignored_on(path, q));
   if (lead && halt && lead->gap_m > halt->s_m - replanner.s_m() + kBeyondHalt_m) lead.reset();
   return lead;
 }
 
-std::optional<Lead> CruiseLaw::known(const Question& q, const std::optional<Lead>& truth) {
-  std::optional<Lead> lead = q.view.speed_controller.observe(q.view.measured, truth, q.view.t_s);
-  if (!lead && truth) return remembered(q.view);
+std::optional<Lead> CruiseLaw::known(const Question& q, const std::optional<Lead>& ahead) {
+  std::optional<Lead> lead = q.view.speed_controller.observe(q.view.measured, ahead, q.view.t_s);
+  if (!lead && ahead) return remembered(q.view);
   last_seen_ = {q.view.t_s, lead};
   return lead;
 }

@@ -34,15 +34,15 @@ class CruiseLaw {
 
   /// Where a rule of the road asks to wait, by stations of the task's line; to be asked once a
   /// cycle, before a path is taken.
-  /// @param s_m  of the rear axle, on the task's line.
+  /// @param s_m    of the rear axle, on the task's line.
+  /// @param sight  what is seen; none: nothing is hidden.
   std::optional<StopConstraint> look(const PlannerView& view, double s_m, const GoalLine& on,
-                                     const Traffic& traffic);
+                                     const Traffic& traffic, const Visibility* sight);
 
   struct Question {
     const PlannerView& view;
-    const GoalLine& on;      ///< its path is the one to drive
-    const Traffic& truth;    ///< to be measured
-    const Traffic& traffic;  ///< as foreseen
+    const GoalLine& on;  ///< its path is the one to drive
+    const Traffic& traffic;
     const PassingDecision& passing;
     Maneuver maneuver = Maneuver::keep_lane;  ///< that the path is of
     std::vector<bool> no_lead;                ///< per obstacle: it crosses the path in time
@@ -59,7 +59,7 @@ class CruiseLaw {
                                  const std::optional<StopConstraint>& halt) const;
   std::vector<bool> ignored_on(const PlannedPath& path, const Question& q) const;
   std::optional<StopConstraint> nearer_halt(const Question& q) const;
-  std::optional<Lead> known(const Question& q, const std::optional<Lead>& truth);
+  std::optional<Lead> known(const Question& q, const std::optional<Lead>& ahead);
   std::optional<Lead> remembered(const PlannerView& view) const;
   SpeedAnswer answer(const Question& q, const std::optional<Lead>& lead,
                      const std::optional<StopConstraint>& halt) const;

@@ -27,6 +27,7 @@ struct DrivingTask {
   ReferenceLine line;
   ReferenceLineOptions line_options = {};   ///< that a route's line is drawn with
   std::vector<Obstacle> obstacles;          ///< motions last for the duration of the drive
+  std::optional<double> sight_m = {};       ///< how far others are seen; none: all are known
   std::optional<TimedGoal> goal = {};       ///< none: to stand at the end of the route
   std::vector<LightCycle> lights = {};      ///< what the traffic lights show
   std::vector<StopPoint> stop_points = {};  ///< on the route, by station

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/planning/route/passing_side.h"
+
 namespace roadbed::planning::inline behaviour {
 namespace {
 
@@ -105,16 +107,6 @@ void join(PassingLane next, std::vector<PassingLane>& lanes) {
 }
 
 }  // namespace
-
-double side_to_pass_on(const map::RoadMap& road_map) {
-  int left = 0, right = 0;
-  for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
-    const map::LaneLinks& links = road_map.graph().of(LaneId{i});
-    left += links.left && !links.left->same_direction ? 1 : 0;
-    right += links.right && !links.right->same_direction ? 1 : 0;
-  }
-  return right > left ? -1.0 : 1.0;
-}
 
 std::vector<PassingLane> passing_lanes(const map::RoadMap& road_map, const Route& route,
                                        const ReferenceLine& line) {

@@ -14,9 +14,6 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// On which one passes: 1 left, as where one drives on the right, −1 right. O(lanes).
-double side_to_pass_on(const map::RoadMap& road_map);
-
 /// A lane of the own direction beside a reference line, on the side on which one passes.
 struct PassingLane {
   double from_s_m = 0.0, to_s_m = 0.0;  ///< of the line, where the lane is beside it

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -25,6 +26,8 @@ constexpr double kMoves_mps = 1.0, kSlower_mps = 2.5;
 constexpr double kLeadWithin_m = 70.0;
 constexpr double kBeforeEnd_m = 10.0;  // of the stretch, to be back in the lane
 constexpr double kBehind_m = 3.0;      // kept from traffic that comes up behind in the other lane
+constexpr double kSightStep_m = 2.5, kOncomingCar_m = 5.0, kHalfLane_m = 1.75;
+constexpr std::size_t kHidden = std::numeric_limits<std::size_t>::max();
 constexpr double kRelease_mps2 = 2.0;  // at which a faster vehicle closes up comfortably
 
 /// Where one is at worst after some time, for who is to be met or followed in its lane.
@@ -154,9 +157,41 @@ std::optional<std::string> Overtaking::why_not(const State& from, const MoverOnL
     if (mover.obstacle == lead.obstacle || is_no_matter(mover, from, pass_m)) continue;
     const double missing = missing_m(mover, from.s_m, *past, back, stretch.limit_mps);
     if (missing <= 0.0) continue;
+    if (mover.obstacle == kHidden) {
+      return fmt::format("{:.0f} m of the other lane are seen, {:.0f} m are missing",
+                         mover.s_m - from.s_m, missing);
+    }
     return fmt::format("{} is {}, the gap is {:.0f} m too short",
                        task_.obstacles[mover.obstacle].id,
                        mover.speed_mps < 0.0 ? "oncoming" : "in the other lane", missing);
+  }
+  return std::nullopt;
+}
+
+/// Somebody where the other lane is first hidden for as long as a car is, unless somebody is seen
+/// to come before.
+std::optional<MoverOnLine> Overtaking::hidden_oncoming(const ViewOnLine& view,
+                                                       const std::vector<MoverOnLine>& movers,
+                                                       const OncomingLaneSegment& stretch) const {
+  if (!view.sight) return std::nullopt;
+  const double d_m = stretch.side * (stretch.own_edge_m + kHalfLane_m);
+  double hidden_m = 0.0;
+  for (double s_m = view.at.s_m; s_m < stretch.to_s_m; s_m += kSightStep_m) {
+    const ReferencePoint on_line = task_.line.at(s_m);
+    const Eigen::Vector2d aside(-std::sin(on_line.heading_rad), std::cos(on_line.heading_rad));
+    hidden_m = view.sight->sees(on_line.in_map + d_m * aside) ? 0.0 : hidden_m + kSightStep_m;
+    if (hidden_m < kOncomingCar_m) continue;
+    const bool is_behind_another = std::ranges::any_of(movers, [&](const MoverOnLine& mover) {
+      return mover.speed_mps < 0.0 && mover.s_m > view.at.s_m && mover.rear_m() < s_m &&
+             mover.shares_way(d_m, vehicle_);
+    });
+    if (is_behind_another) return std::nullopt;
+    return MoverOnLine{.obstacle = kHidden,
+                       .s_m = s_m,
+                       .d_m = d_m,
+                       .half_length_m = 0.5 * kOncomingCar_m,
+                       .half_width_m = 0.5 * vehicle_.width_m,
+                       .speed_mps = -stretch.limit_mps};
   }
   return std::nullopt;
 }
@@ -224,21 +259,29 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
     return {};
   }
   const State now{0.0, view.at.s_m, view.speed_mps};
-  const std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
+  std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
+  bool is_unseen = false;
+  std::vector<MoverOnLine> with_hidden = movers;
+  if (const auto hidden = hidden_oncoming(view, movers, *stretch); hidden && !why) {
+    with_hidden.push_back(*hidden);
+    why = why_not(now, *lead, with_hidden, *stretch);
+    is_unseen = why.has_value();
+  }
   const std::string& name = task_.obstacles[lead->obstacle].id;
   Decision decision{.keep_within_m = std::max(0.0, within_m), .side = stretch->side};
   if (!overtaken_) {
     falls_back_ = false;
     const bool is_wanted = ceiling_.at(view.at.s_m).speed_mps >= lead->speed_mps + kSlower_mps;
     if (is_wanted && why) decision.reason = fmt::format("{} is not overtaken: {}", name, *why);
-    if (is_wanted && !why && can_fall_back(beside_rear(now, *lead), *lead, movers, *stretch)) {
+    if (is_wanted && is_unseen) decision.look_at_m = stretch->side * std::max(0.0, within_m);
+    if (is_wanted && !why && can_fall_back(beside_rear(now, *lead), *lead, with_hidden, *stretch)) {
       overtaken_ = lead->obstacle;
     }
   } else if (has_ended(view, *lead)) {
     overtaken_.reset();
   }
   if (!overtaken_) return decision;
-  falls_back_ = falls_back_ || (why && can_fall_back(now, *lead, movers, *stretch));
+  falls_back_ = falls_back_ || (why && can_fall_back(now, *lead, with_hidden, *stretch));
   decision.overtaken = overtaken_;
   decision.falls_back = falls_back_;
   decision.gap_m = lead->rear_m() - view.at.s_m - vehicle.front_m();

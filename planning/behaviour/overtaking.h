@@ -41,10 +41,12 @@ std::vector<OncomingLaneSegment> oncoming_lane_segments(const map::RoadMap& road
 /// It is begun if, accelerating as the cruise control does, the vehicle is back in its lane, with
 /// distance to the one overtaken and to whoever drives ahead of that one, before the nearest
 /// oncoming vehicle is there at its worst; and if it can be given up, by braking and falling back
-/// behind the one overtaken, until the front is beside that one's rear. All of this is asked again
-/// in each cycle: what can no longer be ended in time is given up while that is possible. Where the
-/// vehicle may not, or does not want to, it keeps to its own lane as long as the one ahead moves;
-/// what stands is passed as the lateral planner chooses.
+/// behind the one overtaken, until the front is beside that one's rear. Where nobody is seen to
+/// come, somebody may be where the other lane is first hidden; to see past the one ahead the
+/// vehicle drives at the edge of its lane. All of this is asked again in each cycle: what can no
+/// longer be ended in time is given up while that is possible. Where the vehicle may not, or does
+/// not want to, it keeps to its own lane as long as the one ahead moves; what stands is passed as
+/// the lateral planner chooses.
 class Overtaking {
  public:
   /// What the lateral planner is asked for.
@@ -55,7 +57,8 @@ class Overtaking {
     bool falls_back = false;                    ///< overtaking is given up: get behind it
     double gap_m = 0.0;                         ///< to its rear; less than 0 beside it
     double side = 1.0;                          ///< of the other lane: 1 left, −1 right
-    std::string reason = {};  ///< why it is (not) overtaken; empty: nobody to overtake
+    std::optional<double> look_at_m = {};  ///< offset from which more of the other lane is seen
+    std::string reason = {};               ///< why it is (not) overtaken; empty: nobody to overtake
   };
 
   Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,
@@ -78,6 +81,9 @@ class Overtaking {
   std::optional<State> past(State state, const MoverOnLine& lead) const;
   State beside_rear(State state, const MoverOnLine& lead) const;
   bool is_no_matter(const MoverOnLine& mover, const State& now, double pass_at_m) const;
+  std::optional<MoverOnLine> hidden_oncoming(const ViewOnLine& view,
+                                             const std::vector<MoverOnLine>& movers,
+                                             const OncomingLaneSegment& stretch) const;
   double missing_m(const MoverOnLine& mover, double now_s_m, const State& past, const State& back,
                    double limit_mps) const;
   const MoverOnLine* lead_of(const std::vector<MoverOnLine>& movers, const ViewOnLine& view) const;

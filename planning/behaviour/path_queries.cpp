@@ -13,6 +13,7 @@ using Question = LateralReplanner::Question;
 
 constexpr double kPassTolerance_m = 0.25;  // more or less than asked for
 constexpr double kBehindToReturn_m = 1.0;  // overtaking given up
+constexpr double kLook_m = 0.4;            // beside the edge, at most
 constexpr double kMerging_m = 0.8;         // beside the line
 constexpr double kSetsOff_mps = 1.0, kShortEnds_m = 7.0;
 constexpr double kNearGoal_m = 60.0, kBesideGoal_m = 0.15;
@@ -138,6 +139,13 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     pass.maneuver = Maneuver::pass_within_lane;
     pass.question.speed = free_speed(on, question.speed);
     queries.push_back(pass);
+  }
+  if (overtaking.look_at_m) {
+    PathQuery look = keep;
+    look.offsets = {*overtaking.look_at_m - kLook_m, *overtaking.look_at_m};
+    if (overtaking.side < 0.0)
+      look.offsets = {*overtaking.look_at_m, *overtaking.look_at_m + kLook_m};
+    queries.push_back(look);
   }
   queries.push_back(keep);
   // From close behind who stands no longer path leads round.

@@ -31,24 +31,6 @@ LateralReplanner::Ends ends_at(double speed_mps) {
   return {.least_m = least_m, .most_m = 2.0 * least_m};
 }
 
-/// Until what is planned for.
-std::vector<ForeseenMotion> foreseen_motions(const Traffic& traffic, double now_s) {
-  constexpr double kStep_s = 0.5;
-  constexpr int kSteps = 10;
-  std::vector<ForeseenMotion> foreseen;
-  for (std::size_t i = 0; i < traffic.obstacles.size(); ++i) {
-    const Obstacle& obstacle = traffic.obstacles[i];
-    if (obstacle.is_static() || !obstacle.is_there(now_s)) continue;
-    foreseen.push_back({.obstacle = i});
-    for (int step = 0; step <= kSteps; ++step) {
-      const double t_s = now_s + kStep_s * step;
-      if (!obstacle.is_there(t_s)) break;
-      foreseen.back().points.push_back(obstacle.motion.at(t_s).pose().position());
-    }
-  }
-  return foreseen;
-}
-
 }  // namespace
 
 class Planner::Impl {
@@ -56,7 +38,6 @@ class Planner::Impl {
   explicit Impl(const PlannerSetup& setup)
       : vehicle_(setup.vehicle),
         task_(setup.task),
-        predicts_(setup.planner.predicts),
         clearance_m_(setup.driving.clearance_m),
         lines_(setup),
         cruise_(setup),
@@ -70,7 +51,7 @@ class Planner::Impl {
   const LateralReplanner& replanner() const { return lines_.driven().replanner; }
 
   PlannerCommand decide(const PlannerView& view) {
-    foresee(view);
+    look(view);
     lines_.driven().replanner.locate(view.measured);
     const PassingDecision passing = passing_at(view);
     if (!task_.goal) lines_.drive_along(merging_, passing.merging.along, view.measured);
@@ -82,7 +63,6 @@ class Planner::Impl {
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
-    if (predicts_) command.foreseen = foreseen_motions(traffic_, view.t_s);
     if (!task_.goal) look_at_blocked_road(view, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
@@ -93,18 +73,28 @@ class Planner::Impl {
  private:
   // What will be where.
 
-  void foresee(const PlannerView& view) {
-    truth_ = Traffic{task_.obstacles};
-    if (!task_.goal) {
-      kept_from_ = with_room_beside_cyclists(
-          truth_.obstacles, view.t_s, geometry::body_at(view.measured.map_from_vehicle, vehicle_),
-          clearance_m_);
-      if (kept_from_) truth_ = {*kept_from_};
+  void look(const PlannerView& view) {
+    traffic_ = Traffic{task_.obstacles};
+    if (task_.sight_m) sight_.emplace(sight_at(view));
+    if (task_.goal) return;
+    kept_from_ = with_room_beside_cyclists(
+        traffic_.obstacles, view.t_s, geometry::body_at(view.measured.map_from_vehicle, vehicle_),
+        clearance_m_);
+    if (kept_from_) traffic_ = {*kept_from_};
+  }
+
+  const Visibility* sight() const { return sight_ ? &*sight_ : nullptr; }
+
+  Visibility sight_at(const PlannerView& view) const {
+    std::vector<geometry::Rectangle> bodies;
+    for (const Obstacle& other : task_.obstacles) {
+      if (!other.is_there(view.t_s)) continue;
+      const geometry::Rectangle body = rectangle_at(other, view.t_s);
+      const bool is_again = !bodies.empty() && bodies.back().centre == body.centre;
+      if (!is_again) bodies.push_back(body);  // another motion of the same one
     }
-    traffic_ = truth_;
-    if (!predicts_) return;
-    predicted_.emplace(truth_, view.t_s);
-    traffic_ = predicted_->traffic();
+    return {geometry::body_at(view.measured.map_from_vehicle, vehicle_), *task_.sight_m,
+            std::move(bodies), task_.field, task_.road_map};
   }
 
   geometry::LinePosition place_on(const GoalLine& on, const PlannerView& view) const {
@@ -126,7 +116,7 @@ class Planner::Impl {
   PassingDecision passing_at(const PlannerView& view) {
     if (task_.goal) return {};
     const geometry::LinePosition at = place_on(lines_.first(), view);
-    const ViewOnLine on_line{view.t_s, at, view.measured.speed_mps, traffic_};
+    const ViewOnLine on_line{view.t_s, at, view.measured.speed_mps, traffic_, sight()};
     PassingDecision passing;
     passing.merging = merging_.look(on_line, replanner().s_m());
     if (passing.merging.along != Merging::Along::route_line) return passing;
@@ -162,7 +152,8 @@ class Planner::Impl {
     scene.bodies =
         TrafficBodies(traffic_, view.t_s, speed_.steps(view.t_s), {scene.crosses, clearance_m_});
     if (task_.goal) return scene;
-    scene.halt = cruise_.look(view, place_on(lines_.first(), view).s_m, lines_.driven(), traffic_);
+    scene.halt =
+        cruise_.look(view, place_on(lines_.first(), view).s_m, lines_.driven(), traffic_, sight());
     if (scene.halt &&
         &lines_.driven() != &lines_.first()) {  // as far ahead on the line that is driven
       scene.halt->s_m += replanner().s_m() - place_on(lines_.first(), view).s_m;
@@ -233,7 +224,6 @@ class Planner::Impl {
                          const PassingDecision& passing) {
     PlannerCommand command = cruise_.command({.view = scene.view,
                                               .on = lines_.driven(),
-                                              .truth = truth_,
                                               .traffic = traffic_,
                                               .passing = passing,
                                               .maneuver = best.maneuver,
@@ -277,7 +267,7 @@ class Planner::Impl {
     std::optional<BlockedRoad::Decision> blocked =
         blocked_road_.look({.t_s = view.t_s,
                             .measured = view.measured,
-                            .traffic = truth_,
+                            .traffic = traffic_,
                             .ahead = who_is_in_the_way(view, command),
                             .waits_for_rule = command.behaviour == Behaviour::yield});
     if (!blocked) return;
@@ -300,7 +290,7 @@ class Planner::Impl {
                            [](double s_m) { return LateralState{.s_m = s_m}; });
     for (const PlannedPath& path : {replanner().expected_path(), line}) {
       const auto nearest = find_lead(path, replanner().s_m(), PlanOptions{}.max_l_m,
-                                     truth_.obstacles, view.t_s, vehicle_, clearance_m_);
+                                     traffic_.obstacles, view.t_s, vehicle_, clearance_m_);
       if (nearest) return nearest->obstacle;
     }
     return std::nullopt;
@@ -308,12 +298,10 @@ class Planner::Impl {
 
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
-  bool predicts_;
   double clearance_m_;
-  std::optional<PredictedTraffic> predicted_;
   std::optional<std::vector<Obstacle>> kept_from_;  ///< wider than they are; none: as they are
-  Traffic truth_;                                   ///< with that room
-  Traffic traffic_;  ///< what is planned against: the true one, or as foreseen
+  Traffic traffic_;                                 ///< with that room
+  std::optional<Visibility> sight_;                 ///< none: nothing is hidden
   GoalLines lines_;
   CruiseLaw cruise_;
   Overtaking overtaking_;

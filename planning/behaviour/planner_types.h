@@ -25,13 +25,6 @@ struct PlannerView {
   bool explains = false;  ///< keep what became of every candidate (LateralReplanner::explained())
 };
 
-/// A motion that is foreseen of an obstacle.
-struct ForeseenMotion {
-  std::size_t obstacle = 0;  ///< index in the task
-  double probability = 1.0;
-  std::vector<Eigen::Vector2d> points = {};  ///< of its middle, every half a second from now
-};
-
 /// What it wants until the next cycle.
 struct PlannerCommand {
   double acceleration_mps2 = 0.0;  ///< desired, to the actuator
@@ -43,8 +36,6 @@ struct PlannerCommand {
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
   /// What is foreseen to be driven along the path, from its state now; not empty.
   std::vector<SpeedState> drive = {};
-  /// Of what moves, in the map's frame; empty if the future is known.
-  std::vector<ForeseenMotion> foreseen = {};
   bool is_news = false;  ///< the reason is worth an event
   /// To be put into the task before the next decision, by a planner of its own.
   std::optional<Detour> detour = {};
@@ -55,8 +46,6 @@ struct PlannerOptions {
   /// Beyond either, planning starts from the measured state instead of the last plan.
   double max_tracking_error_m = 0.3;
   double max_heading_error_rad = 0.15;
-  /// Other vehicles are known only as could be at the time, not by their true future.
-  bool predicts = false;
   /// Each cycle keeps what became of its candidates, which takes longer.
   bool keeps_candidates = false;
 };

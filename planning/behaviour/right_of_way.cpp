@@ -25,8 +25,10 @@ constexpr double kAtRest_mps = 0.1, kAtLine_m = 1.5;
 constexpr double kJoining_m = 40.0;  // beyond a junction, to be as fast as others
 constexpr double kCrossingMargin_m = 0.4;
 constexpr double kMovingOther_mps = 0.5;
-constexpr double kLeastAlong = 0.8;   // cosine of the angle up to which somebody drives along
-constexpr double kGapsFrom_m = 15.0;  // beyond the way to stop on
+constexpr double kLeastAlong = 0.8;    // cosine of the angle up to which somebody drives along
+constexpr double kBesideLane_m = 0.5;  // more, from who comes along it
+constexpr double kLooks_s = 3.0;       // where more is seen, before driving on
+constexpr double kGapsFrom_m = 15.0;   // beyond the way to stop on
 
 /// How obstacles that are no lead drive now; one entry per obstacle.
 struct Others {
@@ -69,16 +71,39 @@ std::optional<std::size_t> who_blocks(const StGraph& occupancy, const Others& ot
   return std::nullopt;
 }
 
+struct Met {
+  std::size_t obstacle;
+  double after_s;
+};
+
+/// Who is first met on the way, or nearly.
+template <typename Gap>
+std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
+                             const std::vector<double>& ahead_m, const Gap& gap) {
+  for (std::size_t i = 0; i < ahead_m.size(); ++i) {
+    const int k = static_cast<int>(i);
+    const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after, ahead_m[i]);
+    if (who) return Met{*who, StGraph::kStep_s * k};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 RightOfWay::RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
                        const DrivingTask& task)
     : vehicle_(vehicle),
       comfort_deceleration_mps2_(options.comfort_deceleration_mps2),
-      task_(task) {}
+      task_(task),
+      hidden_(task) {}
 
 double RightOfWay::left_m(const StopPoint& place, const View& view) const {
-  return place.s_m - view.s_m - vehicle_.front_m();
+  return halt_m(place) - view.s_m - vehicle_.front_m();
+}
+
+/// Station of the front bumper, waiting.
+double RightOfWay::halt_m(const StopPoint& place) const {
+  return is_next(place) && creeps_to_m_ ? *creeps_to_m_ : place.s_m;
 }
 
 /// Having begun to cross, the vehicle goes on looking at those who may cross its path.
@@ -87,6 +112,8 @@ void RightOfWay::pass_places(const View& view) {
   while (next_ < places.size() && left_m(places[next_], view) < -kPassed_m) {
     ++next_;
     has_stopped_ = false;
+    creeps_to_m_.reset();
+    looks_since_s_.reset();
   }
   if (next_ == 0) return;
   const StopPoint& last = places[next_ - 1];
@@ -143,7 +170,7 @@ std::optional<StopConstraint> RightOfWay::look(const View& view) {
     }
     if (auto why = why_wait(places[i], view)) {
       kept_ = {places[i].s_m, *deceleration};
-      return StopConstraint{places[i].s_m - vehicle_.front_m() - kBeforeLine_m, *std::move(why),
+      return StopConstraint{halt_m(places[i]) - vehicle_.front_m() - kBeforeLine_m, *std::move(why),
                             *deceleration, *deceleration > kFractionOfBrakes * kMostCommand_mps2};
     }
   }
@@ -158,27 +185,44 @@ std::optional<std::string> RightOfWay::why_wait(const StopPoint& place, const Vi
     if (colour == LightColour::green) return std::nullopt;
     return fmt::format("{} is {}, {:.1f} m ahead", place.name, to_string(colour), left);
   }
-  if (place.kind == StopKind::stop_sign && &place == &task_.stop_points[next_]) {
+  if (place.kind == StopKind::stop_sign && is_next(place)) {
     has_stopped_ = has_stopped_ || (view.speed_mps < kAtRest_mps && left < kAtLine_m);
     if (!has_stopped_) return fmt::format("{} is {:.1f} m ahead", place.name, left);
   }
   const double stopping_m = 0.5 * view.speed_mps * view.speed_mps / comfort_deceleration_mps2_;
   if (left > stopping_m + kGapsFrom_m) return std::nullopt;
-  return who_comes(place, view, kGapToTake);
+  if (auto who = who_comes(place, view, kGapToTake)) return who;
+  return who_may_come(place, view);
+}
+
+/// The way across, and when the vehicle is where on it.
+struct RightOfWay::Crossing {
+  PathProfile profile;
+  std::vector<double> ahead_m;  ///< per step
+  int steps_of_others;
+};
+
+RightOfWay::Crossing RightOfWay::crossing_of(const StopPoint& place, const View& view,
+                                             Gap gap) const {
+  // Joining crossing traffic, the vehicle is not to be caught up with soon.
+  const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
+  const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
+                         (joins ? kJoining_m : 0.0);  // of the rear axle
+  Crossing crossing{sample_path_profile(view.path, view.path_s_m, std::max(1.0, until_m) + 2.0,
+                                        view.ceiling, vehicle_),
+                    {},
+                    0};
+  crossing.ahead_m = drive_on(crossing.profile, view.speed_mps, until_m);
+  crossing.steps_of_others = static_cast<int>(crossing.ahead_m.size()) + gap.after;
+  return crossing;
 }
 
 /// None also marks those who only cross.
 std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const View& view,
                                                  Gap gap) {
-  // Joining crossing traffic, the vehicle is not to be caught up with soon.
-  const bool joins = place.kind != StopKind::turn && gap.after == kGapToTake.after;
-  const double until_m = place.clear_s_m + vehicle_.rear_overhang_m - view.s_m +
-                         (joins ? kJoining_m : 0.0);  // of the rear axle
-  const PathProfile profile = sample_path_profile(
-      view.path, view.path_s_m, std::max(1.0, until_m) + 2.0, view.ceiling, vehicle_);
-  const std::vector<double> ahead = drive_on(profile, view.speed_mps, until_m);
-  const auto steps = static_cast<int>(ahead.size());
-  const StGraph occupancy(profile, view.traffic, view.t_s, steps + gap.after, kCrossingMargin_m);
+  const Crossing way = crossing_of(place, view, gap);
+  const StGraph occupancy(way.profile, view.traffic, view.t_s, way.steps_of_others,
+                          kCrossingMargin_m);
   const geometry::LinePosition at =
       task_.line.project(view.path.pose_at(view.path_s_m).position(), view.s_m);
   const VehicleOnLine vehicle{task_.line, view.s_m, at.d_m, vehicle_.width_m};
@@ -186,17 +230,32 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   for (const Obstacle& obstacle : view.traffic.obstacles) {
     following.push_back(is_following(obstacle, view.t_s, vehicle));
   }
-  const Others others{crossing_now(profile, occupancy, view), std::move(following)};
-  for (int k = 0; k < steps; ++k) {
-    const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after,
-                                ahead[static_cast<std::size_t>(k)]);
-    if (!who) continue;
-    const Obstacle& obstacle = view.traffic.obstacles[*who];
+  const Others others{crossing_now(way.profile, occupancy, view), std::move(following)};
+  if (const auto met = first_met(occupancy, others, way.ahead_m, gap)) {
+    const Obstacle& obstacle = view.traffic.obstacles[met->obstacle];
     return fmt::format("{}: {} {} would be met in {:.1f} s", place.name, obstacle.kind, obstacle.id,
-                       StGraph::kStep_s * k);
+                       met->after_s);
   }
   crossing_ = others.crossing;
   return std::nullopt;
+}
+
+/// Of the next place: the vehicle creeps to where it is not in anybody's way yet.
+std::optional<std::string> RightOfWay::who_may_come(const StopPoint& place, const View& view) {
+  if (!view.sight || !is_next(place)) return std::nullopt;
+  if (looks_since_s_ && view.t_s - *looks_since_s_ > kLooks_s) return std::nullopt;
+  const HiddenTraffic::MayCome hidden = hidden_.towards(next_, *view.sight, view.t_s);
+  const Crossing way = crossing_of(place, view, kGapToTake);
+  const StGraph occupancy(way.profile, Traffic{hidden.cars}, view.t_s, way.steps_of_others,
+                          kCrossingMargin_m);
+  const std::vector<bool> nobody(hidden.cars.size(), false);
+  const auto met = first_met(occupancy, {nobody, nobody}, way.ahead_m, kGapToTake);
+  if (!met) return std::nullopt;
+  creeps_to_m_ = std::max(place.s_m, hidden.in_the_way_from_m[met->obstacle] - kBesideLane_m);
+  const bool stands_there = view.speed_mps < kAtRest_mps && left_m(place, view) < kAtLine_m;
+  if (stands_there && !looks_since_s_) looks_since_s_ = view.t_s;
+  const Obstacle& somebody = hidden.cars[met->obstacle];
+  return fmt::format("{}: {} may come {}", place.name, somebody.kind, somebody.id);
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/behaviour/hidden_traffic.h"
 #include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -23,7 +24,9 @@ struct StopConstraint {
 ///
 /// A gap is good if the vehicle, driving on from here at a comfortable acceleration, leaves what it
 /// crosses 1 s after the vehicle before it and 1.5 s before the next one. Who drives along on the
-/// path already is the cruise control's lead, and not looked at here.
+/// path already is the cruise control's lead, and not looked at here. Somebody may come from where
+/// nothing is seen (hidden_traffic.h): for that one the vehicle stops as late as it may, where more
+/// is seen, and drives on when for 3 s nobody has come.
 class RightOfWay {
  public:
   /// What is known at one cycle.
@@ -34,6 +37,7 @@ class RightOfWay {
     const SpeedCeiling& ceiling;
     Traffic traffic;
     double acceleration_mps2 = 0.0;
+    const Visibility* sight = nullptr;  ///< none: nothing is hidden
   };
 
   RightOfWay(const geometry::VehicleShape& vehicle, const DrivingOptions& options,
@@ -52,14 +56,19 @@ class RightOfWay {
 
  private:
   std::optional<std::string> why_wait(const StopPoint& place, const View& view);
+  std::optional<std::string> who_may_come(const StopPoint& place, const View& view);
   /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
   struct Gap {
     int before, after;
   };
   static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
 
+  struct Crossing;
+  Crossing crossing_of(const StopPoint& place, const View& view, Gap gap) const;
   std::optional<std::string> who_comes(const StopPoint& place, const View& view, Gap gap);
   void pass_places(const View& view);
+  bool is_next(const StopPoint& place) const { return &place == &task_.stop_points[next_]; }
+  double halt_m(const StopPoint& place) const;
   double left_m(const StopPoint& place, const View& view) const;
   std::optional<double> stops_with_mps2(const StopPoint& place, const View& view) const;
   std::optional<double> stops_before_red_mps2(const StopPoint& place, const View& view) const;
@@ -70,6 +79,9 @@ class RightOfWay {
   std::size_t next_ = 0;      ///< the first place that is not passed
   bool has_stopped_ = false;  ///< at that one
   std::vector<bool> crossing_;
+  HiddenTraffic hidden_;
+  std::optional<double> creeps_to_m_;    ///< past the next place, where more is seen
+  std::optional<double> looks_since_s_;  ///< standing there
   struct Kept {
     double s_m, deceleration_mps2;
   };

@@ -20,9 +20,9 @@ class SpeedController {
 
   /// The lead as it is known at this time; to be asked once a cycle, before acceleration_mps2().
   /// None: nobody is ahead, or was not measured for too long.
-  /// @param truth  to be measured; none: no vehicle is ahead.
+  /// @param ahead  to be measured; none: no vehicle is ahead.
   virtual std::optional<Lead> observe(const VehicleState& measured,
-                                      const std::optional<Lead>& truth, double t_s) = 0;
+                                      const std::optional<Lead>& ahead, double t_s) = 0;
 
   /// Desired acceleration, within ±kMostCommand_mps2: to the set speed, or behind the lead.
   virtual double acceleration_mps2(const VehicleState& measured, const SpeedTarget& set) = 0;

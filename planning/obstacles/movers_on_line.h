@@ -5,6 +5,7 @@
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/obstacles/traffic.h"
+#include "roadbed/planning/obstacles/visibility.h"
 #include "roadbed/planning/reference/reference_line.h"
 
 namespace roadbed::planning::inline obstacles {
@@ -14,7 +15,8 @@ struct ViewOnLine {
   double t_s;
   geometry::LinePosition at;  ///< of the rear axle
   double speed_mps;
-  Traffic traffic;  ///< only what is there now is looked at
+  Traffic traffic;                    ///< only what is there now is looked at
+  const Visibility* sight = nullptr;  ///< what of the road is seen; none: nothing is hidden
 };
 
 /// An obstacle, seen from a reference line at one time.

@@ -19,22 +19,22 @@ control::LeadMeasurement CruiseSpeed::measure(const Lead& lead, const VehicleSta
 }
 
 std::optional<Lead> CruiseSpeed::observe(const VehicleState& measured,
-                                         const std::optional<Lead>& truth, double t_s) {
+                                         const std::optional<Lead>& ahead, double t_s) {
   const double speed = measured.speed_mps;
-  if (truth && !sees(t_s)) {
+  if (ahead && !sees(t_s)) {
     cruise_.observe_blind(speed);
   } else {
     std::optional<control::LeadMeasurement> seen;
-    if (truth) seen = measure(*truth, measured);
+    if (ahead) seen = measure(*ahead, measured);
     cruise_.observe(speed, measured.acceleration_mps2, seen);
   }
   const std::optional<control::LeadMeasurement> known = cruise_.lead();
   if (cruise_.restarted() || !known) lead_speeds_mps_.clear();
-  if (!known || !truth) return std::nullopt;
+  if (!known || !ahead) return std::nullopt;
   const double lead_mps = speed + known->relative_speed_mps;
   lead_speeds_mps_.push_back(lead_mps);
   if (lead_speeds_mps_.size() > kLeadCycles + 1) lead_speeds_mps_.pop_front();
-  return Lead{.obstacle = truth->obstacle,
+  return Lead{.obstacle = ahead->obstacle,
               .gap_m = known->gap_m,
               .speed_mps = lead_mps,
               .acceleration_mps2 = (lead_mps - lead_speeds_mps_.front()) /

@@ -15,7 +15,7 @@ class CruiseSpeed : public SpeedController {
  public:
   explicit CruiseSpeed(const DrivingOptions& driving);
 
-  std::optional<Lead> observe(const VehicleState& measured, const std::optional<Lead>& truth,
+  std::optional<Lead> observe(const VehicleState& measured, const std::optional<Lead>& ahead,
                               double t_s) override;
   double acceleration_mps2(const VehicleState& measured, const SpeedTarget& set) override;
   void sent(double acceleration_mps2) override { cruise_.sent(acceleration_mps2); }

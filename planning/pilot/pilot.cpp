@@ -9,8 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/planning/behaviour/lane_passing.h"
 #include "roadbed/planning/behaviour/planner.h"
 #include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/pilot/cruise_speed.h"
@@ -27,10 +25,6 @@ constexpr double kAsksAgainAfter_s = 1.0;  // for a route, where there was none
 constexpr double kYellow_s = 3.0;          // how long one lasts [VwV-StVO to § 37: 3 s at 50 km/h]
 constexpr double kForLong_s = 1e6;
 constexpr double kAtGoal_m = 1.0;
-constexpr double kLikely = 0.15;  // of motions: what is less so is not planned for
-constexpr double kSameWay_rad = 0.6, kOncoming_rad = 2.4, kTurn_rad = 0.6;
-constexpr TimeSpan kNever{std::numeric_limits<double>::infinity(),
-                          -std::numeric_limits<double>::infinity()};
 
 void refuse_unusable(const PilotView& view) {
   const auto refuse = [](const std::string& what) {
@@ -97,24 +91,21 @@ class Pilot::Impl {
  public:
   explicit Impl(PilotSetup setup)
       : setup_(checked(std::move(setup))),
-        tracker_(setup_.tracker),
-        forecast_(*setup_.road_map),
-        side_to_pass_on_(side_to_pass_on(*setup_.road_map)),
+        others_(*setup_.road_map, setup_.tracker),
         cruise_(setup_.driving) {}
 
   PilotAnswer step(const PilotView& view) {
     refuse_unusable(view);
-    tracker_.observe(view.t_s, view.objects);
+    others_.observe(view.t_s, view.objects);
     const bool has_new_light = take_lights(view);
     keep_route(view);
     if (!planner_) return without_route(view);
-    foresee(view);
+    task_->obstacles = others_.obstacles(view.ego.map_from_vehicle);
     if (has_new_light) restart();
     return drive(view);
   }
 
-  const Tracker& tracker() const { return tracker_; }
-  const std::vector<std::vector<ForecastMotion>>& forecasts() const { return forecasts_; }
+  const PerceivedTraffic& others() const { return others_; }
 
  private:
   static PilotSetup checked(PilotSetup setup) {
@@ -210,56 +201,6 @@ class Pilot::Impl {
     return answer;
   }
 
-  // Others.
-
-  /// As they were, are, and may be: the most likely motion of a slot first, then others that are
-  /// likely enough, each a place of its own in the list.
-  void foresee(const PilotView& view) {
-    const auto slots = tracker_.slots();
-    forecasts_.assign(slots.size(), {});
-    const geometry::Trajectory nowhere{std::vector<geometry::TrajectoryPoint>(1)};
-    task_->obstacles.assign(LaneForecast::kMostMotions * slots.size(),
-                            {.id = "", .motion = nowhere, .validity = kNever});
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      if (!slots[i]) continue;
-      forecasts_[i] = forecast_.motions(*slots[i], i);
-      for (std::size_t k = 0; k < forecasts_[i].size(); ++k) {
-        const ForecastMotion& may = forecasts_[i][k];
-        if (k > 0 && !is_planned_for(may, view.ego)) continue;
-        task_->obstacles[LaneForecast::kMostMotions * i + k] = {
-            .id = slots[i]->id,
-            .kind = slots[i]->kind,
-            .length_m = slots[i]->length_m,
-            .width_m = slots[i]->width_m,
-            .motion = joined(*slots[i], may.motion),
-            .validity = {slots[i]->first_s, kAlways.to_s}};
-      }
-    }
-  }
-
-  /// Whether a motion that is not the most likely one matters: not of who drives the same way and
-  /// is followed or passed as he is, nor of who comes the other way and would have to give way to
-  /// turn across.
-  bool is_planned_for(const ForecastMotion& motion, const VehicleState& ego) const {
-    if (motion.probability < kLikely) return false;
-    const std::vector<geometry::TrajectoryPoint>& points = motion.motion.points();
-    const double towards_rad = std::abs(
-        geometry::wrap_angle(points.front().heading_rad - ego.map_from_vehicle.heading_rad));
-    if (towards_rad < kSameWay_rad) return false;
-    const double turn_rad = points.back().heading_rad - points.front().heading_rad;
-    return towards_rad < kOncoming_rad || side_to_pass_on_ * turn_rad < kTurn_rad;
-  }
-
-  static geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahead) {
-    if (ahead.points().size() == 1) return ahead;  // it stands
-    std::vector<geometry::TrajectoryPoint> points;
-    for (const geometry::TrajectoryPoint& before : track.past) {
-      if (before.t_s < ahead.start_s()) points.push_back(before);
-    }
-    points.insert(points.end(), ahead.points().begin(), ahead.points().end());
-    return geometry::Trajectory(std::move(points));
-  }
-
   // The drive.
 
   PilotAnswer drive(const PilotView& view) {
@@ -282,10 +223,7 @@ class Pilot::Impl {
   }
 
   PilotSetup setup_;
-  Tracker tracker_;
-  LaneForecast forecast_;
-  double side_to_pass_on_;
-  std::vector<std::vector<ForecastMotion>> forecasts_;
+  PerceivedTraffic others_;
   std::vector<LightCycle> lights_;  ///< of those that were named once
   std::vector<Light> shown_;        ///< what each of them shows
   CruiseSpeed cruise_;
@@ -303,9 +241,6 @@ Pilot::Pilot(Pilot&&) noexcept = default;
 Pilot& Pilot::operator=(Pilot&&) noexcept = default;
 
 PilotAnswer Pilot::step(const PilotView& view) { return impl_->step(view); }
-const Tracker& Pilot::tracker() const { return impl_->tracker(); }
-const std::vector<std::vector<ForecastMotion>>& Pilot::forecasts() const {
-  return impl_->forecasts();
-}
+const PerceivedTraffic& Pilot::others() const { return impl_->others(); }
 
 }  // namespace roadbed::planning::pilot

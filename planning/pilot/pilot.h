@@ -11,7 +11,7 @@
 #include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/route/route_place.h"
-#include "roadbed/planning/tracking/lane_forecast.h"
+#include "roadbed/planning/tracking/perceived_traffic.h"
 #include "roadbed/planning/tracking/tracker.h"
 
 namespace roadbed::planning::inline pilot {
@@ -53,9 +53,9 @@ struct PilotAnswer {
 /// The planner for who has a vehicle or a simulation of their own: measured objects are tracked and
 /// foreseen, the planner decides, and what it decides comes back as a trajectory.
 ///
-///     view ─▶ Tracker ─▶ LaneForecast ─▶ Planner ─▶ trajectory that ends in a stop
-///      │                                    ▲  └──▶ acceleration (LQG), steering (Stanley)
-///      └── ego, lights ─────────────────────┘
+///     view ─▶ PerceivedTraffic ─▶ Planner ─▶ trajectory that ends in a stop
+///      │                             ▲  └──▶ acceleration (LQG), steering (Stanley)
+///      └── ego, lights ──────────────┘
 ///
 /// The route is found at the first view; anew where the vehicle has been taken more than 12 m away
 /// from its line, or the road is blocked. To be asked every 0.1 s, as its controllers expect. For
@@ -72,11 +72,8 @@ class Pilot {
   ///         objects have one id; nothing is changed then.
   PilotAnswer step(const PilotView& view);
 
-  /// Objects as they are believed to be now, by slot; a slot may be empty.
-  const Tracker& tracker() const;
-
-  /// What each of them may do, by slot; of the last step.
-  const std::vector<std::vector<ForecastMotion>>& forecasts() const;
+  /// Objects as they are believed to be now, and what each of them may do; of the last step.
+  const PerceivedTraffic& others() const;
 
  private:
   class Impl;

@@ -15,11 +15,36 @@ constexpr double kLeastDriving_mps = 0.5;
 constexpr double kReach_m = 1.5;         // from a lane that one may still drive along
 constexpr double kMostTurned_rad = 0.6;  // against it
 constexpr double kHeading_rad = 0.2, kOffset_m = 0.8, kForkTurn_rad = 0.7;  // what is usual
-constexpr double kLeastShare = 0.05;   // of the likeliest; what is less likely is left out
-constexpr double kReturns_s = 1.5;     // to the lane's middle
+constexpr double kMostLateral_mps2 = 4.0, kBraking_mps2 = 2.0;  // in turns and before them
+constexpr double kAtOnce_m = 1.0, kLeastUsual = 1e-4;
+constexpr double kLeastShare = 0.05;  // of the likeliest; what is less likely is left out
+constexpr double kReturns_s = 1.5;    // to the lane's middle
+constexpr double kWaitsFor_s = 15.0, kStays_s = 2.0, kSetsOff_mps = 0.5;
 constexpr double kSpareWay_m = 100.0;  // that ways are longer than asked for
 
 bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
+
+/// Who rides at the side of a lane goes on there: what is narrower than a car.
+bool keeps_beside(const Track& track) { return track.width_m < 1.2; }
+
+/// Who drove not long ago stands in a queue, at a light or a sign; a parked car never did.
+bool waits(const Track& track, const SeenMotion& seen) {
+  return seen.speed_mps == 0.0 && track.moved_s && seen.t_s - *track.moved_s < kWaitsFor_s;
+}
+
+/// Stays for a while, then moves on a little, so that it is followed and not passed.
+geometry::Trajectory setting_off(const SeenMotion& seen) {
+  const Pose2 later = seen.pose * Pose2{kSetsOff_mps * (kForeseen_s - kStays_s), 0.0, 0.0};
+  const auto at = [&](double after_s, const Pose2& pose, double speed_mps) {
+    return geometry::TrajectoryPoint{.t_s = seen.t_s + after_s,
+                                     .x_m = pose.x_m,
+                                     .y_m = pose.y_m,
+                                     .heading_rad = pose.heading_rad,
+                                     .speed_mps = speed_mps};
+  };
+  return geometry::Trajectory({at(0.0, seen.pose, 0.0), at(kStays_s, seen.pose, 0.0),
+                               at(kForeseen_s, later, kSetsOff_mps)});
+}
 
 /// Past its end a way goes on straight.
 Pose2 pose_on(const geometry::Polyline& way, double s_m) {
@@ -28,11 +53,13 @@ Pose2 pose_on(const geometry::Polyline& way, double s_m) {
   return over_m > 0.0 ? pose * Pose2{over_m, 0.0, 0.0} : pose;
 }
 
-/// From beside a way back to its middle, as a critically damped spring leads there.
-geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline& way, double s_m,
-                               double d_m, double turned_rad) {
+/// From beside a way to an offset from its middle, as a critically damped spring leads there.
+geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline& way,
+                               const geometry::LinePosition& from, double to_d_m,
+                               double turned_rad) {
   std::vector<geometry::TrajectoryPoint> points;
   const double aside_mps = seen.speed_mps * std::sin(turned_rad);
+  const double d_m = from.d_m - to_d_m;
   const double pull_mps = aside_mps + d_m / kReturns_s;
   const auto steps = static_cast<int>(std::lround(kForeseen_s / kForeseenStep_s));
   double ahead_m = 0.0;
@@ -44,7 +71,7 @@ geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline&
     const double sideways_mps = pull_mps * fades - beside_m / kReturns_s;
     const double drift_rad =
         speed_mps > kLeastDriving_mps ? std::atan2(sideways_mps, speed_mps) : 0.0;
-    const Pose2 pose = pose_on(way, s_m + ahead_m) * Pose2{0.0, beside_m, drift_rad};
+    const Pose2 pose = pose_on(way, from.s_m + ahead_m) * Pose2{0.0, to_d_m + beside_m, drift_rad};
     points.push_back({.t_s = seen.t_s + after_s,
                       .x_m = pose.x_m,
                       .y_m = pose.y_m,
@@ -61,6 +88,7 @@ std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_
   const SeenMotion seen = track.filter.state();
   std::vector<OnLane> on;
   if (follows_lanes(track) && seen.speed_mps > kLeastDriving_mps) on = lanes_at(seen);
+  if (waits(track, seen)) return {{.motion = setting_off(seen)}};
   if (on.empty()) return {{.motion = foreseen_motion(seen)}};
 
   struct Choice {
@@ -71,7 +99,9 @@ std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_
   const Kept& kept = ways_from(slot, on, kForeseen_s * seen.speed_mps);
   for (std::size_t i = 0; i < on.size(); ++i) {
     for (std::size_t k = 0; k < kept.ways[i].size(); ++k) {
-      choices.push_back({i, k, on[i].weight * kept.ways[i][k].weight});
+      const Way& way = kept.ways[i][k];
+      const double weight = on[i].weight * way.weight;
+      choices.push_back({i, k, weight * slows_in_time(seen.speed_mps, way.ahead, on[i].place.s_m)});
     }
   }
   std::ranges::stable_sort(choices, std::greater{}, &Choice::weight);
@@ -82,8 +112,10 @@ std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_
   for (const Choice& choice : choices) {
     const OnLane& at = on[choice.lane];
     const Way& way = kept.ways[choice.lane][choice.way];
-    found.push_back({along_way(seen, way.centre, at.place.s_m, at.place.d_m, at.turned_rad),
-                     choice.weight / sum, way.ahead.lanes});
+    const double to_d_m = keeps_beside(track) ? at.place.d_m : 0.0;
+    found.push_back(
+        {along_way(seen, way.centre, {at.place.s_m, at.place.d_m}, to_d_m, at.turned_rad),
+         choice.weight / sum, way.ahead.lanes});
   }
   return found;
 }
@@ -129,6 +161,20 @@ std::vector<LaneForecast::Way> LaneForecast::new_ways(map::LaneId from, double l
     ways.push_back({std::move(ahead), std::move(centre), weight});
   }
   return ways;
+}
+
+/// How usual the braking is that the first turns of a way ask for.
+double LaneForecast::slows_in_time(double speed_mps, const LanesAhead& ahead, double s_m) const {
+  double hardest_mps2 = 0.0, to_m = -s_m;
+  for (const map::LaneId id : ahead.lanes) {
+    const map::Lane& lane = road_map_.lane(id);
+    const double bend_per_m = turned_along_rad(lane) / lane.length_m();
+    const double fastest_mps = std::sqrt(kMostLateral_mps2 / std::max(1e-6, bend_per_m));
+    const double over_m2ps2 = speed_mps * speed_mps - fastest_mps * fastest_mps;
+    hardest_mps2 = std::max(hardest_mps2, 0.5 * over_m2ps2 / std::max(kAtOnce_m, to_m));
+    to_m += lane.length_m();
+  }
+  return std::max(kLeastUsual, std::exp(-0.5 * std::pow(hardest_mps2 / kBraking_mps2, 2)));
 }
 
 double LaneForecast::fork_weight(const LanesAhead& ahead) const {

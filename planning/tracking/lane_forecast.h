@@ -19,12 +19,13 @@ struct ForecastMotion {
 };
 
 /// Foresees objects one by one: who drives along a lane goes on along it, and where lanes part
-/// along each of them; beside a lane's middle it comes back to it. Others, and who is on no lane,
-/// keep their bend for a while (foreseen_motion.h). Speeds are those of foreseen_speed_mps().
+/// along each of them; beside a lane's middle it comes back to it, but what is narrow. Others, and
+/// who is on no lane, keep their bend for a while (foreseen_motion.h). Speeds are those of
+/// foreseen_speed_mps().
 ///
 ///                     ╭──▶ 0.3     how likely: how well its heading and place fit the lane,
 ///     ──●─────────────┼──▶ 0.6     times, at each fork, how little that lane turns
-///                     ╰──▶ 0.1
+///                     ╰──▶ 0.1     and how little it has to brake for that
 ///
 /// Ways are kept from one time to the next.
 class LaneForecast {
@@ -60,6 +61,7 @@ class LaneForecast {
   const Kept& ways_from(std::size_t slot, const std::vector<OnLane>& on, double length_m);
   std::vector<Way> new_ways(map::LaneId from, double length_m) const;
   double fork_weight(const LanesAhead& ahead) const;
+  double slows_in_time(double speed_mps, const LanesAhead& ahead, double s_m) const;
 
   const map::RoadMap& road_map_;
   std::vector<Kept> kept_;  ///< per slot

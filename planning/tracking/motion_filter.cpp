@@ -14,7 +14,8 @@ constexpr double kFades_s = 2.0;    // the acceleration, to 1/e of it
 constexpr double kJerk_mps3 = 3.0;  // deviation after a second of white jerk
 constexpr double kTurnAcceleration_radps2 = 0.5;
 constexpr double kFirstAcceleration_mps2 = 2.0, kFirstTurnRate_radps = 0.3;
-constexpr double kStands_mps = 0.1;  // slower is noise
+constexpr double kStands_mps = 0.1;        // slower is noise
+constexpr double kMostStanding_mps = 1.0;  // who is not measured for long still drives
 constexpr double kLeastTurning_mps = 0.5;
 
 }  // namespace
@@ -103,7 +104,8 @@ SeenMotion MotionFilter::state() const {
   SeenMotion seen{.t_s = t_s_,
                   .pose = {state_[kX], state_[kY], geometry::wrap_angle(state_[kHeading])},
                   .speed_mps = state_[kSpeed]};
-  if (std::abs(seen.speed_mps) < std::max(kStands_mps, std::sqrt(covariance_(kSpeed, kSpeed)))) {
+  const double deviation_mps = std::sqrt(covariance_(kSpeed, kSpeed));
+  if (std::abs(seen.speed_mps) < std::clamp(deviation_mps, kStands_mps, kMostStanding_mps)) {
     seen.speed_mps = 0.0;
     return seen;
   }

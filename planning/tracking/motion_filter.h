@@ -39,7 +39,8 @@ class MotionFilter {
   /// Takes a measurement at the filter's time.
   void update(const MeasuredMotion& measured);
 
-  /// What is believed at the filter's time. Who is slower than its speed is known stands.
+  /// What is believed at the filter's time. Who is slower than its speed is known, and
+  /// than 1 m/s, stands.
   SeenMotion state() const;
 
   /// Standard deviation of a coordinate, the larger one [m].

@@ -25,7 +25,8 @@ void refuse_twice(std::span<const Detection> detections) {
 
 }  // namespace
 
-void Tracker::observe(double t_s, std::span<const Detection> detections) {
+void Tracker::observe(double t_s, std::span<const Detection> detections,
+                      const IsHidden& is_hidden) {
   if (!std::isfinite(t_s) || (t_s_ && !(t_s > *t_s_))) {
     throw std::invalid_argument("Tracker: time does not increase");
   }
@@ -38,8 +39,9 @@ void Tracker::observe(double t_s, std::span<const Detection> detections) {
   give_by_fit(detections, false, is_taken);
   give_by_fit(detections, true, is_taken);
   for (std::size_t i = 0; i < detections.size(); ++i) {
-    if (!is_taken[i]) begin(detections[i]);
+    if (!is_taken[i]) begin(detections, i);
   }
+  expect(is_hidden);
   remember();
 }
 
@@ -48,7 +50,8 @@ void Tracker::go_on(double before_s) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     std::optional<Track>& track = slots_[i];
     if (!track) continue;
-    const bool is_old = t_s - track->last_measured_s > options_.coasts_for_s + 1e-9;
+    track->detection.reset();
+    const bool is_old = t_s - track->expected_s > options_.coasts_for_s + 1e-9;
     if (is_old || (track->is_tentative() && track->last_measured_s < before_s)) {
       if (track->has_own_id) slot_of_id_.erase(track->id);
       track.reset();
@@ -63,7 +66,7 @@ void Tracker::give_by_id(std::span<const Detection> detections, std::vector<bool
   for (std::size_t i = 0; i < detections.size(); ++i) {
     const auto at = slot_of_id_.find(detections[i].id);
     if (at == slot_of_id_.end()) continue;
-    take(*slots_[at->second], detections[i]);
+    take(*slots_[at->second], detections, i);
     is_taken[i] = true;
   }
 }
@@ -83,13 +86,14 @@ void Tracker::give_by_fit(std::span<const Detection> detections, bool to_tentati
   const auto given = assign(slots_.size(), detections.size(), pairs, options_.misfit_limit);
   for (std::size_t slot = 0; slot < given.size(); ++slot) {
     if (!given[slot]) continue;
-    take(*slots_[slot], detections[*given[slot]]);
+    take(*slots_[slot], detections, *given[slot]);
     is_taken[*given[slot]] = true;
   }
 }
 
 /// One that cannot have come there by itself is another one of the same id, or was seen wrongly.
-void Tracker::take(Track& track, const Detection& detection) const {
+void Tracker::take(Track& track, std::span<const Detection> detections, std::size_t at) const {
+  const Detection& detection = detections[at];
   const MeasuredMotion now = measured(detection);
   if (track.filter.misfit(now) > options_.misfit_limit) {
     track.filter = MotionFilter(now, options_.noise);
@@ -102,9 +106,11 @@ void Tracker::take(Track& track, const Detection& detection) const {
   track.width_m = detection.width_m;
   track.last_measured_s = *t_s_;
   ++track.measured;
+  track.detection = at;
 }
 
-void Tracker::begin(const Detection& detection) {
+void Tracker::begin(std::span<const Detection> detections, std::size_t at) {
+  const Detection& detection = detections[at];
   const bool has_own_id = !detection.id.empty();
   Track track{.id = has_own_id ? detection.id : fmt::format("track {}", ++named_),
               .kind = detection.kind,
@@ -114,7 +120,8 @@ void Tracker::begin(const Detection& detection) {
               .first_s = *t_s_,
               .last_measured_s = *t_s_,
               .past = {},
-              .has_own_id = has_own_id};
+              .has_own_id = has_own_id,
+              .detection = at};
   std::size_t slot = 0;
   while (slot < slots_.size() && (slots_[slot] || *t_s_ - left_at_s_[slot] < kSlotRests_s)) ++slot;
   if (slot == slots_.size()) {
@@ -125,10 +132,23 @@ void Tracker::begin(const Detection& detection) {
   slots_[slot] = std::move(track);
 }
 
+/// Who is behind somebody or something is not gone.
+void Tracker::expect(const IsHidden& is_hidden) {
+  for (std::optional<Track>& track : slots_) {
+    if (!track) continue;
+    const double unmeasured_s = *t_s_ - track->last_measured_s;
+    const bool may_be_hidden = is_hidden && unmeasured_s <= options_.hidden_for_s;
+    if (track->detection || (may_be_hidden && is_hidden(track->filter.state().pose.position()))) {
+      track->expected_s = *t_s_;
+    }
+  }
+}
+
 void Tracker::remember() {
   for (std::optional<Track>& track : slots_) {
     if (!track) continue;
     const SeenMotion now = track->filter.state();
+    if (now.speed_mps != 0.0) track->moved_s = now.t_s;
     track->past.push_back({.t_s = now.t_s,
                            .x_m = now.pose.x_m,
                            .y_m = now.pose.y_m,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -30,7 +31,11 @@ struct Track {
   double first_s, last_measured_s;
   std::deque<geometry::TrajectoryPoint> past;  ///< of the last second, up to now
   bool has_own_id;
-  int measured = 1;  ///< how often
+  int measured = 1;                    ///< how often
+  std::optional<double> moved_s = {};  ///< when it moved last, if ever
+  double expected_s = 0.0;             ///< when it was measured last, or known to be hidden
+  /// Which of the last detections is of it; none: it was not measured then.
+  std::optional<std::size_t> detection = {};
 
   /// What has no id and was measured once or twice may be an error, or a body that is there.
   bool is_tentative() const { return !has_own_id && measured < 3; }
@@ -40,6 +45,7 @@ struct Track {
 struct TrackerOptions {
   ObjectNoise noise = {};
   double coasts_for_s = 1.0;   ///< an object that is not measured is believed to go on for so long
+  double hidden_for_s = 10.0;  ///< the same for one that is hidden where it is believed to be
   double misfit_limit = 23.5;  ///< χ² of four degrees of freedom that one in 10⁴ exceeds
 };
 
@@ -52,10 +58,14 @@ class Tracker {
   /// Without any track so far.
   explicit Tracker(const TrackerOptions& options = {}) : options_(options) {}
 
+  /// Whether nobody could be measured at a place of the map.
+  using IsHidden = std::function<bool(const Eigen::Vector2d& point_in_map)>;
+
   /// Takes everything that is measured at a time.
+  /// @param is_hidden  none: everybody could be measured.
   /// @throws std::invalid_argument if the time is not later than that of the call before, or two
   ///         detections have one id.
-  void observe(double t_s, std::span<const Detection> detections);
+  void observe(double t_s, std::span<const Detection> detections, const IsHidden& is_hidden = {});
 
   /// Tracks of now; a slot may be empty.
   std::span<const std::optional<Track>> slots() const { return slots_; }
@@ -65,8 +75,9 @@ class Tracker {
   void give_by_id(std::span<const Detection> detections, std::vector<bool>& is_taken);
   void give_by_fit(std::span<const Detection> detections, bool to_tentative,
                    std::vector<bool>& is_taken);
-  void take(Track& track, const Detection& detection) const;
-  void begin(const Detection& detection);
+  void take(Track& track, std::span<const Detection> detections, std::size_t at) const;
+  void begin(std::span<const Detection> detections, std::size_t at);
+  void expect(const IsHidden& is_hidden);
   void remember();
   MeasuredMotion measured(const Detection& detection) const;
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Drives CommonRoad scenarios and has CommonRoad's own checker judge them.
 
-usage: referee.py ROADBED OUTPUT SCENARIO.xml...
+usage: referee.py [--predict] ROADBED OUTPUT SCENARIO.xml...
 
 Each scenario is simulated into a folder of OUTPUT; judged with commonroad-drivability-checker, which
 shares no code with roadbed:
@@ -14,7 +14,7 @@ shares no code with roadbed:
     solution   solution.xml loads with commonroad-io and holds the same drive
     blind      the same with all traffic deleted before planning, judged with it: who succeeds so has
                not needed to see anybody
-Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and
+With --predict others are measured, tracked and foreseen, not known. Of those that fail a line tells whether any drive can succeed, see solvable.py. Prints a table, and
 how many succeed only because they see the traffic. Exit status 1 if a drive collides of which
 roadbed says that it does not, ends in an exception, passes 4 m/s² of lateral acceleration in a
 success, or a solution does not load."""
@@ -138,8 +138,11 @@ def judge(scenario_file, folder):
 
 
 def simulate(roadbed, scenario_file, folder):
-    return subprocess.run([roadbed, "simulate", str(scenario_file), "-o", str(folder), "--force",
-                           "--drop-ego-recording"], capture_output=True, text=True, check=False)
+    """roadbed: the program and, maybe, --predict."""
+    program, *options = roadbed
+    return subprocess.run([program, "simulate", str(scenario_file), "-o", str(folder), "--force",
+                           "--drop-ego-recording", *options],
+                          capture_output=True, text=True, check=False)
 
 
 def without_traffic(scenario_file, output):
@@ -174,6 +177,8 @@ def run(roadbed, output, scenario_file):
         result.update(judge(scenario_file, folder))
         result["blind"] = run_blind(roadbed, output, scenario_file)
         result["solvable"] = None if is_good(result) else verdict(scenario_file)
+        metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+        result["at_fault"] = metrics["at_fault"]
     return result
 
 
@@ -196,7 +201,8 @@ def print_table(names, results):
     good = [r for r in judged if is_good(r)]
     print(f"{len(results)} scenarios: {len(good)} reach the goal without collision on the road, "
           f"{sum(r['feasible'] for r in good)} of them with every step feasible; "
-          f"{sum(r['collision'] for r in judged)} collide, {len(results) - len(judged)} without a "
+          f"{sum(r['collision'] for r in judged)} collide "
+          f"({sum(r['at_fault'] for r in judged)} of them at fault), {len(results) - len(judged)} without a "
           f"drive; {sum(not r['blind'] for r in good)} of those that reach it need to see the traffic; "
           f"largest lateral acceleration of a success "
           f"{max((r['a_lat'] for r in good), default=0.0):.2f} m/s²")
@@ -207,8 +213,10 @@ def print_table(names, results):
 
 
 def main():
-    roadbed, output = sys.argv[1], Path(sys.argv[2])
-    scenarios = sorted(Path(file) for file in sys.argv[3:])
+    options = [word for word in sys.argv[1:] if word == "--predict"]
+    program, output, *files = [word for word in sys.argv[1:] if word not in options]
+    roadbed, output = [program, *options], Path(output)
+    scenarios = sorted(Path(file) for file in files)
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(lambda file: run(roadbed, output, file), scenarios))
     (output / "referee.json").write_text(

@@ -173,8 +173,7 @@ class SimulateCommand : public Command {
     arguments.flag("--mcap", choice_.writes_mcap,
                    "Write drive.mcap, too, a log for Foxglove, Lichtblick and Rerun: poses, plans, "
                    "lanes, obstacles, occupied space");
-    arguments.flag("--predict", choice_.predicts,
-                   "Foresee others from what could be seen of them, not by their true future");
+    declare_knowledge(arguments);
     arguments.add(
         "--planner", choice_.planner_command,
         "Command of a planner that drives in place of roadbed's: for each cycle it reads a "
@@ -212,6 +211,16 @@ class SimulateCommand : public Command {
                            .remedy = "run `roadbed simulate --planner` by itself"});
   }
 
+  void declare_knowledge(Arguments& arguments) {
+    Argument predicts = arguments.flag(
+        "--predict", predicts_,
+        "Others are measured, tracked and foreseen; so it is in roadbed's scenarios");
+    arguments
+        .flag("--known-future", knows_future_,
+              "What others will do is known; so it is in CommonRoad's scenarios")
+        .excludes(predicts);
+  }
+
   void declare_changes(Arguments& arguments) {
     arguments
         .add("--vehicle", choice_.vehicle_file,
@@ -243,6 +252,7 @@ class SimulateCommand : public Command {
 
   void read_changes() {
     choice_.read_files();
+    if (predicts_ || knows_future_) choice_.predicts = predicts_;
     if (!seed_.empty()) choice_.changes.seed = parse_seed(seed_);
   }
 
@@ -326,7 +336,7 @@ class SimulateCommand : public Command {
 
   fs::path scenario_file_, folder_, timings_file_;
   std::string seed_;
-  bool json_ = false, force_ = false;
+  bool json_ = false, force_ = false, predicts_ = false, knows_future_ = false;
   DriveChoice choice_;
 };
 

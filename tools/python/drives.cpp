@@ -84,7 +84,8 @@ OutsidePlanner planner_of(nb::object callable) {
 
 struct DriveArguments {
   nb::handle scenario, planner, vehicle, noise, options;
-  bool predict, candidates, mcap, drop_ego_recording;
+  std::optional<bool> predict;
+  bool candidates, mcap, drop_ego_recording;
   std::optional<std::uint64_t> seed;
   double planner_limit_s;
 };
@@ -288,21 +289,21 @@ void bind_drives(nb::module_& module) {
   module.def(
       "simulate",
       [](nb::handle scenario, nb::handle planner, nb::handle vehicle, nb::handle noise,
-         nb::handle options, bool predict, bool candidates, bool mcap, bool drop_ego_recording,
-         std::optional<std::uint64_t> seed, double planner_limit_s) {
+         nb::handle options, std::optional<bool> predict, bool candidates, bool mcap,
+         bool drop_ego_recording, std::optional<std::uint64_t> seed, double planner_limit_s) {
         return simulate({scenario, planner, vehicle, noise, options, predict, candidates, mcap,
                          drop_ego_recording, seed, planner_limit_s});
       },
       nb::arg("scenario"), nb::arg("planner") = nb::none(), nb::kw_only(),
       nb::arg("vehicle") = nb::none(), nb::arg("noise") = nb::none(),
-      nb::arg("options") = nb::none(), nb::arg("predict") = false, nb::arg("candidates") = false,
-      nb::arg("mcap") = false, nb::arg("drop_ego_recording") = false, nb::arg("seed") = nb::none(),
-      nb::arg("planner_limit_s") = 60.0,
+      nb::arg("options") = nb::none(), nb::arg("predict") = nb::none(),
+      nb::arg("candidates") = false, nb::arg("mcap") = false, nb::arg("drop_ego_recording") = false,
+      nb::arg("seed") = nb::none(), nb::arg("planner_limit_s") = 60.0,
       nb::sig(
           "def simulate(scenario: str | os.PathLike[str], planner: "
           "collections.abc.Callable[[Observation], typing.Any] | str | None = None, *, vehicle: "
           "Vehicle | str | os.PathLike[str] | None = None, noise: str | os.PathLike[str] | None "
-          "= None, options: str | os.PathLike[str] | None = None, predict: bool = False, "
+          "= None, options: str | os.PathLike[str] | None = None, predict: bool | None = None, "
           "candidates: bool = False, mcap: bool = False, drop_ego_recording: bool = False, seed: "
           "int | None = "
           "None, planner_limit_s: float = 60.0) -> Drive"),
@@ -314,8 +315,10 @@ void bind_drives(nb::module_& module) {
       "Trajectory or a Plan; None: the last one holds; or a pair of that and a reason in words. "
       "The loop follows it and the same report judges it. A text is the command of a process that "
       "answers a line of JSON with a line of JSON, within planner_limit_s each.\n"
-      "vehicle, noise, options, seed: in place of the scenario's; predict: others are known only "
-      "as could be seen; candidates: keep what became of each candidate, for the report; mcap: "
+      "vehicle, noise, options, seed: in place of the scenario's; predict: others are measured, "
+      "tracked and foreseen, or (False) their true future is known; None: the first in roadbed's "
+      "own scenarios, the second in CommonRoad's; candidates: keep what became of each candidate, "
+      "for the report; mcap: "
       "make drive.mcap, too, a log for Foxglove, Lichtblick and Rerun.");
 }
 

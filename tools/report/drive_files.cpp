@@ -36,10 +36,10 @@ std::vector<DriveSource> sources_of(const Scenario& scenario, const DriveChoice&
   return sources;
 }
 
-DriveRecord record_of(const Scenario& scenario, const DriveChoice& choice) {
+DriveRecord record_of(const Scenario& scenario, const DriveChoice& choice, bool predicts) {
   return {.program = name_and_version(),
           .sources = sources_of(scenario, choice),
-          .predicts = choice.predicts,
+          .predicts = predicts,
           .drops_ego_recording = choice.changes.drops_ego_recording,
           .is_outside = choice.outside_planner || !choice.planner_command.empty(),
           .seed = choice.changes.seed};
@@ -70,7 +70,7 @@ std::string quoted(const std::string& text) {
 // As one would type it beside the inputs.
 std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   std::string command = "roadbed simulate " + scenario.file.filename().string();
-  if (choice.predicts) command += " --predict";
+  if (choice.predicts) command += *choice.predicts ? " --predict" : " --known-future";
   if (choice.keeps_candidates) command += " --candidates";
   if (!choice.vehicle_file.empty()) {
     command += " --vehicle " + choice.vehicle_file.filename().string();
@@ -87,6 +87,10 @@ std::string command_of(const Scenario& scenario, const DriveChoice& choice) {
   return command + " -o DIR";
 }
 
+bool predicts(const ReadyDrive& ready, const DriveChoice& choice) {
+  return choice.predicts.value_or(ready.problem == nullptr);
+}
+
 OutsidePlanner planner_of(const DriveChoice& choice) {
   if (choice.planner_command.empty()) return choice.outside_planner;
   return planner_process(choice.planner_command, choice.planner_limit_s);
@@ -95,12 +99,12 @@ OutsidePlanner planner_of(const DriveChoice& choice) {
 DrivenScenario drive_and_describe(const ReadyDrive& ready, const DriveChoice& choice) {
   const auto& [scenario, world, problem] = ready;
   DrivenScenario result;
-  result.record = record_of(scenario, choice);
-  result.drive =
-      drive(scenario, world,
-            {.planner = {.predicts = choice.predicts, .keeps_candidates = choice.keeps_candidates},
-             .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); },
-             .outside_planner = planner_of(choice)});
+  result.record = record_of(scenario, choice, predicts(ready, choice));
+  result.drive = drive(scenario, world,
+                       {.planner = {.keeps_candidates = choice.keeps_candidates},
+                        .predicts = result.record.predicts,
+                        .on_cycle = [&](double ms) { result.cycle_ms.push_back(ms); },
+                        .outside_planner = planner_of(choice)});
   const Drive& driven = result.drive;
   result.name = scenario.name;
   result.verdict = driven.verdict;

@@ -29,7 +29,9 @@ struct DrivenScenario {
 
 /// How a scenario is driven.
 struct DriveChoice {
-  bool predicts = false;  ///< the planner knows of others only what could be known at the time
+  /// Others are measured and foreseen, not known by their true future; without a word those of
+  /// roadbed's own scenarios are, those of CommonRoad's are not.
+  std::optional<bool> predicts = {};
   bool keeps_candidates = false;  ///< the report shows what became of each candidate
   bool writes_mcap = false;       ///< drive.mcap as well
   ScenarioChanges changes = {};   ///< of what the file says

@@ -106,8 +106,8 @@ void replay_cycle(const DriveTime& time, const Inputs& inputs,
   check_sources(record);
   const DriveChoice choice = choice_of(record);
   with_scenario(record.file_of("scenario"), choice, inputs, [&](const ReadyDrive& ready) {
-    const Drive again = drive(ready.scenario, ready.world,
-                              {.planner = {.predicts = choice.predicts}, .last_cycle = last});
+    const Drive again =
+        drive(ready.scenario, ready.world, {.predicts = record.predicts, .last_cycle = last});
     const Comparison comparison(time.folder, record);
     comparison.check("trajectory.csv", write_trajectory_csv(again.trajectory));
     comparison.check("cycles.jsonl", cycle_log(again));

@@ -245,7 +245,7 @@ Json coded_cycle(const Drive& drive, const DriveCycle& cycle, Json path,
           {"runner", coded_candidate(cycle.grid ? cycle.grid->runner_up : std::nullopt, weights)},
           {"hypotheses", list_of(cycle.hypotheses, coded_hypothesis)},
           {"foreseen", list_of(cycle.foreseen,
-                               [&](const planning::ForeseenMotion& one) {
+                               [&](const ForeseenMotion& one) {
                                  return Json{{"obstacle", one.obstacle},
                                              {"probability", one.probability},
                                              {"points", coded_line(one.points, origin)}};

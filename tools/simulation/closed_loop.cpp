@@ -19,6 +19,7 @@
 #include "roadbed/tools/simulation/pedal_model.h"
 #include "roadbed/tools/simulation/road_departure.h"
 #include "roadbed/tools/simulation/sensors.h"
+#include "roadbed/tools/simulation/tracked_traffic.h"
 #include "roadbed/tools/simulation/trajectory_follower.h"
 
 namespace roadbed::tools::inline simulation {
@@ -43,6 +44,14 @@ planning::Route first_part(planning::Route route, double length_m) {
     left_m -= leg.length_m;
   }
   return route;
+}
+
+void lead_along(planning::DrivingTask& task, const planning::Detour& detour) {
+  task.route = detour.route;
+  task.line = detour.line.line;
+  task.line_options = detour.line.options;
+  task.stop_points = detour.stop_points;
+  task.blockers = detour.blockers;
 }
 
 /// The cruise control behind the sensors of the lead.
@@ -73,11 +82,16 @@ class ClosedLoop {
         flow_(world.drivers, world.obstacles, scenario.duration_s, {}),
         sensors_(scenario.noise, scenario.seed),
         cruise_(sensors_, truth_, scenario.options),
+        drive_(begun(world, options)),
         planner_(setup()),
         observer_(world, scenario.vehicle) {
     truth_.map_from_vehicle = world.start;
     truth_.speed_mps = scenario.start_speed_mps;
     truth_.steering_rad = start_steering_rad();
+    if (drive_.believed) {
+      others_.emplace(world, scenario);
+      drive_.believed->sight_m = others_->range_m();
+    }
     if (scenario.pedals) {
       foot_.emplace(GradeProfile(world.road_map, world.route, world.line));
     }
@@ -97,8 +111,16 @@ class ClosedLoop {
   }
 
  private:
+  static Drive begun(const World& world, const LoopOptions& options) {
+    Drive drive;
+    if (!options.predicts || options.outside_planner) return drive;
+    drive.believed = std::make_shared<planning::DrivingTask>(world);
+    drive.believed->obstacles.clear();
+    return drive;
+  }
+
   planning::PlannerSetup setup() const {
-    return {.task = world_,
+    return {.task = drive_.believed ? *drive_.believed : world_,
             .vehicle = scenario_.vehicle,
             .driving = scenario_.options,
             .planner = options_.planner};
@@ -136,7 +158,12 @@ class ClosedLoop {
     const auto begin = std::chrono::steady_clock::now();
     const planning::VehicleState measured = sensors_.measure(truth_);
     const bool has_new_route = command_.detour.has_value();
-    if (has_new_route) take(*std::move(command_.detour));
+    if (has_new_route) take(*command_.detour);
+    if (others_) {
+      drive_.believed->obstacles =
+          others_->look(t_s(), geometry::body_at(truth_.map_from_vehicle, scenario_.vehicle),
+                        measured.map_from_vehicle);
+    }
     command_ = planner_.decide({.t_s = t_s(),
                                 .measured = measured,
                                 .speed_controller = cruise_,
@@ -198,14 +225,11 @@ class ClosedLoop {
   }
 
   /// The vehicle goes on from where it stands; stations of the samples do, too.
-  void take(planning::Detour detour) {
+  void take(const planning::Detour& detour) {
     const double left_s_m = drive_.last_line_from_s_m + true_s_m();
     drive_.given_up.push_back({t_s(), first_part(std::move(world_.route), s_m_), world_.line});
-    world_.route = std::move(detour.route);
-    world_.line = std::move(detour.line.line);
-    world_.line_options = detour.line.options;
-    world_.stop_points = std::move(detour.stop_points);
-    world_.blockers = std::move(detour.blockers);
+    lead_along(world_, detour);
+    if (drive_.believed) lead_along(*drive_.believed, detour);
     planner_ = planning::Planner(setup());
     s_m_ = 0.0;
     drive_.last_line_from_s_m = left_s_m - true_s_m();
@@ -225,10 +249,10 @@ class ClosedLoop {
                      .plan_reason = replanner().last_plan().reason,
                      .beyond_the_edge_m = replanner().beyond_the_edge_m(),
                      .lead = command_.lead,
-                     .hypotheses = command_.hypotheses,
-                     .foreseen = command_.foreseen};
-    for (planning::ForeseenMotion& motion : cycle.foreseen) {
-      for (Eigen::Vector2d& point : motion.points) point = world_.road_map.to_source(point);
+                     .hypotheses = command_.hypotheses};
+    if (others_) {
+      cycle.foreseen = others_->foreseen();
+      name_in_pictures(cycle);
     }
     for (const geometry::TrajectoryPoint& point : replanner().last_plan().trajectory.points()) {
       cycle.path.push_back(world_.road_map.to_source({point.x_m, point.y_m}));
@@ -236,6 +260,16 @@ class ClosedLoop {
     const DriveCycle* last = drive_.cycles.empty() ? nullptr : &drive_.cycles.back();
     for (DriveEvent& event : events_of(cycle, last)) drive_.events.push_back(std::move(event));
     drive_.cycles.push_back(std::move(cycle));
+  }
+
+  /// The planner knows others by its own numbers.
+  void name_in_pictures(DriveCycle& cycle) const {
+    for (planning::HypothesisOutcome& hypothesis : cycle.hypotheses) {
+      for (planning::StPicture::Part& part : hypothesis.st.parts) {
+        if (part.obstacle == planning::StInterval::kNoObstacle) continue;
+        part.obstacle = others_->obstacle_of(part.obstacle);
+      }
+    }
   }
 
   control::TrackingError tracking_error_of(const geometry::Pose2& pose) {
@@ -285,9 +319,12 @@ class ClosedLoop {
   }
 
   void check_end() {
-    if (!observer_.touched().empty()) {
-      end(Outcome::collision, fmt::format("touched {} at {:.1f} m/s after {:.2f} s",
-                                          observer_.touched(), truth_.speed_mps, t_s()));
+    if (const std::optional<Collision>& collision = observer_.collision()) {
+      drive_.collision = collision;
+      end(Outcome::collision,
+          fmt::format("touched {} at {:.1f} m/s after {:.2f} s, {}", collision->with,
+                      truth_.speed_mps, t_s(),
+                      collision->is_at_fault ? "at fault" : "the other's fault"));
       drive_.events.push_back({t_s(), EventLevel::fault, drive_.verdict.text});
     } else if (world_.goal) {
       check_timed_goal();
@@ -335,8 +372,18 @@ class ClosedLoop {
           static_cast<double>(saturated_) / static_cast<double>(drive_.cycles.size());
     }
     drive_.trajectory = geometry::Trajectory(std::move(rows_));
+    if (others_) drive_.tracking = others_->quality();
     take_road(judge_road(world_.road_map, scenario_.vehicle, drive_));
-    if (is_over_) return;
+    if (!is_over_) run_out();
+    if (!options_.predicts && has_movers()) drive_.verdict.text += "; the others' future was known";
+  }
+
+  bool has_movers() const {
+    return std::ranges::any_of(world_.obstacles,
+                               [](const planning::Obstacle& other) { return !other.is_static(); });
+  }
+
+  void run_out() {
     const double left_m = world_.line.goal_s_m() - true_s_m();
     const bool stands = truth_.speed_mps <= 0.0;
     end(stands ? Outcome::stopped : Outcome::timed_out,
@@ -381,7 +428,9 @@ class ClosedLoop {
   Sensors sensors_;
   planning::VehicleState truth_;
   MeasuredCruise cruise_;
-  planning::Planner planner_;
+  Drive drive_;
+  planning::Planner planner_;  ///< of the world, or of what is believed of it
+  std::optional<TrackedTraffic> others_;
   GroundTruthMonitor observer_;
 
   std::optional<PedalModel> foot_;
@@ -394,7 +443,6 @@ class ClosedLoop {
   GoalMisses misses_;
   bool is_over_ = false;
   std::vector<geometry::TrajectoryPoint> rows_;
-  Drive drive_;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/lateral/candidate_grid.h"
 #include "roadbed/planning/lateral/plan_types.h"
+#include "roadbed/tools/simulation/collision.h"
 #include "roadbed/tools/simulation/outside_planner.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/world.h"
@@ -22,6 +23,20 @@ namespace roadbed::tools::inline simulation {
 
 // What a closed-loop drive left behind, as plain data. Coordinates are the source's raw ones [m],
 // times are seconds of the drive.
+
+/// A motion that is foreseen of an obstacle.
+struct ForeseenMotion {
+  std::size_t obstacle = 0;  ///< index in the world
+  double probability = 1.0;
+  std::vector<Eigen::Vector2d> points = {};  ///< of its middle, every half a second from now
+};
+
+/// How well others are known, where they are measured.
+struct TrackingQuality {
+  std::size_t measurements = 0;
+  double measured_m2 = 0.0, tracked_m2 = 0.0;  ///< sums of squared distances to the true place
+  std::size_t identity_swaps = 0;              ///< a track goes on as somebody else's
+};
 
 /// One planning cycle, every 0.1 s.
 struct DriveCycle {
@@ -40,7 +55,7 @@ struct DriveCycle {
   std::vector<Eigen::Vector2d> path = {};  ///< planned, rear axle; empty without a candidate
   std::optional<planning::DriveLead> lead = {};
   std::vector<planning::HypothesisOutcome> hypotheses = {};
-  std::vector<planning::ForeseenMotion> foreseen = {};  ///< in the source's coordinates
+  std::vector<ForeseenMotion> foreseen = {};  ///< empty where the future is known
 
   bool has_plan() const { return chosen.has_value() || is_outside; }
 };
@@ -96,8 +111,16 @@ struct Drive {
   /// Ratio of control steps in which the cruise control saturates at ±max_command.
   double saturated_ratio = 0.0;
 
+  std::optional<Collision> collision = {};  ///< that ended it
+
+  /// Where others are measured.
+  std::optional<TrackingQuality> tracking = {};
+
+  /// The task as the planner knew it, where others are measured.
+  std::shared_ptr<planning::DrivingTask> believed = nullptr;
+
   /// What the last cycle was decided on, if the loop was asked for it; it sees the world's lines
-  /// and occupied space.
+  /// and occupied space, or those of what was believed.
   std::shared_ptr<const planning::ExplainedPlan> explained = nullptr;
 };
 
@@ -110,6 +133,8 @@ std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* las
 struct LoopOptions {
   double goal_tolerance_m = 1.0;  ///< the vehicle stops this near to the goal's station, or nearer
   planning::PlannerOptions planner = {};
+  /// Others are measured, tracked and foreseen; otherwise the planner knows what they will do.
+  bool predicts = true;
   std::function<void(double cycle_ms)> on_cycle = {};  ///< wall clock of each planning cycle
   /// The drive is left, without a verdict, when this cycle is planned; what it was decided on is
   /// kept. Until then all is as it would be without.

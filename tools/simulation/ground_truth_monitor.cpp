@@ -27,7 +27,9 @@ void GroundTruthMonitor::look(double t_s, const planning::VehicleState& truth) {
     if (bound >= clearance_m_) continue;
     const double distance = geometry::distance_m(body, other);
     clearance_m_ = std::min(clearance_m_, distance);
-    if (distance <= 0.0) touched_ = obstacle.id;
+    if (distance > 0.0 || collision_) continue;
+    const double speed_mps = obstacle.is_static() ? 0.0 : obstacle.motion.at(t_s).speed_mps;
+    collision_ = judge_collision(world_.road_map, truth, vehicle_, {obstacle.id, other, speed_mps});
   }
 }
 

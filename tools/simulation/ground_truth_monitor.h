@@ -1,8 +1,9 @@
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/tools/simulation/collision.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/world.h"
 
@@ -15,11 +16,11 @@ class GroundTruthMonitor {
   GroundTruthMonitor(const World& world, const geometry::VehicleShape& vehicle);
 
   /// Distance to the nearest obstacle at a time [m], infinite without any; remembers the least
-  /// since the last row, and the obstacle that is touched, if one is.
+  /// since the last row, and the first collision, if there is one.
   void look(double t_s, const planning::VehicleState& truth);
 
-  /// Id of an obstacle that the body touches; empty if none.
-  const std::string& touched() const { return touched_; }
+  /// Who is touched, first of all; none if nobody is.
+  const std::optional<Collision>& collision() const { return collision_; }
 
   /// Least clearance since the last row; starts anew.
   double take_clearance_m();
@@ -31,7 +32,7 @@ class GroundTruthMonitor {
   const World& world_;
   const geometry::VehicleShape& vehicle_;
   double clearance_m_;
-  std::string touched_;
+  std::optional<Collision> collision_;
 };
 
 }  // namespace roadbed::tools::simulation

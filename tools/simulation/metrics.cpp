@@ -180,6 +180,25 @@ ordered_json pedals(const Scenario& scenario, const Drive& drive) {
           {"changes", changes}};
 }
 
+/// Null without a collision.
+ordered_json collision_kind(const Drive& drive) {
+  if (!drive.collision) return nullptr;
+  return to_string(drive.collision->kind);
+}
+
+/// Null where the future is known.
+ordered_json knowledge_of_others(const std::optional<TrackingQuality>& tracking) {
+  if (!tracking) return nullptr;
+  const auto root_of_mean = [&](double sum_m2) -> ordered_json {
+    if (tracking->measurements == 0) return nullptr;
+    return std::sqrt(sum_m2 / static_cast<double>(tracking->measurements));
+  };
+  return {{"measurements", tracking->measurements},
+          {"measured_rms_m", root_of_mean(tracking->measured_m2)},
+          {"tracked_rms_m", root_of_mean(tracking->tracked_m2)},
+          {"identity_swaps", tracking->identity_swaps}};
+}
+
 ordered_json audit_summary(const std::optional<planning::AuditReport>& audit) {
   if (!audit) return nullptr;
   return {{"verdict", std::string(planning::to_string(audit->verdict))},
@@ -233,6 +252,8 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
       {"text", drive.verdict.text},
       {"goal_reached", drive.verdict.outcome == Outcome::goal_reached},
       {"collision", drive.verdict.outcome == Outcome::collision},
+      {"collision_kind", collision_kind(drive)},
+      {"at_fault", drive.collision && drive.collision->is_at_fault},
       {"duration_s", drive.verdict.at_s},
       {"driven_m", driven_m(drive.trajectory)},
       {"to_goal_m", drive.last_line_from_s_m + world.line.goal_s_m() - drive.samples.back().s_m},
@@ -241,6 +262,7 @@ ordered_json metrics_of(const Scenario& scenario, const World& world, const Driv
                                    motion(drive), comfort(drive), tracking(drive), cycles(drive)}) {
     metrics.update(part);
   }
+  metrics["others"] = knowledge_of_others(drive.tracking);
   metrics["pedals"] = pedals(scenario, drive);
   metrics["decisions"] = decisions(drive);
   metrics["events"] = events(drive);

@@ -18,16 +18,16 @@
 namespace roadbed::tools::inline simulation {
 namespace {
 
-constexpr double kMost_m = 1e9;
-constexpr Range kPlace{-kMost_m, kMost_m}, kAngle{-1e3, 1e3}, kSpeed{-100.0, 150.0},
-    kOwnSpeed{0.0, 150.0}, kAcceleration{-50.0, 50.0}, kSteering{-1.6, 1.6}, kSize{0.05, 100.0},
-    kTime{-1e9, 1e9};
+constexpr double kFarthest_m = 1e9;
+constexpr Range kPlace{-kFarthest_m, kFarthest_m}, kAnyAngle{-1e3, 1e3}, kAnySpeed{-100.0, 150.0},
+    kOwnSpeed{0.0, 150.0}, kAcceleration{-50.0, 50.0}, kSteering{-1.6, 1.6}, kBodySize{0.05, 100.0},
+    kAnyTime{-1e9, 1e9};
 constexpr std::size_t kMostObjects = 10'000;
 
 geometry::Pose2 pose_in(const map::RoadMap& road_map, const JsonNode& node) {
   const Eigen::Vector2d place =
       road_map.to_map({node.at("x_m").number(kPlace), node.at("y_m").number(kPlace)});
-  return {place.x(), place.y(), node.at("heading_rad").number(kAngle)};
+  return {place.x(), place.y(), node.at("heading_rad").number(kAnyAngle)};
 }
 
 planning::VehicleState ego_in(const map::RoadMap& road_map, const JsonNode& node) {
@@ -47,10 +47,10 @@ planning::Detection object_in(const map::RoadMap& road_map, const JsonNode& node
   const auto kind = node.find("kind");
   return {.id = id ? id->name() : "",
           .kind = kind ? kind->name() : usual.kind,
-          .length_m = node.number_or("length_m", usual.length_m, kSize),
-          .width_m = node.number_or("width_m", usual.width_m, kSize),
+          .length_m = node.number_or("length_m", usual.length_m, kBodySize),
+          .width_m = node.number_or("width_m", usual.width_m, kBodySize),
           .centre = pose_in(road_map, node),
-          .speed_mps = node.at("speed_mps").number(kSpeed)};
+          .speed_mps = node.at("speed_mps").number(kAnySpeed)};
 }
 
 std::vector<planning::Detection> objects_in(const map::RoadMap& road_map, const JsonNode& list) {
@@ -112,7 +112,7 @@ Json motions_json(const map::RoadMap& road_map,
 
 Json objects_json(const map::RoadMap& road_map, const planning::Pilot& pilot) {
   Json list = Json::array();
-  const auto slots = pilot.tracker().slots();
+  const auto slots = pilot.others().tracker().slots();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!slots[i]) continue;
     const planning::SeenMotion now = slots[i]->filter.state();
@@ -125,10 +125,8 @@ Json objects_json(const map::RoadMap& road_map, const planning::Pilot& pilot) {
                    {"speed_mps", rounded(now.speed_mps)},
                    {"acceleration_mps2", rounded(now.acceleration_mps2)},
                    {"position_deviation_m", rounded(slots[i]->filter.position_deviation_m())},
-                   {"last_measured_s", rounded(slots[i]->last_measured_s)}};
-    if (i < pilot.forecasts().size()) {
-      object["motions"] = motions_json(road_map, pilot.forecasts()[i]);
-    }
+                   {"last_measured_s", rounded(slots[i]->last_measured_s)},
+                   {"motions", motions_json(road_map, pilot.others().forecasts()[i])}};
     list.push_back(std::move(object));
   }
   return list;
@@ -153,7 +151,7 @@ planning::PilotView parse_pilot_view(const map::RoadMap& road_map, std::string_v
   const nlohmann::json document = parse_json_strictly(line, name);
   const JsonNode root(document, name);
   root.require_object({"t_s", "ego", "obstacles", "lights", "scene"});
-  planning::PilotView view{.t_s = root.at("t_s").number(kTime),
+  planning::PilotView view{.t_s = root.at("t_s").number(kAnyTime),
                            .ego = ego_in(road_map, root.at("ego")),
                            .objects = {},
                            .lights = {}};

@@ -190,14 +190,22 @@ bool has_pedals(const JsonNode& options, bool otherwise) {
 ScenarioNoise noise_in(const JsonNode& node) {
   node.check_version("noise");
   node.require_object({"roadbed_noise", "gap_m", "relative_speed_mps", "acceleration_mps2",
-                       "position_m", "heading_rad", "speed_mps", "dropouts", "dropout_share"});
+                       "position_m", "heading_rad", "speed_mps", "object_position_m",
+                       "object_heading_rad", "object_speed_mps", "object_range_m", "dropouts",
+                       "dropout_share"});
+  const auto deviation = [&](const char* key) { return node.number_or(key, 0.0, kDeviation); };
   const auto dropouts = node.find("dropouts");
-  return {.gap_m = node.number_or("gap_m", 0.0, kDeviation),
-          .relative_speed_mps = node.number_or("relative_speed_mps", 0.0, kDeviation),
-          .acceleration_mps2 = node.number_or("acceleration_mps2", 0.0, kDeviation),
-          .position_m = node.number_or("position_m", 0.0, kDeviation),
-          .heading_rad = node.number_or("heading_rad", 0.0, kDeviation),
-          .speed_mps = node.number_or("speed_mps", 0.0, kDeviation),
+  return {.gap_m = deviation("gap_m"),
+          .relative_speed_mps = deviation("relative_speed_mps"),
+          .acceleration_mps2 = deviation("acceleration_mps2"),
+          .position_m = deviation("position_m"),
+          .heading_rad = deviation("heading_rad"),
+          .speed_mps = deviation("speed_mps"),
+          .object = {.position_m = deviation("object_position_m"),
+                     .heading_rad = deviation("object_heading_rad"),
+                     .speed_mps = deviation("object_speed_mps")},
+          .object_range_m =
+              node.number_or("object_range_m", ScenarioNoise{}.object_range_m, {1.0, 10'000.0}),
           .dropouts = dropouts ? time_spans(*dropouts) : std::vector<planning::TimeSpan>{},
           .dropout_ratio = node.number_or("dropout_share", 0.0, {0.0, 1.0})};
 }
@@ -269,9 +277,10 @@ void read_optional_parts(const JsonNode& root, Scenario& scenario) {
 }
 
 bool is_random(const ScenarioNoise& noise) {
-  const auto all = {noise.gap_m,        noise.relative_speed_mps, noise.acceleration_mps2,
-                    noise.position_m,   noise.heading_rad,        noise.speed_mps,
-                    noise.dropout_ratio};
+  const auto all = {noise.gap_m,           noise.relative_speed_mps, noise.acceleration_mps2,
+                    noise.position_m,      noise.heading_rad,        noise.speed_mps,
+                    noise.dropout_ratio,   noise.object.position_m,  noise.object.heading_rad,
+                    noise.object.speed_mps};
   return std::ranges::any_of(all, [](double amount) { return amount > 0.0; });
 }
 

@@ -11,6 +11,7 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/tracking/motion_filter.h"
 #include "roadbed/tools/simulation/planner_options.h"
 #include "roadbed/tools/simulation/recorded_obstacle.h"
 
@@ -81,8 +82,10 @@ struct ScenarioNoise {
   double position_m = 0.0;  ///< of each coordinate
   double heading_rad = 0.0;
   double speed_mps = 0.0;
-  std::vector<planning::TimeSpan> dropouts = {};  ///< in which nothing is measured of a lead
-  double dropout_ratio = 0.0;  ///< of the other measurements of a lead, lost at random
+  planning::ObjectNoise object = {.position_m = 0.0, .heading_rad = 0.0, .speed_mps = 0.0};
+  double object_range_m = 1000.0;                 ///< farther away nobody is measured
+  std::vector<planning::TimeSpan> dropouts = {};  ///< in which nothing is measured of others
+  double dropout_ratio = 0.0;  ///< of the other measurements of others, lost at random
 };
 
 struct Scenario {

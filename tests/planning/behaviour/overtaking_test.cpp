@@ -46,9 +46,9 @@ struct Passed {
   bool waits() const { return begins_s > 8.0; }
 };
 
-Passed passed(const Scenario& scenario) {
+Passed passed(const Scenario& scenario, const LoopOptions& options = {}) {
   World world = make_world(scenario);
-  Passed result{.drive = drive(scenario, world)};
+  Passed result{.drive = drive(scenario, world, options)};
   for (const DriveSample& sample : result.drive.samples) {
     result.clearance_m = std::min(result.clearance_m, sample.clearance_m);
   }
@@ -83,7 +83,7 @@ TEST(Overtaking, WaitsUntilThoseWhoComeLeaveRoom) {
   // The third of those who come is beside the lorry after 22 s; behind it the road is free for
   // long.
   EXPECT_GT(drive.begins_s, 21.0);
-  EXPECT_LT(drive.begins_s, 26.0);
+  EXPECT_LT(drive.begins_s, 27.0);
   const auto& cycles = drive.drive.cycles;
   EXPECT_NE(cycles[100].reason.find("lorry is not overtaken: "), std::string::npos)
       << cycles[100].reason;
@@ -109,7 +109,7 @@ TEST(Overtaking, IsGivenUpWhereSomebodyComesMuchFasterThanAllowed) {
                                     {from_s, 700.0 - 5.0 * from_s},
                                     {from_s + 20.0, 700.0 - 5.0 * from_s - 20.0 * 65.0}}));
     scenario.start_speed_mps = 7.0;
-    const Passed drive = passed(scenario);
+    const Passed drive = passed(scenario, {.predicts = false});
     expect_safe(drive);
     EXPECT_TRUE(std::ranges::any_of(drive.drive.cycles, [](const DriveCycle& cycle) {
       return cycle.reason == "falls back behind lorry again";

@@ -15,13 +15,15 @@ class LaneForecasts : public testing::Test {
  protected:
   /// Of a body that has been measured there for two seconds.
   std::vector<ForecastMotion> motions(const geometry::Pose2& pose, double speed_mps,
-                                      const std::string& kind = "car") {
+                                      const std::string& kind = "car", double width_m = 1.8) {
     Tracker tracker({.noise = {.position_m = 0.01, .heading_rad = 0.001, .speed_mps = 0.01}});
     for (int k = -20; k <= 0; ++k) {
       const geometry::Pose2 then = pose * geometry::Pose2{0.1 * k * speed_mps, 0.0, 0.0};
-      tracker.observe(
-          0.1 * k,
-          std::vector{Detection{.id = "a", .kind = kind, .centre = then, .speed_mps = speed_mps}});
+      tracker.observe(0.1 * k, std::vector{Detection{.id = "a",
+                                                     .kind = kind,
+                                                     .width_m = width_m,
+                                                     .centre = then,
+                                                     .speed_mps = speed_mps}});
     }
     return forecast_.motions(*tracker.slots()[0], 0);
   }
@@ -70,6 +72,16 @@ TEST_F(LaneForecasts, FollowTheLanesMiddle) {
     ++asked;
   }
   EXPECT_GT(asked, 10u);
+}
+
+TEST_F(LaneForecasts, OfWhatIsNarrowStayAtTheSideOfTheLane) {
+  const map::Lane& lane = road_map_.lane(*road_map_.find_lane("5/0/-1"));
+  const geometry::Pose2 start = lane.pose_at(20.0) * geometry::Pose2{0.0, -1.2, 0.0};
+  for (const auto& [width_m, beside_m] : {std::pair{0.7, -1.2}, std::pair{1.8, 0.0}}) {
+    const auto found = motions(start, 4.0, "car", width_m);
+    const geometry::Pose2 later = found.front().motion.at(10.0).pose();
+    EXPECT_NEAR(lane.centre.in_map.project(later.position()).d_m, beside_m, 0.05) << width_m;
+  }
 }
 
 TEST_F(LaneForecasts, HeadTheWayThatTheyGo) {

@@ -67,6 +67,38 @@ TEST(Tracker, GoesOnWhileNothingIsMeasuredAndFindsTheObjectAgain) {
   EXPECT_NE(find(tracker, "track 2"), nullptr);
 }
 
+TEST(Tracker, WhoIsHiddenIsNotGoneForTenSeconds) {
+  for (const bool is_hidden : {true, false}) {
+    Tracker tracker;
+    double t = 0.0, gone_s = 0.0;
+    for (; t < 2.0; t += 0.1) tracker.observe(t, std::vector{at(12.0 * t, 0.0, 12.0)});
+    const double last_s = t - 0.1;
+    double last_speed_mps = 0.0;
+    for (; t < 20.0; t += 0.1) {
+      if (alive(tracker) == 1) last_speed_mps = tracker.slots()[0]->filter.state().speed_mps;
+      tracker.observe(t, {}, [&](const Eigen::Vector2d& point) {
+        EXPECT_NEAR(point.x(), 12.0 * t, 0.5);  // where it is believed to be
+        return is_hidden;
+      });
+      if (gone_s == 0.0 && alive(tracker) == 0) gone_s = t - last_s;
+    }
+    // Expected until 10 s, and for a second more.
+    EXPECT_NEAR(gone_s, is_hidden ? 11.1 : 1.1, 0.11);
+    EXPECT_NEAR(last_speed_mps, 12.0, 0.1) << "it drives on, however little is known of it";
+  }
+}
+
+TEST(Tracker, TellsWhichDetectionIsOfWhom) {
+  Tracker tracker;
+  for (int k = 0; k < 5; ++k) {
+    const double t = 0.1 * k;
+    tracker.observe(t, std::vector{at(10.0 * t, 0.0, 10.0), at(50.0, 4.0, 0.0)});
+  }
+  tracker.observe(0.5, std::vector{at(50.0, 4.0, 0.0)});
+  EXPECT_EQ(tracker.slots()[0]->detection, std::nullopt);
+  EXPECT_EQ(tracker.slots()[1]->detection, std::optional<std::size_t>(0));
+}
+
 TEST(Tracker, GivesASlotToNobodyElseForTenSeconds) {
   Tracker tracker;
   tracker.observe(0.0, std::vector{at(0, 0, 0, 0, "a")});

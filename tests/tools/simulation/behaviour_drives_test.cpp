@@ -64,7 +64,7 @@ Scenario at_speed(double speed_mps) {
 class BehaviourDrives : public testing::TestWithParam<bool> {
  protected:
   static Drive driven(const Scenario& scenario, World world) {
-    return tools::drive(scenario, world, {.planner = {.predicts = GetParam()}});
+    return tools::drive(scenario, world, {.predicts = GetParam()});
   }
 };
 INSTANTIATE_TEST_SUITE_P(KnownOrForeseen, BehaviourDrives, testing::Bool());

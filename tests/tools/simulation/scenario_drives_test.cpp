@@ -49,9 +49,9 @@ Scenario scenario_of(const std::string& name) {
   return read_scenario(tests::data_folder() / "scenarios" / (name + ".json"));
 }
 
-Driven driven(const Scenario& scenario) {
+Driven driven(const Scenario& scenario, const LoopOptions& options = {}) {
   World world = make_world(scenario);
-  Drive drive = tools::drive(scenario, world);
+  Drive drive = tools::drive(scenario, world, options);
   return {std::move(world), std::move(drive)};
 }
 
@@ -290,9 +290,47 @@ TEST(ScenarioDrives, RoundaboutIsEnteredBehindWhoIsInIt) {
   EXPECT_NE(d.first(planning::Behaviour::yield, "give way sign 7: car in the ring"), nullptr);
 }
 
-TEST(ScenarioDrives, PedestrianIsGivenRoom) {
+TEST(ScenarioDrives, PedestrianIsGivenRoomInGoodTimeWhereItIsKnownThatHeWillCross) {
+  expect_arrives(driven(scenario_of("pedestrian"), {.predicts = false}), 1.0);
+}
+
+/// He stands, and then steps onto the road.
+TEST(ScenarioDrives, PedestrianIsGivenRoomWhereThatHasToBeSeen) {
   const Driven d = driven("pedestrian");
-  expect_arrives(d, 1.0);
+  EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached) << d.drive.verdict.text;
+  EXPECT_GE(d.clearance_m(), 1.0);
+  for (const auto& row : d.drive.trajectory.points()) EXPECT_GE(row.acceleration_mps2, -3.0);
+}
+
+TEST(ScenarioDrives, TheVerdictSaysThatTheFutureWasKnown) {
+  const auto text_of = [](const std::string& name, bool predicts) {
+    return driven(scenario_of(name), {.predicts = predicts}).drive.verdict.text;
+  };
+  using testing::EndsWith;
+  EXPECT_THAT(text_of("slower_lead", false), EndsWith("; the others' future was known"));
+  EXPECT_THAT(text_of("slower_lead", true), testing::Not(EndsWith("known")));
+  EXPECT_THAT(text_of("parked_car", false), testing::Not(EndsWith("known"))) << "nobody moves";
+}
+
+/// A hedge hides who comes from the left, and a car comes, sooner or later.
+TEST(ScenarioDrives, OutOfABlindCornerOneCreepsUntilMoreIsSeen) {
+  int creeps = 0;
+  for (double from_m = 450.0; from_m <= 705.0; from_m += 15.0) {
+    Scenario scenario = scenario_of("blind_corner");
+    auto& motion = std::get<TrafficObstacle>(scenario.obstacles[1].motion);
+    motion.start.text = fmt::format("lane:1/0/-1@{}", from_m);
+    const Driven d = driven(scenario);
+    SCOPED_TRACE(from_m);
+    expect_arrives(d, 0.5);
+    creeps += d.first(planning::Behaviour::yield, "somebody hidden may come on lane ") ? 1 : 0;
+    // It has to brake by 3.5 m/s² at most, until it comes to where its lanes end.
+    const planning::Obstacle& other = d.world.obstacles[1];
+    for (double t_s = 0.5; t_s < (1050.0 - from_m) / 14.0; t_s += 0.1) {
+      EXPECT_GE(other.motion.at(t_s).speed_mps - other.motion.at(t_s - 0.5).speed_mps, -1.75)
+          << t_s;
+    }
+  }
+  EXPECT_GE(creeps, 8) << "of 18; else it remembers who is hidden";
 }
 
 TEST(ScenarioDrives, StopAndGoWithLostMeasurementsIsFollowed) {
@@ -318,10 +356,14 @@ TEST(ScenarioDrives, LaneChangeOfTheRouteIsMade) {
 TEST(ScenarioDrives, FromCloseBehindAParkedCarTheVehicleSetsOffRoundIt) {
   Scenario scenario = scenario_of("lane_change");
   scenario.start_speed_mps = 6.0;
-  const Driven d = driven(scenario);
-  expect_arrives(d, 0.29);
-  EXPECT_NE(d.first(planning::Behaviour::follow, "car behind"), nullptr);
-  EXPECT_LT(d.drive.verdict.at_s, 35.0);
+  scenario.duration_s = 60.0;
+  // That it parks is known, or found out when it has stood for 15 s.
+  for (const auto& [predicts, until_s] : {std::pair{false, 35.0}, std::pair{true, 50.0}}) {
+    const Driven d = driven(scenario, {.predicts = predicts});
+    expect_arrives(d, 0.29);
+    EXPECT_NE(d.first(planning::Behaviour::follow, "car behind"), nullptr);
+    EXPECT_LT(d.drive.verdict.at_s, until_s);
+  }
 }
 
 /// Two lanes that stop and go, each in its own time: who drives in the next one is not cut in on,

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "roadbed/geometry/primitives/pose2.h"
+#include "roadbed/map/model/road_map.h"
+#include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/tracking/lane_forecast.h"
+#include "roadbed/planning/tracking/tracker.h"
+
+namespace roadbed::planning::inline tracking {
+
+/// The traffic as it is measured: tracks, what each of them may do, and that as the obstacles that
+/// a planner takes.
+class PerceivedTraffic {
+ public:
+  /// Refers to the map.
+  explicit PerceivedTraffic(const map::RoadMap& road_map, const TrackerOptions& options = {});
+
+  /// Takes everything that is measured at a time, and foresees it.
+  /// @param is_hidden  as Tracker::observe.
+  /// @throws std::invalid_argument as that.
+  void observe(double t_s, std::span<const Detection> detections,
+               const Tracker::IsHidden& is_hidden = {});
+
+  const Tracker& tracker() const { return tracker_; }
+
+  /// Per slot of the tracker; empty where that is.
+  const std::vector<std::vector<ForecastMotion>>& forecasts() const { return forecasts_; }
+
+  /// As they were, are, and may be: kMostMotions places for each slot, the most likely motion
+  /// first, then others that matter to the vehicle; a place without any is never there.
+  std::vector<Obstacle> obstacles(const geometry::Pose2& map_from_vehicle) const;
+
+  static constexpr std::size_t kPlacesPerSlot = LaneForecast::kMostMotions;
+
+ private:
+  bool is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad) const;
+
+  Tracker tracker_;
+  LaneForecast forecast_;
+  double side_to_pass_on_;
+  std::vector<std::vector<ForecastMotion>> forecasts_;
+};
+
+}  // namespace roadbed::planning::tracking
