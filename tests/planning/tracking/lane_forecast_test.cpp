@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -131,6 +132,50 @@ TEST_F(LaneForecasts, BeforeAForkEachWayIsPossible) {
     ++forks;
   }
   EXPECT_GT(forks, 3u);
+}
+
+/// 8 m before a fork at 16 m/s: whom a turn would make brake by more than 8 m/s², so as to drive it
+/// at 4 m/s² to the side, does not take it.
+TEST_F(LaneForecasts, NobodyTurnsFasterThanTheTurnCanBeDriven) {
+  const auto is_too_sharp = [&](map::LaneId id) {
+    const map::Lane& turn = road_map_.lane(id);
+    const double fastest_m2ps2 = 4.0 * turn.length_m() / std::max(1e-6, turned_along_rad(turn));
+    return 0.5 * (16.0 * 16.0 - fastest_m2ps2) / 8.0 > 8.0;
+  };
+  std::size_t sharp = 0;
+  for (std::uint32_t i = 0; i < road_map_.lanes().size(); ++i) {
+    const map::Lane& lane = road_map_.lane(map::LaneId{i});
+    if (lane.type != map::LaneType::driving || lane.length_m() < 12.0) continue;
+    const auto& next = road_map_.graph().of(map::LaneId{i}).successors;
+    if (std::ranges::all_of(next, is_too_sharp)) continue;
+    sharp += static_cast<std::size_t>(std::ranges::count_if(next, is_too_sharp));
+    for (const ForecastMotion& motion : motions(lane.pose_at(lane.length_m() - 8.0), 16.0)) {
+      if (motion.lanes.size() < 2 || !is_too_sharp(motion.lanes[1])) continue;
+      EXPECT_LT(motion.probability, 0.01) << lane.name;
+    }
+  }
+  EXPECT_GE(sharp, 5U);
+}
+
+TEST_F(LaneForecasts, WhoDroveNotLongAgoWillSetOff) {
+  const geometry::Pose2 stop = road_map_.lane(*road_map_.find_lane("5/0/-1")).pose_at(60.0);
+  const auto after_standing = [&](double stood_s, bool has_driven) {
+    Tracker tracker({.noise = {.position_m = 0.01, .heading_rad = 0.001, .speed_mps = 0.01}});
+    const double from_s = has_driven ? -3.0 : 0.0;
+    for (double t_s = from_s; t_s <= stood_s; t_s += 0.1) {
+      const double speed_mps = t_s < 0.0 ? 2.0 : 0.0;
+      const geometry::Pose2 then = stop * geometry::Pose2{std::min(0.0, 2.0 * t_s), 0.0, 0.0};
+      tracker.observe(t_s,
+                      std::vector{Detection{.id = "a", .centre = then, .speed_mps = speed_mps}});
+    }
+    return LaneForecast(road_map_).motions(*tracker.slots()[0], 0).front().motion;
+  };
+  EXPECT_EQ(after_standing(6.0, false).points().size(), 1U) << "parked";
+  EXPECT_EQ(after_standing(20.0, true).points().size(), 1U) << "parked by now";
+  const geometry::Trajectory waits = after_standing(6.0, true);
+  const double now_s = waits.start_s();
+  EXPECT_NEAR((waits.at(now_s + 2.0).pose().position() - stop.position()).norm(), 0.0, 0.1);
+  EXPECT_NEAR((waits.at(now_s + 12.0).pose().position() - stop.position()).norm(), 5.0, 0.1);
 }
 
 TEST_F(LaneForecasts, WhoWalksOrDrivesAgainstTheLaneFollowsNone) {
