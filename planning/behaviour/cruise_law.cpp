@@ -14,7 +14,10 @@ namespace {
 constexpr double kSideMargin_m = 0.1;  // a lead is what the body would touch, or nearly
 constexpr double kBeyondHalt_m = 1.0;
 constexpr double kBeforeHalt_m = 0.4;  // of the distance before a line, that hard braking may use
-constexpr double kRemembered_s = 2.0;  // a lead that is no longer measured
+constexpr double kBeforeStanding_m = 5.0;  // of what comes into sight
+constexpr int kBlockedCycles = 4;          // in a row, until it is no passing matter
+constexpr double kCreeps_mps = 4.0;        // slower it stops comfortably anyway
+constexpr double kRemembered_s = 2.0;      // a lead that is no longer measured
 constexpr double kHoldingBrake_mps2 = -1.0;
 constexpr double kBesideLine_m = 0.5;     // off the reference line this far is passing
 constexpr double kEasedRoom_m = 1.0;      // less than what merging takes
@@ -74,6 +77,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (lead) ease(q, *lead, command);
   if (lead) brake_for(*lead, speed, command);
   if (halt && halt->is_hard) brake_for(*halt, q, command);
+  brake_for_no_path(q, lead, command);
   if (q.passing.overtaking.overtaken) overtake(q, command);
   explain_passing(q, command);
   passes_within_lane_ =
@@ -157,6 +161,13 @@ std::optional<Lead> CruiseLaw::remembered(const PlannerView& view) const {
   return lead;
 }
 
+/// What is left of the sight when the reaction's way is driven.
+std::optional<double> CruiseLaw::seen_ahead_m(const Question& q) const {
+  if (!task_.sight_m) return std::nullopt;
+  const double reacting_m = q.view.measured.speed_mps * kActuatorLag_s;
+  return std::max(0.0, *task_.sight_m - vehicle_.front_m() - kBeforeStanding_m - reacting_m);
+}
+
 SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead,
                               const std::optional<StopConstraint>& halt) const {
   SpeedAnswer answer = choose_speed({.ceiling = q.on.ceiling,
@@ -168,7 +179,8 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .lead_name = lead ? lead_name(*lead) : "",
                                      .follows = follows_,
                                      .path_left_m = path_left_m(q, lead),
-                                     .halt = halt},
+                                     .halt = halt,
+                                     .seen_ahead_m = seen_ahead_m(q)},
                                     decision_options_);
   const std::optional<double>& most_mps = q.passing.in_lane.most_mps;
   if (most_mps && *most_mps < answer.set.speed_mps) {
@@ -280,6 +292,20 @@ void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
   command.acceleration_mps2 = -*braking;
   command.behaviour = Behaviour::emergency;
   command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);
+}
+
+/// Of a path that is kept nothing is known to be free, and what is in the way is no lead.
+void CruiseLaw::brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
+                                  PlannerCommand& command) {
+  const bool is_blocked = path_left_m(q, lead) == 0.0;
+  blocked_cycles_ = is_blocked ? blocked_cycles_ + 1 : 0;
+  if (blocked_cycles_ < kBlockedCycles || q.view.measured.speed_mps < kCreeps_mps) return;
+  const auto braking = emergency_stop_mps2(q.view.measured.speed_mps, 0.0);
+  if (!braking || -*braking > command.acceleration_mps2) return;
+  command.acceleration_mps2 = -*braking;
+  command.behaviour = Behaviour::emergency;
+  command.reason =
+      fmt::format("braking at {:.1f} m/s²: no path is clear of what is in the way", *braking);
 }
 
 void CruiseLaw::overtake(const Question& q, PlannerCommand& command) const {

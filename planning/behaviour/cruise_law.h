@@ -63,6 +63,9 @@ class CruiseLaw {
   std::optional<Lead> remembered(const PlannerView& view) const;
   SpeedAnswer answer(const Question& q, const std::optional<Lead>& lead,
                      const std::optional<StopConstraint>& halt) const;
+  std::optional<double> seen_ahead_m(const Question& q) const;
+  void brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
+                         PlannerCommand& command);
   std::optional<double> path_left_m(const Question& q, const std::optional<Lead>& lead) const;
   double kept_gap_m(double speed_mps) const;
   std::string lead_name(const Lead& lead) const;
@@ -76,6 +79,7 @@ class CruiseLaw {
   const geometry::VehicleShape& vehicle_;
   const DrivingTask& task_;
   DecisionOptions decision_options_;
+  int blocked_cycles_ = 0;  ///< without a path, in a row
   RightOfWay right_of_way_;
   bool follows_ = false;             ///< in the last cycle
   bool passes_within_lane_ = false;  ///< as the last cycle said

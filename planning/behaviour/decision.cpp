@@ -48,6 +48,15 @@ Option by_halt(const SpeedQuestion& q, double ahead_m) {
           q.halt->reason};
 }
 
+/// What is seen goes along with the vehicle, which stops within it whatever comes into sight.
+Option by_sight(const SpeedQuestion& q, double deceleration) {
+  const double most_mps = stopping_speed(*q.seen_ahead_m, deceleration).speed_mps;
+  return {{most_mps, 0.0},
+          {most_mps, 0.0},
+          Behaviour::cruise,
+          fmt::format("at most {:.1f} m/s as {:.0f} m ahead are seen", most_mps, *q.seen_ahead_m)};
+}
+
 /// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
 Option by_path(const SpeedQuestion& q, double ahead_m, double deceleration) {
   const double left_m = *q.path_left_m;
@@ -77,6 +86,7 @@ std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& op
   const double ahead_m = preview_m(q, options.preview_s);
   std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
   if (q.halt) all.push_back(by_halt(q, ahead_m));
+  if (q.seen_ahead_m) all.push_back(by_sight(q, options.most_deceleration_mps2));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;

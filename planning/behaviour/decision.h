@@ -25,6 +25,8 @@ struct SpeedQuestion {
   /// Set if the planner found nothing: the last path is still good for so far; stop on it.
   std::optional<double> path_left_m;
   std::optional<StopConstraint> halt = {};  ///< where a rule of the road asks to wait
+  std::optional<double> seen_ahead_m =
+      {};  ///< of the road, as far as is to be kept free; none: all
 };
 
 /// The set speed, and what it is due to.

@@ -32,6 +32,12 @@ std::vector<DriveSource> sources_of(const Scenario& scenario, const DriveChoice&
   for (const fs::path& file : scenario.occupancy_files) add("cloud", file);
   add("vehicle", choice.vehicle_file.empty() ? scenario.vehicle_file : choice.vehicle_file);
   add("noise", choice.noise_file);
+  add("obstacles", scenario.obstacles_file);
+  for (const ScenarioObstacle& obstacle : scenario.obstacles) {
+    if (const auto* drove = std::get_if<RecordedObstacle>(&obstacle.motion)) {
+      if (fs::is_regular_file(drove->file)) add("obstacles", drove->file);
+    }
+  }
   add("planner options", choice.planner_file);
   return sources;
 }

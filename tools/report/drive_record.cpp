@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
-constexpr std::string_view kScenarioRole = "scenario", kCloudRole = "cloud";
+constexpr std::string_view kScenarioRole = "scenario", kCloudRole = "cloud",
+                           kObstaclesRole = "obstacles";
 
 /// The folder is looked up as it is, the name in it may be a link: what a scenario names in turn is
 /// relative to where the link is.
@@ -58,7 +59,7 @@ DriveSource source_in(const JsonNode& node, const fs::path& folder) {
 void check_roles(const std::vector<DriveSource>& sources, const JsonNode& node) {
   for (const std::string_view role : kDriveRoles) {
     const auto count = std::ranges::count(sources, role, &DriveSource::role);
-    if (count > 1 && role != kCloudRole) {
+    if (count > 1 && role != kCloudRole && role != kObstaclesRole) {
       node.refuse(fmt::format("has {} of the role \"{}\"", count, role), "one at most",
                   "drive it again");
     }

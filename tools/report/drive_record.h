@@ -16,8 +16,8 @@ struct DriveSource {
   std::string sha256;  ///< of its bytes, hexadecimal
 };
 
-inline constexpr std::string_view kDriveRoles[] = {"scenario", "map",   "cloud",
-                                                   "vehicle",  "noise", "planner options"};
+inline constexpr std::string_view kDriveRoles[] = {
+    "scenario", "map", "cloud", "vehicle", "noise", "planner options", "obstacles"};
 
 /// How a drive is done again: `replay.json` in its folder.
 struct DriveRecord {

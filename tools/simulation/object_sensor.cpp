@@ -1,6 +1,7 @@
 #include "roadbed/tools/simulation/object_sensor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "roadbed/planning/obstacles/visibility.h"
@@ -8,11 +9,30 @@
 namespace roadbed::tools::inline simulation {
 namespace {
 
-/// Along its heading; before and after its motion it rests.
-double true_speed_mps(const planning::Obstacle& obstacle, double t_s) {
-  const geometry::Trajectory& motion = obstacle.motion;
-  const bool moves = !obstacle.is_static() && t_s >= motion.start_s() && t_s <= motion.end_s();
-  return moves ? motion.at(t_s).speed_mps : 0.0;
+constexpr double kMovedOver_s = 0.1;
+constexpr double kAlongAxis = 0.7;  // cosine of the angle up to which one moves along one's axis
+
+/// The way that it moves; none before and after its motion, when it rests.
+Eigen::Vector2d direction_of(const geometry::Trajectory& motion, double t_s) {
+  if (motion.points().size() == 1 || t_s < motion.start_s() || t_s > motion.end_s()) return {0, 0};
+  const double from_s = std::max(motion.start_s(), t_s - kMovedOver_s);
+  const double to_s = std::min(motion.end_s(), std::max(t_s, from_s + kMovedOver_s));
+  const Eigen::Vector2d moved =
+      motion.at(to_s).pose().position() - motion.at(from_s).pose().position();
+  return moved.norm() > 0.0 ? Eigen::Vector2d(moved.normalized()) : Eigen::Vector2d(0, 0);
+}
+
+/// Heading and speed along it: less than 0 for who backs up; who walks across where he looks is
+/// measured to head where he walks.
+void set_motion(const planning::Obstacle& obstacle, double t_s, planning::Detection& detection) {
+  const Eigen::Vector2d direction = direction_of(obstacle.motion, t_s);
+  const double heading_rad = detection.centre.heading_rad;
+  const double along = direction.dot(Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad)));
+  detection.speed_mps = direction.norm() * obstacle.motion.at(t_s).speed_mps;
+  if (along < -kAlongAxis) detection.speed_mps = -detection.speed_mps;
+  if (detection.speed_mps > 0.0 && along < kAlongAxis) {
+    detection.centre.heading_rad = std::atan2(direction.y(), direction.x());
+  }
 }
 
 }  // namespace
@@ -58,8 +78,8 @@ planning::Detection ObjectSensor::measured(const planning::Obstacle& obstacle, d
                                 .kind = obstacle.kind,
                                 .length_m = obstacle.length_m,
                                 .width_m = obstacle.width_m,
-                                .centre = truth,
-                                .speed_mps = true_speed_mps(obstacle, t_s)};
+                                .centre = truth};
+  set_motion(obstacle, t_s, detection);
   detection.centre.x_m += noise(noise_.object.position_m);
   detection.centre.y_m += noise(noise_.object.position_m);
   detection.centre.heading_rad += noise(noise_.object.heading_rad);

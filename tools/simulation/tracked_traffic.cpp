@@ -33,15 +33,14 @@ TrackedTraffic::TrackedTraffic(const World& world, const Scenario& scenario)
     : world_(world),
       range_m_(scenario.noise.object_range_m),
       sensor_(world, scenario.noise, scenario.seed),
-      perceived_(world.road_map, options_for(scenario.noise.object)),
-      slot_of_(world.obstacles.size()) {}
+      perceived_(world.road_map, options_for(scenario.noise.object)) {}
 
 std::vector<planning::Obstacle> TrackedTraffic::look(double t_s, const geometry::Rectangle& body,
                                                      const geometry::Pose2& vehicle) {
   const std::vector<SeenObject> seen = sensor_.look(t_s, body);
   track(t_s, seen, body);
-  name(seen);
   judge(t_s, seen);
+  name(seen);
   std::vector<planning::Obstacle> obstacles = perceived_.obstacles(vehicle);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (!obstacles[i].id.empty()) obstacles[i].id = world_.obstacles[obstacle_of(i)].id;
@@ -61,6 +60,7 @@ void TrackedTraffic::track(double t_s, std::span<const SeenObject> seen,
                                         world_.road_map);
   perceived_.observe(t_s, detections,
                      [&](const Eigen::Vector2d& point) { return !visibility.sees(point); });
+  obstacle_of_.resize(perceived_.tracker().slots().size());
 }
 
 std::vector<ForeseenMotion> TrackedTraffic::foreseen() const {
@@ -84,7 +84,6 @@ std::vector<ForeseenMotion> TrackedTraffic::foreseen() const {
 
 void TrackedTraffic::name(std::span<const SeenObject> seen) {
   const auto slots = perceived_.tracker().slots();
-  obstacle_of_.resize(slots.size());
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
     if (!slots[slot] || !slots[slot]->detection) continue;
     obstacle_of_[slot] = seen[*slots[slot]->detection].obstacle;
@@ -101,10 +100,7 @@ void TrackedTraffic::judge(double t_s, std::span<const SeenObject> seen) {
     quality_.tracked_m2 += (track->filter.state().pose.position() - truth).squaredNorm();
     quality_.measured_m2 += (of.detection.centre.position() - truth).squaredNorm();
     ++quality_.measurements;
-    std::optional<std::size_t>& before = slot_of_[of.obstacle];
-    // Another track of it while the one before lives is of somebody else's.
-    if (before && *before != slot && slots[*before]) ++quality_.identity_swaps;
-    before = slot;
+    if (track->measured > 1 && obstacle_of_[slot] != of.obstacle) ++quality_.identity_swaps;
   }
 }
 

@@ -50,8 +50,7 @@ class TrackedTraffic {
   double range_m_;
   ObjectSensor sensor_;
   planning::PerceivedTraffic perceived_;
-  std::vector<std::size_t> obstacle_of_;             ///< per slot: of whom it was measured last
-  std::vector<std::optional<std::size_t>> slot_of_;  ///< per obstacle: that followed it last
+  std::vector<std::size_t> obstacle_of_;  ///< per slot: of whom it was measured last
   TrackingQuality quality_;
 };
 

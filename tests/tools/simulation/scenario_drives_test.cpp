@@ -302,6 +302,20 @@ TEST(ScenarioDrives, PedestrianIsGivenRoomWhereThatHasToBeSeen) {
   for (const auto& row : d.drive.trajectory.points()) EXPECT_GE(row.acceleration_mps2, -3.0);
 }
 
+TEST(ScenarioDrives, OneStopsWithinWhatIsSeen) {
+  for (const double range_m : {20.0, 40.0, 80.0}) {
+    Scenario scenario = scenario_of("slower_lead");
+    scenario.noise.object_range_m = range_m;
+    scenario.obstacles = {{.id = "broken down",
+                           .motion = ParkedObstacle{ParkedObstacle::Beside{
+                               {.text = "lane:5/0/-1@200", .pointer = "/test"}, 0.0}}}};
+    const Driven d = driven(scenario);
+    EXPECT_NE(d.drive.verdict.outcome, Outcome::collision)
+        << range_m << ": " << d.drive.verdict.text;
+    EXPECT_GT(d.clearance_m(), 0.25) << range_m;
+  }
+}
+
 TEST(ScenarioDrives, TheVerdictSaysThatTheFutureWasKnown) {
   const auto text_of = [](const std::string& name, bool predicts) {
     return driven(scenario_of(name), {.predicts = predicts}).drive.verdict.text;

@@ -51,6 +51,22 @@ TEST(ObjectSensor, MeasuresWithTheNoiseThatIsAskedFor) {
   EXPECT_NEAR(std::sqrt(speed2 / kTimes), 0.4, 0.034);
 }
 
+TEST(ObjectSensor, MeasuresTheWayThatSomebodyMoves) {
+  const auto seen_of = [](double heading_rad, const Eigen::Vector2d& to) {
+    const World world = tests::straight_world(
+        {}, {{.id = "walker",
+              .motion = drive_through({{0.0, {30.0, 0.0, heading_rad}},
+                                       {10.0, {30.0 + to.x(), to.y(), heading_rad}}})}});
+    return ObjectSensor(world, {}, 1).look(5.0, vehicle_at(10.0)).at(0).detection;
+  };
+  const planning::Detection backwards = seen_of(0.1, {-10.0, 0.0});
+  EXPECT_NEAR(backwards.centre.heading_rad, 0.1, 1e-9);
+  EXPECT_NEAR(backwards.speed_mps, -1.0, 1e-9);
+  const planning::Detection sideways = seen_of(0.0, {0.0, 15.0});
+  EXPECT_NEAR(sideways.centre.heading_rad, 0.5 * M_PI, 1e-9);
+  EXPECT_NEAR(sideways.speed_mps, 1.5, 1e-9);
+}
+
 TEST(ObjectSensor, LosesTheShareThatIsAskedForAndAllInADropout) {
   const World world = tests::straight_world({}, {driving("a", 40.0, 3.0, 1.0)});
   ScenarioNoise noise;
