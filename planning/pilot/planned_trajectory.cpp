@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kStep_s = 0.1;
 constexpr double kComfortable_mps2 = 3.0, kHardest_mps2 = 8.0;
+constexpr double kLeast_mps2 = 1.0;   // to a stop that is wanted now
 constexpr double kHarder_mps2 = 0.5;  // than foreseen: brake at once
 constexpr double kStandoff_m = 1.0;
 constexpr double kWayStep_m = 0.5;
@@ -39,6 +40,9 @@ std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerC
   const double foreseen_mps2 = foreseen.size() > 1 ? foreseen[1].acceleration_mps2 : 0.0;
   if (wanted_mps2 < std::min(0.0, foreseen_mps2) - kHarder_mps2) {
     return stop_from(measured.speed_mps, -wanted_mps2);
+  }
+  if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
+    return stop_from(measured.speed_mps, std::max(kLeast_mps2, -wanted_mps2));
   }
   std::vector<SpeedState> drive = foreseen;
   stop_after(drive, braking_after_mps2(foreseen, decision.lead));

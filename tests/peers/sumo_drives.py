@@ -248,7 +248,7 @@ def run(options, net, map_file, density, seed, by_roadbed):
         for _ in range(round(20.0 / STEP_S)):
             traffic.step()
         edges = traffic.trip(LEAST_TRIP_M)
-        if edges is None:
+        if edges is None or not is_on_road(options, map_file, lane_pose(net, edges[-1], True)):
             return None
         libsumo.route.add("ego", edges)
         libsumo.vehicle.add("ego", "ego", typeID="ego", departLane="best", departPos="9.0",
@@ -264,6 +264,14 @@ def run(options, net, map_file, density, seed, by_roadbed):
         return result
     finally:
         libsumo.close()
+
+
+def is_on_road(options, map_file, place):
+    """Whether a place of the net is on a lane of the map, too: edges are drawn anew by netconvert."""
+    done = subprocess.run([options.roadbed, "locate", str(map_file), "--json",
+                           "--at={:.3f},{:.3f}".format(*place[:2])],
+                          check=True, capture_output=True, text=True)
+    return any(lane["distance_m"] == 0.0 for lane in json.loads(done.stdout)["points"][0]["lanes"])
 
 
 def has_arrived(edges, goal):

@@ -32,6 +32,7 @@ std::vector<SpeedState> steady(double speed_mps, double duration_s) {
 PlannerCommand decision(std::vector<SpeedState> drive) {
   PlannerCommand command;
   command.drive = std::move(drive);
+  command.set_speed_mps = 10.0;
   return command;
 }
 
@@ -79,6 +80,20 @@ TEST(PlannedTrajectory, BrakesAtOnceWhereThatIsDecided) {
   const geometry::Trajectory driven =
       planned_trajectory({path, 0.0}, 0.0, {.speed_mps = 8.0}, emergency, geometry::VehicleShape{});
   EXPECT_NEAR(driven.end_s(), 8.0 / 6.0, 0.11);
+  EXPECT_EQ(driven.points().back().speed_mps, 0.0);
+}
+
+// What was foreseen is of a path that is given up: nobody creeps on along it.
+TEST(PlannedTrajectory, StopsWhereNoSpeedIsWanted) {
+  const ReferenceLine line = bend();
+  const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });
+  PlannerCommand stop = decision(steady(0.4, 3.0));
+  stop.set_speed_mps = 0.0;
+  stop.acceleration_mps2 = -0.1;
+  const geometry::Trajectory driven =
+      planned_trajectory({path, 5.0}, 7.0, {.speed_mps = 0.4}, stop, geometry::VehicleShape{});
+  EXPECT_NEAR(driven.at(7.2).speed_mps, 0.2, 1e-9);
+  EXPECT_LT(driven.end_s(), 7.55);
   EXPECT_EQ(driven.points().back().speed_mps, 0.0);
 }
 
