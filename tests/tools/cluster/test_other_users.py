@@ -96,7 +96,7 @@ def test_workers_import_nothing_from_the_folder_that_the_run_is_started_in(
 
 
 def mode_of(path: Path) -> int | None:
-    """Return who may do what with a file; None once it is gone, as Python's own passing ones are."""
+    """Return who may do what with a file; None once it is gone, as passing ones are."""
     try:
         return stat.S_IMODE(path.stat().st_mode)
     except FileNotFoundError:
