@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -194,7 +195,9 @@ class ExportCommand : public Command {
     const bool is_own = map::format_of(input_) == &format;
     if (is_own && !asks_for_another(road_map)) {
       return {
-          one_file(format, map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes)};
+          one_file(format, map::map_bytes(map::read_file(input_), map::input_name(input_)).bytes),
+          {"the document is the source's own, value for value, with its faults; --opendrive 1.8 or "
+           "1.4 makes another version anew"}};
     }
     const auto offset = is_own_system(road_map) ? road_map.offset_in_crs() : map::CrsOffset{};
     map::opendrive::OpenDriveFile file = map::opendrive::write_open_drive(
@@ -239,7 +242,27 @@ class ExportCommand : public Command {
                  *written.largest_error_m, *written.largest_height_error_m);
     }
     for (const auto& [what, count] : written.lost) fmt::print(err, "lost: {} {}\n", count, what);
-    for (const std::string& note : written.notes) fmt::print(err, "note: {}\n", note);
+    print_notes(err, written.notes);
+  }
+
+  // Of notes that begin alike the first three.
+  static void print_notes(std::ostream& err, const std::vector<std::string>& notes) {
+    constexpr int most = 3;
+    std::map<std::string, int> counts;
+    for (const std::string& note : notes) {
+      if (++counts[first_words(note)] <= most) fmt::print(err, "note: {}\n", note);
+    }
+    for (const auto& [words, count] : counts) {
+      if (count <= most) continue;
+      fmt::print(err, "note: {} more that begin with '{} ...': --json has them all\n", count - most,
+                 words);
+    }
+  }
+
+  static std::string first_words(const std::string& note) {
+    std::size_t end = 0;
+    for (int word = 0; word < 3 && end != std::string::npos; ++word) end = note.find(' ', end + 1);
+    return note.substr(0, end);
   }
 
   void print_json(std::ostream& out, const map::Format& format, const map::RoadMap& road_map,
