@@ -3,7 +3,7 @@
 
 Usage: check_open_drive.py ROADBED MAP...
 
-An OpenDRIVE map is compiled first, as it would come back as it stands otherwise. Every 5 cm the
+An OpenDRIVE map is compiled first, as it would come back as it stands otherwise. Every 2 cm the
 borders of the written lanes (ASAM OpenDRIVE 1.8: 9.3 geometry, 10.5 elevation, 10.6 superelevation,
 11.3 lane offset, 11.6 width) must be within 1 cm of a border of the map, as `roadbed export` lists
 them, and the map's vertices within 1 cm of a written border, or as near as the export said, and
@@ -26,7 +26,7 @@ import shapely
 
 LARGEST_M = 0.01
 TRUE_M = 0.001
-STEP_M = 0.05
+STEP_M = 0.02
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 

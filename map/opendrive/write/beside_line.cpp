@@ -9,15 +9,17 @@ namespace roadbed::map::opendrive {
 namespace {
 
 constexpr double kLongest_m = 10.0;  // of a chord: over more, the road may bend both ways
-constexpr double kAtEnd_m = 1e-4;    // a border that ends so near to the road's end ends there
+constexpr double kShortestChord_m = 0.05;
+constexpr int kMostHalvings = 9;
+constexpr double kAtEnd_m = 1e-4;  // a border that ends so near to the road's end ends there
 
 class BorderPlacer {
  public:
-  BorderPlacer(const ReferenceTable& reference, BesideFaults& faults, const BesideDensity& density)
-      : reference_(reference), faults_(faults), density_(density) {}
+  BorderPlacer(const ReferenceTable& reference, BesideFaults& faults, const BesideOptions& options)
+      : reference_(reference), faults_(faults), options_(options) {}
 
   // From the border's own start on, and before it, as far as the road goes.
-  BesideLine place(const RoadBorder& border, double from_m, double to_m) {
+  PlacedBorder place(const RoadBorder& border, double from_m, double to_m) {
     const Line3& points = border.points;
     const RoadPosition start = foot(points[border.own_from].head<2>(), from_m);
     const BesidePoint first{start.s_m, start.t_m, points[border.own_from].z()};
@@ -32,7 +34,10 @@ class BorderPlacer {
     std::reverse(before.begin(), before.end());
     line.insert(line.begin(), before.begin(), before.end() - 1);
     judge(line, border, from_m, to_m);
-    return cut(line, from_m, to_m);
+    double farthest_m = line.front().s_m;
+    for (const BesidePoint& point : line) farthest_m = std::max(farthest_m, point.s_m);
+    return {cut(line, from_m, to_m), std::max(from_m, line.front().s_m),
+            std::min(to_m, farthest_m)};
   }
 
  private:
@@ -52,16 +57,35 @@ class BorderPlacer {
   void add_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const BesidePoint from,
                    const RoadPosition& to, int depth, BesideLine& line) {
     const double length_m = std::abs(to.s_m - from.s_m);
-    if (depth > 9 || length_m < 0.05 || faults_.least_bend < density_.hopeless_bend) return;
-    const Eigen::Vector3d middle = 0.5 * (a + b);
-    const RoadPosition at = foot(middle.head<2>(), 0.5 * (from.s_m + to.s_m));
-    const double share = (at.s_m - from.s_m) / (to.s_m - from.s_m);
-    const double off_m = at.t_m - from.t_m - share * (to.t_m - from.t_m);
-    if (std::abs(off_m) < density_.chord_m && length_m < kLongest_m) return;
+    if (length_m < kShortestChord_m || faults_.least_bend < options_.hopeless_bend) return;
+    // Where the reference line goes on as another curve, else in the middle.
+    const double low_m = std::min(from.s_m, to.s_m), high_m = std::max(from.s_m, to.s_m);
+    const auto joint_m =
+        reference_.joint_between(low_m + kShortestChord_m, high_m - kShortestChord_m);
+    if (depth > (joint_m ? kMostHalvings + 3 : kMostHalvings)) return;
+    const double split_m = joint_m.value_or(0.5 * (from.s_m + to.s_m));
+    if (!joint_m && length_m < kLongest_m && is_straight(a, b, from, to)) return;
+    const Eigen::Vector3d middle = a + (split_m - from.s_m) / (to.s_m - from.s_m) * (b - a);
+    const RoadPosition at = foot(middle.head<2>(), split_m);
     add_between(a, middle, from, at, depth + 1, line);
     const BesidePoint here{at.s_m, at.t_m, middle.z()};
     line.push_back(here);
     add_between(middle, b, here, to, depth + 1, line);
+  }
+
+  // Whether what is straight in (s, t) is so in the map.
+  bool is_straight(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const BesidePoint& from,
+                   const RoadPosition& to) const {
+    const Eigen::Vector2d along = (b - a).head<2>().normalized();
+    for (const double share : {0.25, 0.5, 0.75}) {
+      const double s_m = from.s_m + share * (to.s_m - from.s_m);
+      const double t_m = from.t_m + share * (to.t_m - from.t_m);
+      const double on_m = std::clamp(s_m, 0.0, reference_.end_s_m());
+      const ReferenceTable::Point point = reference_.at(on_m);
+      const Eigen::Vector2d beside = point.beside(t_m) + (s_m - on_m) * point.along;
+      if (std::abs(geometry::cross(along, beside - a.head<2>())) > options_.chord_m) return false;
+    }
+    return true;
   }
 
   static BesideLine cut(const BesideLine& line, double from_m, double to_m) {
@@ -111,13 +135,14 @@ class BorderPlacer {
     // What reaches beyond the road is lost where it does not go on.
     const bool begins = border.own_from == 0, ends = border.own_to + 1 == border.points.size();
     faults_.missing_m =
-        std::max({faults_.missing_m, line.front().s_m - from_m, to_m - farthest_m,
+        std::max({faults_.missing_m, options_.may_end[0] ? 0.0 : line.front().s_m - from_m,
+                  options_.may_end[1] ? 0.0 : to_m - farthest_m,
                   begins ? from_m - line.front().s_m : 0.0, ends ? line.back().s_m - to_m : 0.0});
   }
 
   const ReferenceTable& reference_;
   BesideFaults& faults_;
-  const BesideDensity density_;
+  const BesideOptions options_;
 };
 
 }  // namespace
@@ -149,9 +174,9 @@ BesidePoint point_at(const BesideLine& line, double s_m, std::size_t& hint) {
   return {s_m, a.t_m + share * (b.t_m - a.t_m), a.z_m + share * (b.z_m - a.z_m)};
 }
 
-BesideLine line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
-                       double to_m, BesideFaults& faults, const BesideDensity& density) {
-  return BorderPlacer(reference, faults, density).place(border, from_m, to_m);
+PlacedBorder line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
+                         double to_m, BesideFaults& faults, const BesideOptions& options) {
+  return BorderPlacer(reference, faults, options).place(border, from_m, to_m);
 }
 
 }  // namespace roadbed::map::opendrive

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "roadbed/map/opendrive/write/reference_table.h"
@@ -38,17 +39,24 @@ struct BesideFaults {
   double crossing_m = 0.0;  ///< how far one is on the wrong side of the next
 };
 
-/// How densely a border is placed.
-struct BesideDensity {
+/// How a border is placed.
+struct BesideOptions {
   double chord_m = 5e-4;  ///< how far a straight chord may be from its points' line in (s, t)
   /// As soon as a bend is less than this, the line is of no use: the rest is placed coarsely.
   double hopeless_bend = -1e300;
+  std::array<bool, 2> may_end{};  ///< before the road does, at its start and end
+};
+
+/// A border beside a reference line, and the stations between which the map has it.
+struct PlacedBorder {
+  BesideLine line;
+  double from_m = 0.0, to_m = 0.0;
 };
 
 /// A border over [from, to] of the road, by growing s. Where it runs back its points are left out,
 /// where it does not reach it goes straight on.
 /// @param faults  grow by those of the border.
-BesideLine line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
-                       double to_m, BesideFaults& faults, const BesideDensity& density = {});
+PlacedBorder line_beside(const ReferenceTable& reference, const RoadBorder& border, double from_m,
+                         double to_m, BesideFaults& faults, const BesideOptions& options = {});
 
 }  // namespace roadbed::map::opendrive

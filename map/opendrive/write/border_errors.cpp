@@ -121,11 +121,13 @@ std::vector<double> border_errors_m(const RoadMap& road_map, const RoadPlan& pla
   std::vector<double> errors_m;
   for (std::size_t road = 0; road < shapes.size(); ++road) {
     LineError there(nearest_source), back(nearest_written);
-    for (std::size_t i = 0; i < plan.roads[road].sections.size(); ++i) {
-      const PlannedSection& section = plan.roads[road].sections[i];
+    const std::vector<WrittenSection> sections = written_sections(shapes[road]);
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+      const PlannedSection& section = plan.roads[road].sections[sections[i].planned];
       for (std::size_t border = 0; border <= section.lanes.size(); ++border) {
         const auto own = own_part(border_along(road_map, section, border));
         there.add(written[road][i][border], own);
+        if (sections[i].is_rim()) continue;
         back.add(own, written[road][i][border]);
         // The lane on the other side may have its own idea of the border.
         if (border == 0 || border == section.lanes.size()) continue;

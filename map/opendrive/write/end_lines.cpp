@@ -72,6 +72,9 @@ class EndLineFinder {
     const std::size_t count = 2 * plan.roads.size();
     together_.resize(count);
     hubs_.resize(count);
+    rims_.resize(count);
+    std::vector<int> ends_of(count);
+    for (const std::uint32_t group : groups_) ++ends_of[group];
     is_mesh_.resize(count);
     is_free_.resize(count);
     for (std::uint32_t end = 0; end < count; ++end) {
@@ -81,6 +84,7 @@ class EndLineFinder {
       const EndRole role = ends.roles[end];
       if (role == EndRole::hub) hubs_[groups_[end]] = end;
       if (role == EndRole::free) is_free_[groups_[end]] = true;
+      if (role == EndRole::free && ends_of[groups_[end]] == 1) rims_[groups_[end]] = end;
       if (role == EndRole::mesh_entry || role == EndRole::mesh_exit) {
         is_mesh_[groups_[end]] = true;
       }
@@ -137,7 +141,7 @@ class EndLineFinder {
     const double skew_rad =
         std::remainder(through.heading_rad - square_rad, 2.0 * std::numbers::pi);
     const auto [behind_m, before_m] = all.before_m(through);
-    const bool in_line = std::max(-behind_m, before_m) <= kOffLine_m;
+    const bool in_line = rims_[group] || std::max(-behind_m, before_m) <= kOffLine_m;
     std::vector<EndLine> lines;
     if (in_line && std::abs(skew_rad) <= (is_free_[group] ? kMostSkew_rad : kSkew_rad)) {
       lines.push_back(at_heading(group, through.heading_rad).front());
@@ -151,14 +155,15 @@ class EndLineFinder {
     if (in_line && std::abs(skew_rad) <= kMostSkew_rad) {
       lines.push_back(at_heading(group, through.heading_rad).front());
     }
-    lines.push_back({all.middle(), all.heading_rad()});
+    if (!rims_[group]) lines.push_back({all.middle(), all.heading_rad()});
     return lines;
   }
 
-  // Where all borders of the road that leads into a junction are still there; else amid the ends,
-  // and before and behind them all.
+  // Where all borders of the road that leads into a junction are still there; behind the last of a
+  // road that leads nowhere; else amid the ends, and before and behind them all.
   std::vector<EndLine> at_heading(std::uint32_t group, double heading_rad) const {
     if (hubs_[group]) return {cut_back(*hubs_[group], heading_rad)};
+    if (rims_[group]) return {rim(*rims_[group], heading_rad)};
     const EndLine middle{together_[group].middle(), heading_rad};
     if (is_mesh_[group] || is_free_[group]) return {middle};
     std::vector<EndLine> lines{middle};
@@ -169,10 +174,23 @@ class EndLineFinder {
     return lines;
   }
 
+  EndLine rim(std::uint32_t end, double heading_rad) const {
+    EndLine line = amid(own_[end], heading_rad);
+    const auto [behind_m, before_m] = own_[end].before_m(line);
+    line.in_map += (end % 2 == 1 ? before_m : behind_m) * unit(line.heading_rad);
+    line.is_rim = true;
+    return line;
+  }
+
+  // Its heading along the road.
+  static EndLine amid(const EndPoints& ends, double heading_rad) {
+    const bool is_turned = unit(heading_rad).dot(ends.along) < 0.0;
+    return {ends.middle(), heading_rad + (is_turned ? std::numbers::pi : 0.0)};
+  }
+
   EndLine cut_back(std::uint32_t hub, double heading_rad) const {
     const EndPoints& own = own_[hub];
-    EndLine line{own.middle(), heading_rad};
-    if (unit(heading_rad).dot(own.along) < 0.0) line.heading_rad += std::numbers::pi;
+    EndLine line = amid(own, heading_rad);
     const auto [behind_m, before_m] = own.before_m(line);
     double length_m = 0.0;
     for (const PlannedSection& section : plan_.roads[hub / 2].sections) {
@@ -189,6 +207,7 @@ class EndLineFinder {
   std::vector<std::uint32_t> groups_;               // by end: those that share a line
   std::vector<EndPoints> own_, together_;           // by end, by group
   std::vector<std::optional<std::uint32_t>> hubs_;  // by group
+  std::vector<std::optional<std::uint32_t>> rims_;  // likewise: the only end, which leads nowhere
   std::vector<bool> is_mesh_, is_free_;             // likewise
 };
 

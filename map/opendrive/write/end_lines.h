@@ -13,6 +13,8 @@ namespace roadbed::map::opendrive {
 struct EndLine {
   Eigen::Vector2d in_map{0, 0};
   double heading_rad = 0.0;
+  /// Nothing goes on there: borders may end inside the road, each where the map has it end.
+  bool is_rim = false;
 };
 
 /// Lines across the ends of roads, some to choose from, the likeliest first. Roads that join each

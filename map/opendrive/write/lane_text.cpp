@@ -50,9 +50,13 @@ class LanesWriter {
     text_ = "<lanes>\n";
     add_records(shape_.lane_offset, part_.from_m, part_.to_m, part_.from_m, "laneOffset", "s",
                 text_);
-    first_ = section_at_start();
-    last_ = section_before(shape_, part_.to_m);
-    for (std::size_t i = first_; i <= last_; ++i) add_section(i);
+    for (const WrittenSection& section : written_sections(shape_)) {
+      WrittenSection part = section;
+      part.from_m = std::max(part.from_m, part_.from_m);
+      part.to_m = std::min(part.to_m, part_.to_m);
+      if (part.to_m > part.from_m + 1e-6) sections_.push_back(part);
+    }
+    for (std::size_t i = 0; i < sections_.size(); ++i) add_section(i);
     return text_ + "</lanes>\n";
   }
 
@@ -62,45 +66,59 @@ class LanesWriter {
     fmt::format_to(std::back_inserter(text_), words, std::forward<Values>(values)...);
   }
 
-  std::size_t section_at_start() const {
-    return part_.from_m <= 0.0 ? 0 : section_before(shape_, part_.from_m);
-  }
-
-  double begin_m(std::size_t section) const {
-    return std::max(part_.from_m, shape_.sections[section].s_m);
-  }
-  double end_m(std::size_t section) const {
-    return section == last_ ? part_.to_m : shape_.sections[section + 1].s_m;
+  const PlannedSection& planned(const WrittenSection& section) const {
+    return road_.sections[section.planned];
   }
 
   void add_section(std::size_t index) {
-    const PlannedSection& section = road_.sections[index];
-    add("<laneSection s=\"{}\">\n", short_number(begin_m(index) - part_.from_m));
-    if (section.left_lanes > 0) {
+    const WrittenSection& section = sections_[index];
+    const std::size_t middle = planned(section).left_lanes;
+    const auto [first, behind] = written_lanes(section);
+    add("<laneSection s=\"{}\">\n", short_number(section.from_m - part_.from_m));
+    if (first < middle) {
       text_ += "<left>\n";
-      for (std::size_t i = 0; i < section.left_lanes; ++i) add_lane(index, i);
+      for (std::size_t i = first; i < middle; ++i) add_lane(index, i);
       text_ += "</left>\n";
     }
-    add("<center><lane id=\"0\" type=\"none\">{}</lane></center>\n",
-        marks(index, section.left_lanes));
-    if (section.left_lanes < section.lanes.size()) {
+    add("<center><lane id=\"0\" type=\"none\">{}</lane></center>\n", marks(section, middle));
+    if (middle < behind) {
       text_ += "<right>\n";
-      for (std::size_t i = section.left_lanes; i < section.lanes.size(); ++i) add_lane(index, i);
+      for (std::size_t i = middle; i < behind; ++i) add_lane(index, i);
       text_ += "</right>\n";
     }
     text_ += "</laneSection>\n";
   }
 
-  std::string marks(std::size_t section, std::size_t border) const {
-    return marks_text(road_map_, road_.sections[section], shape_.sections[section], border,
-                      begin_m(section), end_m(section), minor_);
+  // All lanes, but in a rim not those outside that have ended; at least one.
+  std::pair<std::size_t, std::size_t> written_lanes(const WrittenSection& section) const {
+    const std::size_t middle = planned(section).left_lanes, count = planned(section).lanes.size();
+    std::size_t first = 0, behind = count;
+    while (first < middle && !is_seen(section, first)) ++first;
+    while (behind > middle && !is_seen(section, behind - 1)) --behind;
+    if (first < behind) return {first, behind};
+    return middle < count ? std::pair{middle, middle + 1} : std::pair{middle - 1, middle};
   }
 
-  void add_lane(std::size_t section, std::size_t place) {
-    const PlannedSection& planned = road_.sections[section];
+  bool is_seen(const WrittenSection& section, std::size_t place) const {
+    return section.has_lane(place) ||
+           section.shape->has_width(place, 0.5 * (section.from_m + section.to_m));
+  }
+
+  std::string marks(const WrittenSection& section, std::size_t border) const {
+    const bool is_there = (border > 0 && section.has_lane(border - 1)) ||
+                          (border < planned(section).lanes.size() && section.has_lane(border));
+    if (!is_there) return {};
+    return marks_text(road_map_, planned(section), shape_.sections[section.planned], border,
+                      section.from_m, section.to_m, minor_);
+  }
+
+  void add_lane(std::size_t index, std::size_t place) {
+    const WrittenSection& section = sections_[index];
+    const PlannedSection& planned = this->planned(section);
     const bool is_left = place < planned.left_lanes;
     const Lane& lane = road_map_.lane(planned.lanes[place].lane);
-    if (std::ranges::find(part_.bare_lanes, place) != part_.bare_lanes.end()) {
+    if (!section.has_lane(place) ||
+        std::ranges::find(part_.bare_lanes, place) != part_.bare_lanes.end()) {
       add("<lane id=\"{}\" type=\"none\">", lane_id(planned, place));
       add_widths(section, place);
       text_ += "</lane>\n";
@@ -108,7 +126,7 @@ class LanesWriter {
     }
     add("<lane id=\"{}\" type=\"{}\"{}>", lane_id(planned, place), type_word(lane, minor_),
         direction(lane, planned.lanes[place].forward, is_left));
-    add_links(section, place);
+    add_links(index, place);
     add_widths(section, place);
     text_ += marks(section, is_left ? place : place + 1);
     add_speeds(section, place, lane);
@@ -116,9 +134,9 @@ class LanesWriter {
     text_ += "</lane>\n";
   }
 
-  void add_widths(std::size_t section, std::size_t place) {
-    add_records(shape_.sections[section].widths[place], begin_m(section), end_m(section),
-                begin_m(section), "width", "sOffset", text_);
+  void add_widths(const WrittenSection& section, std::size_t place) {
+    add_records(section.shape->widths[place], section.from_m, section.to_m, section.from_m, "width",
+                "sOffset", text_);
   }
 
   std::string direction(const Lane& lane, bool forward, bool is_left) {
@@ -131,9 +149,10 @@ class LanesWriter {
 
   void add_links(std::size_t section, std::size_t place) {
     const std::vector<int> before =
-        section == first_ ? joined(0, place) : inside(section, place, section - 1, false);
-    const std::vector<int> after =
-        section == last_ ? joined(1, place) : inside(section, place, section + 1, true);
+        section == 0 ? joined(0, place) : inside(section, place, section - 1, false);
+    const std::vector<int> after = section + 1 == sections_.size()
+                                       ? joined(1, place)
+                                       : inside(section, place, section + 1, true);
     if (before.empty() && after.empty()) return;
     text_ += "<link>";
     for (const int id : before) add("<predecessor id=\"{}\"/>", id);
@@ -156,30 +175,35 @@ class LanesWriter {
   // To lanes of the section beside in the same road.
   std::vector<int> inside(std::size_t section, std::size_t place, std::size_t other,
                           bool ahead) const {
-    const PlannedLane& lane = road_.sections[section].lanes[place];
+    const WrittenSection &here = sections_[section], &there = sections_[other];
+    const PlannedLane& lane = planned(here).lanes[place];
+    if (here.planned == there.planned) {  // one of them is a rim
+      return there.has_lane(place) ? std::vector{lane_id(planned(here), place)}
+                                   : std::vector<int>{};
+    }
     const LaneLinks& links = road_map_.graph().of(lane.lane);
     const auto& next = lane.forward == ahead ? links.successors : links.predecessors;
     std::vector<int> ids;
-    const auto& lanes = road_.sections[other].lanes;
-    const double s_m = shape_.sections[std::max(section, other)].s_m;
-    if (!shape_.sections[section].has_width(place, s_m)) return ids;
+    const auto& lanes = planned(there).lanes;
+    const double s_m = std::max(here.from_m, there.from_m);
+    if (!here.shape->has_width(place, s_m)) return ids;
     for (std::size_t i = 0; i < lanes.size(); ++i) {
       const bool is_linked = std::find(next.begin(), next.end(), lanes[i].lane) != next.end();
-      if (is_linked && shape_.sections[other].has_width(i, s_m)) {
-        ids.push_back(lane_id(road_.sections[other], i));
+      if (is_linked && there.shape->has_width(i, s_m)) {
+        ids.push_back(lane_id(planned(there), i));
       }
     }
     return ids;
   }
 
-  void add_speeds(std::size_t section, std::size_t place, const Lane& lane) {
+  void add_speeds(const WrittenSection& section, std::size_t place, const Lane& lane) {
     std::vector<double> from_m;
     for (const SpeedLimit& limit : lane.speed_limits) from_m.push_back(limit.from_s_m);
     const auto limits =
-        along_road(shape_.sections[section], place, road_.sections[section].lanes[place].forward,
+        along_road(shape_.sections[section.planned], place, planned(section).lanes[place].forward,
                    lane.length_m(), from_m, lane.speed_limits);
     for (std::size_t i = 0; i < limits.size(); ++i) {
-      const double begin = begin_m(section), end = end_m(section);
+      const double begin = section.from_m, end = section.to_m;
       const double next = i + 1 < limits.size() ? limits[i + 1].s_m : end;
       if (!limits[i].value.limit_mps || limits[i].s_m >= end - 1e-3 || next <= begin + 1e-3)
         continue;
@@ -212,7 +236,7 @@ class LanesWriter {
   bool left_hand_;
   int minor_;
   LaneLosses& losses_;
-  std::size_t first_ = 0, last_ = 0;
+  std::vector<WrittenSection> sections_;  // of the part
   std::string text_;
 };
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/geometry/primitives/polyline.h"
 #include "roadbed/map/opendrive/write/clothoid.h"
 #include "roadbed/map/opendrive/write/reference_line.h"
@@ -15,6 +16,9 @@ namespace {
 
 constexpr double kScales_m[] = {0.7, 2.0, 6.0, 20.0};
 constexpr double kReferenceTolerance_m = 0.004;
+// Along a road of the map, which is one.
+constexpr double kSourceScale_m = 0.05, kSourceTolerance_m = 1.5e-3, kSourceStep_m = 0.1;
+constexpr double kLeastAcross_m = 0.2;  // between borders that say how a cross-section lies
 constexpr double kLeastBend = 0.1;
 constexpr double kBack_m = 0.005, kMissing_m = 0.01, kSideways_m = 0.3, kCrossing_m = 0.005;
 constexpr double kShortest_m = 0.02;  // of a road between its ends
@@ -51,7 +55,8 @@ class RoadPlacer {
  public:
   RoadPlacer(const RoadMap& road_map, const PlannedRoad& road, std::size_t border,
              const std::array<EndLine, 2>& ends)
-      : road_(road) {
+      : road_map_(road_map), road_(road) {
+    placed_.is_rim = {ends[0].is_rim, ends[1].is_rim};
     for (const PlannedSection& section : road.sections) {
       auto& borders = borders_.emplace_back();
       for (std::size_t i = 0; i <= section.lanes.size(); ++i) {
@@ -63,7 +68,7 @@ class RoadPlacer {
   }
 
   PlacedRoad place(double most_m) {
-    choose_reference(most_m);
+    if (!place_source()) choose_reference(most_m);
     return std::move(placed_);
   }
 
@@ -73,6 +78,96 @@ class RoadPlacer {
     std::vector<geometry::PlanPiece> line;
     double at_least_m;
   };
+
+  // A road of the map, whose borders have a vertex at the same stations on a side: each
+  // cross-section is known, and borders may turn back where the map's do.
+  bool place_source() {
+    if (!road_.source) return false;
+    targets_.front().step_m = kSourceStep_m;
+    take(fit_reference_line(targets_.front(), kSourceScale_m, kSourceTolerance_m));
+    placed_.borders.clear();
+    place_sections();
+    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
+      const std::size_t middle = road_.sections[i].left_lanes,
+                        count = road_.sections[i].lanes.size();
+      placed_.borders.emplace_back(count + 1);
+      // The border amid both sides is of the right one.
+      const std::size_t left_borders = middle < count ? middle : count + 1;
+      if (!place_side(i, {0, middle}, {0, left_borders}) ||
+          !place_side(i, {middle, count}, {left_borders, count + 1})) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  using Places = std::pair<std::size_t, std::size_t>;  // from one up to before another
+
+  bool place_side(std::size_t section, const Places& lanes, const Places& borders) {
+    if (lanes.first == lanes.second) return true;
+    const std::vector<double> s_m = stations(section, lanes);
+    const double from_m = placed_.section_from_m[section],
+                 to_m = placed_.section_from_m[section + 1];
+    for (std::size_t i = borders.first; i < borders.second; ++i) {
+      const RoadBorder& border = borders_[section][i];
+      if (border.own_to - border.own_from + 1 != s_m.size()) return false;
+      BesideLine& line = placed_.borders[section][i];
+      for (std::size_t k = 0; k < s_m.size(); ++k) {
+        const bool is_last = k + 1 == s_m.size();
+        const double at_m = is_last ? to_m : k == 0 ? from_m : s_m[k];
+        if (!line.empty() && (at_m <= line.back().s_m || (!is_last && at_m >= to_m))) continue;
+        const Eigen::Vector3d& vertex = border.points[border.own_from + k];
+        const ReferenceTable::Point point = reference_->at(at_m);
+        line.push_back(
+            {at_m, geometry::cross(point.along, vertex.head<2>() - point.in_map), vertex.z()});
+      }
+    }
+    return true;
+  }
+
+  // Where the reference line meets each cross-section of a side, by its widest lane.
+  std::vector<double> stations(std::size_t section, const Places& lanes) const {
+    RoadBorder left, right;
+    double widest_m = -1.0;
+    for (std::size_t i = lanes.first; i < lanes.second; ++i) {
+      const PlannedSection lane{{road_.sections[section].lanes[i]}, 0};
+      RoadBorder edges[2] = {border_along(road_map_, lane, 0), border_along(road_map_, lane, 1)};
+      const std::size_t amid = (edges[0].own_from + edges[0].own_to) / 2 - edges[0].own_from;
+      const double width_m =
+          (edges[0].points[edges[0].own_from + amid] - edges[1].points[edges[1].own_from + amid])
+              .norm();
+      if (width_m <= widest_m) continue;
+      widest_m = width_m;
+      left = std::move(edges[0]);
+      right = std::move(edges[1]);
+    }
+    std::vector<double> s_m;
+    double at_m = placed_.section_from_m[section];
+    for (std::size_t i = left.own_from; i <= left.own_to; ++i) {
+      const Eigen::Vector2d a = left.points[i].head<2>();
+      const Eigen::Vector2d across = right.points[i - left.own_from + right.own_from].head<2>() - a;
+      at_m = across.norm() > kLeastAcross_m ? on_cross_section(a, across.normalized(), at_m)
+                                            : position_beside(*reference_, a, at_m).s_m;
+      s_m.push_back(at_m);
+    }
+    return s_m;
+  }
+
+  // By Newton's method from a station nearby on.
+  double on_cross_section(const Eigen::Vector2d& in_map, const Eigen::Vector2d& across,
+                          double s_m) const {
+    constexpr double longest_m = 1.0;
+    for (int step = 0; step < 50; ++step) {
+      const double on_m = std::clamp(s_m, 0.0, reference_->end_s_m());
+      const ReferenceTable::Point point = reference_->at(on_m);
+      const double off_m =
+          geometry::cross(across, point.in_map + (s_m - on_m) * point.along - in_map);
+      const double ahead_m = -off_m / std::max(0.1, geometry::cross(across, point.along));
+      s_m += std::clamp(ahead_m, -longest_m, longest_m);
+      if (std::abs(ahead_m) < 1e-7) break;
+    }
+    return s_m;
+  }
 
   // The first sound one of: along the border, along the middle, both ever smoother. Else the one
   // with the least fault, those first that have the least along coarse chords.
@@ -198,6 +293,28 @@ class RoadPlacer {
 
   bool place_borders(double most_m, double chord_m) {
     placed_.borders.clear();
+    placed_.reach.clear();
+    place_sections();
+    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
+      const BesideOptions options{.chord_m = chord_m,
+                                  .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m),
+                                  .may_end = {i == 0 && placed_.is_rim[0],
+                                              i + 1 == road_.sections.size() && placed_.is_rim[1]}};
+      auto& lines = placed_.borders.emplace_back();
+      auto& reach = placed_.reach.emplace_back();
+      for (const RoadBorder& border : borders_[i]) {
+        PlacedBorder placed = line_beside(*reference_, border, placed_.section_from_m[i],
+                                          placed_.section_from_m[i + 1], placed_.faults, options);
+        lines.push_back(std::move(placed.line));
+        reach.push_back({placed.from_m, placed.to_m});
+        sum_faults(chord_m);
+        if (placed_.fault_m >= most_m) return false;
+      }
+    }
+    return true;
+  }
+
+  void place_sections() {
     placed_.section_from_m.clear();
     double hint_m = 0.0;
     for (std::size_t i = 0; i < road_.sections.size(); ++i) {
@@ -205,18 +322,6 @@ class RoadPlacer {
       placed_.section_from_m.push_back(hint_m);
     }
     placed_.section_from_m.push_back(reference_->end_s_m());
-    const BesideDensity density{.chord_m = chord_m,
-                                .hopeless_bend = kLeastBend - most_m - uncertain_m(chord_m)};
-    for (std::size_t i = 0; i < road_.sections.size(); ++i) {
-      auto& lines = placed_.borders.emplace_back();
-      for (const RoadBorder& border : borders_[i]) {
-        lines.push_back(line_beside(*reference_, border, placed_.section_from_m[i],
-                                    placed_.section_from_m[i + 1], placed_.faults, density));
-        sum_faults(chord_m);
-        if (placed_.fault_m >= most_m) return false;
-      }
-    }
-    return true;
   }
 
   // Where a section begins: at the foot of its middle border's first point.
@@ -235,6 +340,7 @@ class RoadPlacer {
     return std::clamp(s_m, from_m + 1e-3, std::max(from_m + 1e-3, reference_->end_s_m() - 1e-3));
   }
 
+  const RoadMap& road_map_;
   const PlannedRoad& road_;
   std::vector<std::vector<RoadBorder>> borders_;  // by section, from left to right
   std::vector<ReferenceTarget> targets_;          // what the reference line may follow

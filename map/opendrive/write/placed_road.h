@@ -15,11 +15,15 @@ struct PlacedRoad {
   std::vector<geometry::PlanPiece> plan_view;
   std::vector<double> section_from_m;            ///< where each section begins, and the last ends
   std::vector<std::vector<BesideLine>> borders;  ///< by section, from left to right
+  /// Between which stations the map has each of them.
+  std::vector<std::vector<StationRange>> reach;
+  std::array<bool, 2> is_rim{};  ///< whether borders may end before the road does, at its ends
   BesideFaults faults;
   double fault_m = 0.0;  ///< how far it is from being sound, 0 if it is (README)
 };
 
-/// The first sound one of reference lines along the border, then along the middle, both ever
+/// Of a road of the map its own reference line and cross-sections. Else the first sound one of
+/// reference lines along the border, then along the middle, both ever
 /// smoother; else the one with the least faults.
 /// @param border  of the first section, which the reference line follows; of a road of the map it
 ///                follows that road's own.

@@ -14,7 +14,6 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kStep_m = 0.5;
 constexpr std::size_t kLeastSteps = 12;
 
 // A symmetric, positive definite matrix with two bands beside its diagonal, and two right sides.
@@ -74,7 +73,7 @@ class BandedSystem {
 Points smoothed(const ReferenceTarget& target, double scale_m) {
   const geometry::Polyline line(target.in_map);
   const auto steps =
-      std::max(kLeastSteps, static_cast<std::size_t>(std::ceil(line.length_m() / kStep_m)));
+      std::max(kLeastSteps, static_cast<std::size_t>(std::ceil(line.length_m() / target.step_m)));
   const double step_m = line.length_m() / static_cast<double>(steps);
   const double stiffness = std::pow(scale_m / step_m, 4);
   Points wanted;

@@ -12,6 +12,7 @@ namespace roadbed::map::opendrive {
 struct ReferenceTarget {
   std::vector<Eigen::Vector2d> in_map;  ///< two points or more
   double start_heading_rad = 0.0, end_heading_rad = 0.0;
+  double step_m = 0.5;  ///< between the points of the line that is sought
 };
 
 /// A reference line along a target: of all lines p with its ends and headings the one of least

@@ -32,7 +32,10 @@ std::pair<double, double> curvatures_per_m(const geometry::PlanCurve& curve) {
 
 ReferenceTable::ReferenceTable(std::span<const geometry::PlanPiece> pieces)
     : end_s_m_(pieces.back().s_m + pieces.back().length_m) {
-  for (const geometry::PlanPiece& piece : pieces) add_piece(piece);
+  for (const geometry::PlanPiece& piece : pieces) {
+    if (!cells_.empty()) joints_m_.push_back(piece.s_m);
+    add_piece(piece);
+  }
   const auto buckets = static_cast<std::size_t>(end_s_m_ * kBucketsPerMetre) + 1;
   std::size_t cell = 0;
   for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
@@ -63,6 +66,18 @@ void ReferenceTable::add_piece(const geometry::PlanPiece& piece) {
     }
     cells_.push_back(cell);
   }
+}
+
+std::optional<double> ReferenceTable::joint_between(double from_m, double to_m) const {
+  const double middle_m = 0.5 * (from_m + to_m);
+  const auto behind = std::ranges::lower_bound(joints_m_, middle_m);
+  std::optional<double> nearest_m;
+  for (const auto joint : {behind, behind == joints_m_.begin() ? behind : behind - 1}) {
+    if (joint == joints_m_.end() || *joint <= from_m || *joint >= to_m) continue;
+    const double off_m = std::abs(*joint - middle_m);
+    if (!nearest_m || off_m < std::abs(*nearest_m - middle_m)) nearest_m = *joint;
+  }
+  return nearest_m;
 }
 
 ReferenceTable::Point ReferenceTable::at(double s_m) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,6 +41,9 @@ class ReferenceTable {
 
   double end_s_m() const { return end_s_m_; }
 
+  /// Where a piece ends and the next one begins strictly inside a range, nearest to its middle.
+  std::optional<double> joint_between(double from_m, double to_m) const;
+
   /// Within [0, end_s_m()]. O(1).
   Point at(double s_m) const;
 
@@ -55,6 +59,7 @@ class ReferenceTable {
   void add_piece(const geometry::PlanPiece& piece);
 
   double end_s_m_ = 0.0;
+  std::vector<double> joints_m_;
   std::vector<Cell> cells_;
   std::vector<std::size_t> cell_of_bucket_;  // that the start of each lies in
 };

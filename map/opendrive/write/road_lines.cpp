@@ -54,6 +54,74 @@ Line3 beyond(const RoadMap& road_map, PlannedLane lane, bool on_left, bool ahead
   return line;
 }
 
+// Unit vectors along a sampled curve at its points; a corner is none of a curve.
+std::vector<Eigen::Vector2d> tangents(const Line3& points) {
+  constexpr double corner_rad = 0.35;
+  std::vector<Eigen::Vector2d> along(points.size() - 1);
+  std::vector<double> length_m(along.size());
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    along[i] = (points[i + 1] - points[i]).head<2>();
+    length_m[i] = along[i].norm();
+    along[i] /= length_m[i];
+  }
+  // A chord's direction is that of the curve in its middle.
+  const auto between = [&](std::size_t i, double share) -> Eigen::Vector2d {
+    const bool is_corner = along[i].dot(along[i + 1]) < std::cos(corner_rad);
+    if (is_corner) return along[share < 0.5 ? i : i + 1];
+    return (along[i] + share * (along[i + 1] - along[i])).normalized();
+  };
+  std::vector<Eigen::Vector2d> made(points.size(), along.front());
+  made.back() = along.back();
+  if (along.size() < 2) return made;
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    made[i + 1] = between(i, length_m[i] / (length_m[i] + length_m[i + 1]));
+  }
+  made.front() = between(0, -length_m[0] / (length_m[0] + length_m[1]));
+  const std::size_t last = along.size() - 1;
+  made.back() = between(last - 1, 1.0 + length_m[last] / (length_m[last - 1] + length_m[last]));
+  return made;
+}
+
+// A sampled curve with points between its own, by Hermite's cubics where they are not farther from
+// a chord than the curve is.
+Line3 with_bends(const Line3& points) {
+  constexpr double straight_m = 1e-5, sampled_within_m = 1.25e-3;
+  const std::vector<Eigen::Vector2d> along = tangents(points);
+  Line3 made{points.front()};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Eigen::Vector2d chord = (points[i] - points[i - 1]).head<2>();
+    const double length_m = chord.norm();
+    const double bend_m = 0.125 * length_m * (along[i] - along[i - 1]).norm();
+    for (const double u : {0.25, 0.5, 0.75}) {
+      if (bend_m < straight_m || bend_m > sampled_within_m) break;
+      const Eigen::Vector2d off =
+          u * (1.0 - u) *
+          ((1.0 - u) * (length_m * along[i - 1] - chord) - u * (length_m * along[i] - chord));
+      const Eigen::Vector2d at = points[i - 1].head<2>() + u * chord + off;
+      made.emplace_back(at.x(), at.y(), 0.0);
+    }
+    made.push_back(points[i]);
+  }
+  return made;
+}
+
+// What a line has beyond the end of another one that runs along it.
+Line3 longer_part(const Line3& line, const Line3& other, bool ahead) {
+  constexpr double longer_m = 1e-3;
+  const Eigen::Vector3d& end = ahead ? other.back() : other.front();
+  const Eigen::Vector3d& before = ahead ? *(other.end() - 2) : *(other.begin() + 1);
+  const Eigen::Vector2d along = (end - before).head<2>().normalized();
+  Line3 part;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Eigen::Vector3d& point = ahead ? *(line.end() - 1 - i) : line[i];
+    const Eigen::Vector2d off = (point - end).head<2>();
+    const double beyond_m = along.dot(off);
+    if (beyond_m < longer_m || off.norm() > beyond_m + kSamePoint_m) break;
+    part.insert(part.begin(), point);
+  }
+  return part;
+}
+
 std::optional<std::uint32_t> end_at(const RoadPlan& plan, LaneId id, bool exit) {
   const auto& place = plan.places[id.index];
   if (!place) return {};
@@ -73,7 +141,9 @@ RoadBorder border_along(const RoadMap& road_map, const PlannedSection& section, 
   const auto going_on = [&](bool ahead) {
     const Eigen::Vector3d& end = ahead ? own.back() : own.front();
     Line3 next = beyond(road_map, lane, on_left, ahead, end);
-    return next.empty() ? beyond(road_map, other, on_left && place == 0, ahead, end) : next;
+    if (next.empty()) next = beyond(road_map, other, on_left && place == 0, ahead, end);
+    if (!next.empty() || other.lane == lane.lane) return next;
+    return longer_part(border_of(road_map.lane(other.lane), other.forward, false), own, ahead);
   };
   RoadBorder border{going_on(false), 0, 0};
   std::reverse(border.points.begin(), border.points.end());
@@ -107,6 +177,7 @@ RoadBorder reference_along(const RoadMap& road_map, const PlannedRoad& road, std
     if (line.empty()) add(i, std::max(0.0, (low_m - s_m[i - 1]) / step_m));
     add(i, std::min(1.0, (high_m - s_m[i - 1]) / step_m));
   }
+  line = with_bends(line);
   const std::size_t last = line.size() - 1;
   return {std::move(line), 0, last};
 }

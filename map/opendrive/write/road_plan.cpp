@@ -13,14 +13,15 @@
 namespace roadbed::map::opendrive {
 namespace {
 
-constexpr double kLeastLength_m = 0.05;  // of a lane
-constexpr double kLeastWidth_m = 0.02;   // on average
-constexpr double kSameBorder_m = 0.3;    // how far apart neighbours' ends may be
+constexpr double kLeastLength_m = 0.05;   // of a lane that makes a road of its own
+constexpr double kLeastSection_m = 2e-3;  // of one in a section of the map
+constexpr double kLeastWidth_m = 0.02;    // on average
+constexpr double kSameBorder_m = 0.3;     // how far apart neighbours' ends may be
 
 // Whether there is a strip between the borders at all.
 bool is_strip(const Lane& lane) {
   const double length_m = lane.length_m();
-  if (!(length_m > kLeastLength_m)) return false;
+  if (!(length_m > (lane.road ? kLeastSection_m : kLeastLength_m))) return false;
   const auto width_m = [&](double share) {
     const double s_m = share * length_m;
     const Eigen::Vector2d across = Lane::point_at(lane.left, s_m) - Lane::point_at(lane.right, s_m);

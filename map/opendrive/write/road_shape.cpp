@@ -1,7 +1,9 @@
 #include "roadbed/map/opendrive/write/road_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <ranges>
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -9,6 +11,123 @@ namespace {
 constexpr double kHeightTolerance_m = 0.005;
 
 constexpr double kFlat_m = 0.004;  // what leans less lies flat
+
+constexpr double kSameRim_m = 0.005;         // ends of borders that are nearer are one
+constexpr double kLeastBetweenRims_m = 0.1;  // rims at both ends of a road
+
+/// A part of a section through which the same borders go.
+struct Strip {
+  std::size_t section = 0;
+  double from_m = 0.0, to_m = 0.0;
+  std::vector<bool> has_border{};  ///< empty: all
+
+  bool has(std::size_t border) const { return has_border.empty() || has_border[border]; }
+
+  /// The border itself, or the next one that is there, towards the middle first.
+  std::size_t standing(std::size_t border, std::size_t middle) const {
+    if (has(border)) return border;
+    const std::size_t count = has_border.size();
+    for (std::size_t off = 1; off < count; ++off) {
+      const std::size_t before = border >= off ? border - off : count, behind = border + off;
+      const bool look_ahead = border < middle;
+      for (const std::size_t one : {look_ahead ? behind : before, look_ahead ? before : behind}) {
+        if (one < count && has(one)) return one;
+      }
+    }
+    return border;
+  }
+};
+
+BesideLine clipped(const BesideLine& line, double from_m, double to_m) {
+  std::size_t hint = 0;
+  BesideLine kept{point_at(line, from_m, hint)};
+  for (const BesidePoint& point : line) {
+    if (point.s_m > from_m + 1e-6 && point.s_m < to_m - 1e-6) kept.push_back(point);
+  }
+  kept.push_back(point_at(line, to_m, hint));
+  return kept;
+}
+
+/// The stretches of a road, by s, at whose ends borders end.
+class StripFinder {
+ public:
+  explicit StripFinder(const PlacedRoad& placed) : placed_(placed) {}
+
+  /// Rims before the first section, the sections, rims behind the last one.
+  std::array<std::vector<Strip>, 3> find() const {
+    std::array<std::vector<double>, 2> ends_m{ends(0), ends(1)};
+    const double begin_m = placed_.section_from_m.front(), end_m = placed_.section_from_m.back();
+    const auto first_m = [&] { return ends_m[0].empty() ? begin_m : ends_m[0].back(); };
+    const auto last_m = [&] { return ends_m[1].empty() ? end_m : ends_m[1].front(); };
+    const double low_m = placed_.section_from_m[1], high_m = *(placed_.section_from_m.end() - 2);
+    if (last_m() - std::max(high_m, first_m()) < kLeastBetweenRims_m) ends_m[1].clear();
+    if (std::min(low_m, last_m()) - first_m() < kLeastBetweenRims_m) ends_m[0].clear();
+    std::array<std::vector<Strip>, 3> strips;
+    const std::size_t sections = placed_.borders.size();
+    double from_m = begin_m;
+    for (const double to_m : ends_m[0]) {
+      strips[0].push_back(rim(0, from_m, to_m));
+      from_m = to_m;
+    }
+    for (std::size_t i = 0; i < sections; ++i) {
+      const double to_m = i + 1 < sections ? placed_.section_from_m[i + 1] : last_m();
+      strips[1].push_back({i, i == 0 ? first_m() : placed_.section_from_m[i], to_m});
+    }
+    for (std::size_t i = 0; i < ends_m[1].size(); ++i) {
+      const double to_m = i + 1 < ends_m[1].size() ? ends_m[1][i + 1] : end_m;
+      strips[2].push_back(rim(sections - 1, ends_m[1][i], to_m));
+    }
+    return strips;
+  }
+
+ private:
+  // Where borders end inside the road, by s.
+  std::vector<double> ends(std::size_t at) const {
+    std::vector<double> ends_m;
+    if (!placed_.is_rim[at]) return ends_m;
+    const auto& reach = at == 0 ? placed_.reach.front() : placed_.reach.back();
+    for (const StationRange& range : reach)
+      ends_m.push_back(at == 0 ? range.from_s_m : range.to_s_m);
+    std::sort(ends_m.begin(), ends_m.end());
+    // The last one is the road's.
+    ends_m.erase(at == 0 ? ends_m.begin() : ends_m.end() - 1);
+    const double rim_m = at == 0 ? placed_.section_from_m.front() : placed_.section_from_m.back();
+    const double same_m = kSameRim_m / widest_bend(at);
+    std::erase_if(ends_m, [&](double s_m) { return std::abs(s_m - rim_m) < same_m; });
+    const auto same = [&](double a, double b) { return b - a < same_m; };
+    ends_m.erase(std::unique(ends_m.begin(), ends_m.end(), same), ends_m.end());
+    return ends_m;
+  }
+
+  // How much longer than along the reference line a way beside it may be at an end.
+  double widest_bend(std::size_t at) const {
+    const geometry::PlanPiece& piece =
+        at == 0 ? placed_.plan_view.front() : placed_.plan_view.back();
+    const auto [start_per_m, end_per_m] = curvatures_per_m(piece.curve);
+    double widest = 1.0;
+    for (const BesideLine& line : at == 0 ? placed_.borders.front() : placed_.borders.back()) {
+      const double t_m = at == 0 ? line.front().t_m : line.back().t_m;
+      widest = std::max(widest, 1.0 - (at == 0 ? start_per_m : end_per_m) * t_m);
+    }
+    return widest;
+  }
+
+  Strip rim(std::size_t section, double from_m, double to_m) const {
+    Strip strip{section, from_m, to_m};
+    const double middle_m = 0.5 * (from_m + to_m);
+    const auto beyond_m = [&](const StationRange& range) {
+      return std::max(range.from_s_m - middle_m, middle_m - range.to_s_m);
+    };
+    const auto& reach = placed_.reach[section];
+    const StationRange& longest = *std::ranges::min_element(reach, {}, beyond_m);
+    for (const StationRange& range : reach) {
+      strip.has_border.push_back(beyond_m(range) <= std::max(0.0, beyond_m(longest)));
+    }
+    return strip;
+  }
+
+  const PlacedRoad& placed_;
+};
 
 class RoadShaper {
  public:
@@ -19,9 +138,12 @@ class RoadShaper {
   }
 
   RoadShape shape() {
+    const auto strips = StripFinder(placed_).find();
     fit_heights();
-    fit_lane_offset();
-    for (std::size_t i = 0; i < road_.sections.size(); ++i) fit_widths(i);
+    fit_lane_offset(strips);
+    for (const Strip& strip : strips[0]) shape_.rims[0].push_back(shape_of(strip));
+    for (const Strip& strip : strips[1]) shape_.sections.push_back(shape_of(strip));
+    for (const Strip& strip : strips[2]) shape_.rims[1].push_back(shape_of(strip));
     return std::move(shape_);
   }
 
@@ -90,11 +212,18 @@ class RoadShaper {
     return samples;
   }
 
-  void fit_lane_offset() {
+  // A border of the road's section along a strip.
+  BesideLine along(const Strip& strip, std::size_t border) const {
+    const auto& lines = placed_.borders[strip.section];
+    const std::size_t middle = road_.sections[strip.section].left_lanes;
+    return clipped(lines[strip.standing(border, middle)], strip.from_m, strip.to_m);
+  }
+
+  void fit_lane_offset(const std::array<std::vector<Strip>, 3>& strips) {
     std::vector<geometry::CubicRecord> records;
     bool is_needed = false;
-    for (std::size_t i = 0; i < placed_.borders.size(); ++i) {
-      const auto samples = samples_of(placed_.borders[i][road_.sections[i].left_lanes]);
+    for (const Strip& strip : strips | std::views::join) {
+      const auto samples = samples_of(along(strip, road_.sections[strip.section].left_lanes));
       for (const Sample& sample : samples) {
         is_needed = is_needed || std::abs(sample.value) > 0.6 * kBorderTolerance_m;
       }
@@ -107,10 +236,10 @@ class RoadShaper {
     if (is_needed) shape_.lane_offset = geometry::PiecewiseCubic(std::move(records));
   }
 
-  void fit_widths(std::size_t index) {
-    const PlannedSection& section = road_.sections[index];
-    SectionShape& made = shape_.sections.emplace_back();
-    made.s_m = placed_.section_from_m[index];
+  SectionShape shape_of(const Strip& strip) {
+    const PlannedSection& section = road_.sections[strip.section];
+    SectionShape made;
+    made.s_m = strip.from_m;
     made.left_lanes = section.left_lanes;
     made.widths.resize(section.lanes.size());
     const double from_m = made.s_m;
@@ -120,13 +249,20 @@ class RoadShaper {
       while (side > 0 ? border > 0 : border < section.lanes.size()) {
         const std::size_t lane = side > 0 ? border - 1 : border;
         border = side > 0 ? border - 1 : border + 1;
-        made.widths[lane] = fit_width(placed_.borders[index][border], inner, side, from_m);
+        made.widths[lane] = fit_width(along(strip, border), inner, side, from_m);
         inner.push_back(&made.widths[lane]);
       }
     }
     for (std::size_t lane = 0; lane < section.lanes.size(); ++lane) {
-      made.s_of_station.push_back(stations(index, lane));
+      if (strip.has_border.empty()) {
+        made.s_of_station.push_back(stations(strip.section, lane));
+      } else {
+        // Where the lane offset steps aside no lane goes on.
+        const bool goes_on = strip.has(section.left_lanes);
+        made.has_lane.push_back(goes_on && strip.has(lane) && strip.has(lane + 1));
+      }
     }
+    return made;
   }
 
   // The width out to a border, from where the borders inside it were put.
@@ -204,6 +340,22 @@ bool SectionShape::has_width(std::size_t lane, double at_m) const {
 double SectionShape::road_s_m(std::size_t lane, double station_m) const {
   std::size_t hint = 0;
   return value_at(s_of_station[lane], station_m, hint);
+}
+
+std::vector<WrittenSection> written_sections(const RoadShape& shape) {
+  std::vector<WrittenSection> sections;
+  for (const SectionShape& rim : shape.rims[0]) sections.push_back({&rim, 0});
+  for (std::size_t i = 0; i < shape.sections.size(); ++i) {
+    sections.push_back({&shape.sections[i], i});
+  }
+  for (const SectionShape& rim : shape.rims[1]) {
+    sections.push_back({&rim, shape.sections.size() - 1});
+  }
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    sections[i].from_m = sections[i].shape->s_m;
+    sections[i].to_m = i + 1 < sections.size() ? sections[i + 1].shape->s_m : shape.length_m;
+  }
+  return sections;
 }
 
 std::size_t section_before(const RoadShape& shape, double s_m) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct SectionShape {
   std::size_t left_lanes = 0;
   std::vector<geometry::PiecewiseCubic> widths;
   std::vector<std::vector<Sample>> s_of_station;
+  /// In a rim, whether a lane is still there between two borders; of other sections all are.
+  std::vector<bool> has_lane;
 
   /// Whether a lane has any width at the road's s, which lies in the section or at its end.
   bool has_width(std::size_t lane, double at_m) const;
@@ -34,9 +37,25 @@ struct RoadShape {
   std::vector<geometry::PlanPiece> plan_view;
   double length_m = 0.0;
   geometry::PiecewiseCubic elevation, superelevation, lane_offset;
-  std::vector<SectionShape> sections;
+  std::vector<SectionShape> sections;  ///< as planned
+  /// Before the first and behind the last section, by s: stretches in which some borders have
+  /// ended, and lie on the next one that has not.
+  std::array<std::vector<SectionShape>, 2> rims;
   double height_error_m = 0.0;  ///< largest of a border's elevation
 };
+
+/// A section of a file: one of the plan, or a rim of it.
+struct WrittenSection {
+  const SectionShape* shape = nullptr;
+  std::size_t planned = 0;
+  double from_m = 0.0, to_m = 0.0;
+
+  bool is_rim() const { return !shape->has_lane.empty(); }
+  bool has_lane(std::size_t lane) const { return !is_rim() || shape->has_lane[lane]; }
+};
+
+/// All sections of a road, by s.
+std::vector<WrittenSection> written_sections(const RoadShape& shape);
 
 /// The section that a road has just before s.
 std::size_t section_before(const RoadShape& shape, double s_m);

@@ -73,7 +73,8 @@ class RoadsPlacer {
   PlaceKey key(std::uint32_t road) const {
     PlaceKey key{double(borders_[road])};
     for (const EndLine& across : {line(2 * road), line(2 * road + 1)}) {
-      key.insert(key.end(), {across.in_map.x(), across.in_map.y(), across.heading_rad});
+      key.insert(key.end(), {across.in_map.x(), across.in_map.y(), across.heading_rad,
+                             across.is_rim ? 1.0 : 0.0});
     }
     for (const PlannedSection& section : plan_.roads[road].sections) {
       key.insert(key.end(), {-1.0, double(section.left_lanes)});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <stdexcept>
 
@@ -33,8 +34,7 @@ class FileWriter {
     ShapedRoads roads = shape_roads(road_map);
     plan_ = std::move(roads.plan);
     shapes_ = std::move(roads.shapes);
-    const std::vector<double> errors_m = border_errors_m(road_map, plan_, shapes_);
-    for (std::size_t i = 0; i < plan_.roads.size(); ++i) measure(i, errors_m[i]);
+    measure(border_errors_m(road_map, plan_, shapes_));
     network_ = join_roads(road_map, plan_, shapes_);
     furniture_ = furniture_text(road_map, plan_, shapes_, network_, options.minor);
   }
@@ -57,15 +57,25 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), words, std::forward<Values>(values)...);
   }
 
-  void measure(std::size_t road, double error_m) {
-    file_.largest_error_m = std::max(file_.largest_error_m, error_m);
-    file_.largest_height_error_m =
-        std::max(file_.largest_height_error_m, shapes_[road].height_error_m);
-    if (error_m <= kAim_m) return;
-    const PlannedLane& first = plan_.roads[road].sections.front().lanes.front();
-    file_.notes.push_back(fmt::format(
-        "the road of lane {} has borders up to {:.3f} m off: they end askew, or turn too sharply",
-        road_map_.lane(first.lane).name, error_m));
+  // Names the roads that are too far off, the worst first.
+  void measure(const std::vector<double>& errors_m) {
+    std::vector<std::size_t> roads;
+    for (std::size_t road = 0; road < errors_m.size(); ++road) {
+      file_.largest_error_m = std::max(file_.largest_error_m, errors_m[road]);
+      file_.largest_height_error_m =
+          std::max(file_.largest_height_error_m, shapes_[road].height_error_m);
+      if (errors_m[road] > kAim_m) roads.push_back(road);
+    }
+    std::ranges::stable_sort(roads, std::ranges::greater{},
+                             [&](std::size_t road) { return errors_m[road]; });
+    for (const std::size_t road : roads) {
+      const PlannedLane& first = plan_.roads[road].sections.front().lanes.front();
+      file_.notes.push_back(
+          fmt::format("the road of lane {} has borders up to {:.3f} m off: they end askew, turn "
+                      "too sharply, or "
+                      "are another's for the lane beside it",
+                      road_map_.lane(first.lane).name, errors_m[road]));
+    }
   }
 
   void add_header() {

@@ -16,12 +16,10 @@ class BorderEvaluator {
  public:
   explicit BorderEvaluator(const RoadShape& shape) : shape_(shape), view_(shape.plan_view) {}
 
-  std::vector<WrittenLine> section(std::size_t index) const {
-    const SectionShape& section = shape_.sections[index];
+  std::vector<WrittenLine> lines(const WrittenSection& written) const {
+    const SectionShape& section = *written.shape;
     std::vector<WrittenLine> lines(section.widths.size() + 1);
-    const double end_m =
-        index + 1 < shape_.sections.size() ? shape_.sections[index + 1].s_m : shape_.length_m;
-    const std::vector<double> corners_m = corners(section, section.s_m, end_m);
+    const std::vector<double> corners_m = corners(section, written.from_m, written.to_m);
     for (std::size_t i = 0; i + 1 < corners_m.size(); ++i) {
       add(section, corners_m[i], corners_m[i + 1], i + 2 == corners_m.size(), lines);
     }
@@ -107,7 +105,9 @@ class BorderEvaluator {
 std::vector<std::vector<WrittenLine>> written_borders(const RoadShape& shape) {
   const BorderEvaluator evaluator(shape);
   std::vector<std::vector<WrittenLine>> lines;
-  for (std::size_t i = 0; i < shape.sections.size(); ++i) lines.push_back(evaluator.section(i));
+  for (const WrittenSection& section : written_sections(shape)) {
+    lines.push_back(evaluator.lines(section));
+  }
   return lines;
 }
 

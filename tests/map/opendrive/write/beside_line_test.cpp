@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "roadbed/map/opendrive/write/clothoid.h"
 
@@ -56,7 +58,7 @@ TEST(BesideLine, ReachesFromEndToEndAndStaysOnTheBorder) {
   const geometry::PlanView view = bend();
   const RoadBorder border = border_at(view, {{-1, 4}, {20, 5}, {41, 6}, {55, 5}, {66, 5}, {81, 4}});
   BesideFaults faults;
-  const BesideLine line = line_beside(table(view), border, 0.0, 80.0, faults);
+  const BesideLine line = line_beside(table(view), border, 0.0, 80.0, faults).line;
   EXPECT_EQ(line.front().s_m, 0.0);
   EXPECT_EQ(line.back().s_m, 80.0);
   for (const BesidePoint& point : line) {
@@ -83,6 +85,41 @@ TEST(BesideLine, MeasuresWhatIsWrongWithABorder) {
   EXPECT_NEAR(faults.sideways_m, 1.0, 1e-9);
 }
 
+TEST(BesideLine, SeesABendShortBesideALongChord) {
+  // The reference line sways beside the straight border in the first of 40 m.
+  std::vector<geometry::PlanPiece> pieces;
+  geometry::Pose2 pose{0.0, 0.0, 0.0};
+  double s_m = 0.0;
+  for (const auto& [length_m, curvature_per_m] :
+       {std::pair{0.25, 0.5}, {0.5, -0.5}, {0.25, 0.5}, {39.0, 0.0}}) {
+    pieces.push_back({s_m, length_m, pose, geometry::ArcCurve{curvature_per_m}});
+    s_m += length_m;
+    pose = geometry::plan_point(pieces.back(), s_m).pose;
+  }
+  RoadBorder border;
+  border.points = {{0.0, 0.0, 0.0}, {pose.x_m, 0.0, 0.0}};
+  border.own_to = 1;
+  BesideFaults faults;
+  const ReferenceTable reference(pieces);
+  const BesideLine line = line_beside(reference, border, 0.0, 40.0, faults).line;
+  std::size_t hint = 0;
+  for (double at_m = 0.01; at_m < 40.0; at_m += 0.01) {
+    EXPECT_LT(std::abs(reference.at(at_m).beside(point_at(line, at_m, hint).t_m).y()), 1e-3)
+        << at_m;
+  }
+}
+
+TEST(BesideLine, TellsBetweenWhichStationsThereIsABorder) {
+  const geometry::PlanView view({{0.0, 50.0, {0.0, 0.0, 0.0}, geometry::LineCurve{}}});
+  const RoadBorder border = border_at(view, {{2, 4}, {30, 4}, {47.5, 5}});
+  BesideFaults faults;
+  const BesideOptions options{.may_end = {false, true}};
+  const PlacedBorder placed = line_beside(table(view), border, 0.0, 50.0, faults, options);
+  EXPECT_NEAR(placed.from_m, 2.0, 1e-9);
+  EXPECT_NEAR(placed.to_m, 47.5, 1e-9);
+  EXPECT_NEAR(faults.missing_m, 2.0, 1e-9);  // at the end it may be missing
+}
+
 TEST(BesideLine, EndsWhereTheBorderEndsThoughItGoesOnSideways) {
   // Rounding puts both ends of the border just inside of the road.
   const geometry::PlanView view({{0.0, 0.2, {5.0, -3.0, 0.4}, geometry::LineCurve{}}});
@@ -90,7 +127,8 @@ TEST(BesideLine, EndsWhereTheBorderEndsThoughItGoesOnSideways) {
   border.own_from = 1;
   border.own_to = 2;
   BesideFaults faults;
-  for (const BesidePoint& point : line_beside(table(view), border, 0.0, 0.2, faults)) {
+  const BesideLine line = line_beside(table(view), border, 0.0, 0.2, faults).line;
+  for (const BesidePoint& point : line) {
     EXPECT_NEAR(point.t_m, 5.0, 1e-6);
   }
 }
