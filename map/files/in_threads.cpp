@@ -1,5 +1,7 @@
 #include "roadbed/map/files/in_threads.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -42,7 +44,11 @@ class Indices {
 
 }  // namespace
 
-int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+int processors() {
+  cpu_set_t ours;
+  if (::sched_getaffinity(0, sizeof ours, &ours) == 0) return std::max(1, CPU_COUNT(&ours));
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
 
 void in_threads_that_make(std::size_t count, int threads,
                           const std::function<std::function<void(std::size_t)>()>& make_work) {

@@ -94,8 +94,13 @@ class Rail {
     const std::size_t last = std::min(plan.size() - 1, at + kReach);
     for (std::size_t run = first / kRun; run * kRun < last; ++run) {
       if (!boxes_[run].intersects(box)) continue;
-      const std::size_t end = std::min(last, (run + 1) * kRun);
-      for (std::size_t i = std::max(first, run * kRun); i < end; ++i) {
+      const std::size_t begin = std::max(first, run * kRun), end = std::min(last, (run + 1) * kRun);
+      double before = side(by.from, by.to, plan[begin]);
+      for (std::size_t i = begin; i < end; ++i) {
+        const double after = side(by.from, by.to, plan[i + 1]);
+        const bool is_beside = (before > 0.0 && after > 0.0) || (before < 0.0 && after < 0.0);
+        before = after;
+        if (is_beside) continue;  // as most are
         const Segment segment{plan[i], plan[i + 1]};
         if (meet(segment, by) && !spared(segment)) return true;
       }
@@ -146,7 +151,9 @@ class Ladder {
       right_.at = right_.plan.size() - 1;
       add_rung();
     }
-    return {std::move(centre_), stations(left_), stations(right_)};
+    fill_stations(left_);
+    fill_stations(right_);
+    return {std::move(centre_), std::move(left_.station_m), std::move(right_.station_m)};
   }
 
  private:
@@ -232,13 +239,13 @@ class Ladder {
     return !rail.is_met(rung, at_candidate) && !opposite.is_met(rung, at_foot);
   }
 
-  // Fills in the vertices without a rung, by their fraction of the border between those that have
-  // one.
-  std::vector<double> stations(const Rail& rail) const {
-    std::vector<double> station_m = rail.station_m;
-    const std::vector<double> arc_m = arc_lengths(rail.line);
+  // The vertices without a rung, by their fraction of the border between those that have one.
+  void fill_stations(Rail& rail) const {
+    std::vector<double>& station_m = rail.station_m;
     station_m.front() = 0.0;
     station_m.back() = length_m_;
+    if (std::ranges::none_of(station_m, [](double s_m) { return std::isnan(s_m); })) return;
+    const std::vector<double> arc_m = arc_lengths(rail.line);
     std::size_t known = 0;
     for (std::size_t i = 1; i < station_m.size(); ++i) {
       if (std::isnan(station_m[i])) continue;
@@ -249,7 +256,6 @@ class Ladder {
       }
       known = i;
     }
-    return station_m;
   }
 
   Rail left_, right_;

@@ -50,9 +50,11 @@ class LaneBuilder {
       : document_(document), budget_(budget) {}
 
   LaneRun build(std::size_t from, std::size_t to) {
+    built_.lanes.reserve(to - from);
     for (std::size_t i = from; i < to; ++i) {
       const Relation& relation = document_.relations[i];
-      if (relation.type == "lanelet" && document_.relation_index.find(relation.id) == i) {
+      if (relation.type == "lanelet" &&
+          document_.relation_index.find_near(relation.id, near_lanelet_) == i) {
         add(static_cast<std::uint32_t>(i));
       }
     }
@@ -73,7 +75,7 @@ class LaneBuilder {
       if (member.role != role) continue;
       ++count;
       if (member.kind != MemberKind::way) continue;
-      way = document_.way_index.find(member.id);
+      way = document_.way_index.find_near(member.id, near_way_);
       is_missing = is_missing || !way;
     }
     if (count == 1 && way && document_.ways[*way].nodes.size() >= 2) return way;
@@ -172,6 +174,7 @@ class LaneBuilder {
   const Document& document_;
   PointBudget& budget_;
   LaneRun built_;
+  std::size_t near_lanelet_ = 0, near_way_ = 0;  // where the last ones were found
 };
 
 template <typename T>

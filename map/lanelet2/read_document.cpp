@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -35,6 +36,23 @@ std::optional<MemberKind> member_kind(std::string_view name) {
   if (equals(name, "relation")) return MemberKind::relation;
   return {};
 }
+
+// Texts that came before stand for those that say the same: what is compared again and again stays
+// in the cache, which the file does not.
+class RepeatedTexts {
+ public:
+  std::string_view first_of(std::string_view text) {
+    if (text.empty()) return text;
+    std::uint64_t head = 0;
+    std::memcpy(&head, text.data(), std::min(text.size(), sizeof head));
+    std::string_view& known = known_[((head ^ text.size()) * 0x9E37'79B9'7F4A'7C15u) >> 54];
+    if (known != text) known = text;
+    return known;
+  }
+
+ private:
+  std::array<std::string_view, 1024> known_{};
+};
 
 // Places in a list: the first one, and that behind the last.
 struct Range {
@@ -181,7 +199,8 @@ class DocumentReader {
   template <typename Element>
   void add_tag(Element& element) {
     spend(Cost::child);
-    const std::string_view key = scanner_.value("k"), value = scanner_.value("v");
+    const std::string_view key = texts_.first_of(scanner_.value("k")),
+                           value = texts_.first_of(scanner_.value("v"));
     if (equals(key, "type") && element.type.data() == nullptr) element.type = value;
     if (equals(key, "subtype") && element.subtype.data() == nullptr) element.subtype = value;
     document_.tags.emplace_back(key, value);
@@ -210,7 +229,7 @@ class DocumentReader {
       fault(scanner_.offset(), "import.reference", "names no node, way or relation");
       return;
     }
-    document_.members.push_back({*kind, *ref, scanner_.value("role")});
+    document_.members.push_back({*kind, *ref, texts_.first_of(scanner_.value("role"))});
   }
 
   // Gives elements their tags, when the list of all tags grows no more.
@@ -321,8 +340,9 @@ class DocumentReader {
 
   int threads_;
   Document document_;
-  XmlScanner& scanner_;                          // the document's
-  std::size_t budget_;                           // of memory [bytes]
+  XmlScanner& scanner_;  // the document's
+  std::size_t budget_;   // of memory [bytes]
+  RepeatedTexts texts_;
   std::vector<std::int64_t> refs_;               // to the nodes of all ways
   std::vector<std::size_t> refs_begin_;          // those of each way
   std::vector<Range> way_tags_, relation_tags_;  // of the tags of each

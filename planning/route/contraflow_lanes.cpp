@@ -13,12 +13,12 @@ constexpr double kCorner_m = 0.05;
 struct Gate {
   Eigen::Vector2d left{0, 0}, right{0, 0};
   std::uint32_t lane = 0;
+  double strip = strip_of(left.x());  // of 1 m
 
-  // By strips of 1 m, and along each of them.
   bool operator<(const Gate& other) const {
-    return std::pair(strip(left.x()), left.y()) < std::pair(strip(other.left.x()), other.left.y());
+    return std::pair(strip, left.y()) < std::pair(other.strip, other.left.y());
   }
-  static double strip(double x_m) { return std::floor(x_m); }
+  static double strip_of(double x_m) { return std::floor(x_m); }
   bool meets(const Gate& other) const {
     return (left - other.left).norm() <= kCorner_m && (right - other.right).norm() <= kCorner_m;
   }
@@ -129,8 +129,8 @@ class ContraflowLanes {
     for (std::uint32_t lane = 0; lane < network_.lanes.size(); ++lane) {
       const Gate exit = gate(lane, true);
       if (!exit.is_open()) continue;
-      const double from_strip = Gate::strip(exit.left.x() - kCorner_m);
-      const double to_strip = Gate::strip(exit.left.x() + kCorner_m);
+      const double from_strip = Gate::strip_of(exit.left.x() - kCorner_m);
+      const double to_strip = Gate::strip_of(exit.left.x() + kCorner_m);
       for (double strip = from_strip; strip <= to_strip; strip += 1.0) {
         join_in_strip(entries, exit, strip);
       }
@@ -139,10 +139,10 @@ class ContraflowLanes {
 
   void join_in_strip(const std::vector<Gate>& entries, const Gate& exit, double strip) {
     Gate first = exit;
-    first.left = {strip, exit.left.y() - kCorner_m};
+    first.strip = strip;
+    first.left.y() = exit.left.y() - kCorner_m;
     for (auto at = std::lower_bound(entries.begin(), entries.end(), first);
-         at != entries.end() && Gate::strip(at->left.x()) == strip &&
-         at->left.y() <= exit.left.y() + kCorner_m;
+         at != entries.end() && at->strip == strip && at->left.y() <= exit.left.y() + kCorner_m;
          ++at) {
       if (may_join(exit, *at)) next_[exit.lane].push_back(at->lane);
     }
