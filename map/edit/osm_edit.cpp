@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "roadbed/map/files/xml_characters.h"
 #include "roadbed/map/files/xml_places.h"
@@ -206,6 +207,17 @@ std::string_view tag_value(lanelet2::Tags tags, std::string_view key) {
   const auto found =
       std::find_if(tags.begin(), tags.end(), [&](const auto& tag) { return tag.first == key; });
   return found == tags.end() ? std::string_view() : found->second;
+}
+
+WaySpan span_of(const lanelet2::Way& way) {
+  const std::string text(tag_value(way.tags, kClipKey));
+  WaySpan span;
+  long long whole = 0;
+  const int read =
+      std::sscanf(text.c_str(), "%lld %lf %lf %zu", &whole, &span.from, &span.to, &span.rows);
+  span.whole = whole;
+  if (read == 4 && span.rows < 100'000'000 && span.fits(way.nodes.size())) return span;
+  return {{0.0, static_cast<double>(way.nodes.size()) - 1.0, way.nodes.size()}, way.id};
 }
 
 std::int64_t free_id(const lanelet2::Document& document) {

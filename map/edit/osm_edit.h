@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadbed/map/edit/row_span.h"
 #include "roadbed/map/files/xml_places.h"
 #include "roadbed/map/lanelet2/document.h"
 
@@ -93,6 +94,13 @@ std::optional<std::vector<lanelet2::Member>> members_in(std::string_view text);
 
 /// The value of a tag; empty where there is none.
 std::string_view tag_value(lanelet2::Tags tags, std::string_view key);
+
+/// The whole line that a way is a part of, and which, as a clip remembers it, "205 4 8 9"; the way
+/// itself where there is nothing, or something that its nodes do not fit.
+struct WaySpan : RowSpan {
+  std::int64_t whole = 0;
+};
+WaySpan span_of(const lanelet2::Way& way);
 
 /// The number after the greatest id of a file.
 std::int64_t free_id(const lanelet2::Document& document);

@@ -45,8 +45,7 @@ Clipper lanelet2_clipper(std::string bytes, const std::string& name, const ClipO
 
 // CommonRoad: lanelets beside each other are cut together, across, at the first and the last row of
 // their points (or a place between two) at which any of them touches the region: everything inside
-// is kept. Obstacles and planning problems stay with where they begin. Such a file is small, and
-// read for each region.
+// is kept. Obstacles and planning problems stay with where they begin.
 Clipper common_road_clipper(std::string bytes, const std::string& name, const ClipOptions& options);
 
 }  // namespace roadbed::map::edit::clipping

@@ -14,6 +14,7 @@
 #include "roadbed/map/edit/clipping/lanelet_index.h"
 #include "roadbed/map/edit/clipping/line_spans.h"
 #include "roadbed/map/edit/clipping/osm_nodes.h"
+#include "roadbed/map/edit/clipping/osm_part.h"
 #include "roadbed/map/edit/osm_edit.h"
 
 namespace roadbed::map::inline edit::inline clipping {
@@ -28,13 +29,13 @@ using lanelet2::Way;
 
 class LaneletClipper {
  public:
-  LaneletClipper(const Document& document, const LaneletIndex& index, const Region& region,
-                 const ClipOptions& options)
+  LaneletClipper(const Document& document, const LaneletIndex& index, const OsmLayout& layout,
+                 const Region& region, const ClipOptions& options)
       : document_(document),
         index_(index),
         region_(region),
         options_(options),
-        edit_(document),
+        edit_(layout),
         nodes_(document),
         next_id_(index.free_id()),
         spans_(document.ways.size()),
@@ -166,7 +167,8 @@ class LaneletClipper {
   bool can_be_cut(const LaneletWays& strip) const {
     for (std::size_t i = 0; i < strip.ways.size(); ++i) {
       const std::uint32_t way = strip.ways[i];
-      if (forced_[way] || role_[way] == WayRole::fixed) return false;
+      // Without a stretch inside, only an end of the lanelet or a corner of the region is.
+      if (forced_[way] || role_[way] == WayRole::fixed || spans_[way].empty()) return false;
       if (!correspond(spans_along(strip, 0), points(strip.ways[0]), spans_along(strip, i),
                       points(way))) {
         return false;
@@ -205,7 +207,6 @@ class LaneletClipper {
     for (std::uint32_t i = 0; i < document_.ways.size(); ++i) {
       const bool alone = role_[i] == WayRole::alone;
       if (!way_stays_[i] && (role_[i] == WayRole::border || spans_[i].empty())) {
-        edit_.drop(document_.ways[i].at);
         continue;
       }
       way_stays_[i] = true;
@@ -215,6 +216,7 @@ class LaneletClipper {
       if (!whole && (alone || role_[i] == WayRole::border)) {
         cut_way(i);
       } else {
+        edit_.keep(document_.ways[i].at);
         for (const std::uint32_t node : document_.ways[i].nodes) node_stays_[node] = true;
       }
     }
@@ -222,15 +224,17 @@ class LaneletClipper {
 
   void cut_way(std::uint32_t index) {
     const Way& way = document_.ways[index];
+    const WaySpan before = span_of(way);
     for (std::size_t k = 0; k < spans_[index].size(); ++k) {
       if (k > 0) ids_[index].push_back(next_id_++);
       OsmElement element(edit_.text_of(way.at));
       const LineSpan& span = spans_[index][k];
       element.set_nodes(nodes_along(way, span));
+      const RowSpan part = before.part(span.from, span.to);
       element.set_tag(kClipKey,
-                      fmt::format("{} {} {} {}", way.id, span.from, span.to, way.nodes.size()));
+                      fmt::format("{} {} {} {}", before.whole, part.from, part.to, part.rows));
       element.set_attribute("id", std::to_string(ids_[index][k]));
-      k == 0 ? edit_.replace(way.at, element.text()) : edit_.add(MemberKind::way, element.text());
+      k == 0 ? edit_.keep(way.at, element.text()) : edit_.add(MemberKind::way, element.text());
     }
   }
 
@@ -269,7 +273,10 @@ class LaneletClipper {
       const bool whole = std::all_of(strip.ways.begin(), strip.ways.end(), [&](std::uint32_t way) {
         return is_whole_line(way) || role_[way] == WayRole::fixed || options_.whole;
       });
-      if (whole) continue;
+      if (whole) {
+        edit_.keep(relation.at);
+        continue;
+      }
       ++cut_;
       for (std::size_t k = 0; k < parts; ++k) write_part(strip, relation, k);
     }
@@ -286,9 +293,9 @@ class LaneletClipper {
     }
     OsmElement element(edit_.text_of(relation.at));
     element.set_members(members);
-    element.set_tag(kClipKey, std::to_string(relation.id));
+    remember(relation, std::to_string(relation.id), element);
     if (part == 0) {
-      edit_.replace(relation.at, element.text());
+      edit_.keep(relation.at, element.text());
       return;
     }
     ++parts_;
@@ -297,14 +304,15 @@ class LaneletClipper {
     edit_.add(MemberKind::relation, element.text());
   }
 
+  // What was remembered before stays: it is of the whole map.
+  static void remember(const Relation& relation, const std::string& what, OsmElement& element) {
+    if (tag_value(relation.tags, kClipKey).empty()) element.set_tag(kClipKey, what);
+  }
+
   void write_relations() {
     for (std::uint32_t i = 0; i < document_.relations.size(); ++i) {
       const Relation& relation = document_.relations[i];
-      if (!relation_stays_[i]) {
-        edit_.drop(relation.at);
-      } else if (relation.type != "lanelet") {
-        write_relation(relation);
-      }
+      if (relation_stays_[i] && relation.type != "lanelet") write_relation(relation);
     }
   }
 
@@ -329,12 +337,13 @@ class LaneletClipper {
         changed = true;
       }
     }
+    edit_.keep(relation.at);
     if (!changed) return;
     ++thinned_;
     OsmElement element(edit_.text_of(relation.at));
     element.set_members(members);
-    element.set_tag(kClipKey, text_of(relation.members));
-    edit_.replace(relation.at, element.text());
+    remember(relation, text_of(relation.members), element);
+    edit_.keep(relation.at, element.text());
   }
 
   // Those of lines and relations that stay, and those inside that nothing refers to.
@@ -344,7 +353,7 @@ class LaneletClipper {
       const bool stays =
           node_stays_[i] || (!index_.is_of_way()[i] && node.placed &&
                              region_.contains(node.in_map.head<2>() + document_.origin_in_source));
-      if (!stays) edit_.drop(node.at);
+      if (stays) edit_.keep(node.at);
     }
   }
 
@@ -352,7 +361,7 @@ class LaneletClipper {
   const LaneletIndex& index_;
   const Region& region_;
   const ClipOptions& options_;
-  OsmEdit edit_;
+  OsmPart edit_;
   const NodeText nodes_;
   std::int64_t next_id_;
   std::vector<std::vector<LineSpan>> spans_;  // of each way
@@ -370,9 +379,10 @@ Clipper lanelet2_clipper(std::string bytes, const std::string& name, const ClipO
   const auto document =
       std::make_shared<const Document>(lanelet2::read_document(std::move(bytes), name));
   const auto index = std::make_shared<const LaneletIndex>(*document);
-  return [document, index, options](const Region& region) {
+  const auto layout = std::make_shared<const OsmLayout>(*document);
+  return [document, index, layout, options](const Region& region) {
     Edited result;
-    if (!LaneletClipper(*document, *index, region, options).run(result)) {
+    if (!LaneletClipper(*document, *index, *layout, region, options).run(result)) {
       result.reason = "no lanelet of the map reaches into the region";
     }
     return result;

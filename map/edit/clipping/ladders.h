@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <map>
 #include <pugixml.hpp>
 #include <string>
 #include <vector>
 
+#include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/map/commonroad/document.h"
 #include "roadbed/map/edit/clipping/region.h"
 #include "roadbed/map/edit/clipping/touching_spans.h"
@@ -27,15 +29,38 @@ struct Ladder {
   bool is_regular() const { return left.size() == right.size(); }
 };
 
-/// What of lanelets a region touches. Lanelets beside each other, with rows that correspond, are a
-/// group: they are cut together.
-struct LadderSpans {
-  std::vector<Ladder> ladders;
-  std::vector<std::vector<Span>> spans;  ///< of each group, in rows
-  std::vector<pugi::xml_node> unusable;  ///< lanelets without two borders
-};
+/// The lanelets of a map. Those beside each other, with rows that correspond, are a group: they are
+/// cut together.
+class LadderMap {
+ public:
+  /// @param document  outlives it.
+  explicit LadderMap(const commonroad::Document& document);
 
-/// @param whole  what is touched is touched all over.
-LadderSpans ladders_inside(const commonroad::Document& document, const Region& region, bool whole);
+  const std::vector<Ladder>& ladders() const { return ladders_; }
+  const std::vector<pugi::xml_node>& unusable() const {
+    return unusable_;
+  }  ///< without two borders
+
+  /// What of each group a region touches, in rows.
+  /// @param whole  what is touched is touched all over.
+  std::vector<std::vector<Span>> spans_inside(const Region& region, bool whole) const;
+
+ private:
+  using Group = std::vector<std::size_t>;  // of ladders
+
+  void read(const XmlDocument& xml, pugi::xml_node lanelet);
+  void make_groups();
+  void add_neighbours(std::size_t index);
+  std::vector<Span> spans_of(const Group& group, const Region& region) const;
+  Region::Side side_of(const Group& group, double from, double to, const Region& region) const;
+  double length_m(const Group& group, double from, double to) const;
+  bool touches(const Group& group, double row, const Region& region) const;
+
+  std::vector<Ladder> ladders_;
+  std::vector<pugi::xml_node> unusable_;
+  std::map<std::string, std::size_t> by_id_;
+  std::vector<Group> groups_;
+  geometry::BoxTree tree_;  // of the groups
+};
 
 }  // namespace roadbed::map::edit::clipping

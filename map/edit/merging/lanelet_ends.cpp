@@ -66,8 +66,12 @@ void add_reference(pugi::xml_node lanelet, const char* link, const std::string& 
 
 void link_lanelet_ends(const XmlDocument& xml, const std::vector<SourcedLanelet>& lanelets,
                        double tolerance_m, std::vector<Seam>& seams) {
-  const std::vector<BorderEnds> starts = ends_of(xml, lanelets, true);
-  for (const BorderEnds& end : ends_of(xml, lanelets, false)) {
+  std::vector<BorderEnds> starts = ends_of(xml, lanelets, true);
+  std::erase_if(starts,
+                [](const BorderEnds& one) { return one.lanelet.node.child("predecessor"); });
+  std::vector<BorderEnds> ends = ends_of(xml, lanelets, false);
+  std::erase_if(ends, [](const BorderEnds& one) { return one.lanelet.node.child("successor"); });
+  for (const BorderEnds& end : ends) {
     auto start =
         std::lower_bound(starts.begin(), starts.end(), end.left.x() - tolerance_m,
                          [](const BorderEnds& one, double x_m) { return one.left.x() < x_m; });

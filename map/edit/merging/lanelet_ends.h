@@ -15,8 +15,8 @@ struct SourcedLanelet {
   std::size_t source = 0;
 };
 
-/// Links lanelets of different files where both borders of one end at most the tolerance from where
-/// those of the other begin, and adds a seam for each such place.
+/// Links lanelets of different files that lead nowhere yet, where both borders of one end at most
+/// the tolerance from where those of the other begin, and adds a seam for each such place.
 void link_lanelet_ends(const XmlDocument& xml, const std::vector<SourcedLanelet>& lanelets,
                        double tolerance_m, std::vector<Seam>& seams);
 

@@ -1,7 +1,6 @@
 #include "roadbed/map/edit/merging/lanelet_identities.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "roadbed/map/edit/osm_edit.h"
 
@@ -13,21 +12,6 @@ using lanelet2::Member;
 using lanelet2::MemberKind;
 using lanelet2::Relation;
 using lanelet2::Way;
-
-void read_cut(const std::string& text, WayPart& part) {
-  WayPart cut = part;
-  long long whole = 0;
-  if (std::sscanf(text.c_str(), "%lld %lf %lf %zu", &whole, &cut.from, &cut.to, &cut.points) != 4)
-    return;
-  cut.whole = whole;
-  const bool fits = cut.from >= 0.0 && cut.from < cut.to && cut.points < 100'000'000 &&
-                    cut.to + 1.0 <= static_cast<double>(cut.points);
-  if (!fits) return;
-  const double inner = std::floor(cut.to) - std::ceil(cut.from) + 1.0;
-  const auto nodes = static_cast<std::size_t>(std::max(0.0, inner)) +
-                     (cut.starts_at_cut() ? 1 : 0) + (cut.ends_at_cut() ? 1 : 0);
-  if (nodes == part.nodes.size()) part = cut;
-}
 
 }  // namespace
 
@@ -59,10 +43,8 @@ void LaneletIdentities::read_parts(std::size_t f) {
   for (std::size_t i = 0; i < file.ways.size(); ++i) {
     const Way& way = file.ways[i];
     if (!is_first(f, way, i)) continue;
-    WayPart part{f, i, way.id, 0.0, static_cast<double>(way.nodes.size()) - 1.0, way.nodes.size(),
-                 {}};
+    WayPart part{{span_of(way)}, f, i, {}};
     for (const std::uint32_t node : way.nodes) part.nodes.push_back(file.nodes[node].id);
-    read_cut(std::string(tag_value(way.tags, kClipKey)), part);
     if (part.starts_at_cut()) names_[f].cut_nodes.insert(part.nodes.front());
     if (part.ends_at_cut()) names_[f].cut_nodes.insert(part.nodes.back());
     parts_.push_back(std::move(part));
@@ -123,7 +105,7 @@ void LaneletIdentities::name_ways(std::size_t f) {
 
 // Whether two parts are of one line: their points are the same where both have some.
 bool LaneletIdentities::is_one_line(const WayPart& a, const WayPart& b) const {
-  if (a.points != b.points) return false;
+  if (a.rows != b.rows) return false;
   if (said(a.file, files_[a.file].ways[a.way].at) != said(b.file, files_[b.file].ways[b.way].at))
     return false;
   for (std::size_t i = b.first_whole(); static_cast<double>(i) <= b.to; ++i) {
@@ -137,11 +119,7 @@ bool LaneletIdentities::is_one_line(const WayPart& a, const WayPart& b) const {
 OsmId LaneletIdentities::whole_way(std::size_t f, OsmId way) const {
   const auto index = files_[f].way_index.find(way);
   if (!index) return way;
-  WayPart part{f, *index, way, 0.0, 0.0, 0, {}};
-  const Way& text = files_[f].ways[*index];
-  part.nodes.resize(text.nodes.size());
-  read_cut(std::string(tag_value(text.tags, kClipKey)), part);
-  return renamed(names_[f].ways, part.whole);
+  return renamed(names_[f].ways, span_of(files_[f].ways[*index]).whole);
 }
 
 void LaneletIdentities::name_relations(std::size_t f) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "roadbed/map/edit/merging/merge.h"
+#include "roadbed/map/edit/osm_edit.h"
 #include "roadbed/map/lanelet2/document.h"
 
 namespace roadbed::map::inline edit::inline merging {
@@ -20,17 +21,13 @@ using OsmNames = std::map<OsmId, OsmId>;
 OsmId renamed(const OsmNames& names, OsmId id);
 
 /// A part of a whole line, which all that is not cut is, too.
-struct WayPart {
+struct WayPart : WaySpan {
   std::size_t file = 0, way = 0;  ///< which of its file
-  OsmId whole = 0;
-  double from = 0.0, to = 0.0;
-  std::size_t points = 0;  ///< of the whole line
   std::vector<OsmId> nodes;
 
   std::size_t first_whole() const { return static_cast<std::size_t>(std::ceil(from)); }
   bool starts_at_cut() const { return static_cast<double>(first_whole()) > from; }
   bool ends_at_cut() const { return std::floor(to) < to; }
-  bool is_whole() const { return from <= 0.0 && to >= static_cast<double>(points - 1); }
 
   // The node of a point of the whole line; none if it is not in this part.
   const OsmId* at(std::size_t index) const {

@@ -47,8 +47,8 @@ Merged merge(std::vector<MergeInput> inputs, const MergeOptions& options = {});
 Merged merge_open_drive(std::vector<MergeInput> inputs, const MergeOptions& options);
 Merged merge_lanelet2(std::vector<MergeInput> inputs, const MergeOptions& options);
 
-// CommonRoad: parts of a lanelet that was cut stay lanelets of their own, linked where they meet.
-// Obstacles and planning problems come along, but for those of a file whose time step is another.
+// CommonRoad: obstacles and planning problems come along, but for those of a file whose time step
+// is another.
 Merged merge_common_road(std::vector<MergeInput> inputs, const MergeOptions& options);
 
 }  // namespace roadbed::map::edit::merging

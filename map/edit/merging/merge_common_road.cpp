@@ -2,14 +2,17 @@
 
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "roadbed/map/commonroad/document.h"
+#include "roadbed/map/edit/lanelet_parts.h"
 #include "roadbed/map/edit/merging/coordinate_systems.h"
 #include "roadbed/map/edit/merging/lanelet_ends.h"
+#include "roadbed/map/edit/merging/lanelet_joins.h"
 #include "roadbed/map/edit/merging/merge.h"
 #include "roadbed/map/edit/new_ids.h"
 #include "roadbed/map/edit/xml_edit.h"
@@ -45,19 +48,17 @@ std::vector<pugi::xml_node> named_elements(pugi::xml_node root) {
 class ScenarioMerger {
  public:
   explicit ScenarioMerger(std::deque<commonroad::Document>& files)
-      : files_(files), root_(root_of(0)) {
-    for (const commonroad::Document& file : files) {
-      for (const auto node : named_elements(file.xml.root())) fresh_.take(text(node, "id"));
-    }
+      : files_(files), root_(root_of(0)), names_(files.size()) {}
+
+  void run(const MergeOptions& options, Merged& result) {
+    join_parts(result);
     for (const auto node : named_elements(root_)) elements_.emplace(text(node, "id"), node);
     for (const auto node : root_.children()) {
       if (node.type() == pugi::node_element) last_[node.name()] = node;
     }
     for (const auto lanelet : root_.children("lanelet")) lanelets_.push_back({lanelet, 0});
-  }
-
-  void run(const MergeOptions& options, Merged& result) {
     for (std::size_t f = 1; f < files_.size(); ++f) add_file(f, result);
+    settle_links(result);
     link_lanelet_ends(files_.front().xml, lanelets_, options.tolerance_m, result.seams);
     result.count("elements taken once that several maps hold", repeated_);
     result.count("obstacles and planning problems of other time steps, left out", lost_);
@@ -65,6 +66,25 @@ class ScenarioMerger {
 
  private:
   pugi::xml_node root_of(std::size_t f) const { return files_[f].xml.root(); }
+
+  // Lanelets that a clip cut, and links as they were before it.
+  void join_parts(Merged& result) {
+    for (const commonroad::Document& file : files_) {
+      for (const auto node : named_elements(file.xml.root())) fresh_.take(text(node, "id"));
+      recall_links(file.xml.root());
+    }
+    for (JoinedLanelet& joined : join_lanelets(files_, fresh_, result)) {
+      joined_.insert({{*joined.files.begin(), joined.id}, std::move(joined.files)});
+    }
+  }
+
+  void settle_links(Merged& result) {
+    LaneletParts parts;
+    for (const auto& [node, source] : lanelets_) {
+      parts.add({node, remembered_span(node).value_or(all_rows(node)), source});
+    }
+    result.count("links to what no map holds", parts.settle_links(root_, false).links);
+  }
 
   void add_file(std::size_t f, Merged& result) {
     pugi::xml_node root = root_of(f);
@@ -79,7 +99,7 @@ class ScenarioMerger {
     }
     std::vector<std::pair<pugi::xml_node, pugi::xml_node>> once;  // here, and in the first file
     std::vector<pugi::xml_node> added;
-    NameChanges names;
+    NameChanges& names = names_[f];
     for (const auto node : all_children(root)) {
       if (!node.attribute("id")) continue;
       const auto known = elements_.find(text(node, "id"));
@@ -87,7 +107,7 @@ class ScenarioMerger {
         once.emplace_back(node, known->second);
       } else {
         added.push_back(node);
-        rename(f, node, names, result);
+        rename(f, node, result);
       }
     }
     // What names something renamed is another thing, too.
@@ -96,7 +116,7 @@ class ScenarioMerger {
       std::erase_if(once, [&](const auto& one) {
         if (!leads_to_renamed(one.first, names)) return false;
         added.push_back(one.first);
-        rename(f, one.first, names, result);
+        rename(f, one.first, result);
         return true;
       });
     }
@@ -122,12 +142,15 @@ class ScenarioMerger {
     return false;
   }
 
-  void rename(std::size_t f, pugi::xml_node element, NameChanges& names, Merged& result) {
+  void rename(std::size_t f, pugi::xml_node element, Merged& result) {
     for (const auto node : named_elements(element)) {
       const std::string id = text(node, "id");
       if (!elements_.contains(id)) continue;
       const std::string fresh = fresh_.fresh();
-      names[id] = fresh;
+      names_[f][id] = fresh;
+      if (const auto joined = joined_.find({f, id}); joined != joined_.end()) {
+        for (const std::size_t file : joined->second) names_[file][id] = fresh;
+      }
       result.renamed.push_back({files_[f].xml.name(), node.name(), id, fresh});
     }
   }
@@ -172,7 +195,12 @@ class ScenarioMerger {
         if (child.type() == pugi::node_element) open.push_back(child);
       }
     }
-    if (std::string_view(last.name()) == "lanelet") lanelets_.push_back({last, f});
+    if (std::string_view(last.name()) != "lanelet") return;
+    lanelets_.push_back({last, f});
+    if (auto span = remembered_span(last)) {
+      span->whole = called(names, span->whole);
+      remember_span(last, *span);
+    }
   }
 
   static constexpr std::array<std::string_view, 11> kOrder = {
@@ -186,6 +214,9 @@ class ScenarioMerger {
   std::map<std::string, pugi::xml_node> elements_;  // of the whole, by id
   std::map<std::string, pugi::xml_node> last_;      // of each kind
   std::vector<SourcedLanelet> lanelets_;
+  std::vector<NameChanges> names_;  // that each file's elements get
+  // Files that have parts of a lanelet, by the first of them and its id there.
+  std::map<std::pair<std::size_t, std::string>, std::set<std::size_t>> joined_;
   std::size_t repeated_ = 0, lost_ = 0;
 };
 

@@ -127,7 +127,7 @@ class LaneletMerger {
       element.remove_tag(kClipKey);
     } else {
       element.set_tag(kClipKey,
-                      fmt::format("{} {} {} {}", part.whole, part.from, part.to, part.points));
+                      fmt::format("{} {} {} {}", part.whole, part.from, part.to, part.rows));
     }
     put(part.file, MemberKind::way, way.at, element.text());
   }

@@ -92,7 +92,8 @@ void expect_same_routes(const std::filesystem::path& file, const Vector2d& at) {
 }
 
 TEST(Quarters, OfMadeMapsAreTheWholeAgain) {
-  for (const char* name : {"town.xodr", "country.xodr", "ramp.xodr", "crossing.osm"}) {
+  for (const char* name :
+       {"town.xodr", "country.xodr", "ramp.xodr", "crossing.osm", "junction.xml"}) {
     expect_whole_again(tests::data_folder() / name, 4);
   }
 }
@@ -122,6 +123,44 @@ TEST(Quarters, OfOtherRealMapsAreTheWholeAgain) {
                            "lanelet2/autowarefoundation+autoware_core/2km_test.osm",
                            "lanelet2/autowarefoundation+autoware_core/intersection.osm"}) {
     expect_whole_again(real / name, 2);
+  }
+}
+
+TEST(Quarters, OfScenariosAreTheWholeAgain) {
+  ROADBED_REAL_DATA_OR_SKIP(real);
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(real / "commonroad")) {
+    if (entry.path().extension() != ".xml") continue;
+    SCOPED_TRACE(entry.path().filename());
+    expect_whole_again(entry.path(), 2);
+    ++files;
+  }
+  EXPECT_GE(files, 30u);
+}
+
+// Nine parts of a map that is cut again and again.
+TEST(Quarters, OfQuartersAreTheWholeAgain) {
+  for (const char* name : {"town.xodr", "crossing.osm", "junction.xml"}) {
+    const std::string bytes = read_file(tests::data_folder() / name);
+    const RoadMap whole = parse_map(bytes, name);
+    const Lane& lane = whole.lanes()[whole.lanes().size() / 2];
+    const auto at = [&](double part) {
+      return whole.to_source(lane.centre.in_map.at(part * lane.length_m()));
+    };
+    std::vector<MergeInput> parts;
+    for (const double x : {-1.0, 1.0}) {
+      const Vector2d a = at(0.3), far(x * 1e7, 1e7);
+      const Vector2d corner = a + far, other(a.x(), a.y() - 2e7);
+      const Edited half = clip(bytes, name, box(corner.cwiseMin(other), corner.cwiseMax(other)));
+      for (const double y : {-1.0, 1.0}) {
+        const Vector2d b = at(0.7) + Vector2d(-2e7, 0.0), c = at(0.7) + Vector2d(2e7, y * 1e7);
+        if (half.bytes.empty()) continue;
+        Edited quarter = clip(half.bytes, name, box(b.cwiseMin(c), b.cwiseMax(c)));
+        if (!quarter.bytes.empty()) parts.push_back({std::move(quarter.bytes), name});
+      }
+    }
+    EXPECT_GE(parts.size(), 3u);
+    expect_equal(whole, parse_map(merge(std::move(parts)).bytes, name), at(0.5));
   }
 }
 

@@ -136,6 +136,27 @@ TEST(ClipLanelet2, CutsBordersWhereTheEdgeCrossesThem) {
   EXPECT_GE(on_edge, 2u);
 }
 
+// A box that reaches into a lanelet but over none of its borders keeps it whole.
+TEST(ClipLanelet2, LeavesNoReferenceToWhatIsNotThere) {
+  const std::string bytes = read_file(tests::data_folder() / "crossing.osm");
+  const RoadMap whole = parse_map(bytes, "crossing.osm");
+  std::size_t parts = 0;
+  for (double x = 620.0; x < 780.0; x += 7.7) {
+    for (double y = 220.0; y < 380.0; y += 7.3) {
+      for (const double side_m : {3.0, 46.8}) {
+        const Edited part = clip(bytes, "crossing.osm", box(x, y, x + side_m, y + side_m));
+        if (part.bytes.empty()) continue;
+        ++parts;
+        const RoadMap map = parse_map(part.bytes, "part.osm");
+        for (const ImportDiagnostic& remark : map.import_diagnostics()) {
+          EXPECT_FALSE(remark.is_fault) << x << ' ' << y << ' ' << side_m << ": " << remark.message;
+        }
+      }
+    }
+  }
+  EXPECT_GT(parts, 100u);
+}
+
 // A clip of OpenDRIVE cuts the map itself, a clipper copies of what is near.
 TEST(MakeClipper, ClipsEachSquareAsAClipDoes) {
   for (const char* name : {"town.xodr", "crossing.osm", "junction.xml"}) {
