@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <span>
 #include <tuple>
@@ -15,6 +16,15 @@
 
 namespace roadbed::map::inline repair {
 namespace {
+
+// Findings of each rule.
+using RuleCounts = std::map<std::string, std::size_t>;
+
+RuleCounts by_rule(const std::vector<validation::Finding>& findings) {
+  RuleCounts counts;
+  for (const validation::Finding& finding : findings) ++counts[finding.rule];
+  return counts;
+}
 
 using Propose = std::vector<Repair> (*)(const std::string&, const std::string&,
                                         const RepairOptions&);
@@ -46,6 +56,7 @@ class Mender {
                         .remedy = "correct that first"});
     }
     file_.before = file_.after = count(validation.findings);
+    rules_ = by_rule(validation.findings);
     while (left_ > 0) {
       const std::vector<Repair> proposed = fresh();
       if (proposed.empty() || !make_some(proposed)) break;
@@ -99,6 +110,7 @@ class Mender {
     if (validation.road_map && counts < file_.after) {
       file_.bytes = std::move(bytes);
       file_.after = counts;
+      rules_ = by_rule(validation.findings);
       for (const Repair& repair : proposed) {
         tried_.insert(key_of(repair));
         file_.repairs.push_back(repair);
@@ -109,15 +121,33 @@ class Mender {
       tried_.insert(key_of(proposed.front()));
       return false;
     }
+    if (validation.road_map) {
+      const std::vector<Repair> rest = effective(proposed, by_rule(validation.findings));
+      if (rest.size() < proposed.size()) return !rest.empty() && make_some(rest);
+    }
     const std::size_t half = proposed.size() / 2;
     // What stands in the text behind the first half has moved if any of that was made.
     return make_some(proposed.first(half)) || make_some(proposed.subspan(half));
+  }
+
+  // Without those of rules that find no less when all are made, which are not tried again.
+  std::vector<Repair> effective(std::span<const Repair> proposed, RuleCounts now) {
+    std::vector<Repair> rest;
+    for (const Repair& repair : proposed) {
+      if (now[repair.rule] < rules_[repair.rule]) {
+        rest.push_back(repair);
+      } else {
+        tried_.insert(key_of(repair));
+      }
+    }
+    return rest;
   }
 
   const std::string& name_;
   const RepairOptions& options_;
   Propose propose_ = nullptr;
   RepairedFile file_;
+  RuleCounts rules_;  // of the file as it is now
   std::set<Key> tried_;
   int left_ = kMostValidations;
 };
