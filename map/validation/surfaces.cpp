@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kStep = 4.0;  // [m] between places along a centreline that are looked at
 constexpr int kMostSteps = 2000;
+// Of a whole map, and a lane of it on average: a file of a few lines can hold roads without end.
+constexpr double kMostPlaces = 1e5, kMostPlacesOfALane = 200.0;
 
 double elevation_m(const Lane& lane, double s_m) {
   const auto& stations = lane.centre.station_m;
@@ -43,9 +45,9 @@ std::vector<LaneId> lanes_under(const RoadMap& road_map, const Lane& lane, doubl
 
 /// How far a lane's centreline runs inside each other lane that it should not touch; a single
 /// place inside is a crossing.
-std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane,
+std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane, double about_m,
                                     geometry::WorkBudget& budget) {
-  const int steps = std::clamp(static_cast<int>(lane.length_m() / kStep), 1, kMostSteps);
+  const int steps = std::clamp(static_cast<int>(lane.length_m() / about_m), 1, kMostSteps);
   const double step_m = lane.length_m() / steps;
   std::map<LaneId, int> places;
   for (int i = 0; i < steps; ++i) {
@@ -59,17 +61,33 @@ std::map<LaneId, double> overlaps_m(const RoadMap& road_map, const Lane& lane,
   return overlap_m;
 }
 
+bool is_compared(const Lane& lane) {
+  return is_drivable(lane.type) && !lane.junction && lane.road.has_value();
+}
+
+/// Between places that are looked at.
+double step_for(const RoadMap& road_map) {
+  double length_m = 0.0, lanes = 0.0;
+  for (const Lane& lane : road_map.lanes()) {
+    if (!is_compared(lane)) continue;
+    length_m += std::min(lane.length_m(), kMostSteps * kStep);
+    lanes += 1.0;
+  }
+  return std::max(kStep, length_m / std::max(kMostPlaces, lanes * kMostPlacesOfALane));
+}
+
 void overlapping_lanes(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
   geometry::WorkBudget budget(geometry::most_steps(road_map.lanes().size()));
+  const double step_m = step_for(road_map);
   for (const Lane& lane : road_map.lanes()) {
-    if (!is_drivable(lane.type) || lane.junction || !lane.road) continue;
+    if (!is_compared(lane)) continue;
     if (budget.is_spent()) {
       report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
                  "this lane and those behind it in the file were not compared: too many lie on "
                  "each other; remove those that stand there twice, then validate again");
       return;
     }
-    for (const auto& [other, length_m] : overlaps_m(road_map, lane, budget)) {
+    for (const auto& [other, length_m] : overlaps_m(road_map, lane, step_m, budget)) {
       if (length_m < options.min_overlap_m) continue;
       report.add("lane " + lane.name, lane.pose_at(0.5 * lane.length_m()).position(),
                  fmt::format("runs inside lane {} for {:.1f} m, outside of any junction; move one "

@@ -11,6 +11,24 @@
 #include "roadbed/planning/reference/way_point_path.h"
 
 namespace roadbed::planning::inline reference {
+namespace {
+
+// Of points along a curve, each looked for from where the one before it was; all over the curve
+// only where that is farther than the curve was made to lie.
+double largest_distance_m(const std::vector<Eigen::Vector2d>& points,
+                          const geometry::SmoothCurve& curve, double expected_m) {
+  double largest_m = 0.0, s_m = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double step_m = i > 0 ? (points[i] - points[i - 1]).norm() : 0.0;
+    geometry::LinePosition foot = curve.project(points[i], s_m + step_m);
+    if (!(std::abs(foot.d_m) <= expected_m)) foot = curve.project(points[i]);
+    s_m = foot.s_m;
+    largest_m = std::max(largest_m, std::abs(foot.d_m));
+  }
+  return largest_m;
+}
+
+}  // namespace
 
 ReferenceLine::ReferenceLine(std::shared_ptr<const ReferenceLineData> data)
     : data_(std::move(data)) {}
@@ -35,10 +53,7 @@ ReferenceLine ReferenceLine::through(const std::vector<Eigen::Vector2d>& way_poi
   auto data = std::make_shared<ReferenceLineData>();
   data->curve = geometry::fit_curve(path.points, fit_options(options)).curve;
   data->goal_s_m = data->curve.length_m();
-  for (const Eigen::Vector2d& point : path.way_points) {
-    const double move_m = std::abs(data->curve.project(point).d_m);
-    data->largest_move_m = std::max(data->largest_move_m, move_m);
-  }
+  data->largest_move_m = largest_distance_m(path.way_points, data->curve, options.max_smoothing_m);
   data->notes = std::move(path.notes);
   if (path.largest_swing_m > half_width_m) {
     data->notes.push_back(fmt::format(

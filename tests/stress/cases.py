@@ -65,8 +65,9 @@ AREA: Commands = [
     ("export .csv", ["export", "IN", "-o", "out.csv", "--force"]),
 ]
 MAP: Commands = [
-    ("map stats", ["map", "stats", "in.rbm"]),
-    ("map query", ["map", "query", "in.rbm", "width > 1 and slope < 50", "--format", "csv"]),
+    ("map stats", ["map", "stats", "IN"]),
+    ("map query", ["map", "query", "IN", "width > 1 and slope < 50", "--format", "csv"]),
+    ("map diff", ["map", "diff", "IN", "IN"]),
 ]
 PART, BOTH = ["-o", "part.xml", "--force"], ["-o", "both.xml", "--force"]
 EDIT: Commands = [
@@ -76,12 +77,24 @@ EDIT: Commands = [
     ("map merge parts", ["map", "merge", "IN", "part.xml", *BOTH]),
     ("map transform", ["map", "transform", "IN", "--turn", "30deg", *BOTH]),
     ("elevation", ["map", "transform", "IN", "--elevation", str(DATA / "town.bt"), *BOTH]),
+    ("map fix", ["map", "fix", "IN", "-o", "mended.xml", "--force"]),
+    *MAP,
 ]
 COLUMNS: Commands = [
     ("import", ["import", "IN", "--columns", "columns.json", "-o", "in.rbm", "--force"]),
     ("route", ["route", "in.rbm", "--from", "50,0", "--to", "50,0"]),
 ]
-FIX: Commands = [("map fix", ["map", "fix", "IN", "-o", "mended.xml", "--force"])]
+TOWN_XODR, TOWN_OSM = str(DATA / "town.xodr"), str(DATA / "crossing.osm")
+REGION: Commands = [
+    (f"map clip {map_file[-4:]}", ["map", "clip", map_file, "--polygon", "IN", *PART])
+    for map_file in (TOWN_XODR, TOWN_OSM)
+]
+ALIGN: Commands = [("--align", ["map", "transform", TOWN_XODR, "--align", "IN", *BOTH])]
+GROUND: Commands = [
+    (f"elevation {map_file[-4:]}", ["map", "transform", map_file, "--elevation", "IN", *BOTH])
+    for map_file in (TOWN_XODR, TOWN_OSM)
+]
+TILES: Commands = [("map tile", ["map", "tile", "IN", "500", "-o", "tiles", "--force"])]
 SCENARIO: Commands = [("simulate", ["simulate", "IN", "-o", "out", "--force"])]
 TOWN = ["--occupancy", str(DATA / "town.bt"), "--unknown", "free", "--certificate", "out.json"]
 AUDIT: Commands = [
@@ -109,10 +122,9 @@ OCTREE: Commands = CLOUD + [
 
 ALL = map_commands("50,-1.7", "reach", "diff", ".xodr", ".osm", ".xml", ".geojson", ".fgb")
 CHECK: Commands = [("audit --check", ["audit", "--check", "IN"])]
-TOWN_MAP = str(DATA / "town.xodr")
-LOCATE: Commands = [("locate --points", ["locate", TOWN_MAP, "--points", "IN"])]
+LOCATE: Commands = [("locate --points", ["locate", TOWN_XODR, "--points", "IN"])]
 ROUTES: Commands = [
-    ("route --batch", ["route", TOWN_MAP, "--batch", "IN", "-o", "out.csv", "--force"])
+    ("route --batch", ["route", TOWN_XODR, "--batch", "IN", "-o", "out.csv", "--force"])
 ]
 LINES: Commands = [
     ("reference", ["reference", "--waypoints", "IN", "-o", "out.csv", "--force"]),
@@ -130,46 +142,46 @@ POSES: Commands = [
 BATCH: Commands = [("batch", ["batch", "IN", "-o", "out", "--threads", "1"])]
 
 CASES = [
-    Case("roads apart", inputs.roads_apart, 100, ALL + EDIT + FIX),
-    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + MAP + EDIT + FIX),
-    Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson") + EDIT + FIX),
-    Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7") + EDIT + FIX),
-    Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0") + EDIT + FIX),
-    Case("woven roads", inputs.woven_roads, 10, map_commands("20,5")),
-    Case("connecting roads", inputs.connecting_roads, 10, map_commands("-50,-1.7") + EDIT + FIX),
-    Case("lanes in a section", inputs.lanes_in_a_section, 10, LANES_ROUTES),
-    Case("narrow lanes", inputs.narrow_lanes, 100, map_commands("50,-0.005") + EDIT + FIX),
-    Case("sections of a road", inputs.sections_of_a_road, 100, map_commands("50,-1.7", "reach") + EDIT + FIX),
-    Case("pieces of a road", inputs.pieces_of_a_road, 1000, map_commands("50,-1.7") + EDIT + FIX),
-    Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7") + EDIT + FIX),
-    Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7") + EDIT + FIX),
-    Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7") + EDIT + FIX),
-    Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7")),
-    Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2] + EDIT + FIX),
-    Case("unknown elements", inputs.unknown_elements, 3000, map_commands("50,-1.7") + EDIT + FIX),
-    Case("attributes of a road", inputs.attributes_of_a_road, 1000, map_commands("50,-1.7")[:3] + EDIT + FIX),
-    Case("nested elements", inputs.nested_elements, 1000, map_commands("50,-1.7")[:3] + EDIT + FIX),
-    Case("long name", inputs.long_name, 10000, map_commands("50,-1.7") + EDIT + FIX),
+    Case("roads apart", inputs.roads_apart, 100, ALL + EDIT),
+    Case("roads in a row", inputs.roads_in_a_row, 100, map_commands("50,-1.7", "reach", ".osm") + EDIT),
+    Case("same roads", inputs.same_roads, 10, map_commands("50,-1.7", "diff", ".osm", ".geojson") + EDIT),
+    Case("shifted roads", inputs.shifted_roads, 10, map_commands("20,-1.7") + EDIT),
+    Case("roads through one place", inputs.crossing_roads, 10, map_commands("20,0") + EDIT),
+    Case("woven roads", inputs.woven_roads, 10, map_commands("20,5") + EDIT),
+    Case("connecting roads", inputs.connecting_roads, 10, map_commands("-50,-1.7") + EDIT),
+    Case("lanes in a section", inputs.lanes_in_a_section, 10, LANES_ROUTES + EDIT),
+    Case("narrow lanes", inputs.narrow_lanes, 100, map_commands("50,-0.005") + EDIT),
+    Case("sections of a road", inputs.sections_of_a_road, 100, map_commands("50,-1.7", "reach") + EDIT),
+    Case("pieces of a road", inputs.pieces_of_a_road, 1000, map_commands("50,-1.7") + EDIT),
+    Case("widths of a lane", inputs.widths_of_a_lane, 1000, map_commands("50,-1.7") + EDIT),
+    Case("strips of a road", inputs.strips_of_a_road, 100, map_commands("50,-1.7") + EDIT),
+    Case("signals of a road", inputs.signals_of_a_road, 100, map_commands("50,-1.7") + EDIT),
+    Case("repeated objects", inputs.repeated_objects, 10, map_commands("50,-1.7") + EDIT),
+    Case("roads of one name", inputs.roads_of_one_name, 100, map_commands("50,-1.7")[:2] + EDIT),
+    Case("unknown elements", inputs.unknown_elements, 3000, map_commands("50,-1.7") + EDIT),
+    Case("attributes of a road", inputs.attributes_of_a_road, 1000, map_commands("50,-1.7")[:3] + EDIT),
+    Case("nested elements", inputs.nested_elements, 1000, map_commands("50,-1.7")[:3] + EDIT),
+    Case("long name", inputs.long_name, 10000, map_commands("50,-1.7") + EDIT),
     Case(
         "lanelets",
         inputs.lanelets_in_a_row,
         100,
-        map_commands("50,1.5", "reach", ".osm") + AUTOWARE + EDIT + FIX,
+        map_commands("50,1.5", "reach", ".osm") + AUTOWARE + EDIT,
     ),
-    Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm") + AUTOWARE + EDIT + FIX),
-    Case("crossing lanelets", inputs.crossing_lanelets, 10, AUTOWARE + EDIT + FIX),
-    Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5") + AUTOWARE + EDIT + FIX),
-    Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5") + EDIT + FIX),
-    Case("tags of a way", inputs.tags_of_a_way, 1000, map_commands("50,1.5")[:3] + EDIT + FIX),
-    Case("regulations", inputs.regulations, 100, map_commands("50,1.5") + AUTOWARE + EDIT + FIX),
+    Case("same lanelets", inputs.same_lanelets, 10, map_commands("50,1.5", ".osm") + AUTOWARE + EDIT),
+    Case("crossing lanelets", inputs.crossing_lanelets, 10, AUTOWARE + EDIT),
+    Case("zigzag border", inputs.zigzag_border, 1000, map_commands("50,1.5") + AUTOWARE + EDIT),
+    Case("border back and forth", inputs.border_back_and_forth, 1000, map_commands("50,1.5") + EDIT),
+    Case("tags of a way", inputs.tags_of_a_way, 1000, map_commands("50,1.5")[:3] + EDIT),
+    Case("regulations", inputs.regulations, 100, map_commands("50,1.5") + AUTOWARE + EDIT),
     Case(
         "CommonRoad lanelets",
         inputs.cr_lanelets_in_a_row,
         100,
-        map_commands("50,1.5", ".xml") + EDIT + FIX,
+        map_commands("50,1.5", ".xml") + EDIT,
     ),
-    Case("same CommonRoad lanelets", inputs.cr_same_lanelets, 10, map_commands("50,1.5") + EDIT + FIX),
-    Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3] + EDIT + FIX),
+    Case("same CommonRoad lanelets", inputs.cr_same_lanelets, 10, map_commands("50,1.5") + EDIT),
+    Case("CommonRoad obstacles", inputs.cr_obstacles, 100, map_commands("50,1.5")[:3] + EDIT),
     Case("lanes of a table", inputs.table_lanes_in_a_row, 100, COLUMNS),
     Case("same lanes of a table", inputs.table_same_lanes, 10, COLUMNS),
     Case("points of a table's lane", inputs.table_points_of_a_lane, 1000, COLUMNS),
@@ -184,9 +196,9 @@ CASES = [
     Case("holes", inputs.holes, 100, AREA),
     Case("properties of a feature", inputs.properties_of_a_feature, 1000, AREA[:3]),
     Case("Argoverse lanes", inputs.av_segments_in_a_row, 100, map_commands("50,1.5", ".osm") + MAP),
-    Case("same Argoverse lanes", inputs.av_same_segments, 10, map_commands("50,1.5")),
-    Case("points of an Argoverse lane", inputs.av_points_of_a_border, 1000, map_commands("5,1.5")),
-    Case("successors of a lane", inputs.av_successors_of_a_segment, 100, map_commands("50,1.5")),
+    Case("same Argoverse lanes", inputs.av_same_segments, 10, map_commands("50,1.5") + MAP),
+    Case("points of an Argoverse lane", inputs.av_points_of_a_border, 1000, map_commands("5,1.5") + MAP),
+    Case("successors of a lane", inputs.av_successors_of_a_segment, 100, map_commands("50,1.5") + MAP),
     Case("long intersections", inputs.av_long_intersections, 10, map_commands("50,1.5")[:3]),
     Case("objects in a list", inputs.objects_in_a_list, 3000, SCENARIO),
     Case("empty objects", inputs.empty_objects, 50000, SCENARIO),
@@ -211,20 +223,15 @@ CASES = [
     Case("places", inputs.places, 1000, LOCATE),
     Case("pairs", inputs.pairs, 100, ROUTES),
     Case("way-points", inputs.way_points, 100, LINES),
+    Case("vertices of a region", inputs.region_of_many_vertices, 1000, REGION),
+    Case("regions", inputs.many_regions, 40, REGION),
+    Case("pairs to align by", inputs.pairs_to_align, 1000, ALIGN),
+    Case("ground of a map", inputs.ground, 40_000, GROUND),
+    Case("tiles of roads", inputs.roads_apart, 100, TILES),
+    Case("tiles of lanelets", inputs.lanelets_in_a_row, 100, TILES),
+    Case("tiles of CommonRoad", inputs.cr_lanelets_in_a_row, 100, TILES),
     Case("job lines", inputs.job_lines, 100, BATCH),
 ]
-
-# What grows faster than it should: the exponent that it may have, and why it has it.
-WOVEN = (1.9, "roads grow longer with their number, and are compared every 4 m, up to 2000 times a lane")
-KNOWN_EXPONENTS: dict[tuple[str, str], tuple[float, str]] = {
-    ("way-points", "reference"): (
-        1.5,
-        "how far each way-point lies from the line is looked for among all of its knots",
-    ),
-    ("woven roads", "validate"): WOVEN,
-    ("woven roads", "export .html"): WOVEN,  # its page lists what is found
-}
-
 
 def all_cases(pattern: str):
     return [case for case in CASES if fnmatchcase(case.name, pattern)]

@@ -780,6 +780,64 @@ def way_points(folder: Path, n: int) -> Path:
     return table(folder, "x_m,y_m", rows)
 
 
+def region(folder: Path, rings) -> Path:
+    """Polygons of coordinates of the map."""
+    text = json.dumps(
+        {
+            "type": "FeatureCollection",
+            "crs": None,
+            "features": [
+                {
+                    "type": "Feature",
+                    "properties": {},
+                    "geometry": {"type": "Polygon", "coordinates": [ring]},
+                }
+                for ring in rings
+            ],
+        }
+    )
+    return written(folder / "in.geojson", text)
+
+
+def region_of_many_vertices(folder: Path, n: int) -> Path:
+    """A jagged ring over parts of the town and of the crossing."""
+    ring = [
+        [
+            620 + (110 + 0.5 * (i % 2)) * math.cos(2 * math.pi * i / n),
+            300 + (110 + 0.5 * (i % 2)) * math.sin(2 * math.pi * i / n),
+        ]
+        for i in range(n)
+    ]
+    return region(folder, [ring + ring[:1]])
+
+
+def many_regions(folder: Path, n: int) -> Path:
+    side = math.isqrt(n) + 1
+    step = 300.0 / side
+
+    def square(i: int) -> list[list[float]]:
+        x, y, half = 500 + step * (i % side), 150 + step * (i // side), step / 3
+        return [[x, y], [x + half, y], [x + half, y + half], [x, y + half], [x, y]]
+
+    return region(folder, [square(i) for i in range(n)])
+
+
+def pairs_to_align(folder: Path, n: int) -> Path:
+    rows = (f"{i},{i % 7},{i + 10},{i % 7 + 20}" for i in range(n))
+    return table(folder, "from_x_m,from_y_m,to_x_m,to_y_m", rows)
+
+
+def ground(folder: Path, n: int) -> Path:
+    """Points over parts of the town and of the crossing, 1 to 100 to a square metre."""
+    side = math.isqrt(n) + 1
+    step = 200.0 / side
+    rows = (
+        f"{520 + step * (i % side):.3f} {200 + step * (i // side):.3f} {0.01 * (i % side):.3f}\n"
+        for i in range(n)
+    )
+    return written(folder / "in.xyz", "".join(rows))
+
+
 def job_lines(folder: Path, n: int) -> Path:
     """Jobs that are one, and as many lines that are refused."""
     roads_apart(folder, 1)

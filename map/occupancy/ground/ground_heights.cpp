@@ -233,17 +233,14 @@ std::vector<std::optional<double>> ground_heights(const map::OccupancySource& oc
   const double cell_m = occupancy.resolution_m();
   LowestLayer layer(std::max(kLeastM, cell_m), at_in_source);
   if (at_in_source.empty()) return {};
-  for (const map::OccupancyCell& leaf : occupancy.cells_in(column_of(at_in_source))) {
-    if (leaf.state != map::CellState::occupied) continue;
-    if (leaf.size_m < 1.5 * cell_m) {
-      layer.add(leaf.centre_in_source);
-      continue;
-    }
+  occupancy.for_each_in(column_of(at_in_source), [&](const map::OccupancyCell& leaf) {
+    if (leaf.state != map::CellState::occupied) return;
+    if (leaf.size_m < 1.5 * cell_m) return layer.add(leaf.centre_in_source);
     const Vector2d middle = leaf.centre_in_source.head<2>();
     const Vector2d half = Vector2d::Constant(0.5 * leaf.size_m);
     layer.add_level(middle - half, middle + half,
                     leaf.centre_in_source.z() - 0.5 * (leaf.size_m - cell_m));
-  }
+  });
   layer.settle();
   return heights_on(layer, at_in_source, cell_m);
 }
