@@ -16,8 +16,14 @@
 namespace roadbed::map::inline derived {
 namespace {
 
+/// Numbers that differ by less than they are computed to are one.
+double comparable(double value) {
+  constexpr double kSteps = 1e6;  // of a metre, a radian, …
+  return std::round(value * kSteps) / kSteps + 0.0;
+}
+
 /// Writes fields as two versions of a map can be compared by: ids as the names of what they stand
-/// for, coordinates as the source has them.
+/// for, coordinates as the source has them, numbers to a millionth.
 class NamingWriter {
  public:
   explicit NamingWriter(const RoadMap& road_map) : map_(road_map) {}
@@ -28,6 +34,7 @@ class NamingWriter {
   void operator()(const T& value) {
     writer_(value);
   }
+  void operator()(double value) { writer_(comparable(value)); }
   void operator()(const LaneId& id) { writer_(map_.lane(id).name); }
   void operator()(const RoadId& id) { writer_(map_.road(id).source_id); }
   void operator()(const JunctionId& id) { writer_(map_.junction(id).source_id); }
@@ -50,14 +57,22 @@ class NamingWriter {
     writer_(value.has_value());
     if (value) each(*this, *value);
   }
-  void point(const Eigen::Vector2d& value) { writer_.point(map_.to_source(value)); }
-  void numbers(const std::vector<double>& values) { writer_.numbers(values); }
+  void point(const Eigen::Vector2d& value) {
+    writer_.point(map_.to_source(value).unaryExpr(&comparable));
+  }
+  void numbers(std::vector<double> values) {
+    std::ranges::transform(values, values.begin(), comparable);
+    writer_.numbers(values);
+  }
   void points(std::vector<Eigen::Vector2d> values) {
-    for (auto& point : values) point = map_.to_source(point);
+    for (auto& point : values) point = map_.to_source(point).unaryExpr(&comparable);
     writer_.points(values);
   }
   void points(std::vector<Eigen::Vector3d> values) {
-    for (auto& point : values) point.head<2>() = map_.to_source(point.head<2>());
+    for (auto& point : values) {
+      point.head<2>() = map_.to_source(point.head<2>());
+      point = point.unaryExpr(&comparable).eval();
+    }
     writer_.points(values);
   }
   void line(const geometry::Polyline& polyline) { points(polyline.points()); }
@@ -99,7 +114,8 @@ std::string bytes_of_list(const RoadMap& map, const Fields& fields, const std::v
 
 std::string place_of(const RoadMap& map, const Eigen::Vector2d& in_map, double z_m) {
   const Eigen::Vector2d in_source = map.to_source(in_map);
-  return fmt::format("{} {} {}", in_source.x(), in_source.y(), z_m);
+  return fmt::format("{} {} {}", comparable(in_source.x()), comparable(in_source.y()),
+                     comparable(z_m));
 }
 
 std::vector<Facet> facets(const RoadMap& map, const Lane& lane) {

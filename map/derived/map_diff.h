@@ -33,7 +33,8 @@ std::string_view to_string(MapChange::Kind kind);
 /// What changed from one version to another, by theme and then in the order of the map's lists.
 /// Things are the same if they have the same name (lanes) or source id and road; of several with
 /// one id, the first is compared with the first. Coordinates are compared as the source has them,
-/// whatever the maps' origins. Remarks of the import are not compared.
+/// whatever the maps' origins, and numbers but those of borders to a millionth. Remarks of the
+/// import are not compared.
 std::vector<MapChange> diff(const RoadMap& before, const RoadMap& after,
                             const MapDiffOptions& options = {});
 

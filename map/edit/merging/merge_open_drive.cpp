@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +66,9 @@ class Merger {
       note(junctions_, one);
       last_junction_ = one;
     }
+    for (const auto one : root.children()) {
+      if (is_other(one)) others_[one.name()].push_back(one);
+    }
   }
 
   void add(const Source& source, Merged& result) {
@@ -99,6 +103,8 @@ class Merger {
 
  private:
   using ById = std::map<std::string, pugi::xml_node>;
+  // Whole roads that have a signal or an object of that id: files repeat ids from road to road.
+  using UsersOfId = std::map<std::string, std::set<std::string>>;
 
   static void note(ById& elements, pugi::xml_node one) { elements.emplace(text(one, "id"), one); }
 
@@ -107,11 +113,11 @@ class Merger {
     parts_[road_cut(road).road].push_back(road);
     origins_[text(road, "id")] = source_;
     for (const auto signal : road.child("signals").children("signal")) {
-      signals_[text(signal, "id")] = road_cut(road).road;
+      signals_[text(signal, "id")].insert(road_cut(road).road);
       signal_ids_.take(text(signal, "id"));
     }
     for (const auto object : road.child("objects").children("object")) {
-      objects_[text(object, "id")] = road_cut(road).road;
+      objects_[text(object, "id")].insert(road_cut(road).road);
       object_ids_.take(text(object, "id"));
     }
   }
@@ -130,10 +136,11 @@ class Merger {
     };
     std::set<std::string> same;
     for (const auto road : source.root().children("road")) roads.take(road_cut(road).road);
+    std::map<std::string, std::size_t> of_id;  // roads before
     for (const auto road : source.root().children("road")) {
       const std::string id = road_cut(road).road;
       if (!parts_.contains(id) || names.roads.contains(id)) continue;
-      if (is_same_road(id, road)) {
+      if (is_same_road(id, road, of_id[id]++)) {
         same.insert(id);
       } else {
         give("road", names.roads, roads, id);
@@ -152,13 +159,12 @@ class Merger {
     return names;
   }
 
-  static void name_inside(pugi::xml_node list, const char* name,
-                          const std::map<std::string, std::string>& taken,
+  static void name_inside(pugi::xml_node list, const char* name, const UsersOfId& taken,
                           const std::string& same_road,
                           const std::function<void(const std::string&)>& give) {
     for (const auto one : list.children(name)) {
       const auto found = taken.find(text(one, "id"));
-      if (found != taken.end() && found->second != same_road) give(text(one, "id"));
+      if (found != taken.end() && !found->second.contains(same_road)) give(text(one, "id"));
     }
   }
 
@@ -184,10 +190,15 @@ class Merger {
     });
   }
 
-  // Whether a road is one that is there already, or a part of the same.
-  bool is_same_road(const std::string& id, pugi::xml_node road) const {
+  // Whether a road is one that is there already, or a part of the same. Of very many with one id
+  // those are looked at that stand in the same place among them.
+  bool is_same_road(const std::string& id, pugi::xml_node road, std::size_t place) const {
+    constexpr std::size_t most = 64;
+    const std::vector<pugi::xml_node>& parts = parts_.at(id);
+    const std::size_t first = parts.size() > most ? std::min(place, parts.size() - most) : 0;
+    const std::span<const pugi::xml_node> near(&parts[first], std::min(most, parts.size()));
     const RoadCut cut = road_cut(road);
-    return std::any_of(parts_.at(id).begin(), parts_.at(id).end(), [&](pugi::xml_node part) {
+    return std::any_of(near.begin(), near.end(), [&](pugi::xml_node part) {
       const RoadCut own = road_cut(part);
       if (std::abs(own.length_m - cut.length_m) > 1e-6) return false;
       if (own.is_whole() && cut.is_whole()) {
@@ -221,8 +232,12 @@ class Merger {
   void note_ids(pugi::xml_node road) {
     const std::string id = road_cut(road).road;
     origins_[text(road, "id")] = source_;
-    for (const auto one : road.child("signals").children("signal")) signals_[text(one, "id")] = id;
-    for (const auto one : road.child("objects").children("object")) objects_[text(one, "id")] = id;
+    for (const auto one : road.child("signals").children("signal")) {
+      signals_[text(one, "id")].insert(id);
+    }
+    for (const auto one : road.child("objects").children("object")) {
+      objects_[text(one, "id")].insert(id);
+    }
   }
 
   // Parts in order of their stations; each is put to the one before that it goes on from.
@@ -259,17 +274,19 @@ class Merger {
     note(elements, behind);
   }
 
+  static bool is_other(pugi::xml_node one) {
+    const std::string_view name = one.name();
+    return one.type() == pugi::node_element && name != "header" && name != "road" &&
+           name != "junction" && name != "controller" && !is_clip_memory(one);
+  }
+
   // Whatever else is in the root, once.
   void add_others(pugi::xml_node root) {
     for (const auto one : root.children()) {
-      const std::string_view name = one.name();
-      if (one.type() != pugi::node_element || name == "header" || name == "road" ||
-          name == "junction" || name == "controller" || is_clip_memory(one)) {
-        continue;
-      }
-      const auto own = root_.children(one.name());
+      if (!is_other(one)) continue;
+      std::vector<pugi::xml_node>& own = others_[one.name()];
       if (std::none_of(own.begin(), own.end(), [&](auto other) { return are_equal(one, other); })) {
-        root_.append_copy(one);
+        own.push_back(root_.append_copy(one));
       }
     }
   }
@@ -313,7 +330,8 @@ class Merger {
   std::map<std::string, std::size_t> origins_;                  // file of each road
   pugi::xml_node last_road_, last_controller_, last_junction_;  // behind which new ones stand
   ById junctions_, controllers_;
-  std::map<std::string, std::string> signals_, objects_;  // and the whole road of each
+  std::map<std::string, std::vector<pugi::xml_node>> others_;  // by name
+  UsersOfId signals_, objects_;
   FreshIds signal_ids_, object_ids_;
   std::set<std::string> joined_;
   std::vector<Seam> seams_;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "roadbed/geometry/polygons/polygon.h"
+#include "roadbed/map/derived/map_diff.h"
 #include "roadbed/map/edit/clipping/clip.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
@@ -50,6 +51,24 @@ TEST(Merge, TakesOnceWhatIsTheSame) {
   const Merged merged = merge({{road_at(0, 0), "a.xodr"}, {road_at(0, 0), "b.xodr"}});
   EXPECT_EQ(parse_map(merged.bytes, "merged.xodr").roads().size(), 1u);
   EXPECT_TRUE(merged.renamed.empty());
+}
+
+// Files repeat ids of signals from road to road.
+TEST(Merge, LeavesSignalsOfOneIdOnTheirRoads) {
+  std::string bytes = road_at(0, 0);
+  const std::size_t from = bytes.find("<road "), to = bytes.find("</road>") + 7;
+  std::string other = bytes.substr(from, to - from);
+  const std::string id = "id=\"1\"", at = "y=\"0\"";
+  other.replace(other.find(id), id.size(), "id=\"2\"");
+  other.replace(other.find(at), at.size(), "y=\"50\"");
+  bytes.insert(to, other);
+  const auto half = [&](double from_m, double to_m) {
+    const Region side({geometry::box_ring({from_m, -1e4}, {to_m, 1e4})});
+    return MergeInput{clip(bytes, "two.xodr", side).bytes, fmt::format("from {}", from_m)};
+  };
+  const Merged merged = merge({half(-1e4, 30), half(30, 1e4)});
+  EXPECT_TRUE(merged.renamed.empty());
+  EXPECT_TRUE(diff(parse_map(bytes, "two.xodr"), parse_map(merged.bytes, "two.xodr")).empty());
 }
 
 TEST(Merge, LinksEndsThatCoincide) {

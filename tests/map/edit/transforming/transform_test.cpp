@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "roadbed/map/derived/map_diff.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/projection.h"
 #include "roadbed/map/files/read_file.h"
@@ -91,6 +92,22 @@ TEST(Transform, BackAgainIsWhereItWas) {
 }
 
 // In another system each border is where PROJ puts it; both systems have scales of their own.
+// What only the last digits of numbers tell is no change.
+TEST(Transform, ThereAndBackLeavesNoChange) {
+  RigidMotion back{.turn_rad = -kMotion.turn_rad, .shift_m = {0.0, 0.0, -kMotion.shift_m.z()}};
+  back.shift_m.head<2>() = -back(kMotion.shift_m.head<2>());
+  for (const char* name : {"town.xodr", "country.xodr", "junction.xml"}) {
+    const std::string bytes = read_file(tests::data_folder() / name);
+    const Edited there = transform(bytes, name, {.motion = kMotion, .to = {}, .crs = {}});
+    const Edited again = transform(there.bytes, name, {.motion = back, .to = {}, .crs = {}});
+    const RoadMap before = parse_map(bytes, name), after = parse_map(again.bytes, name);
+    for (const MapChange& change : diff(before, after)) {
+      ADD_FAILURE() << name << ": " << change.theme << ' ' << change.element << ' '
+                    << (change.facets.empty() ? "" : change.facets.front());
+    }
+  }
+}
+
 TEST(Transform, BringsBordersWhereProjDoes) {
   const std::string from =
       "+proj=tmerc +lat_0=48 +lon_0=9 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m";
