@@ -145,6 +145,11 @@ class RoadPlacer {
     double at_m = placed_.section_from_m[section];
     for (std::size_t i = left.own_from; i <= left.own_to; ++i) {
       const Eigen::Vector2d a = left.points[i].head<2>();
+      if (i > left.own_from) {
+        const Eigen::Vector2d step = a - left.points[i - 1].head<2>();
+        const double on_m = std::min(at_m, reference_->end_s_m());
+        at_m += std::max(0.0, reference_->at(on_m).along.dot(step));
+      }
       const Eigen::Vector2d across = right.points[i - left.own_from + right.own_from].head<2>() - a;
       at_m = across.norm() > kLeastAcross_m ? on_cross_section(a, across.normalized(), at_m)
                                             : position_beside(*reference_, a, at_m).s_m;

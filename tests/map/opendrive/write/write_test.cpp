@@ -355,21 +355,22 @@ TEST(WriteOpenDrive, NoLaneOfACopyBeginsNowhere) {
   EXPECT_EQ(lost_links(before, after), 0);
 }
 
-// A road of one lane along a plan view, with other sections than the first one.
+// A road of one lane that begins along a curve of some length and goes on, and may have a second
+// section.
 std::string one_lane(const std::string& geometry, double length_m, double offset_m,
-                     const std::string& sections = "") {
+                     const std::string& second_section_m = "", double more_m = 0.0) {
   const std::string lane =
       "<center><lane id=\"0\" type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\">"
       "<link><predecessor id=\"-1\"/><successor id=\"-1\"/></link>"
       "<width sOffset=\"0\" a=\"3.2\" b=\"0\" c=\"0\" d=\"0\"/></lane></right></laneSection>";
   std::string lanes = "<laneSection s=\"0\">" + lane;
-  if (!sections.empty()) lanes += "<laneSection s=\"" + sections + "\">" + lane;
+  if (!second_section_m.empty()) lanes += "<laneSection s=\"" + second_section_m + "\">" + lane;
   return fmt::format(
-      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" length=\"{0}\" "
+      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" length=\"{4}\" "
       "junction=\"-1\"><planView><geometry s=\"0\" x=\"5\" y=\"7\" hdg=\"0.3\" length=\"{0}\">"
       "{1}</geometry></planView><lanes><laneOffset s=\"0\" a=\"{2}\" b=\"0\" c=\"0\" d=\"0\"/>"
       "{3}</lanes></road></OpenDRIVE>",
-      length_m, geometry, offset_m, lanes);
+      length_m, geometry, offset_m, lanes, length_m + more_m);
 }
 
 TEST(WriteOpenDrive, ARoadOfTheMapTurnsBackWhereItDoes) {
@@ -387,6 +388,20 @@ TEST(WriteOpenDrive, ARoadOfTheMapTurnsBackWhereItDoes) {
     EXPECT_LE(borders_apart_m(before, after), 0.01);
     EXPECT_LE(borders_apart_m(after, before), 0.01);
   }
+}
+
+TEST(WriteOpenDrive, ARoadOfTheMapBendsBehindALongStraight) {
+  const RoadMap before = parse_map(
+      one_lane(
+          fmt::format("<paramPoly3 aU=\"0\" bU=\"400\" cU=\"0\" dU=\"0\" aV=\"0\" bV=\"0\" "
+                      "cV=\"0\" dV=\"0\" pRange=\"normalized\"/></geometry><geometry s=\"400\" "
+                      "x=\"{}\" y=\"{}\" hdg=\"0.3\" length=\"100\"><arc curvature=\"0.01\"/>",
+                      5.0 + 400.0 * std::cos(0.3), 7.0 + 400.0 * std::sin(0.3)),
+          400.0, 0.0, "450", 100.0),
+      "long.xodr");
+  const opendrive::OpenDriveFile file = file_of(before);
+  EXPECT_LE(file.largest_error_m, 0.003);
+  EXPECT_LE(borders_apart_m(before, parse_map(file.bytes, "written.xodr")), 0.003);
 }
 
 TEST(WriteOpenDrive, ASectionOfAFewCentimetresStays) {
