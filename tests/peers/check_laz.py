@@ -5,8 +5,10 @@ Usage: check_laz.py ROADBED FILE.laz…
 
 Besides the files, 14 are made, of every point format that laspy packs, with and without extra
 bytes, of more points than a chunk has. --write makes the small ones that the tests of
-map/occupancy/laz read: format_N.laz, whose coordinates follow a formula.
+map/occupancy/laz read, whose coordinates follow a formula: format_N.laz, and chunks_N.laz of
+several chunks.
 """
+import io
 import json
 import pathlib
 import subprocess
@@ -14,6 +16,7 @@ import sys
 import tempfile
 
 import laspy
+import lazrs
 import numpy
 
 MANY = 130_001
@@ -78,6 +81,26 @@ def write(folder):
         cloud = made(point_format, formula(300), point_format in (3, 7))
         backend = laspy.LazBackend.Laszip if point_format in WAVES else laspy.LazBackend.Lazrs
         cloud.write(str(folder / f"format_{point_format}.laz"), laz_backend=backend)
+    for point_format in (1, 3, 7):
+        (folder / f"chunks_{point_format}.laz").write_bytes(
+            in_chunks(made(point_format, formula(300), False), 70))
+
+
+def in_chunks(cloud, points):
+    """The bytes of a LAZ file whose chunks have so many points, the last one fewer."""
+    file = io.BytesIO()
+    cloud.write(file, do_compress=True, laz_backend=laspy.LazBackend.Lazrs)
+    packed = bytearray(file.getvalue())
+    record = packed.index(b"laszip encoded") - 2 + 54
+    begin = int.from_bytes(packed[96:100], "little")
+    packed[record + 12:record + 16] = points.to_bytes(4, "little")
+    out = io.BytesIO()
+    out.write(packed[:begin])
+    layout = lazrs.LazVlr(bytes(packed[record:record + 34 + 6 * packed[record + 32]]))
+    packer = lazrs.LasZipCompressor(out, layout)
+    packer.compress_many(cloud.points.array.tobytes())
+    packer.done()
+    return out.getvalue()
 
 
 def unpack(file, plain):

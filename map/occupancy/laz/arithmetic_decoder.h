@@ -1,45 +1,48 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
-#include <vector>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
 
+// What decodes a symbol has to be inlined, or states of decoders go through memory.
+#define ROADBED_INLINE [[gnu::always_inline]] inline
+
 namespace roadbed::map::inline occupancy::inline laz {
 
 /// How often each of some symbols came so far, as decoder and encoder both count it.
+/// @tparam kMost  as many symbols as there may be, up to 1,024.
+template <std::uint32_t kMost>
 class SymbolModel {
  public:
-  static constexpr std::uint32_t kShift = 15;
-  static constexpr std::int16_t kLastShare = (1 << kShift) - 1;
-
-  explicit SymbolModel(std::uint32_t symbols);  ///< 2 to 2,048, all as likely
+  explicit SymbolModel(std::uint32_t symbols = kMost);  ///< 2 to kMost, all as likely
 
  private:
   friend class ArithmeticDecoder;
-  static constexpr std::uint32_t kBlock = 16;
+  static constexpr std::uint32_t kBlock = 16, kBlocks = (kMost + kBlock - 1) / kBlock;
+  static constexpr bool kIsFlat = kBlocks <= 4;
+  static constexpr std::uint32_t kIndexBlocks = kIsFlat ? 0 : (kBlocks + kBlock - 1) / kBlock;
+  static_assert(kIndexBlocks <= 4);
+  static constexpr std::uint16_t kNever = 0xffff;
 
-  static std::uint32_t begun(const std::int16_t* begins, std::int16_t share);
-  std::uint32_t symbol_at(std::uint32_t share) const;
-  void count(std::uint32_t symbol) {
-    ++counts_[symbol];
-    if (--until_update_ == 0) update();
-  }
+  template <std::uint32_t kCount>
+  static std::size_t begun(const std::uint16_t* begins, std::uint32_t share);
+  const std::uint16_t* end_at(std::uint32_t share) const;
+  std::uint32_t count_before(const std::uint16_t* end);
   void update();
 
-  std::uint32_t symbols_, blocks_;
-  std::uint32_t total_ = 0, cycle_, until_update_ = 0;
-  std::vector<std::uint32_t> counts_;
-  // Where each symbol's share of 2¹⁵ begins, in blocks; then where those of the blocks begin. What
-  // is left over in the last block of either is 2¹⁵ - 1.
-  std::vector<std::int16_t> begins_;
+  // Where the share of 2¹⁵ begins of each symbol, of each block of them; kNever of what is none.
+  alignas(64) std::array<std::uint16_t, kBlock * kIndexBlocks> block_begins_;
+  std::uint32_t symbols_, total_ = 0, cycle_, until_update_ = 0;
+  alignas(32) std::array<std::uint16_t, kBlock*(kBlocks + 1)> begins_;
+  std::array<std::uint16_t, kMost> counts_;
 };
 
 /// The same of a bit.
@@ -56,10 +59,16 @@ class BitModel {
 /// HPL-2004-76, 2004], as LAZ files use it. Bytes beyond the end count as 0; `is_past_end` tells.
 class ArithmeticDecoder {
  public:
-  ArithmeticDecoder() = default;
-  explicit ArithmeticDecoder(std::string_view bytes);  ///< which have to stay
+  static constexpr std::uint32_t kShareBits = 15, kBitShareBits = 13;
 
-  std::uint32_t symbol(SymbolModel& model);
+  ArithmeticDecoder() = default;
+  explicit ArithmeticDecoder(std::string_view bytes) : bytes_(bytes) {  ///< which have to stay
+    value_ = std::min(next_four(), length_ - 1);  // no encoder begins otherwise
+    at_ = 4;
+  }
+
+  template <std::uint32_t kMost>
+  std::uint32_t symbol(SymbolModel<kMost>& model);
   std::uint32_t bit(BitModel& model);
   std::uint32_t raw_bits(std::uint32_t bits);  ///< 1 to 32, all values as likely
   std::uint64_t raw_64();
@@ -70,7 +79,7 @@ class ArithmeticDecoder {
 
  private:
   std::uint32_t next_four() const;
-  std::uint32_t last_four() const;
+  static std::uint32_t last_four(std::string_view bytes, std::size_t at);
   void renormalize();
   std::uint32_t part(std::uint32_t bits);
 
@@ -79,64 +88,142 @@ class ArithmeticDecoder {
   std::uint32_t value_ = 0, length_ = 0xffffffffu;  // value < length
 };
 
-// How many of a block, in ascending order, begin at or before a share.
-inline std::uint32_t SymbolModel::begun(const std::int16_t* begins, std::int16_t share) {
+// Which of 16, in ascending order, begin at or before a share: a bit each.
+ROADBED_INLINE std::uint32_t begun_of_block(const std::uint16_t* begins, std::uint32_t share) {
 #ifdef __SSE2__
-  const __m128i at = _mm_set1_epi16(share);
+  const __m128i at = _mm_set1_epi16(static_cast<std::int16_t>(share)), zero = _mm_setzero_si128();
   const auto* halves = reinterpret_cast<const __m128i*>(begins);
-  const __m128i beyond = _mm_packs_epi16(_mm_cmpgt_epi16(_mm_loadu_si128(halves), at),
-                                         _mm_cmpgt_epi16(_mm_loadu_si128(halves + 1), at));
-  return static_cast<std::uint32_t>(
-      std::countr_zero(static_cast<std::uint32_t>(_mm_movemask_epi8(beyond)) | 0x10000u));
+  const __m128i begun =
+      _mm_packs_epi16(_mm_cmpeq_epi16(_mm_subs_epu16(_mm_load_si128(halves), at), zero),
+                      _mm_cmpeq_epi16(_mm_subs_epu16(_mm_load_si128(halves + 1), at), zero));
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(begun));
 #else
-  return static_cast<std::uint32_t>(std::upper_bound(begins, begins + kBlock, share) - begins);
+  std::uint32_t begun = 0;
+  for (std::uint32_t i = 0; i < 16; ++i) begun |= (begins[i] <= share ? 1u : 0u) << i;
+  return begun;
 #endif
 }
 
-inline std::uint32_t SymbolModel::symbol_at(std::uint32_t share) const {
-  const auto at = static_cast<std::int16_t>(std::min<std::uint32_t>(share, kLastShare));
-  const std::int16_t* begins = begins_.data();
-  std::uint32_t symbol = 0;
-  if (blocks_ <= 4) {
-    for (std::uint32_t i = 0; i < blocks_; ++i) symbol += begun(begins + i * kBlock, at);
-  } else {
-    const std::int16_t* of_blocks = begins + blocks_ * kBlock;
-    for (std::uint32_t i = 0; i < blocks_; i += kBlock) symbol += begun(of_blocks + i, at);
-    symbol = (std::min(symbol, blocks_) - 1) * kBlock;
-    symbol += begun(begins + symbol, at);
-  }
-  return std::min(symbol, symbols_) - 1;
+template <std::uint32_t kMost>
+SymbolModel<kMost>::SymbolModel(std::uint32_t symbols) : symbols_(symbols), cycle_(symbols) {
+  begins_.fill(kNever);
+  block_begins_.fill(kNever);
+  counts_.fill(1);
+  update();
+  until_update_ = cycle_ = (symbols + 6) / 2;
 }
 
-inline std::uint32_t ArithmeticDecoder::next_four() const {
+template <std::uint32_t kMost>
+template <std::uint32_t kCount>
+ROADBED_INLINE std::size_t SymbolModel<kMost>::begun(const std::uint16_t* begins,
+                                                     std::uint32_t share) {
+  std::uint64_t begun = 0;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    begun += std::uint64_t{begun_of_block(begins + i * kBlock, share)} << i * kBlock;
+  }
+  return static_cast<std::size_t>(std::countr_one(begun));
+}
+
+// Where the symbol ends that a share belongs to.
+template <std::uint32_t kMost>
+ROADBED_INLINE const std::uint16_t* SymbolModel<kMost>::end_at(std::uint32_t share) const {
+  const std::uint16_t* begins = begins_.data();
+  if constexpr (kIsFlat) return begins + begun<kBlocks>(begins, share);
+  begins += (begun<kIndexBlocks>(block_begins_.data(), share) - 1) * kBlock;
+  return begins + begun<1>(begins, share);
+}
+
+template <std::uint32_t kMost>
+ROADBED_INLINE std::uint32_t SymbolModel<kMost>::count_before(const std::uint16_t* end) {
+  const auto symbol = static_cast<std::uint32_t>(end - begins_.data()) - 1;
+  ++counts_[symbol];
+  if (--until_update_ == 0) [[unlikely]]
+    update();
+  return symbol;
+}
+
+template <std::uint32_t kMost>
+[[gnu::noinline]] void SymbolModel<kMost>::update() {
+  constexpr std::uint32_t shift = ArithmeticDecoder::kShareBits;
+  total_ += cycle_;
+  if (total_ > 1u << shift) {
+    total_ = 0;
+    for (std::uint32_t k = 0; k < symbols_; ++k) {
+      counts_[k] = static_cast<std::uint16_t>((counts_[k] + 1) / 2);
+      total_ += counts_[k];
+    }
+  }
+  const std::uint32_t scale = 0x80000000u / total_;
+  std::uint32_t sum = 0;
+  for (std::uint32_t k = 0; k < symbols_; ++k) {
+    begins_[k] = static_cast<std::uint16_t>((scale * sum) >> (31 - shift));
+    sum += counts_[k];
+  }
+  if constexpr (!kIsFlat) {
+    for (std::uint32_t i = 0; i < kBlocks; ++i) block_begins_[i] = begins_[i * kBlock];
+  }
+  cycle_ = std::min(cycle_ * 5 / 4, (symbols_ + 6) * 8);
+  until_update_ = cycle_;
+}
+
+ROADBED_INLINE std::uint32_t ArithmeticDecoder::next_four() const {
   static_assert(std::endian::native == std::endian::little);
-  if (at_ + 4 > bytes_.size()) return last_four();
+  if (at_ + 4 > bytes_.size()) [[unlikely]]
+    return last_four(bytes_, at_);
   std::uint32_t four = 0;
   std::memcpy(&four, bytes_.data() + at_, sizeof(four));
   return __builtin_bswap32(four);
 }
 
-// Until the length has its highest byte: 0 to 3 bytes more, without a branch that nobody foresees.
-inline void ArithmeticDecoder::renormalize() {
-  const std::uint32_t bits = static_cast<std::uint32_t>(std::countl_zero(length_)) & ~7u;
-  value_ = value_ << bits | next_four() >> 1 >> (31 - bits);
+// Until the length, which is not 0, has its highest byte: 0 to 3 bytes more, without a branch that
+// nobody foresees.
+ROADBED_INLINE void ArithmeticDecoder::renormalize() {
+  const std::uint32_t bits = static_cast<std::uint32_t>(__builtin_clz(length_)) & ~7u;
+  value_ = static_cast<std::uint32_t>((std::uint64_t{value_} << 32 | next_four()) << bits >> 32);
   length_ <<= bits;
   at_ += bits / 8;
 }
 
-inline std::uint32_t ArithmeticDecoder::symbol(SymbolModel& model) {
+template <std::uint32_t kMost>
+ROADBED_INLINE std::uint32_t ArithmeticDecoder::symbol(SymbolModel<kMost>& model) {
   const std::uint32_t before = length_;
-  length_ >>= SymbolModel::kShift;
-  const std::uint32_t symbol = model.symbol_at(value_ / length_);
-  const std::int16_t* begin = model.begins_.data() + symbol;
-  const std::uint32_t low = static_cast<std::uint32_t>(begin[0]) * length_;
-  const std::uint32_t high =
-      symbol + 1 == model.symbols_ ? before : static_cast<std::uint32_t>(begin[1]) * length_;
+  length_ >>= kShareBits;
+  const std::uint16_t* end = model.end_at(value_ / length_);
+  const std::uint32_t low = end[-1] * length_;
+  const std::uint64_t high = std::uint64_t{end[0]} * length_;  // of the last symbol beyond `before`
   value_ -= low;
-  length_ = high - low;
+  length_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(high, before)) - low;
   renormalize();
-  model.count(symbol);
-  return symbol;
+  return model.count_before(end);
+}
+
+ROADBED_INLINE std::uint32_t ArithmeticDecoder::bit(BitModel& model) {
+  const std::uint32_t zero = model.zero_share_ * (length_ >> kBitShareBits);
+  const bool is_one = value_ >= zero;
+  if (is_one) value_ -= zero;
+  length_ = is_one ? length_ - zero : zero;
+  renormalize();
+  model.count(is_one);
+  return is_one ? 1 : 0;
+}
+
+ROADBED_INLINE std::uint32_t ArithmeticDecoder::part(std::uint32_t bits) {
+  length_ >>= bits;
+  const std::uint32_t value = value_ / length_;
+  value_ -= length_ * value;
+  renormalize();
+  return value & ((1u << bits) - 1);
+}
+
+ROADBED_INLINE std::uint32_t ArithmeticDecoder::raw_bits(std::uint32_t bits) {
+  if (bits <= 19) return part(bits);
+  const std::uint32_t low = part(16);
+  return part(bits - 16) << 16 | low;
+}
+
+inline std::uint64_t ArithmeticDecoder::raw_64() {
+  const std::uint64_t low = raw_bits(32);
+  return std::uint64_t{raw_bits(32)} << 32 | low;
 }
 
 }  // namespace roadbed::map::occupancy::laz

@@ -23,70 +23,71 @@ struct TimeStep {
 };
 
 /// Four sequences of times, which points may switch between.
-class GpsTime : public PackedItem {
- public:
-  void next(ArithmeticDecoder& from, LazPoint&) override {
-    while (switches_sequence(from) && !from.is_past_end()) continue;
-  }
-
+class GpsTime final : public SteppedItem<GpsTime> {
  private:
+  // What a time is: 0 to kMost or kMost to kMost + kLeast how many times the last step it is after
+  // its sequence's last time, or less; the same; of a sequence that begins; or of another one.
   static constexpr std::uint32_t kMost = 500, kLeast = 10, kSame = kMost + kLeast + 1,
-                                 kFull = kSame + 1;
+                                 kFull = kSame + 1, kFirst = kFull + 4;
 
-  /// Takes a step; or is told that the time goes on with another sequence.
-  bool switches_sequence(ArithmeticDecoder& from) {
+  ROADBED_INLINE void kind(ArithmeticDecoder& from) {
+    do {
+      kind_ = steps_[sequence_].last == 0 ? kind_after_none(from.symbol(after_none_))
+                                          : from.symbol(multiple_);
+      if (kind_ <= kFull || kind_ == kFirst) return;
+      sequence_ = (sequence_ + kind_ - kFull) % steps_.size();
+    } while (!from.is_past_end());
+  }
+
+  // Of 0 none, 1 some, 2 all of it, then another sequence.
+  static std::uint32_t kind_after_none(std::uint32_t symbol) {
+    return symbol == 0 ? kSame : symbol == 1 ? kFirst : kFull - 2 + symbol;
+  }
+
+  ROADBED_INLINE void interval(ArithmeticDecoder& from) {
+    if (kind_ != kSame) step_.take_interval(from, context());
+  }
+
+  ROADBED_INLINE std::uint32_t context() const {
+    if (kind_ == 1) return 1;
+    if (kind_ == 0) return 7;
+    if (kind_ < kMost) return kind_ < 10 ? 2 : 3;
+    if (kind_ < kSame) return kind_ == kMost ? 4 : kind_ < kMost + kLeast ? 5 : 6;
+    return kind_ == kFirst ? 0 : 8;
+  }
+
+  ROADBED_INLINE void sum(ArithmeticDecoder& from) {
+    if (kind_ == kSame) return;
     TimeStep& step = steps_[sequence_];
-    const std::uint32_t symbol = from.symbol(step.last == 0 ? after_none_ : multiple_);
-    // After no step: 0 none, 1 some, 2 all of it, then another sequence; else kSame, kFull,
-    // another.
-    const std::uint32_t full = step.last == 0 ? 2 : kFull;
-    if (symbol > full) {
-      sequence_ = (sequence_ + symbol - full) % steps_.size();
-      return true;
-    }
-    if (symbol == full) {
-      take_full(from);
-    } else if (step.last != 0) {
-      take_multiple(from, symbol, step);
-    } else if (symbol == 1) {
-      step.restart(step_.decode(from, 0, 0));
-    }
-    return false;
-  }
-
-  void take_full(ArithmeticDecoder& from) {
-    step_.decode(from, 0, 8);  // the upper half
-    from.raw_bits(32);
-    sequence_ = newest_ = (newest_ + 1) % steps_.size();
-    steps_[sequence_].restart(0);
-  }
-
-  void take_multiple(ArithmeticDecoder& from, std::uint32_t symbol, TimeStep& step) {
-    if (symbol == 1) {
-      step_.decode(from, step.last, 1);
+    const std::uint32_t factor = kind_ <= kMost ? kind_ : kMost - kind_;
+    const std::int32_t taken = step_.take_sum(from, times(factor, step.last));
+    if (kind_ == kFirst) {
+      step.restart(taken);
+    } else if (kind_ >= kFull) {
+      from.raw_bits(32);  // the lower half
+      sequence_ = newest_ = (newest_ + 1) % steps_.size();
+      steps_[sequence_].restart(0);
+    } else if (kind_ == 1) {
       step.extremes = 0;
-    } else if (symbol == 0) {
-      step.take_extreme(step_.decode(from, 0, 7));
-    } else if (symbol < kMost) {
-      step_.decode(from, times(symbol, step.last), symbol < 10 ? 2 : 3);
-    } else if (symbol == kMost) {
-      step.take_extreme(step_.decode(from, times(kMost, step.last), 4));
-    } else if (symbol < kMost + kLeast) {
-      step_.decode(from, times(kMost - symbol, step.last), 5);
-    } else if (symbol == kMost + kLeast) {
-      step.take_extreme(step_.decode(from, times(0u - kLeast, step.last), 6));
+    } else if (kind_ == 0 || kind_ == kMost || kind_ == kMost + kLeast) {
+      step.take_extreme(taken);
     }
   }
 
-  SymbolModel after_none_{6}, multiple_{kFull + 4};
-  IntegerDecoder step_{32, 9};
+  SymbolModel<6> after_none_;
+  SymbolModel<kFull + 4> multiple_;
+  IntegerDecoder<32> step_{9};
   std::array<TimeStep, 4> steps_;
   std::size_t sequence_ = 0, newest_ = 0;
+  std::uint32_t kind_ = kSame;
+
+ public:
+  using Point = Steps<&GpsTime::kind, &GpsTime::interval, &GpsTime::sum>;
 };
 
-class GpsTimeVersion1 : public PackedItem {
+class GpsTimeVersion1 final : public SteppedItem<GpsTimeVersion1> {
  public:
-  void next(ArithmeticDecoder& from, LazPoint&) override {
+  void all(ArithmeticDecoder& from) {
     if (step_.last != 0) {
       take_multiple(from, from.symbol(multiple_));
       return;
@@ -95,6 +96,7 @@ class GpsTimeVersion1 : public PackedItem {
     if (symbol == 1) step_.last = steps_.decode(from, 0, 0);
     if (symbol == 2) from.raw_64();
   }
+  using Point = Steps<&GpsTimeVersion1::all>;
 
  private:
   static constexpr std::uint32_t kSymbols = 512;
@@ -113,8 +115,9 @@ class GpsTimeVersion1 : public PackedItem {
     }
   }
 
-  SymbolModel after_none_{3}, multiple_{kSymbols};
-  IntegerDecoder steps_{32, 6};
+  SymbolModel<3> after_none_;
+  SymbolModel<kSymbols> multiple_;
+  IntegerDecoder<32> steps_{6};
   TimeStep step_;
 };
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/map/occupancy/laz/integer_decoder.h"
 #include "roadbed/map/occupancy/laz/layered_points.h"
-#include "roadbed/map/occupancy/laz/packed_item.h"
+#include "roadbed/map/occupancy/laz/packed_points.h"
 
 namespace roadbed::map::inline occupancy::inline laz {
 namespace {
@@ -66,6 +69,21 @@ std::size_t layers_of(const LazLayout::Item& item) {
   }
 }
 
+/// Bytes of chunks, in order, by the table that most files end with; empty where there is none.
+std::vector<std::size_t> chunk_table(std::string_view file, std::size_t begin) {
+  std::vector<std::size_t> sizes;
+  const auto table = integer_at<std::uint64_t>(file, begin);
+  if (table > file.size() || file.size() - table < kChunkTablePlace) return sizes;
+  const auto chunks = integer_at<std::uint32_t>(file, table + 4);
+  ArithmeticDecoder from(file.substr(table + kChunkTablePlace));
+  IntegerDecoder<32> size(2);
+  for (std::uint32_t i = 0; i < chunks && !from.is_past_end(); ++i) {
+    const std::int32_t last = sizes.empty() ? 0 : static_cast<std::int32_t>(sizes.back());
+    sizes.push_back(static_cast<std::uint32_t>(size.decode(from, last, 1)));
+  }
+  return sizes;
+}
+
 class Unpacking {
  public:
   Unpacking(std::string_view file, std::size_t begin, std::uint64_t points, const LazLayout& layout,
@@ -80,14 +98,28 @@ class Unpacking {
         take_(take) {}
 
   void run() {
-    if (layout_.packing != Packing::one_stream) need(kChunkTablePlace), at_ += kChunkTablePlace;
-    while (left_ > 0) {
-      layout_.packing == Packing::layers ? layered_chunk() : packed_chunk();
+    if (layout_.packing != Packing::one_stream) {
+      need(kChunkTablePlace);
+      if (layout_.packing == Packing::chunks) sizes_ = chunk_table(file_, at_);
+      at_ += kChunkTablePlace;
     }
+    while (left_ > 0) take_chunks();
     pass_on();
   }
 
  private:
+  struct Opened {
+    std::size_t begin;
+    std::uint64_t points;
+    LazPoint first;
+    std::unique_ptr<Chunk> others;
+  };
+
+  /// Where a chunk ends, if its points were taken or are layers.
+  std::size_t end_of(const Opened& chunk) const {
+    return chunk.begin + layout_.point_bytes() + chunk.others->used();
+  }
+
   [[noreturn]] void refuse_end() const {
     refuse(name_, fmt::format("byte {}", std::min(at_, file_.size())), "points",
            fmt::format("the file ends {} points before the last", left_), "all of them",
@@ -116,13 +148,61 @@ class Unpacking {
     return bytes;
   }
 
-  std::vector<std::unique_ptr<PackedItem>> items_after(std::string_view first) const {
+  /// The next chunk, or two in turn where it is known where the second one begins.
+  void take_chunks() {
+    const Opened first = opened(left_);
+    const std::optional<Opened> second = second_after(first);
+    std::vector<LazPoint> of_second;
+    put(first.first);
+    std::uint64_t taken = 1;
+    if (second) {
+      of_second.reserve(second->points);
+      for (; taken < std::min(first.points, second->points); ++taken) {
+        const auto [next, next_of_second] = first.others->next_with(*second->others);
+        if (first.others->is_past_end()) refuse_end();
+        put(next);
+        of_second.push_back(next_of_second);
+      }
+    }
+    take_rest(first, taken);
+    if (!second) return;
+    if (at_ != second->begin) return sizes_.clear();  // the table is wrong
+    if (second->others->is_past_end()) refuse_end();
+    put(second->first);
+    for (const LazPoint& point : of_second) put(point);
+    take_rest(*second, 1 + of_second.size());
+  }
+
+  void take_rest(const Opened& of, std::uint64_t taken) {
+    for (; taken < of.points; ++taken) {
+      const LazPoint point = of.others->next();
+      if (of.others->is_past_end()) refuse_end();
+      put(point);
+    }
+    at_ = end_of(of);
+    ++chunk_;
+  }
+
+  Opened opened(std::uint64_t left) {
+    return layout_.packing == Packing::layers ? layered_chunk(left) : packed_chunk(left);
+  }
+
+  std::optional<Opened> second_after(const Opened& first) {
+    if (first.points == left_) return std::nullopt;
+    if (layout_.packing == Packing::layers) {
+      at_ = end_of(first);
+    } else {
+      if (chunk_ >= sizes_.size()) return std::nullopt;
+      at_ = first.begin + sizes_[chunk_];  // or anything: the table may be wrong
+      if (at_ > file_.size() || file_.size() - at_ < layout_.point_bytes()) return std::nullopt;
+    }
+    return opened(left_ - first.points);
+  }
+
+  std::vector<std::unique_ptr<PackedItem>> items_but_position() const {
     std::vector<std::unique_ptr<PackedItem>> items;
-    for (const LazLayout::Item& item : layout_.items) {
+    for (const LazLayout::Item& item : std::span(layout_.items).subspan(1)) {
       switch (item.kind) {
-        case Kind::point10:
-          items.push_back(make_point10(first, item.version));
-          break;
         case Kind::gps_time:
           items.push_back(make_gps_time(item.version));
           break;
@@ -139,30 +219,24 @@ class Unpacking {
     return items;
   }
 
-  void packed_chunk() {
+  Opened packed_chunk(std::uint64_t left) {
     const std::uint64_t points = layout_.packing == Packing::one_stream
-                                     ? left_
-                                     : std::min<std::uint64_t>(left_, layout_.chunk_points);
+                                     ? left
+                                     : std::min<std::uint64_t>(left, layout_.chunk_points);
+    const std::size_t begin = at_;
     const std::string_view first = take_bytes(layout_.point_bytes());
-    LazPoint point = first_of_point10(first);
-    put(point);
-    if (points == 1 && left_ == 0) return;
-    const auto items = items_after(first);
-    ArithmeticDecoder from(file_.substr(at_));
-    for (std::uint64_t i = 1; i < points; ++i) {
-      for (const auto& item : items) item->next(from, point);
-      if (from.is_past_end()) refuse_end();
-      put(point);
-    }
-    at_ += from.used();
+    return {begin, points, first_of_point10(first),
+            std::make_unique<PackedPoints>(make_point10(first, layout_.items.front().version),
+                                           items_but_position(), file_.substr(at_))};
   }
 
-  void layered_chunk() {
+  Opened layered_chunk(std::uint64_t left) {
+    const std::size_t begin = at_;
     const std::string_view first = take_bytes(layout_.point_bytes());
     const auto points = integer_at<std::uint32_t>(take_bytes(4), 0);
-    if (points == 0 || points > left_) {
+    if (points == 0 || points > left) {
       refuse(name_, fmt::format("byte {}", at_ - 4), "points of a chunk", fmt::format("{}", points),
-             fmt::format("1 to {}", left_), "get the whole file");
+             fmt::format("1 to {}", left), "get the whole file");
     }
     std::array<std::size_t, 5> sizes{};  // of the first layers, what is looked at
     std::size_t layer = 0, others = 0;
@@ -180,13 +254,8 @@ class Unpacking {
     layers.intensity = take_bytes(sizes[4]);
     take_bytes(others);
     if (!has_attributes_) layers.classification = layers.intensity = {};
-    LayeredPoints packed(first, layers);
-    put(LayeredPoints::first_point(first));
-    for (std::uint32_t i = 1; i < points; ++i) {
-      const LazPoint point = packed.next();
-      if (packed.is_past_end()) refuse_end();
-      put(point);
-    }
+    return {begin, points, LayeredPoints::first_point(first),
+            std::make_unique<LayeredPoints>(first, layers, at_ - begin - first.size())};
   }
 
   std::string_view file_;
@@ -197,6 +266,8 @@ class Unpacking {
   const std::string& name_;
   const std::function<void(std::span<const LazPoint>)>& take_;
   std::vector<LazPoint> batch_;
+  std::vector<std::size_t> sizes_;  // of chunks; empty where it is not known before they are taken
+  std::size_t chunk_ = 0;           // the next one
 };
 
 }  // namespace

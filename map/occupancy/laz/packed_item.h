@@ -3,12 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string_view>
-#include <vector>
 
-#include "roadbed/map/occupancy/laz/arithmetic_decoder.h"
 #include "roadbed/map/occupancy/laz/point_steps.h"
+#include "roadbed/map/occupancy/laz/steps.h"
 
 namespace roadbed::map::inline occupancy::inline laz {
 
@@ -18,28 +16,39 @@ class PackedItem {
  public:
   virtual ~PackedItem() = default;
 
-  /// Takes the next point's part; `point` is written by who has it.
-  virtual void next(ArithmeticDecoder& from, LazPoint& point) = 0;
+  /// Takes the next point's part.
+  virtual void next(ArithmeticDecoder& from) = 0;
+
+  /// The same of two chunks. @pre both items were made for the same.
+  virtual void next_with(ArithmeticDecoder& from, PackedItem& other,
+                         ArithmeticDecoder& from_other) = 0;
 };
 
-/// A model for each value of a byte, made when needed.
-class ByteModels {
+/// An item whose steps for a point are `Item::Point`.
+template <typename Item, typename Base = PackedItem>
+class SteppedItem : public Base {
  public:
-  explicit ByteModels(std::uint32_t symbols = 256) : symbols_(symbols), models_(256) {}
-  SymbolModel& operator[](std::uint8_t value) {
-    if (!models_[value]) models_[value].emplace(symbols_);
-    return *models_[value];
+  void next(ArithmeticDecoder& from) override {
+    Item::Point::take(static_cast<Item&>(*this), from);
   }
 
- private:
-  std::uint32_t symbols_;
-  std::vector<std::optional<SymbolModel>> models_;
+  void next_with(ArithmeticDecoder& from, PackedItem& other,
+                 ArithmeticDecoder& from_other) override {
+    Item::Point::take_in_turn(static_cast<Item&>(*this), from, static_cast<Item&>(other),
+                              from_other);
+  }
+};
+
+/// The item that says where a point is.
+class PackedPosition : public PackedItem {
+ public:
+  virtual LazPoint point() const = 0;  ///< the last one taken
 };
 
 /// Coordinates, intensity, returns, class, scan angle, user data, source (20 bytes).
-/// @param first    the bytes of the chunk's first point, also in what follows.
+/// @param first    the bytes of the chunk's first point.
 /// @param version  1 or 2, also in what follows.
-std::unique_ptr<PackedItem> make_point10(std::string_view first, unsigned version);
+std::unique_ptr<PackedPosition> make_point10(std::string_view first, unsigned version);
 
 /// The first point of a chunk, as it is.
 LazPoint first_of_point10(std::string_view first);

@@ -32,59 +32,87 @@ struct LastPoint {
   std::uint8_t user_data;
 };
 
-class Point10 : public PackedItem {
+/// A byte, decoded by a model for its last value.
+class LastByte {
  public:
-  explicit Point10(std::string_view first) : last_(first) { last_.intensity = 0; }
-
-  void next(ArithmeticDecoder& from, LazPoint& point) override {
-    if (const std::uint32_t changed = from.symbol(changed_)) take_changed(from, changed);
-    take_coordinates(from);
-    point = last_.point();
+  ROADBED_INLINE void take(ArithmeticDecoder& from, std::uint8_t& value) {
+    value = static_cast<std::uint8_t>(from.symbol(models_[value].get()));
   }
 
  private:
-  std::uint32_t map() const { return kReturnMap[last_.returns()][last_.return_number()]; }
+  std::array<LateModel<256>, 256> models_;
+};
 
-  void take_changed(ArithmeticDecoder& from, std::uint32_t changed) {
-    if ((changed & 32) != 0) {
-      last_.flags = static_cast<std::uint8_t>(from.symbol(flags_[last_.flags]));
-    }
-    if ((changed & 16) != 0) {
-      std::int32_t& last = last_intensity_[map()];
-      last = intensity_.decode(from, last, std::min(map(), 3u));
-    }
-    last_.intensity = static_cast<std::uint16_t>(last_intensity_[map()]);
-    if ((changed & 8) != 0) {
-      last_.type = static_cast<std::uint8_t>(from.symbol(type_[last_.type]));
-    }
-    if ((changed & 4) != 0) from.symbol(scan_angle_[last_.scan_direction()]);
-    if ((changed & 2) != 0) {
-      last_.user_data = static_cast<std::uint8_t>(from.symbol(user_data_[last_.user_data]));
-    }
-    if ((changed & 1) != 0) source_.decode(from, 0);
+class Point10 final : public SteppedItem<Point10, PackedPosition> {
+ public:
+  explicit Point10(std::string_view first) : last_(first) { last_.intensity = 0; }
+
+  LazPoint point() const override { return last_.point(); }
+
+ private:
+  ROADBED_INLINE void changes(ArithmeticDecoder& from) { changed_ = from.symbol(changes_); }
+  ROADBED_INLINE void flags(ArithmeticDecoder& from) {
+    if ((changed_ & 32) != 0) flags_.take(from, last_.flags);
   }
-
-  void take_coordinates(ArithmeticDecoder& from) {
-    const std::uint32_t single = last_.returns() == 1 ? 1 : 0;
-    RunningMedian& x_step = x_steps_[map()];
-    const std::int32_t dx = dx_.decode(from, x_step.get(), single);
-    x_step.add(dx);
-    RunningMedian& y_step = y_steps_[map()];
-    const std::int32_t dy = dy_.decode(from, y_step.get(), single + even_up_to(dx_.k(), 20));
-    y_step.add(dy);
+  ROADBED_INLINE void intensity_interval(ArithmeticDecoder& from) {
+    if ((changed_ & 16) != 0) intensity_.take_interval(from, std::min(map(), 3u));
+  }
+  ROADBED_INLINE void intensity(ArithmeticDecoder& from) {
+    std::int32_t& last = last_intensity_[map()];
+    if ((changed_ & 16) != 0) last = intensity_.take_sum(from, last);
+    if (changed_ != 0) last_.intensity = static_cast<std::uint16_t>(last);
+  }
+  ROADBED_INLINE void type(ArithmeticDecoder& from) {
+    if ((changed_ & 8) != 0) type_.take(from, last_.type);
+  }
+  ROADBED_INLINE void scan_angle(ArithmeticDecoder& from) {
+    if ((changed_ & 4) != 0) from.symbol(scan_angle_[last_.scan_direction()]);
+  }
+  ROADBED_INLINE void user_data(ArithmeticDecoder& from) {
+    if ((changed_ & 2) != 0) user_data_.take(from, last_.user_data);
+  }
+  ROADBED_INLINE void source(ArithmeticDecoder& from) {
+    if ((changed_ & 1) != 0) source_.decode(from, 0);
+  }
+  ROADBED_INLINE void x_interval(ArithmeticDecoder& from) { dx_.take_interval(from, single()); }
+  ROADBED_INLINE void x(ArithmeticDecoder& from) { step(from, dx_, x_steps_[map()], 0); }
+  ROADBED_INLINE void y_interval(ArithmeticDecoder& from) {
+    dy_.take_interval(from, single() + even_up_to(dx_.k(), 20));
+  }
+  ROADBED_INLINE void y(ArithmeticDecoder& from) { step(from, dy_, y_steps_[map()], 1); }
+  ROADBED_INLINE void z_interval(ArithmeticDecoder& from) {
+    z_.take_interval(from, single() + even_up_to((dx_.k() + dy_.k()) / 2, 18));
+  }
+  ROADBED_INLINE void z(ArithmeticDecoder& from) {
     std::int32_t& height = heights_[return_level(last_.returns(), last_.return_number())];
-    height = z_.decode(from, height, single + even_up_to((dx_.k() + dy_.k()) / 2, 18));
-    last_.steps = {moved(last_.steps[0], dx), moved(last_.steps[1], dy), height};
+    last_.steps[2] = height = z_.take_sum(from, height);
   }
+
+  ROADBED_INLINE void step(ArithmeticDecoder& from, IntegerDecoder<32>& decoder,
+                           RunningMedian& steps, std::size_t axis) {
+    const std::int32_t step = decoder.take_sum(from, steps.get());
+    steps.add(step);
+    last_.steps[axis] = moved(last_.steps[axis], step);
+  }
+  std::uint32_t map() const { return kReturnMap[last_.returns()][last_.return_number()]; }
+  std::uint32_t single() const { return last_.returns() == 1 ? 1 : 0; }
 
   LastPoint last_;
-  SymbolModel changed_{64};
-  ByteModels flags_, type_, user_data_;
-  std::array<SymbolModel, 2> scan_angle_{SymbolModel(256), SymbolModel(256)};
-  IntegerDecoder intensity_{16, 4}, source_{16}, dx_{32, 2}, dy_{32, 22}, z_{32, 20};
+  std::uint32_t changed_ = 0;
+  SymbolModel<64> changes_;
+  LastByte flags_, type_, user_data_;
+  std::array<SymbolModel<256>, 2> scan_angle_;
+  IntegerDecoder<16> intensity_{4}, source_;
+  IntegerDecoder<32> dx_{2}, dy_{22}, z_{20};
   std::array<std::int32_t, 16> last_intensity_{};
   std::array<RunningMedian, 16> x_steps_, y_steps_;
   std::array<std::int32_t, 8> heights_{};
+
+ public:
+  using Point = Steps<&Point10::changes, &Point10::flags, &Point10::intensity_interval,
+                      &Point10::intensity, &Point10::type, &Point10::scan_angle,
+                      &Point10::user_data, &Point10::source, &Point10::x_interval, &Point10::x,
+                      &Point10::y_interval, &Point10::y, &Point10::z_interval, &Point10::z>;
 };
 
 /// The last three steps in turn, and their median.
@@ -104,11 +132,13 @@ class LastThree {
   std::size_t at_ = 0;
 };
 
-class Point10Version1 : public PackedItem {
+class Point10Version1 final : public SteppedItem<Point10Version1, PackedPosition> {
  public:
   explicit Point10Version1(std::string_view first) : last_(first) {}
 
-  void next(ArithmeticDecoder& from, LazPoint& point) override {
+  LazPoint point() const override { return last_.point(); }
+
+  void all(ArithmeticDecoder& from) {
     constexpr std::uint32_t most = 19;
     const std::int32_t dx = dx_.decode(from, x_steps_.median());
     const std::int32_t dy = dy_.decode(from, y_steps_.median(), std::min(dx_.k(), most));
@@ -118,39 +148,35 @@ class Point10Version1 : public PackedItem {
     x_steps_.add(dx);
     y_steps_.add(dy);
     take_changed(from, from.symbol(changed_), k);
-    point = last_.point();
   }
+  using Point = Steps<&Point10Version1::all>;
 
  private:
   void take_changed(ArithmeticDecoder& from, std::uint32_t changed, std::uint32_t k) {
     if ((changed & 32) != 0) {
       last_.intensity = static_cast<std::uint16_t>(intensity_.decode(from, last_.intensity));
     }
-    if ((changed & 16) != 0) {
-      last_.flags = static_cast<std::uint8_t>(from.symbol(flags_[last_.flags]));
-    }
-    if ((changed & 8) != 0) {
-      last_.type = static_cast<std::uint8_t>(from.symbol(type_[last_.type]));
-    }
+    if ((changed & 16) != 0) flags_.take(from, last_.flags);
+    if ((changed & 8) != 0) type_.take(from, last_.type);
     if ((changed & 4) != 0) scan_angle_.decode(from, 0, k < 3 ? 1 : 0);
-    if ((changed & 2) != 0) {
-      last_.user_data = static_cast<std::uint8_t>(from.symbol(user_data_[last_.user_data]));
-    }
+    if ((changed & 2) != 0) user_data_.take(from, last_.user_data);
     if ((changed & 1) != 0) source_.decode(from, 0);
   }
 
   LastPoint last_;
   LastThree x_steps_, y_steps_;
-  SymbolModel changed_{64};
-  ByteModels flags_, type_, user_data_;
-  IntegerDecoder dx_{32}, dy_{32, 20}, z_{32, 20}, intensity_{16}, scan_angle_{8, 2}, source_{16};
+  SymbolModel<64> changed_;
+  LastByte flags_, type_, user_data_;
+  IntegerDecoder<32> dx_, dy_{20}, z_{20};
+  IntegerDecoder<16> intensity_, source_;
+  IntegerDecoder<8> scan_angle_{2};
 };
 
 }  // namespace
 
 LazPoint first_of_point10(std::string_view first) { return LastPoint(first).point(); }
 
-std::unique_ptr<PackedItem> make_point10(std::string_view first, unsigned version) {
+std::unique_ptr<PackedPosition> make_point10(std::string_view first, unsigned version) {
   if (version == 1) return std::make_unique<Point10Version1>(first);
   return std::make_unique<Point10>(first);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,15 +13,22 @@ class RunningMedian {
   std::int32_t get() const { return sorted_[2]; }
 
   void add(std::int32_t value) {
-    // The other four, then the new one in its place among them: without branches.
+    // The other four, then the new one in its place among them.
     const std::int32_t* rest = sorted_.data() + first_kept_;
     const std::int32_t a = rest[0], b = rest[1], c = rest[2], d = rest[3], middle = sorted_[2];
-    first_kept_ = first_kept_ == 0 ? value >= middle : value > middle;
-    sorted_ = {std::min(a, value), std::max(a, std::min(b, value)), std::max(b, std::min(c, value)),
-               std::max(c, std::min(d, value)), std::max(d, value)};
+    first_kept_ = static_cast<std::size_t>(value > middle) |
+                  (static_cast<std::size_t>(value == middle) & (first_kept_ ^ 1u));
+    sorted_ = {least(a, value), most(a, least(b, value)), most(b, least(c, value)),
+               most(c, least(d, value)), most(d, value)};
   }
 
  private:
+  // GCC makes branches of std::min and std::max here, which nobody foresees.
+  static std::int32_t least(std::int32_t a, std::int32_t b) {
+    return b ^ ((a ^ b) & -static_cast<std::int32_t>(a < b));
+  }
+  static std::int32_t most(std::int32_t a, std::int32_t b) { return a ^ b ^ least(a, b); }
+
   std::array<std::int32_t, 5> sorted_{};
   std::size_t first_kept_ = 0;  // 0: the largest goes, 1: the smallest
 };

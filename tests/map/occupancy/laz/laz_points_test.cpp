@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
+#include "roadbed/map/occupancy/laz/point_steps.h"
 #include "roadbed/tests/support/program_run.h"
 #include "roadbed/tests/support/real_data.h"
 
@@ -28,9 +30,20 @@ PointSteps formula(std::int64_t i) {
           static_cast<std::int32_t>(i * i * i % 997 - (i % 50 == 0 ? 200'000 : 0))};
 }
 
-std::string packed(int format) {
+std::string packed(int format, const char* kind = "format") {
   return tests::bytes_of(tests::tests_folder() / "map/occupancy/laz" /
-                         fmt::format("format_{}.laz", format));
+                         fmt::format("{}_{}.laz", kind, format));
+}
+
+void expect_formula(const PointCloud& cloud) {
+  ASSERT_EQ(cloud.points.size(), kPoints);
+  for (std::int64_t i = 0; i < kPoints; ++i) {
+    const PointSteps steps = formula(i);
+    const Eigen::Vector3d expected(steps[0], steps[1], steps[2]);
+    const Eigen::Vector3d found = cloud.in_source(static_cast<std::size_t>(i));
+    // Points are floats: 200 m to 2⁻²⁴ of it.
+    EXPECT_LT((found - kScale_m * expected).cwiseAbs().maxCoeff(), 2e-5) << "point " << i;
+  }
 }
 
 std::string refusal(const std::string& bytes) {
@@ -45,15 +58,7 @@ std::string refusal(const std::string& bytes) {
 class LazFormats : public testing::TestWithParam<int> {};
 
 TEST_P(LazFormats, AreUnpackedToEachPoint) {
-  const PointCloud cloud = parse_point_cloud(packed(GetParam()), "a.laz");
-  ASSERT_EQ(cloud.points.size(), kPoints);
-  for (std::int64_t i = 0; i < kPoints; ++i) {
-    const PointSteps steps = formula(i);
-    const Eigen::Vector3d expected(steps[0], steps[1], steps[2]);
-    const Eigen::Vector3d found = cloud.in_source(static_cast<std::size_t>(i));
-    // Points are floats: 200 m to 2⁻²⁴ of it.
-    EXPECT_LT((found - kScale_m * expected).cwiseAbs().maxCoeff(), 2e-5) << "point " << i;
-  }
+  expect_formula(parse_point_cloud(packed(GetParam()), "a.laz"));
 }
 
 TEST_P(LazFormats, AreRefusedWhereTheyEnd) {
@@ -65,6 +70,37 @@ TEST_P(LazFormats, AreRefusedWhereTheyEnd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Points, LazFormats, testing::Values(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10));
+
+/// Of 70 points, the last one of 20; two at a time are decoded in turn.
+class LazChunks : public testing::TestWithParam<int> {};
+
+TEST_P(LazChunks, AreUnpackedToEachPoint) {
+  expect_formula(parse_point_cloud(packed(GetParam(), "chunks"), "a.laz"));
+}
+
+TEST_P(LazChunks, AreRefusedWhereTheyEnd) {
+  const std::string bytes = packed(GetParam(), "chunks");
+  const auto table = integer_at<std::uint64_t>(bytes, integer_at<std::uint32_t>(bytes, 96));
+  for (std::size_t size = 0; size < table; size += 97) {
+    EXPECT_NE(refusal(bytes.substr(0, size)), "accepted") << size;
+  }
+}
+
+TEST_P(LazChunks, AreFoundWhereTheyAreWhateverTheirTableSays) {
+  const std::string bytes = packed(GetParam(), "chunks");
+  const std::size_t place = integer_at<std::uint32_t>(bytes, 96);
+  const auto table = integer_at<std::uint64_t>(bytes, place);
+  std::mt19937 random(26);
+  for (int i = 0; i < 200; ++i) {
+    std::string wrong = bytes;
+    const std::size_t at =
+        i % 4 == 0 ? place + random() % 8 : table + random() % (wrong.size() - table);
+    wrong[at] = static_cast<char>(random() & 0xffu);
+    expect_formula(parse_point_cloud(wrong, "a.laz"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, LazChunks, testing::Values(1, 3, 7));
 
 TEST(Laz, RefusesMorePointsThanItsBytesCanHold) {
   std::string bytes = packed(3);
