@@ -37,16 +37,6 @@ void note_all(const CloudInputs::Note& note, const map::PointCloud& cloud, bool 
   if (needs_sensor && !cloud.has_sensor()) note(cloud.name, kNoSensor);
 }
 
-// Filters do not say which point is which.
-void check_is_one_scan(const map::PointCloud& cloud) {
-  if (cloud.scans.empty()) return;
-  throw map::InputError({.file = cloud.name,
-                         .element = "sensor",
-                         .found = "has a position for each point",
-                         .needed = "one for the whole cloud, to filter it",
-                         .remedy = "leave the filter out, or give --sensor or --no-carving"});
-}
-
 [[noreturn]] void refuse_octree(const std::filesystem::path& file, bool for_octree) {
   throw map::InputError(
       {.file = map::input_name(file),
@@ -228,7 +218,6 @@ map::PointCloud CloudInputs::prepared(map::PointCloud cloud) const {
     cloud.sensor_in_source.reset();
   }
   if (of_neighbours_.looks_at_neighbours() && !cloud.points.empty()) {
-    check_is_one_scan(cloud);
     cloud = map::filtered(cloud, of_neighbours_);
   }
   if (!crs_.empty()) cloud.crs = crs_;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "roadbed/map/files/input_error.h"
@@ -29,6 +32,28 @@ void keep(PointCloud& cloud, const Keeps& keeps) {
   }
   cloud.filtered_out += cloud.points.size() - kept;
   cloud.points.resize(kept);
+  cloud.scans = std::move(scans);
+}
+
+// The scans of a cloud whose points are those nearest to points of a cloud with scans; puts the
+// points in the order of those.
+void take_scans(PointCloud& cloud, const std::vector<std::uint32_t>& nearest) {
+  std::vector<std::size_t> order(cloud.points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return nearest[i]; });
+  std::vector<Eigen::Vector3f> points;
+  std::vector<ScanStart> scans;
+  std::size_t next_scan = 0;
+  for (const std::size_t i : order) {
+    bool is_next = false;
+    for (; next_scan < cloud.scans.size() && cloud.scans[next_scan].first <= nearest[i];
+         ++next_scan) {
+      is_next = true;
+    }
+    if (is_next) scans.push_back({points.size(), cloud.scans[next_scan - 1].sensor_in_source});
+    points.push_back(cloud.points[i]);
+  }
+  cloud.points = std::move(points);
   cloud.scans = std::move(scans);
 }
 
@@ -70,15 +95,17 @@ PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter) {
   static auto& pcl_filter = pcl_function_as<RoadbedPclFilter>("roadbed_pcl_filter");
   PointCloud kept = cloud;
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
-  const std::size_t count =
-      pcl_filter(kept.points.front().data(), kept.points.size(), static_cast<float>(filter.voxel_m),
-                 filter.outlier_neighbours, filter.outlier_deviations);
+  std::vector<std::uint32_t> nearest(cloud.scans.empty() ? 0 : cloud.points.size());
+  const std::size_t count = pcl_filter(
+      kept.points.front().data(), nearest.empty() ? nullptr : nearest.data(), kept.points.size(),
+      static_cast<float>(filter.voxel_m), filter.outlier_neighbours, filter.outlier_deviations);
   if (count == 0) {
     throw InputError({.file = "point cloud filter",
                       .found = fmt::format("no point of {} is left", cloud.name),
                       .remedy = "filter less"});
   }
   kept.points.resize(count);
+  if (!nearest.empty()) take_scans(kept, nearest);
   return kept;
 }
 

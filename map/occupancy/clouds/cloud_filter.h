@@ -40,6 +40,10 @@ struct CloudFilter {
   }
   /// Whether it needs PCL.
   bool looks_at_neighbours() const { return voxel_m > 0.0 || outlier_neighbours > 0; }
+  bool keeps_all() const {
+    return !looks_at_attributes() && !looks_at_neighbours() && !vehicle_box && !range_m &&
+           !height_m;
+  }
 };
 
 /// A cloud without its points in `vehicle_box`; may hold none then.
@@ -49,7 +53,8 @@ PointCloud without_vehicle(PointCloud cloud, const CloudFilter& filter);
 /// @throws InputError if a range is asked for and a point's sensor is not known.
 PointCloud within_reach(PointCloud cloud, const CloudFilter& filter);
 
-/// Applies PCL's StatisticalOutlierRemoval, then its VoxelGrid. PCL is opened now, not when the
+/// Applies PCL's StatisticalOutlierRemoval, then its VoxelGrid; a point that is left was measured
+/// from where the nearest one of the cloud was. PCL is opened now, not when the
 /// program starts, which would cost every command 50 ms.
 /// @throws InputError if roadbed was built without PCL, or no point is left.
 PointCloud filtered(const PointCloud& cloud, const CloudFilter& filter);

@@ -45,6 +45,38 @@ TEST_F(CloudFilterTest, ThinsToAPointPerCube) {
   EXPECT_LE(kept.points.size(), 9u * 5u + 1u);
 }
 
+// As sweeps whose log says where on the vehicle the lidars are.
+TEST_F(CloudFilterTest, KeepsFromWhereEachPointWasMeasured) {
+  PointCloud cloud = wall_with_a_bird();
+  const auto sensor_of = [](const PointCloud& of, std::size_t point) {
+    const auto after = std::ranges::upper_bound(of.scans, point, {}, &ScanStart::first);
+    return std::prev(after)->sensor_in_source;
+  };
+  for (std::size_t first = 0; first < cloud.points.size(); first += 50) {
+    const auto number = static_cast<double>(first);
+    cloud.scans.push_back({first, Eigen::Vector3d(number, 0.0, 2.0)});
+  }
+  for (const CloudFilter& filter :
+       {CloudFilter{.voxel_m = 0.5}, CloudFilter{.outlier_neighbours = 8}}) {
+    const PointCloud kept = filtered(cloud, filter);
+    ASSERT_LT(kept.points.size(), cloud.points.size());
+    ASSERT_GT(kept.scans.size(), 5u);
+    EXPECT_EQ(kept.scans.front().first, 0u);
+    for (std::size_t i = 0; i < kept.points.size(); ++i) {
+      const auto off_m = [&](const Eigen::Vector3f& point) {
+        return (point - kept.points[i]).squaredNorm();
+      };
+      const float least = off_m(*std::ranges::min_element(cloud.points, {}, off_m));
+      bool is_that_of_a_nearest = false;
+      for (std::size_t k = 0; k < cloud.points.size(); ++k) {
+        if (off_m(cloud.points[k]) > least + 1e-6f) continue;
+        is_that_of_a_nearest |= sensor_of(cloud, k) == sensor_of(kept, i);
+      }
+      EXPECT_TRUE(is_that_of_a_nearest) << "point " << i;
+    }
+  }
+}
+
 std::size_t points_of(const std::string& bytes, const std::string& name,
                       const CloudFilter& filter) {
   return parse_point_cloud(bytes, name, filter).points.size();
