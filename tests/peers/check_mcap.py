@@ -32,6 +32,7 @@ SHOWN = {"/tf": "Transform3D:translation", "/occupancy": "Points3D:positions", "
          "/fix": "GeoPoints:positions", "/drive/path": "InstancePoses3D:translations",
          "/plan": "InstancePoses3D:translations", "/drive": "roadbed.DriveState:message",
          "/plan/hypotheses": "roadbed.Hypotheses:message", "/plan/candidates": "roadbed.Candidates:message",
+         "/plan/candidate_lines": "foxglove.SceneUpdate:message",
          "/audit/clearance": "roadbed.Clearance:message"}
 
 
@@ -160,6 +161,46 @@ def considered_faults(log, cycles):
             yield f"/plan/candidates at {cycle['t_s']} s has {len(causes)} causes"
         elif feasible not in causes:
             yield f"/plan/candidates at {cycle['t_s']} s has no feasible one, and one was chosen"
+    yield from candidate_line_faults(log, grids)
+
+
+def beside(points, stations, offsets):
+    """Places beside a line, at stations of it; an offset is to the left."""
+    pieces = np.diff(points, axis=0)
+    lengths = np.linalg.norm(pieces, axis=1)
+    begins = np.concatenate([[0], np.cumsum(lengths)[:-1]])
+    at = np.clip(np.searchsorted(begins, stations, side="right") - 1, 0, len(lengths) - 1)
+    ahead = pieces[at] / lengths[at, None]
+    along = np.clip(stations - begins[at], 0, lengths[at])
+    return points[at] + along[:, None] * ahead + offsets[:, None] * np.stack([-ahead[:, 1], ahead[:, 0]], 1)
+
+
+def candidate_line_faults(log, grids):
+    """Each line ends where one of the grid does that was rejected for what its entity is named."""
+    (reference,) = [entity for entity in log.only("/scene/route").entities if entity.id == "reference 1"]
+    line = np.array([[point.x, point.y] for point in reference.lines[0].points])
+    drawn = dict(log.by_topic["/plan/candidate_lines"])
+    if drawn.keys() != grids.keys():
+        yield f"/plan/candidate_lines has {len(drawn)} messages for {len(grids)} grids"
+        return
+    for time, update in drawn.items():
+        grid = grids[time]
+        d_m, l_m, names = np.array(grid.end_d_m), np.array(grid.end_l_m), list(grid.cause_names)
+        causes = np.frombuffer(grid.causes, np.uint8).reshape(len(l_m), len(d_m))
+        start_m = beside(line, np.array([grid.start_s_m]), np.array([grid.start_d_m]))
+        ends_m = beside(line, grid.start_s_m + np.repeat(l_m, len(d_m)), np.tile(d_m, len(l_m))).reshape(*causes.shape, 2)
+        count = sum(len(entity.lines) for entity in update.entities)
+        if not 1 <= count <= 48 or len(update.deletions) != 1:
+            yield f"/plan/candidate_lines at {time} ns has {count} lines"
+        for entity in update.entities:
+            cause = names.index("none" if entity.id == "feasible" else entity.id)
+            if dict((word.key, word.value) for word in entity.metadata)["candidates"] != str((causes == cause).sum()):
+                yield f"/plan/candidate_lines at {time} ns counts others of {entity.id}"
+            ends = ends_m[causes == cause]
+            for drawn_line in entity.lines:
+                first, last = ([place.x, place.y] for place in (drawn_line.points[0], drawn_line.points[-1]))
+                if np.abs(start_m - first).max() > 1e-6 or np.linalg.norm(ends - last, axis=1).min() > 1e-6:
+                    yield f"/plan/candidate_lines at {time} ns: {entity.id} goes from {first} to {last}"
 
 
 def scene_faults(log):

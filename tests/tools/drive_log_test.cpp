@@ -72,6 +72,24 @@ TEST_F(DriveLog, HasATopicForEachThing) {
   EXPECT_GT(messages["/log"], 1u);
 }
 
+TEST_F(DriveLog, DrawsCandidatesWhereTheyWereKept) {
+  const auto messages_of = [&](const char* drive, std::vector<std::string> more) {
+    std::vector<std::string> words{"simulate", short_scenario(), "--mcap", "-o", out(drive)};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(run_roadbed(words).status, 0);
+    std::map<std::string, std::size_t> messages;
+    const json found = info(out(std::string(drive) + "/drive.mcap"));
+    for (const json& topic : found["topics"]) {
+      messages[topic["topic"]] = topic["messages"].get<std::size_t>();
+    }
+    return messages;
+  };
+  auto with = messages_of("with", {"--candidates"}), without = messages_of("without", {});
+  EXPECT_GT(with["/plan/candidates"], 10u);
+  EXPECT_EQ(with["/plan/candidate_lines"], with["/plan/candidates"]);
+  EXPECT_EQ(without["/plan/candidate_lines"], 0u);
+}
+
 TEST_F(DriveLog, OfAnEarlierDriveGoesWithIt) {
   ASSERT_EQ(run_roadbed({"simulate", short_scenario(), "--mcap", "-o", out("drive")}).status, 0);
   ASSERT_EQ(run_roadbed({"simulate", short_scenario(), "-o", out("drive"), "--force"}).status, 0);

@@ -75,6 +75,8 @@ class DriveLog {
   void add_plans();
   /// The hypotheses of a cycle, and its candidates if they were kept.
   void add_considered(const DriveCycle& cycle, std::int64_t time_ns);
+  /// Ways of some of its candidates, those with one cause in one entity.
+  void add_candidate_lines(const DriveCycle& cycle, std::int64_t time_ns);
   void add_text(double t_s, FoxgloveLevel level, const std::string& name, const std::string& text);
   void add_texts();
   LineInSource path_between(double from_s, double to_s) const;

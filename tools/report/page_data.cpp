@@ -195,12 +195,6 @@ std::string note_of(const DriveCycle& cycle) {
                            cycle.chosen->end_l_m);
 }
 
-// Which of the lines was driven along.
-std::ptrdiff_t line_at(const Drive& drive, double t_s) {
-  return std::ranges::count_if(drive.given_up,
-                               [&](const GivenUpRoute& route) { return route.until_s <= t_s; });
-}
-
 // Distances in centimetres: the drive's at each step; four numbers a part, its obstacle's index
 // first, −1 for a light.
 Json coded_st(const planning::StPicture& st) {

@@ -35,6 +35,11 @@ std::string_view to_string(Outcome outcome) {
   return "";
 }
 
+std::size_t line_at(const Drive& drive, double t_s) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      drive.given_up, [&](const GivenUpRoute& route) { return route.until_s <= t_s; }));
+}
+
 std::vector<DriveEvent> events_of(const DriveCycle& cycle, const DriveCycle* last) {
   std::vector<DriveEvent> events;
   const auto log = [&](EventLevel level, std::string text) {

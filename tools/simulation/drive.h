@@ -124,6 +124,10 @@ struct Drive {
   std::shared_ptr<const planning::ExplainedPlan> explained = nullptr;
 };
 
+/// Which of the drive's lines was driven along: those of routes that were given up, then the
+/// world's.
+std::size_t line_at(const Drive& drive, double t_s);
+
 /// What is worth telling of a cycle after the one before it: nothing feasible, an emergency,
 /// another lead, …
 /// @param last  none before the first cycle.
