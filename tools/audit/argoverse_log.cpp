@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using planning::ObstacleInSource;
 
-constexpr double kCell_m = 0.1, kCarveRange_m = 40.0;
+constexpr double kCell_m = 0.1, kCarveRange_m = 40.0, kSweep_s = 0.1;
 
 [[noreturn]] void refuse_log(const fs::path& folder, const std::string& found,
                              const std::string& needed) {
@@ -49,7 +49,12 @@ class TrackRows {
     size_m_ = size_m_.cwiseMax(size_m.head<2>());
   }
 
+  // One that was seen in one sweep only is there until the next one.
   ObstacleInSource obstacle(const std::string& id, const std::string& kind) && {
+    if (rows_.size() == 1) {
+      rows_.push_back(rows_.front());
+      rows_.back().t_s += kSweep_s;
+    }
     ObstacleInSource obstacle{.id = id,
                               .kind = kind,
                               .length_m = size_m_.x(),

@@ -4,10 +4,11 @@
 
 #include <span>
 
+#include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/logs/log.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/map/occupancy/clouds/log_clouds.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/occupancy/octree/tiled_occupancy.h"
 
@@ -22,15 +23,16 @@ struct FieldWithOccupancy {
   map::ClearanceField field;
 };
 
-std::unique_ptr<map::OccupancySource> occupancy_in(const fs::path& path) {
+std::unique_ptr<map::OccupancySource> occupancy_in(const fs::path& path,
+                                                   const map::CloudFilter& filter = {}) {
   if (map::is_log(path)) {
-    const map::LogClouds clouds(path, {});
-    return std::make_unique<map::OccupancyMap>(
-        map::OccupancyMap::build(map::CloudsInTurn([&](const auto& use) { clouds.for_each(use); }),
-                                 map::OccupancyOptions{}));
+    return std::make_unique<map::OccupancyMap>(map::load_occupancy_of_log(path, filter));
   }
-  if (fs::is_directory(path)) return map::open_occupancy(path);
-  return std::make_unique<map::OccupancyMap>(map::load_occupancy(std::span(&path, 1)));
+  if (fs::is_directory(path)) {
+    if (!filter.keeps_all()) map::refuse_to_filter(map::input_name(path));
+    return map::open_occupancy(path);
+  }
+  return std::make_unique<map::OccupancyMap>(map::load_occupancy(std::span(&path, 1), {}, filter));
 }
 
 }  // namespace
@@ -42,6 +44,12 @@ std::shared_ptr<const map::RoadMap> Inputs::road_map(const fs::path& file) const
 
 std::shared_ptr<const map::OccupancySource> Inputs::occupancy(const fs::path& path) const {
   return of<map::OccupancySource>("octree or tiles", {path}, [&] { return occupancy_in(path); });
+}
+
+std::shared_ptr<const map::OccupancySource> Inputs::filtered_occupancy(
+    const fs::path& path, const map::CloudFilter& filter, const std::string& words) const {
+  return of<map::OccupancySource>("octree of points " + words, {path},
+                                  [&] { return occupancy_in(path, filter); });
 }
 
 std::shared_ptr<const map::OccupancyMap> Inputs::occupancy_of(

@@ -11,6 +11,10 @@ namespace roadbed::map::inline occupancy::inline clearance {
 class ClearanceField;
 }
 
+namespace roadbed::map::inline occupancy::inline clouds {
+struct CloudFilter;
+}
+
 namespace roadbed::map::inline occupancy::inline octree {
 class OccupancyMap;
 class OccupancySource;
@@ -35,6 +39,13 @@ class Inputs {
   /// As `map::open_occupancy`: an octree, or a folder of tiles; or made of a cloud, or of the
   /// clouds of a log, as `occupancy build` does with cells of 0.1 m.
   std::shared_ptr<const map::OccupancySource> occupancy(const std::filesystem::path& path) const;
+
+  /// The same of the points that a filter of clouds leaves.
+  /// @param words  of the filter; as they are different, so are filters.
+  /// @throws InputError if it is no cloud and no log of clouds, or no point is left.
+  std::shared_ptr<const map::OccupancySource> filtered_occupancy(const std::filesystem::path& path,
+                                                                 const map::CloudFilter& filter,
+                                                                 const std::string& words) const;
 
   /// As `map::load_occupancy`: an octree, or clouds.
   std::shared_ptr<const map::OccupancyMap> occupancy_of(

@@ -66,6 +66,7 @@ void AuditAsked::declare(Arguments& arguments) {
       .ending(".json .xml .csv");
   declare_question(arguments);
   declare_road(arguments);
+  filter_.declare(arguments);
 }
 
 void AuditAsked::declare_question(Arguments& arguments) {
@@ -153,6 +154,7 @@ std::string AuditAsked::fault() const {
   if (!on_.empty() && !is_area && map_.empty()) return "--on " + on_ + " needs --map";
   if (!rules_.empty() && map_.empty()) return "--rules needs --map";
   if (occupancy_.empty() && !ground_.empty()) return "--ground needs --occupancy";
+  if (occupancy_.empty() && !filter_.words().empty()) return filter_.words() + " needs --occupancy";
   return {};
 }
 
@@ -213,6 +215,7 @@ CertificateDemands AuditAsked::demands(const std::filesystem::path& trajectory) 
 std::string AuditAsked::against() const {
   std::string words;
   if (!occupancy_.empty()) words = "--occupancy " + occupancy_.string();
+  if (const std::string filter = filter_.words(); !filter.empty()) words += " " + filter;
   if (!on_.empty()) words += (words.empty() ? "--on " : " --on ") + on_;
   if (occupancy_.empty() && !map_.empty()) words += " --map " + map_.string();
   return words;

@@ -10,6 +10,7 @@
 #include "roadbed/tools/audit/road_audit.h"
 #include "roadbed/tools/cli/arguments.h"
 #include "roadbed/tools/cli/inputs.h"
+#include "roadbed/tools/commands/filter_arguments.h"
 #include "roadbed/tools/files/vehicle_file.h"
 
 namespace roadbed::tools::inline commands {
@@ -25,6 +26,8 @@ class AuditAsked {
   std::string fault() const;
 
   const std::filesystem::path& occupancy_file() const { return occupancy_; }
+  /// Which points of the occupancy count, where that is of clouds.
+  const FilterArguments& filter() const { return filter_; }
   const std::filesystem::path& map_file() const { return map_; }
   const std::filesystem::path& vehicle_file() const { return vehicle_; }
   const std::filesystem::path& obstacles_file() const { return obstacles_; }
@@ -65,6 +68,7 @@ class AuditAsked {
   std::optional<Argument> clearance_argument_, inflate_argument_, unknown_argument_,
       least_measured_argument_, from_height_argument_, margin_argument_;
   std::filesystem::path occupancy_, vehicle_, map_, obstacles_;
+  FilterArguments filter_;
   planning::AuditOptions options_;
   std::string ground_, on_, rules_;
   double from_height_m_ = map::HeightBand{}.from_m;

@@ -23,6 +23,7 @@
 #include "roadbed/tools/commands/audit_outputs.h"
 #include "roadbed/tools/commands/commands.h"
 #include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/obstacles_csv.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 
 namespace roadbed::tools::inline commands {
@@ -48,6 +49,9 @@ class AuditCommand : public Command {
         "  roadbed audit --occupancy street.bt --trajectory poses.txt --pose-frame rear-axle "
         "--save-drive poses.csv\n"
         "  roadbed audit --log data/argoverse_log --boxes annotated --unknown free --svg log.svg\n"
+        "  roadbed audit --log data/argoverse_log --boxes annotated --unknown free --certificate "
+        "log.json --save-drive log.csv --save-occupancy log.bt --save-obstacles log_boxes.csv\n"
+        "  roadbed audit --occupancy scan_1.pcd --height 0.3,3 --trajectory drive/trajectory.csv\n"
         "  roadbed audit --occupancy street.bt --map town.xodr --lane lane:1/0/-1 --offset 0.3\n"
         "  roadbed audit --map town.xodr --on drivable --margin 0.1 --trajectory "
         "drive/trajectory.csv\n"
@@ -66,6 +70,7 @@ class AuditCommand : public Command {
     AuditScene scene = audit_scene(asked_, outputs_.certifies(), common);
     scene.command = "roadbed audit " + asked_.against();
     if (asked_.obstacles_file().empty()) scene.question.moving_in_source = of_log.obstacles;
+    if (outputs_.saves_obstacles()) as_saved(scene.question.moving_in_source);
     scene.occupancy = of_log.occupancy;
     if (!subjects_.is_swept()) scene.drive_file = subjects_.file();
     const std::vector<AuditSubject> subjects = subjects_.list(scene.road_map.get(), scene.shape);
@@ -93,19 +98,42 @@ class AuditCommand : public Command {
   }
 
   std::string missing() const {
-    if (!check_.empty()) return {};
+    if (!check_.empty()) return check_fault();
     const bool has_log = !subjects_.log().empty();
-    if (has_log && outputs_.certifies())
-      return "--certificate is about files, not about --log: build its occupancy (occupancy "
-             "build), and "
-             "give that with its drive";
+    if (std::string fault = certificate_fault(); !fault.empty()) return fault;
     if (std::string fault = asked_.fault(); !has_log && !fault.empty()) return fault;
     if (!has_log && !asked_.asks()) return "--occupancy or --on is required";
     const bool has_map = !asked_.map_file().empty();
     if (std::string fault = subjects_.fault(has_map); !fault.empty()) return fault;
-    const bool proves_nothing =
-        subjects_.is_swept() && outputs_.certifies() && !outputs_.saves_drive();
-    return proves_nothing ? "--certificate needs --save-drive here, as it is about a file" : "";
+    return {};
+  }
+
+  std::string check_fault() const {
+    const std::string filter = asked_.filter().words();
+    return filter.empty() ? "" : filter + " is not for --check: a certificate is about an octree";
+  }
+
+  // It is about files, which who checks it reads by themselves.
+  std::string certificate_fault() const {
+    if (!outputs_.certifies()) return {};
+    const bool has_log = !subjects_.log().empty();
+    const bool has_octree = !has_log || !asked_.occupancy_file().empty();
+    std::string needed;
+    const auto need = [&](const char* option, bool is_needed) {
+      if (is_needed) needed += (needed.empty() ? "" : ", ") + std::string(option);
+    };
+    need("--save-drive", (has_log || subjects_.is_swept()) && !outputs_.saves_drive());
+    need("--save-occupancy",
+         (!has_octree || !asked_.filter().words().empty()) && !outputs_.saves_occupancy());
+    need("--save-obstacles",
+         has_log && asked_.obstacles_file().empty() && !outputs_.saves_obstacles());
+    return needed.empty() ? "" : "--certificate needs " + needed + " here, as it is about files";
+  }
+
+  // Lengths are rounded in the file.
+  static void as_saved(std::vector<planning::ObstacleInSource>& obstacles) {
+    if (obstacles.empty()) return;
+    obstacles = parse_obstacles_csv(write_obstacles_csv(obstacles), "obstacles.csv");
   }
 
   // What is not given is the log's.

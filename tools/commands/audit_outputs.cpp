@@ -5,11 +5,13 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
 #include "roadbed/map/storage/output_file.h"
 #include "roadbed/tools/cli/build_id.h"
 #include "roadbed/tools/commands/audit_frames.h"
 #include "roadbed/tools/commands/audit_output.h"
 #include "roadbed/tools/files/drive_file.h"
+#include "roadbed/tools/files/obstacles_csv.h"
 #include "roadbed/tools/files/trajectory_csv.h"
 #include "roadbed/tools/report/audit_pages.h"
 #include "roadbed/tools/report/audit_pictures.h"
@@ -105,7 +107,18 @@ std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
                              .add("--save-drive", saved_drive_,
                                   "Write the drive that was audited, poses of the rear axle (.csv)")
                              .writes(".csv");
-  return {svg, page, log, certificate, junit, geojson, saved};
+  const Argument occupancy =
+      arguments
+          .add("--save-occupancy", saved_occupancy_,
+               "Write the occupancy that was audited, of clouds or of --log, as an octree (.bt)")
+          .writes(".bt");
+  const Argument obstacles =
+      arguments
+          .add("--save-obstacles", saved_obstacles_,
+               "Write the dynamic obstacles that were audited, as --obstacles reads them (.csv); a "
+               "header only where there are none")
+          .writes(".csv");
+  return {svg, page, log, certificate, junit, geojson, saved, occupancy, obstacles};
 }
 
 void AuditOutputs::declare_force(Arguments& arguments) {
@@ -113,7 +126,8 @@ void AuditOutputs::declare_force(Arguments& arguments) {
 }
 
 void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects) const {
-  for (const auto& output : {svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_}) {
+  for (const auto& output : {svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_,
+                             saved_occupancy_, saved_obstacles_}) {
     if (!output.empty()) map::check_writable(output, force_);
   }
   if (!certifies()) return;
@@ -122,21 +136,42 @@ void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects)
 }
 
 void AuditOutputs::check_for_folder() const {
-  if (svg_.empty() && mcap_.empty() && certificate_.empty() && saved_drive_.empty()) return;
-  throw map::InputError({.file = "--svg, --mcap, --certificate or --save-drive",
+  if (svg_.empty() && mcap_.empty() && certificate_.empty() && !saves_drive() &&
+      !saves_occupancy() && !saves_obstacles()) {
+    return;
+  }
+  throw map::InputError({.file = "--svg, --mcap, --certificate or --save-…",
                          .found = "is about one drive, and --trajectory is a folder",
                          .remedy = "give one file"});
 }
 
 void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scene) const {
-  if (!saved_drive_.empty()) {
-    map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
-  }
+  write_saved(audited, scene);
   write_picture(audited, scene);
   write_report(audited, scene);
   write_log(audited, scene);
   write_certificate(audited, scene);
   write_lists({audited}, scene);
+}
+
+void AuditOutputs::write_saved(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (saves_drive()) {
+    map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
+  }
+  if (saves_occupancy()) {
+    const auto* octree = dynamic_cast<const map::OccupancyMap*>(scene.occupancy.get());
+    if (octree == nullptr) {
+      throw map::InputError({.file = map::input_name(scene.asked.occupancy_file()),
+                             .found = "is a folder of tiles, or none is given",
+                             .needed = "one octree for --save-occupancy",
+                             .remedy = "leave that out"});
+    }
+    map::write_output(saved_occupancy_, octree->to_bt(), force_);
+  }
+  if (saves_obstacles()) {
+    map::write_output(saved_obstacles_, write_obstacles_csv(scene.question.moving_in_source),
+                      force_);
+  }
 }
 
 void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
@@ -192,10 +227,15 @@ void AuditOutputs::write_certificate(const AuditedDrive& audited, const AuditSce
                        .ground = {scene.question.ground.kind, audited.audit.ground},
                        .least_measured = scene.asked.options().least_measured,
                        .parts = audited.audit.certificates};
-  if (scene.occupancy) file.occupancy = hashed_once(scene, scene.asked.occupancy_file());
-  if (!scene.asked.obstacles_file().empty() && scene.occupancy) {
-    file.obstacles =
-        certified_obstacles(scene.asked.obstacles_file(), scene.question.moving_in_source);
+  if (saves_occupancy()) {
+    file.occupancy = certified_file(saved_occupancy_);
+  } else if (scene.occupancy) {
+    file.occupancy = hashed_once(scene, scene.asked.occupancy_file());
+  }
+  const auto& obstacles = saves_obstacles() ? saved_obstacles_ : scene.asked.obstacles_file();
+  const bool has_obstacles = !obstacles.empty() && !scene.question.moving_in_source.empty();
+  if (has_obstacles && scene.occupancy) {
+    file.obstacles = certified_obstacles(obstacles, scene.question.moving_in_source);
   }
   if (!scene.asked.vehicle_file().empty())
     file.vehicle = certified_file(scene.asked.vehicle_file());

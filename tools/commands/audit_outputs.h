@@ -20,6 +20,8 @@ class AuditOutputs {
 
   bool certifies() const { return !certificate_.empty(); }
   bool saves_drive() const { return !saved_drive_.empty(); }
+  bool saves_occupancy() const { return !saved_occupancy_.empty(); }
+  bool saves_obstacles() const { return !saved_obstacles_.empty(); }
 
   /// Checks that all can be written, and that a certificate can be about its files.
   /// @throws OutputError, InputError
@@ -32,6 +34,7 @@ class AuditOutputs {
   void write_all(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
 
  private:
+  void write_saved(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_picture(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_report(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_log(const AuditedDrive& audited, const AuditScene& scene) const;
@@ -39,7 +42,8 @@ class AuditOutputs {
   void write_certificate(const AuditedDrive& audited, const AuditScene& scene) const;
   void write_lists(const std::vector<AuditedDrive>& audits, const AuditScene& scene) const;
 
-  std::filesystem::path svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_;
+  std::filesystem::path svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_,
+      saved_occupancy_, saved_obstacles_;
   bool force_ = false;
 };
 

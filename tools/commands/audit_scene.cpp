@@ -74,7 +74,11 @@ AuditScene audit_scene(const AuditAsked& asked, bool certifies, const CommonOpti
 
 void add_occupancy(AuditScene& scene, const Streams& streams, const CommonOptions& common) {
   if (scene.asked.occupancy_file().empty()) return;
-  scene.occupancy = common.inputs->occupancy(scene.asked.occupancy_file());
+  const FilterArguments& filter = scene.asked.filter();
+  scene.occupancy = filter.words().empty()
+                        ? common.inputs->occupancy(scene.asked.occupancy_file())
+                        : common.inputs->filtered_occupancy(scene.asked.occupancy_file(),
+                                                            filter.filter(), filter.words());
   if (const auto removed = scene.occupancy->seen_through(); removed && !common.quiet) {
     fmt::print(streams.err,
                "note: {} was built with --remove-seen-through {}: {} cells with points count as "

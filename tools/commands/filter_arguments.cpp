@@ -1,5 +1,7 @@
 #include "roadbed/tools/commands/filter_arguments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -95,6 +97,22 @@ void FilterArguments::declare(Arguments& arguments) {
     }
     return {};
   });
+}
+
+std::string FilterArguments::words() const {
+  std::string words;
+  const auto add = [&](const char* option, const std::vector<double>& numbers) {
+    if (numbers.empty()) return;
+    words += fmt::format("{}{}={}", words.empty() ? "" : " ", option, fmt::join(numbers, ","));
+  };
+  add("--classes", classes_);
+  add("--without-classes", left_out_classes_);
+  if (!returns_.empty()) words += (words.empty() ? "--returns=" : " --returns=") + returns_;
+  add("--intensity", intensity_);
+  add("--range", range_m_);
+  add("--vehicle-box", vehicle_box_);
+  add("--height", height_m_);
+  return words;
 }
 
 map::CloudFilter FilterArguments::filter() const {

@@ -14,6 +14,9 @@ class FilterArguments {
   void declare(Arguments& arguments);
   map::CloudFilter filter() const;
 
+  /// As one would type it; empty where everything counts.
+  std::string words() const;
+
  private:
   std::vector<double> classes_, left_out_classes_, intensity_, range_m_, height_m_, vehicle_box_;
   std::string returns_;

@@ -9,6 +9,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/clouds/log_clouds.h"
 #include "roadbed/map/occupancy/clouds/read_point_cloud.h"
 #include "roadbed/map/occupancy/octree/cloud_measurements.h"
 #include "roadbed/map/occupancy/octree/compact_octree.h"
@@ -179,14 +180,54 @@ std::string OccupancyMap::to_ot() const { return tree_->file(OctreeForm::ot, tre
 
 bool is_occupancy_file(std::string_view bytes) { return is_octree_file(bytes); }
 
+namespace {
+
+void check_is_any_left(bool is_any_left, const std::filesystem::path& first) {
+  if (is_any_left) return;
+  throw InputError({.file = input_name(first),
+                    .found = "no point of the clouds is left",
+                    .needed = "at least one",
+                    .remedy = "filter less"});
+}
+
+}  // namespace
+
+void refuse_to_filter(const std::string& name) {
+  throw InputError({.file = name,
+                    .found = "is an octree, whose points are no longer known",
+                    .needed = "point clouds, to say which points count",
+                    .remedy = "give the clouds, or leave the filter out"});
+}
+
+OccupancyMap load_occupancy_of_log(const std::filesystem::path& log, const CloudFilter& filter) {
+  const LogClouds clouds(log, {});
+  bool is_any_left = false;
+  return OccupancyMap::build(CloudsInTurn([&](const std::function<void(const PointCloud&)>& use) {
+                               clouds.for_each(
+                                   [&](PointCloud cloud) {
+                                     cloud = within_reach(std::move(cloud), filter);
+                                     if (cloud.points.empty()) return;
+                                     is_any_left = true;
+                                     use(cloud);
+                                   },
+                                   filter);
+                               check_is_any_left(is_any_left, log);
+                             }),
+                             OccupancyOptions{});
+}
+
 OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
-                            const OccupancyOptions& options) {
+                            const OccupancyOptions& options, const CloudFilter& filter) {
   std::vector<PointCloud> clouds;
   for (const std::filesystem::path& file : files) {
     const std::string bytes = read_file(file);
     if (!is_occupancy_file(bytes)) {
-      clouds.push_back(point_cloud_of(file, bytes));
-      check_is_in_metres(clouds.back());
+      PointCloud cloud = point_cloud_of(file, bytes, filter);
+      check_is_in_metres(cloud);
+      cloud = within_reach(std::move(cloud), filter);
+      if (!cloud.points.empty()) clouds.push_back(std::move(cloud));
+    } else if (!filter.keeps_all()) {
+      refuse_to_filter(input_name(file));
     } else if (files.size() == 1) {
       return OccupancyMap::parse(bytes, input_name(file));
     } else {
@@ -196,6 +237,7 @@ OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
                         .remedy = "give the clouds that the octree was built from"});
     }
   }
+  if (!files.empty()) check_is_any_left(!clouds.empty(), files.front());
   return OccupancyMap::build(clouds, options);
 }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "roadbed/map/occupancy/clouds/point_cloud.h"
+#include "roadbed/map/occupancy/clouds/cloud_filter.h"
 #include "roadbed/map/occupancy/octree/occupancy_options.h"
 #include "roadbed/map/occupancy/octree/occupancy_source.h"
 
@@ -94,8 +94,18 @@ bool is_occupancy_file(std::string_view bytes);
 
 /// Occupancy from one `.bt` or `.ot` file, which keeps its own resolution, or from any number of
 /// point clouds, which carve from their files' viewpoints.
-/// @throws InputError if a file is unusable, or an octree is not the only file.
+/// @param filter  of the clouds; neighbours are not looked at.
+/// @throws InputError if a file is unusable, an octree is not the only file or to be filtered, or
+/// no
+///         point is left.
 OccupancyMap load_occupancy(std::span<const std::filesystem::path> files,
-                            const OccupancyOptions& options = {});
+                            const OccupancyOptions& options = {}, const CloudFilter& filter = {});
+
+/// The same from the clouds of a log.
+OccupancyMap load_occupancy_of_log(const std::filesystem::path& log,
+                                   const CloudFilter& filter = {});
+
+/// @throws InputError that an octree or tiles cannot be filtered any more.
+[[noreturn]] void refuse_to_filter(const std::string& name);
 
 }  // namespace roadbed::map::occupancy::octree

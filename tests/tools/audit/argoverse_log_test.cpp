@@ -172,10 +172,36 @@ TEST_F(ArgoverseLogTest, IsAuditedAgainstMapHitsAndBoxesByOneCommand) {
   EXPECT_THAT(nearer.out, HasSubstr("parked badly"));
 }
 
+TEST(ArgoverseLog, IsProvenByTheFilesThatItsAuditSaved) {
+  const tests::TemporaryFolder folder;
+  const std::string proof = folder / "proof.json", boxes = folder / "boxes.csv";
+  const std::vector<std::string> question{"audit",     "--log",     made_log(), "--boxes",
+                                          "annotated", "--unknown", "free",     "--json"};
+  std::vector<std::string> words = question;
+  words.insert(words.end(), {"--certificate", proof, "--save-drive", folder / "drive.csv",
+                             "--save-occupancy", folder / "street.bt", "--save-obstacles", boxes});
+  const tests::ProgramRun audit = tests::run_roadbed(words);
+  ASSERT_EQ(audit.status, 0) << audit.err << audit.out;
+  const auto least_m = [](const tests::ProgramRun& run) {
+    return nlohmann::json::parse(run.out).at("least_clearance_m").get<double>();
+  };
+  EXPECT_NEAR(least_m(audit), least_m(tests::run_roadbed(question)), 1e-5) << "boxes are rounded";
+  const tests::ProgramRun check = tests::run_roadbed({"audit", "--check", proof});
+  EXPECT_EQ(check.status, 0) << check.out;
+  EXPECT_THAT(check.out, HasSubstr("boxes.csv"));
+  // A box that is nearer is another question.
+  std::string nearer = tests::bytes_of(boxes);
+  nearer += "0,late,1010,1998.2,0,1,1\n";
+  folder.write("boxes.csv", nearer);
+  EXPECT_EQ(tests::run_roadbed({"audit", "--check", proof}).status, 1);
+}
+
 TEST(ArgoverseLog, SaysWhatCannotStandBesideIt) {
   const std::string log = made_log();
   EXPECT_EQ(tests::run_roadbed({"audit", "--log", log, "--trajectory", log}).status, 2);
-  EXPECT_EQ(tests::run_roadbed({"audit", "--log", log, "--certificate", "a.json"}).status, 2);
+  const auto bare = tests::run_roadbed({"audit", "--log", log, "--certificate", "a.json"});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_THAT(bare.err, HasSubstr("needs --save-drive, --save-occupancy, --save-obstacles"));
   EXPECT_EQ(tests::run_roadbed({"audit", "--boxes", "found", "--lane", "lane:1"}).status, 2);
   EXPECT_EQ(tests::run_roadbed({"audit", "--log", log + "/none"}).status, 3);
 }

@@ -325,6 +325,47 @@ TEST_F(AuditCommand, TakesACloudInPlaceOfTheOctreeThatIsBuiltOfIt) {
   EXPECT_EQ(run_roadbed({"audit", "--check", proof}).status, 0);
 }
 
+// The filter of a cloud says the same here as where an octree is built.
+TEST_F(AuditCommand, CountsThePointsThatAFilterLeaves) {
+  std::string points = "x,y,z,class,intensity\n";
+  for (double z = 0.05; z < 2.5; z += 0.05) {
+    points += "10.05,1.05," + std::to_string(z) + ",7,1\n";  // noise, and faint
+    points += "8.05,-4.05," + std::to_string(z) + ",6,9\n";
+    points += "16.05,-4.05," + std::to_string(z) + ",6,9\n";
+  }
+  const std::string cloud = folder_.write("cloud.csv", points), octree = folder_ / "some.bt";
+  const std::string drive = folder_ / "drives/hit.csv", log = folder_ / "filtered.json";
+  const auto audit_over = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"audit", "--trajectory", drive, "--unknown", "free", "--json"});
+    return run_roadbed(words);
+  };
+  EXPECT_EQ(audit_over({"--occupancy", cloud}).status, 1) << "the noise is in the way";
+  for (const std::vector<std::string>& filter : {std::vector<std::string>{"--without-classes", "7"},
+                                                 {"--intensity", "5,10"},
+                                                 {"--vehicle-box", "9,0,0,11,2,3"}}) {
+    std::vector<std::string> build{"occupancy", "build", cloud, "-o", octree, "-q", "--force"};
+    build.insert(build.end(), filter.begin(), filter.end());
+    ASSERT_EQ(run_roadbed(build).status, 0) << filter[0];
+    std::vector<std::string> words{"--occupancy", cloud};
+    words.insert(words.end(), filter.begin(), filter.end());
+    const ProgramRun filtered = audit_over(words);
+    EXPECT_EQ(filtered.status, 0) << filter[0] << ": " << filtered.err;
+    EXPECT_EQ(filtered.out, audit_over({"--occupancy", octree}).out) << filter[0];
+  }
+  const auto refusal = [&](const std::vector<std::string>& words) { return audit_over(words).err; };
+  EXPECT_THAT(refusal({"--occupancy", octree_, "--height", "0,1"}), HasSubstr("is an octree"));
+  EXPECT_THAT(refusal({"--occupancy", cloud, "--height", "90,99"}), HasSubstr("no point"));
+  EXPECT_THAT(refusal({"--occupancy", cloud, "--classes", "6", "--certificate", log}),
+              HasSubstr("--certificate needs --save-occupancy"));
+  const std::string saved = folder_ / "saved.bt";
+  EXPECT_EQ(audit_over({"--occupancy", cloud, "--classes", "6", "--certificate", log,
+                        "--save-occupancy", saved})
+                .status,
+            0);
+  EXPECT_EQ(run_roadbed({"audit", "--check", log, "--occupancy", saved}).status, 0);
+  EXPECT_EQ(run_roadbed({"audit", "--check", log, "--occupancy", octree_}).status, 1);
+}
+
 TEST_F(AuditCommand, TakesALogOfCloudsInPlaceOfTheOctreeThatIsBuiltOfIt) {
   const std::string log =
       (data_folder() / "../tests/fuzz/corpus/log/clouds.mcap").lexically_normal().string();
