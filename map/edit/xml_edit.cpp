@@ -20,6 +20,23 @@ class StringWriter : public pugi::xml_writer {
   std::string& text_;
 };
 
+// Whether the blanks before elements would be more than the elements.
+class IsDeep : public pugi::xml_tree_walker {
+ public:
+  bool for_each(pugi::xml_node&) override {
+    is_deep_ = depth() >= kDeep;
+    return !is_deep_;
+  }
+  bool operator()(pugi::xml_node root) {
+    root.traverse(*this);
+    return is_deep_;
+  }
+
+ private:
+  static constexpr int kDeep = 100;
+  bool is_deep_ = false;
+};
+
 pugi::xml_node next_said(pugi::xml_node node, const Ignored& ignored) {
   while (node && (node.type() == pugi::node_comment || ignored(node))) node = node.next_sibling();
   return node;
@@ -121,8 +138,9 @@ std::string text_of(pugi::xml_node root, const std::string& indent, std::size_t 
   std::string text;
   text.reserve(likely_bytes + likely_bytes / 8);
   StringWriter writer(text);
+  const unsigned format = IsDeep()(root) ? pugi::format_raw : pugi::format_default;
   for (const pugi::xml_node node : root.parent().children()) {
-    node.print(writer, indent.c_str(), pugi::format_default, pugi::encoding_utf8);
+    node.print(writer, indent.c_str(), format, pugi::encoding_utf8);
   }
   return text;
 }

@@ -51,7 +51,8 @@ using Ignored = std::function<bool(pugi::xml_node element)>;
 bool say_the_same(pugi::xml_node a, pugi::xml_node b, const Ignored& ignored);
 
 /// A whole document as text, comments included; blanks between elements are made anew with two or
-/// more spaces, or tabs, as the file begins its second line of elements.
+/// more spaces, or tabs, as the file begins its second line of elements; without any where elements
+/// are nested 100 deep.
 /// @param indent  of one level, see indent_of.
 std::string text_of(const XmlDocument& xml, const std::string& indent);
 std::string text_of(pugi::xml_node root, const std::string& indent, std::size_t likely_bytes);
