@@ -26,6 +26,10 @@ struct Conflict {
   ConflictKind kind = ConflictKind::crossing;
   StationRange on_one, on_other;
   double area_m2 = 0.0;  ///< of the overlap
+
+  /// @pre `lane` is one of the two
+  LaneId partner_of(LaneId lane) const { return lane == one ? other : one; }
+  const StationRange& on(LaneId lane) const { return lane == one ? on_one : on_other; }
 };
 
 struct ConflictOptions {

@@ -146,6 +146,14 @@ Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::L
 
 }  // namespace
 
+void Detour::lead(DrivingTask& of) const {
+  of.route = route;
+  of.line = line.line;
+  of.line_options = line.options;
+  of.stop_points = stop_points;
+  of.blockers = blockers;
+}
+
 bool is_standing(const Obstacle& obstacle, double t_s) {
   constexpr double kStands_mps = 0.3;
   return obstacle.is_there(t_s) &&

@@ -19,6 +19,9 @@ struct Detour {
   std::vector<std::size_t> blockers;      ///< obstacles that it avoids
   map::LaneId by_lane;                    ///< its first that the blocked route does not use
   double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is blocked, by the route's costs
+
+  /// Leads a task's vehicle along it.
+  void lead(DrivingTask& of) const;
 };
 
 /// A way round, or why there is none.

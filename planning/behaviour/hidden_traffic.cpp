@@ -9,10 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/derived/rule_index.h"
-#include "roadbed/planning/behaviour/lane_join.h"
+#include "roadbed/planning/behaviour/give_way_rules.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -23,7 +22,6 @@ constexpr double kUpstream_m = 200.0;  // looked at
 constexpr double kLimitIfUnknown_mps = 50.0 / 3.6;
 constexpr double kLookStep_m = 2.5, kHiddenCar_m = 5.0, kHiddenCarWidth_m = 1.8;
 constexpr double kComesFor_s = 12.0, kComesStep_s = 0.5;
-constexpr double kComesTowards_rad = 2.4;
 constexpr std::size_t kMostApproaches = 16;
 
 /// One that drives along a way from a place on, straight on past its end.
@@ -71,22 +69,13 @@ class HiddenTraffic::Finder {
   void add_all(const RouteLeg& leg) {
     for (const map::Conflict& conflict : map::find_conflicts_of(task_.road_map, leg.lane)) {
       if (conflict.kind == map::ConflictKind::diverging) continue;
-      const bool is_one = conflict.one == leg.lane;
-      const LaneId other = is_one ? conflict.other : conflict.one;
-      const map::StationRange& own = is_one ? conflict.on_one : conflict.on_other;
-      const map::StationRange& on_other = is_one ? conflict.on_other : conflict.on_one;
-      const double meets_at_m = station(leg.lane, own.from_s_m);
+      const LaneId other = conflict.partner_of(leg.lane);
+      const double meets_at_m = station(leg.lane, conflict.on(leg.lane).from_s_m);
       if (on_route_.contains(other) || meets_at_m < place_.s_m) continue;
-      if (place_.kind == StopKind::turn && !comes_towards(leg.lane, other)) continue;
-      add(other, on_other.from_s_m, meets_at_m);
+      if (place_.kind == StopKind::turn && !begin_oppositely(task_.road_map, leg.lane, other))
+        continue;
+      add(other, conflict.on(other).from_s_m, meets_at_m);
     }
-  }
-
-  bool comes_towards(LaneId lane, LaneId other) const {
-    const auto heading = [&](LaneId of) {
-      return task_.road_map.lane(of).pose_at(0.0).heading_rad;
-    };
-    return std::abs(geometry::wrap_angle(heading(lane) - heading(other))) > kComesTowards_rad;
   }
 
   /// A lane, and each way on which one comes to it.
@@ -129,21 +118,11 @@ class HiddenTraffic::Finder {
     const map::RoadMap& road_map = task_.road_map;
     const std::array<LaneId, 1> one{lane};
     const map::RuleIndex rules(road_map, one);
-    const double length_m = road_map.lane(lane).length_m();
-    const bool has_sign =
-        std::ranges::any_of(rules.ahead(one, 0.0, length_m), [&](const map::RulePlace& rule) {
-          if (rule.kind != map::RuleKind::signal) return false;
-          const map::Signal& signal = road_map.signals()[rule.index];
-          return is_stop_sign(signal) || is_give_way_sign(signal);
-        });
-    return has_sign || std::ranges::any_of(rules.at(lane, 0.0).regulations, [&](std::size_t index) {
-             const map::Regulation& regulation = road_map.regulations()[index];
-             return regulation.type == "right_of_way" &&
-                    std::ranges::any_of(regulation.members,
-                                        [&](const map::RegulationMember& member) {
-                                          return member.role == "yield" && member.lane == lane;
-                                        });
-           });
+    const auto yields_by = [&](std::size_t index) {
+      return has_priority_role(road_map.regulations()[index], "yield", lane);
+    };
+    return has_sign_to_give_way(road_map, rules, lane) ||
+           std::ranges::any_of(rules.at(lane, 0.0).regulations, yields_by);
   }
 
   const DrivingTask& task_;

@@ -1,35 +1,18 @@
 #include "roadbed/planning/behaviour/lane_join.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
-#include <span>
-#include <string_view>
 #include <vector>
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/derived/rule_index.h"
+#include "roadbed/planning/behaviour/give_way_rules.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
 
-constexpr std::array<std::string_view, 4> kStopSigns{"206", "de206", "r1-1", "usr1-1"};
-constexpr std::array<std::string_view, 4> kGiveWaySigns{"205", "de205", "r1-2", "usr1-2"};
 constexpr double kJoinsAlong_rad = 0.8, kStraighter_rad = 0.05;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  return text;
-}
-
-bool is_one_of(const map::Signal& signal, std::span<const std::string_view> types) {
-  const std::string type = lower(signal.type), subtype = lower(signal.subtype);
-  return std::ranges::any_of(types, [&](std::string_view t) { return t == type || t == subtype; });
-}
 
 class Join {
  public:
@@ -69,29 +52,17 @@ class Join {
   }
 
   bool yields_by_regulation(map::LaneId lane, map::LaneId to) const {
-    const auto has = [](const map::Regulation& regulation, std::string_view role, map::LaneId of) {
-      return std::ranges::any_of(regulation.members, [&](const map::RegulationMember& member) {
-        return member.role == role && member.lane == of;
-      });
-    };
     return std::ranges::any_of(road_map_.regulations(), [&](const map::Regulation& regulation) {
-      return regulation.type == "right_of_way" && has(regulation, "yield", lane) &&
-             has(regulation, "right_of_way", to);
+      return has_priority_role(regulation, "yield", lane) &&
+             has_priority_role(regulation, "right_of_way", to);
     });
   }
 
   bool has_sign(map::LaneId lane) const {
     std::vector<map::LaneId> lanes = road_map_.graph().of(lane).predecessors;
     lanes.push_back(lane);
-    return std::ranges::any_of(lanes, [&](map::LaneId id) {
-      const std::array<map::LaneId, 1> one{id};
-      const auto places = rules_.ahead(one, 0.0, road_map_.lane(id).length_m());
-      return std::ranges::any_of(places, [&](const map::RulePlace& place) {
-        if (place.kind != map::RuleKind::signal) return false;
-        const map::Signal& signal = road_map_.signals()[place.index];
-        return is_stop_sign(signal) || is_give_way_sign(signal);
-      });
-    });
+    return std::ranges::any_of(
+        lanes, [&](map::LaneId id) { return has_sign_to_give_way(road_map_, rules_, id); });
   }
 
   /// Of its direction, beside the lane that it comes from, that one counted.
@@ -132,19 +103,15 @@ bool is_joined(const map::RoadMap& road_map, map::LaneId lane) {
 
 }  // namespace
 
-bool is_stop_sign(const map::Signal& signal) { return is_one_of(signal, kStopSigns); }
-bool is_give_way_sign(const map::Signal& signal) { return is_one_of(signal, kGiveWaySigns); }
-
 std::optional<LaneJoin> join_to_give_way_at(const map::RoadMap& road_map, map::LaneId lane) {
   if (!is_joined(road_map, lane)) return std::nullopt;
   std::optional<LaneJoin> first;
   for (const map::Conflict& conflict : map::find_conflicts_of(road_map, lane)) {
     if (conflict.kind != map::ConflictKind::merging) continue;
-    const bool is_one = conflict.one == lane;
-    const map::LaneId other = is_one ? conflict.other : conflict.one;
+    const map::LaneId other = conflict.partner_of(lane);
     const Join join(road_map, lane, other);
     if (!join.is_along() || !join.own_gives_way()) continue;
-    const double from_s_m = (is_one ? conflict.on_one : conflict.on_other).from_s_m;
+    const double from_s_m = conflict.on(lane).from_s_m;
     if (!first || from_s_m < first->from_s_m) first = LaneJoin{other, from_s_m};
   }
   return first;

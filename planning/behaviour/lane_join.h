@@ -27,8 +27,4 @@ struct LaneJoin {
 /// Lanes that begin more than 46 degrees apart cross, and are no matter of this.
 std::optional<LaneJoin> join_to_give_way_at(const map::RoadMap& road_map, map::LaneId lane);
 
-/// Whether a sign is one that asks to give way: "stop" or "give way".
-bool is_stop_sign(const map::Signal& signal);
-bool is_give_way_sign(const map::Signal& signal);
-
 }  // namespace roadbed::planning::behaviour

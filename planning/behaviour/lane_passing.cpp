@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roadbed/planning/route/passing_side.h"
+#include "roadbed/map/derived/lane_relations.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -104,6 +104,11 @@ void join(PassingLane next, std::vector<PassingLane>& lanes) {
       last.change_windows.push_back(window);
     }
   }
+}
+
+/// On which one passes: 1 left, −1 right, where one drives on the left.
+double side_to_pass_on(const map::RoadMap& road_map) {
+  return map::drives_on_the_left(road_map) ? -1.0 : 1.0;
 }
 
 }  // namespace

@@ -260,12 +260,13 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
   }
   const State now{0.0, view.at.s_m, view.speed_mps};
   std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
-  bool is_unseen = false;
+  const bool is_free_as_seen = !why;
   std::vector<MoverOnLine> with_hidden = movers;
-  if (const auto hidden = hidden_oncoming(view, movers, *stretch); hidden && !why) {
-    with_hidden.push_back(*hidden);
-    why = why_not(now, *lead, with_hidden, *stretch);
-    is_unseen = why.has_value();
+  if (is_free_as_seen) {
+    if (const auto hidden = hidden_oncoming(view, movers, *stretch)) {
+      with_hidden.push_back(*hidden);
+      why = why_not(now, *lead, with_hidden, *stretch);
+    }
   }
   const std::string& name = task_.obstacles[lead->obstacle].id;
   Decision decision{.keep_within_m = std::max(0.0, within_m), .side = stretch->side};
@@ -273,7 +274,7 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
     falls_back_ = false;
     const bool is_wanted = ceiling_.at(view.at.s_m).speed_mps >= lead->speed_mps + kSlower_mps;
     if (is_wanted && why) decision.reason = fmt::format("{} is not overtaken: {}", name, *why);
-    if (is_wanted && is_unseen) decision.look_at_m = stretch->side * std::max(0.0, within_m);
+    decision.looks_past = is_wanted && is_free_as_seen && why;
     if (is_wanted && !why && can_fall_back(beside_rear(now, *lead), *lead, with_hidden, *stretch)) {
       overtaken_ = lead->obstacle;
     }

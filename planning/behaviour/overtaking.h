@@ -57,8 +57,8 @@ class Overtaking {
     bool falls_back = false;                    ///< overtaking is given up: get behind it
     double gap_m = 0.0;                         ///< to its rear; less than 0 beside it
     double side = 1.0;                          ///< of the other lane: 1 left, −1 right
-    std::optional<double> look_at_m = {};  ///< offset from which more of the other lane is seen
-    std::string reason = {};               ///< why it is (not) overtaken; empty: nobody to overtake
+    bool looks_past = false;  ///< more of the other lane is seen from where `keep_within_m` ends
+    std::string reason = {};  ///< why it is (not) overtaken; empty: nobody to overtake
   };
 
   Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask& task,

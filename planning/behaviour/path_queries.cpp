@@ -140,11 +140,12 @@ std::vector<PathQuery> queries_on_route(GoalLine& on, const Question& question,
     pass.question.speed = free_speed(on, question.speed);
     queries.push_back(pass);
   }
-  if (overtaking.look_at_m) {
+  if (overtaking.looks_past) {
     PathQuery look = keep;
-    look.offsets = {*overtaking.look_at_m - kLook_m, *overtaking.look_at_m};
-    if (overtaking.side < 0.0)
-      look.offsets = {*overtaking.look_at_m, *overtaking.look_at_m + kLook_m};
+    const auto [least_m, most_m] =
+        std::minmax({overtaking.side * (*overtaking.keep_within_m - kLook_m),
+                     overtaking.side * *overtaking.keep_within_m});
+    look.offsets = {least_m, most_m};
     queries.push_back(look);
   }
   queries.push_back(keep);

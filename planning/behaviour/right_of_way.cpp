@@ -77,9 +77,8 @@ struct Met {
 };
 
 /// Who is first met on the way, or nearly.
-template <typename Gap>
 std::optional<Met> first_met(const StGraph& occupancy, const Others& others,
-                             const std::vector<double>& ahead_m, const Gap& gap) {
+                             const std::vector<double>& ahead_m, RightOfWay::Gap gap) {
   for (std::size_t i = 0; i < ahead_m.size(); ++i) {
     const int k = static_cast<int>(i);
     const auto who = who_blocks(occupancy, others, k - gap.before, k + gap.after, ahead_m[i]);

@@ -29,6 +29,11 @@ struct StopConstraint {
 /// is seen, and drives on when for 3 s nobody has come.
 class RightOfWay {
  public:
+  /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
+  struct Gap {
+    int before, after;
+  };
+
   /// What is known at one cycle.
   struct View {
     double t_s, s_m, speed_mps;  ///< station of the task's line
@@ -57,10 +62,6 @@ class RightOfWay {
  private:
   std::optional<std::string> why_wait(const StopPoint& place, const View& view);
   std::optional<std::string> who_may_come(const StopPoint& place, const View& view);
-  /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
-  struct Gap {
-    int before, after;
-  };
   static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
 
   struct Crossing;

@@ -9,6 +9,7 @@
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/derived/conflicts.h"
 #include "roadbed/map/derived/rule_index.h"
+#include "roadbed/planning/behaviour/give_way_rules.h"
 #include "roadbed/planning/behaviour/lane_join.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -17,8 +18,7 @@ namespace {
 using map::LaneId;
 using map::RulePlace;
 
-constexpr double kOncoming_rad = 2.4;  // headings this far apart meet
-constexpr double kTurns_rad = 0.8;     // by less a lane goes straight on
+constexpr double kTurns_rad = 0.8;  // by less a lane goes straight on
 constexpr double kBeforeConflict_m = 0.5;
 constexpr double kSameWaitingPlace_m = 0.5;
 
@@ -95,12 +95,8 @@ class Finder {
   void look_at_regulations(const std::optional<LaneJoin>& join) {
     for (const std::size_t index : rules_.at(leg().lane, leg().from_s_m).regulations) {
       const map::Regulation& regulation = road_map_.regulations()[index];
-      if (regulation.type != "right_of_way") continue;
-      const bool yields = std::ranges::any_of(regulation.members, [&](const auto& member) {
-        return member.role == "yield" && member.lane == leg().lane;
-      });
-      if (yields)
-        add(StopKind::give_way, line_of(regulation, join), "rule " + regulation.source_id);
+      if (!has_priority_role(regulation, "yield", leg().lane)) continue;
+      add(StopKind::give_way, line_of(regulation, join), "rule " + regulation.source_id);
     }
   }
 
@@ -134,22 +130,14 @@ class Finder {
     std::optional<map::StationRange> crossed;
     for (const map::Conflict& conflict : map::find_conflicts_of(road_map_, turn)) {
       if (conflict.kind != map::ConflictKind::crossing) continue;
-      const bool is_one = conflict.one == turn;
-      const LaneId other = is_one ? conflict.other : conflict.one;
-      if (!comes_towards(turn, other) || gives_way(other, turn)) continue;
-      const map::StationRange& range = is_one ? conflict.on_one : conflict.on_other;
+      const LaneId other = conflict.partner_of(turn);
+      if (!begin_oppositely(road_map_, turn, other) || gives_way(other, turn)) continue;
+      const map::StationRange& range = conflict.on(turn);
       if (!crossed || range.from_s_m < crossed->from_s_m) crossed = range;
     }
     if (!crossed) return;
     add(StopKind::turn, crossed->from_s_m - kBeforeConflict_m,
         leg().turn == Turn::left ? "left turn" : "right turn");
-  }
-
-  /// Whether two lanes begin in opposite directions.
-  bool comes_towards(LaneId lane, LaneId other) const {
-    const double turned = geometry::wrap_angle(road_map_.lane(lane).pose_at(0.0).heading_rad -
-                                               road_map_.lane(other).pose_at(0.0).heading_rad);
-    return std::abs(turned) > kOncoming_rad;
   }
 
   /// Of two that turn to opposite sides, into the same road, the one with the wider turn

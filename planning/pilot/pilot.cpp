@@ -171,12 +171,9 @@ class Pilot::Impl {
     restart();
   }
 
-  void take(Detour detour) {
+  void take(const Detour& detour) {
     planner_.reset();
-    task_->route = std::move(detour.route);
-    task_->line = std::move(detour.line.line);
-    task_->line_options = detour.line.options;
-    task_->blockers = std::move(detour.blockers);
+    detour.lead(*task_);
     restart();
   }
 

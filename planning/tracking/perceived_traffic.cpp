@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
-#include "roadbed/planning/route/passing_side.h"
+#include "roadbed/map/derived/lane_relations.h"
 
 namespace roadbed::planning::inline tracking {
 namespace {
@@ -29,7 +29,9 @@ geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahea
 }  // namespace
 
 PerceivedTraffic::PerceivedTraffic(const map::RoadMap& road_map, const TrackerOptions& options)
-    : tracker_(options), forecast_(road_map), side_to_pass_on_(side_to_pass_on(road_map)) {}
+    : tracker_(options),
+      forecast_(road_map),
+      across_oncoming_(map::drives_on_the_left(road_map) ? -1.0 : 1.0) {}
 
 void PerceivedTraffic::observe(double t_s, std::span<const Detection> detections,
                                const Tracker::IsHidden& is_hidden) {
@@ -73,7 +75,7 @@ bool PerceivedTraffic::is_planned_for(const ForecastMotion& motion,
       std::abs(geometry::wrap_angle(points.front().heading_rad - vehicle_heading_rad));
   if (towards_rad < kSameWay_rad) return false;
   const double turn_rad = points.back().heading_rad - points.front().heading_rad;
-  return towards_rad < kOncoming_rad || side_to_pass_on_ * turn_rad < kTurn_rad;
+  return towards_rad < kOncoming_rad || across_oncoming_ * turn_rad < kTurn_rad;
 }
 
 }  // namespace roadbed::planning::tracking

@@ -40,7 +40,7 @@ class PerceivedTraffic {
 
   Tracker tracker_;
   LaneForecast forecast_;
-  double side_to_pass_on_;
+  double across_oncoming_;  ///< sign of a turn across oncoming traffic: 1 left, −1 right
   std::vector<std::vector<ForecastMotion>> forecasts_;
 };
 

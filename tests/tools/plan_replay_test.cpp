@@ -176,6 +176,24 @@ TEST_F(PlanReplay, RefusesFilesThatHaveChangedByTheirNames) {
   EXPECT_THAT(replay(at("3")).err, HasSubstr("drive/../town.xodr: has changed since the drive"));
 }
 
+TEST_F(PlanReplay, RefusesOthersWhoseRecordingsHaveChanged) {
+  folder_.write("town.xodr", bytes_of(data_folder() / "town.xodr"));
+  json scenario = json::parse(bytes_of(own("parked_car.json")));
+  scenario["map"] = "town.xodr";
+  ASSERT_EQ(simulate(folder_.write("alone.json", scenario.dump())).status, 0);
+  const std::string rows = bytes_of(drive() / "trajectory.csv");
+  folder_.write("before.csv", rows);
+  // The same drive, 20 s later.
+  scenario["obstacles"].push_back(
+      {{"id", "behind"}, {"recorded", {{"file", "before.csv"}, {"offset_s", 20.0}}}});
+  ASSERT_EQ(simulate(folder_.write("scene.json", scenario.dump()), {"--force"}).status, 0);
+  ASSERT_EQ(replay(at("3")).status, 0);
+  folder_.write("before.csv", rows.substr(0, rows.rfind('\n', rows.size() - 2) + 1));
+  const ProgramRun run = replay(at("3"));
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.err, HasSubstr("drive/../before.csv: has changed since the drive"));
+}
+
 TEST_F(PlanReplay, RefusesADriveWhoseRowsOrCyclesAreNotThoseThatComeAgain) {
   ASSERT_EQ(simulate(own("parked_car.json")).status, 0);
   const auto with_other = [&](const char* name, std::size_t line, const std::string& time) {

@@ -214,10 +214,10 @@ class SimulateCommand : public Command {
   void declare_knowledge(Arguments& arguments) {
     Argument predicts = arguments.flag(
         "--predict", predicts_,
-        "Others are measured, tracked and foreseen; so it is in roadbed's scenarios");
+        "Others are measured, tracked and foreseen; the default in roadbed's own scenarios");
     arguments
         .flag("--known-future", knows_future_,
-              "What others will do is known; so it is in CommonRoad's scenarios")
+              "What others will do is known; the default in CommonRoad's scenarios")
         .excludes(predicts);
   }
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "roadbed/tools/simulation/metrics.h"
+
 namespace roadbed::tools::inline report {
 namespace {
 

@@ -8,13 +8,6 @@
 
 namespace roadbed::tools::inline report {
 
-// What passengers bear, from nuPlan's comfort metrics (motional/nuplan-devkit,
-// ego_is_comfortable.yaml).
-inline constexpr double kLeastAcceleration_mps2 = -4.05;
-inline constexpr double kMostAcceleration_mps2 = 2.40;
-inline constexpr double kMostLateralAcceleration_mps2 = 4.89;
-inline constexpr double kMostYawRate_radps = 0.95;
-
 /// The largest value of a drive, and the first time of it.
 struct Worst {
   double value;
@@ -25,7 +18,7 @@ struct Worst {
 ReportCheck at_most(std::string name, const Worst& worst, double bound, std::string unit,
                     std::string bound_from);
 
-/// Accelerations, braking and yaw rate of a drive within what passengers bear.
+/// Accelerations, braking and yaw rate of a drive within what passengers bear (metrics.h).
 /// @pre the drive is not empty
 std::vector<ReportCheck> comfort_checks(const geometry::Trajectory& drive);
 

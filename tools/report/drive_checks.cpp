@@ -9,6 +9,7 @@
 #include <string>
 
 #include "roadbed/tools/report/comfort.h"
+#include "roadbed/tools/report/motion_plots.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -104,26 +105,12 @@ void append_notes(const Drive& drive, std::vector<ReportCheck>& checks) {
 constexpr double kFarthestShown_m = 5.0;
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
-// One value per row, from its state and what else is known of it.
+// One value per row, of what is known beside its state.
 template <typename Value>
-ReportSeries series_of(const Drive& drive, std::string name, Value value) {
+ReportSeries sampled(const Drive& drive, std::string name, Value value) {
   ReportSeries series{.name = std::move(name), .values = {}};
-  for (std::size_t i = 0; i < drive.samples.size(); ++i) {
-    series.values.push_back(value(drive.trajectory.points()[i], drive.samples[i]));
-  }
+  for (const DriveSample& sample : drive.samples) series.values.push_back(value(sample));
   return series;
-}
-
-ReportPlot plot_of(const Drive& drive, std::string title, std::string unit,
-                   std::vector<ReportSeries> series) {
-  ReportPlot plot{.title = std::move(title),
-                  .unit = std::move(unit),
-                  .t_s = {},
-                  .series = std::move(series),
-                  .lower = {},
-                  .upper = {}};
-  for (const DriveSample& sample : drive.samples) plot.t_s.push_back(sample.t_s);
-  return plot;
 }
 
 double if_near(double distance_m) { return distance_m <= kFarthestShown_m ? distance_m : kGap; }
@@ -139,40 +126,32 @@ double audited_m(const std::vector<planning::AuditReport::Sample>& profile, doub
   return before->clearance_m + fraction * (after->clearance_m - before->clearance_m);
 }
 
-ReportPlot speed_plot(const Drive& drive) {
-  return plot_of(
-      drive, "Speed", "m/s",
-      {series_of(drive, "speed", [](const Row& p, const DriveSample&) { return p.speed_mps; }),
-       series_of(drive, "set", [](const Row&, const DriveSample& s) { return s.set_speed_mps; }),
-       series_of(drive, "limit",
-                 [](const Row&, const DriveSample& s) { return s.speed_limit_mps; })});
+ReportPlot speeds_plot(const Drive& drive) {
+  ReportPlot plot = speed_plot(drive.trajectory, nullptr);
+  plot.series.push_back(
+      sampled(drive, "set", [](const DriveSample& s) { return s.set_speed_mps; }));
+  plot.series.push_back(
+      sampled(drive, "limit", [](const DriveSample& s) { return s.speed_limit_mps; }));
+  return plot;
 }
 
-ReportPlot acceleration_plot(const Drive& drive) {
-  ReportPlot plot =
-      plot_of(drive, "Acceleration", "m/s²",
-              {series_of(drive, "along",
-                         [](const Row& p, const DriveSample&) { return p.acceleration_mps2; }),
-               series_of(drive, "asked for",
-                         [](const Row&, const DriveSample& s) { return s.command_mps2; }),
-               series_of(drive, "across", [](const Row& p, const DriveSample&) {
-                 return p.speed_mps * p.speed_mps * p.curvature_per_m;
-               })});
-  plot.lower = kLeastAcceleration_mps2;
-  plot.upper = kMostAcceleration_mps2;
+ReportPlot accelerations_plot(const Drive& drive) {
+  ReportPlot plot = acceleration_plot(drive.trajectory);
+  plot.series.insert(plot.series.begin() + 1, sampled(drive, "asked for", [](const DriveSample& s) {
+                       return s.command_mps2;
+                     }));
   return plot;
 }
 
 ReportPlot clearance_plot(const Drive& drive, const std::optional<planning::AuditReport>& audit) {
   std::vector<ReportSeries> series = {
-      series_of(drive, "to obstacles",
-                [](const Row&, const DriveSample& s) { return if_near(s.clearance_m); })};
+      sampled(drive, "to obstacles", [](const DriveSample& s) { return if_near(s.clearance_m); })};
   if (audit) {
-    series.push_back(series_of(drive, "to occupied space", [&](const Row& p, const DriveSample&) {
-      return if_near(audited_m(audit->profile, p.t_s));
+    series.push_back(sampled(drive, "to occupied space", [&](const DriveSample& s) {
+      return if_near(audited_m(audit->profile, s.t_s));
     }));
   }
-  return plot_of(drive, "Clearance up to 5 m", "m", std::move(series));
+  return plot_over(drive.trajectory, "Clearance up to 5 m", "m", std::move(series));
 }
 
 }  // namespace
@@ -193,19 +172,16 @@ std::vector<ReportCheck> drive_checks(const Drive& drive,
 
 std::vector<ReportPlot> drive_plots(const Drive& drive,
                                     const std::optional<planning::AuditReport>& audit) {
-  return {
-      speed_plot(drive),
-      acceleration_plot(drive),
-      plot_of(drive, "Curvature", "1/m",
-              {series_of(drive, "driven",
-                         [](const Row& p, const DriveSample&) { return p.curvature_per_m; })}),
-      plot_of(drive, "Lateral error", "m",
-              {series_of(drive, "front axle",
-                         [](const Row&, const DriveSample& s) { return s.cross_track_m; })}),
-      plot_of(drive, "Heading error", "rad",
-              {series_of(drive, "heading",
-                         [](const Row&, const DriveSample& s) { return s.heading_error_rad; })}),
-      clearance_plot(drive, audit)};
+  return {speeds_plot(drive),
+          accelerations_plot(drive),
+          curvature_plot(drive.trajectory),
+          plot_over(
+              drive.trajectory, "Lateral error", "m",
+              {sampled(drive, "front axle", [](const DriveSample& s) { return s.cross_track_m; })}),
+          plot_over(drive.trajectory, "Heading error", "rad",
+                    {sampled(drive, "heading",
+                             [](const DriveSample& s) { return s.heading_error_rad; })}),
+          clearance_plot(drive, audit)};
 }
 
 }  // namespace roadbed::tools::report

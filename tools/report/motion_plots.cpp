@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roadbed/planning/rules/speed_limit.h"
-#include "roadbed/tools/report/comfort.h"
+#include "roadbed/tools/simulation/metrics.h"
 
 namespace roadbed::tools::inline report {
 namespace {
@@ -20,18 +20,6 @@ ReportSeries series_of(const geometry::Trajectory& drive, std::string name, Valu
   return series;
 }
 
-ReportPlot plot_of(const geometry::Trajectory& drive, std::string title, std::string unit,
-                   std::vector<ReportSeries> series) {
-  ReportPlot plot{.title = std::move(title),
-                  .unit = std::move(unit),
-                  .t_s = {},
-                  .series = std::move(series),
-                  .lower = {},
-                  .upper = {}};
-  for (const Row& row : drive.points()) plot.t_s.push_back(row.t_s);
-  return plot;
-}
-
 ReportSeries limits_of(const geometry::Trajectory& drive, const map::RoadMap& road_map) {
   ReportSeries limits{.name = "limit", .values = {}};
   for (const auto& limit : planning::limits_along(road_map, drive)) {
@@ -42,15 +30,27 @@ ReportSeries limits_of(const geometry::Trajectory& drive, const map::RoadMap& ro
 
 }  // namespace
 
+ReportPlot plot_over(const geometry::Trajectory& drive, std::string title, std::string unit,
+                     std::vector<ReportSeries> series) {
+  ReportPlot plot{.title = std::move(title),
+                  .unit = std::move(unit),
+                  .t_s = {},
+                  .series = std::move(series),
+                  .lower = {},
+                  .upper = {}};
+  for (const Row& row : drive.points()) plot.t_s.push_back(row.t_s);
+  return plot;
+}
+
 ReportPlot speed_plot(const geometry::Trajectory& drive, const map::RoadMap* road_map) {
-  ReportPlot plot = plot_of(drive, "Speed", "m/s",
-                            {series_of(drive, "speed", [](const Row& p) { return p.speed_mps; })});
+  ReportPlot plot = plot_over(
+      drive, "Speed", "m/s", {series_of(drive, "speed", [](const Row& p) { return p.speed_mps; })});
   if (road_map != nullptr) plot.series.push_back(limits_of(drive, *road_map));
   return plot;
 }
 
 ReportPlot acceleration_plot(const geometry::Trajectory& drive) {
-  ReportPlot plot = plot_of(
+  ReportPlot plot = plot_over(
       drive, "Acceleration", "m/s²",
       {series_of(drive, "along", [](const Row& p) { return p.acceleration_mps2; }),
        series_of(drive, "across",
@@ -61,8 +61,8 @@ ReportPlot acceleration_plot(const geometry::Trajectory& drive) {
 }
 
 ReportPlot curvature_plot(const geometry::Trajectory& drive) {
-  return plot_of(drive, "Curvature", "1/m",
-                 {series_of(drive, "driven", [](const Row& p) { return p.curvature_per_m; })});
+  return plot_over(drive, "Curvature", "1/m",
+                   {series_of(drive, "driven", [](const Row& p) { return p.curvature_per_m; })});
 }
 
 }  // namespace roadbed::tools::report

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/tools/report/report.h"
 
 namespace roadbed::tools::inline report {
+
+/// A diagram over the times of a drive's rows.
+ReportPlot plot_over(const geometry::Trajectory& drive, std::string title, std::string unit,
+                     std::vector<ReportSeries> series);
 
 // Diagrams of how a drive moved, a value a row.
 

@@ -46,14 +46,6 @@ planning::Route first_part(planning::Route route, double length_m) {
   return route;
 }
 
-void lead_along(planning::DrivingTask& task, const planning::Detour& detour) {
-  task.route = detour.route;
-  task.line = detour.line.line;
-  task.line_options = detour.line.options;
-  task.stop_points = detour.stop_points;
-  task.blockers = detour.blockers;
-}
-
 /// The cruise control behind the sensors of the lead.
 class MeasuredCruise : public planning::CruiseSpeed {
  public:
@@ -228,8 +220,8 @@ class ClosedLoop {
   void take(const planning::Detour& detour) {
     const double left_s_m = drive_.last_line_from_s_m + true_s_m();
     drive_.given_up.push_back({t_s(), first_part(std::move(world_.route), s_m_), world_.line});
-    lead_along(world_, detour);
-    if (drive_.believed) lead_along(*drive_.believed, detour);
+    detour.lead(world_);
+    if (drive_.believed) detour.lead(*drive_.believed);
     planner_ = planning::Planner(setup());
     s_m_ = 0.0;
     drive_.last_line_from_s_m = left_s_m - true_s_m();

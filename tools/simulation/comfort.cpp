@@ -112,10 +112,13 @@ Comfort comfort_of(const geometry::Trajectory& drive) {
 }
 
 bool Comfort::is_comfortable() const {
-  return least_longitudinal_mps2 >= -4.05 && most_longitudinal_mps2 <= 2.40 &&
-         most_lateral_mps2 <= 4.89 && most_yaw_acceleration_radps2 <= 1.93 &&
-         most_yaw_rate_radps <= 0.95 && most_longitudinal_jerk_mps3 <= 4.13 &&
-         most_jerk_mps3 <= 8.37;
+  return least_longitudinal_mps2 >= kLeastAcceleration_mps2 &&
+         most_longitudinal_mps2 <= kMostAcceleration_mps2 &&
+         most_lateral_mps2 <= kMostLateralAcceleration_mps2 &&
+         most_yaw_acceleration_radps2 <= kMostYawAcceleration_radps2 &&
+         most_yaw_rate_radps <= kMostYawRate_radps &&
+         most_longitudinal_jerk_mps3 <= kMostLongitudinalJerk_mps3 &&
+         most_jerk_mps3 <= kMostJerk_mps3;
 }
 
 }  // namespace roadbed::tools::simulation

@@ -45,6 +45,16 @@ double wrong_way_m(const Drive& drive);
 std::vector<double> savitzky_golay(const std::vector<double>& values, double step_s, int window,
                                    int order, int derivative);
 
+// What passengers bear, from nuPlan's comfort metrics (motional/nuplan-devkit,
+// ego_is_comfortable.yaml); absolute, but the first two.
+inline constexpr double kLeastAcceleration_mps2 = -4.05;
+inline constexpr double kMostAcceleration_mps2 = 2.40;
+inline constexpr double kMostLateralAcceleration_mps2 = 4.89;
+inline constexpr double kMostYawAcceleration_radps2 = 1.93;
+inline constexpr double kMostYawRate_radps = 0.95;
+inline constexpr double kMostLongitudinalJerk_mps3 = 4.13;
+inline constexpr double kMostJerk_mps3 = 8.37;
+
 /// Extremes of a drive by which nuPlan judges comfort (ego_is_comfortable), of signals smoothed as
 /// there: accelerations over 8 rows, jerks over 15, turning over 5.
 struct Comfort {

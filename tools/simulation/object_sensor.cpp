@@ -22,17 +22,20 @@ Eigen::Vector2d direction_of(const geometry::Trajectory& motion, double t_s) {
   return moved.norm() > 0.0 ? Eigen::Vector2d(moved.normalized()) : Eigen::Vector2d(0, 0);
 }
 
-/// Heading and speed along it: less than 0 for who backs up; who walks across where he looks is
-/// measured to head where he walks.
+/// Heading and speed along it. Who walks is measured to head where he walks, wherever he looks, by
+/// the sides of the same body; a vehicle that moves backwards backs up, at less than 0.
 void set_motion(const planning::Obstacle& obstacle, double t_s, planning::Detection& detection) {
   const Eigen::Vector2d direction = direction_of(obstacle.motion, t_s);
   const double heading_rad = detection.centre.heading_rad;
   const double along = direction.dot(Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad)));
   detection.speed_mps = direction.norm() * obstacle.motion.at(t_s).speed_mps;
-  if (along < -kAlongAxis) detection.speed_mps = -detection.speed_mps;
-  if (detection.speed_mps > 0.0 && along < kAlongAxis) {
-    detection.centre.heading_rad = std::atan2(direction.y(), direction.x());
+  if (detection.speed_mps == 0.0 || along > kAlongAxis) return;
+  if (along < -kAlongAxis && obstacle.kind != "pedestrian") {
+    detection.speed_mps = -detection.speed_mps;
+    return;
   }
+  detection.centre.heading_rad = std::atan2(direction.y(), direction.x());
+  if (std::abs(along) < kAlongAxis) std::swap(detection.length_m, detection.width_m);
 }
 
 }  // namespace

@@ -20,13 +20,6 @@ planning::TrackerOptions options_for(const planning::ObjectNoise& noise) {
   return options;
 }
 
-geometry::Rectangle body_of(const planning::Detection& detection) {
-  return {.centre = detection.centre.position(),
-          .axis = {std::cos(detection.centre.heading_rad), std::sin(detection.centre.heading_rad)},
-          .half_length_m = 0.5 * detection.length_m,
-          .half_width_m = 0.5 * detection.width_m};
-}
-
 }  // namespace
 
 TrackedTraffic::TrackedTraffic(const World& world, const Scenario& scenario)
@@ -53,8 +46,8 @@ void TrackedTraffic::track(double t_s, std::span<const SeenObject> seen,
   std::vector<planning::Detection> detections;
   std::vector<geometry::Rectangle> bodies;
   for (const SeenObject& object : seen) {
-    detections.push_back(object.detection);
-    bodies.push_back(body_of(object.detection));
+    const planning::Detection& seen_as = detections.emplace_back(object.detection);
+    bodies.push_back(planning::body_around(seen_as.centre, seen_as.length_m, seen_as.width_m));
   }
   const planning::Visibility visibility(body, range_m_, std::move(bodies), world_.field,
                                         world_.road_map);

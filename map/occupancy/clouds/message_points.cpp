@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <boost/endian/conversion.hpp>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -53,21 +54,11 @@ Layout layout_of(const CloudMessage& message, const std::string& file, const std
   return {offsets, type == kFloat64, message.is_big_endian != kIsBigMachine};
 }
 
-// Bytes in the other order, in a form that compilers know.
-constexpr std::uint32_t turned(std::uint32_t bits) {
-  return bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
-}
-
-constexpr std::uint64_t turned(std::uint64_t bits) {
-  const auto low = static_cast<std::uint32_t>(bits), high = static_cast<std::uint32_t>(bits >> 32);
-  return std::uint64_t{turned(low)} << 32 | turned(high);
-}
-
 template <class Real, bool is_turned>
 double real_at(const char* bytes) {
   std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t> bits;
   std::memcpy(&bits, bytes, sizeof bits);
-  if constexpr (is_turned) bits = turned(bits);
+  if constexpr (is_turned) boost::endian::endian_reverse_inplace(bits);
   return static_cast<double>(std::bit_cast<Real>(bits));
 }
 

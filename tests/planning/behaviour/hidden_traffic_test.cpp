@@ -77,8 +77,9 @@ TEST_F(HiddenTraffics, AreInTheWayFromTheEdgeOfTheirLaneOn) {
   const HiddenTraffic::MayCome hidden = towards(-25.0, true);
   ASSERT_EQ(hidden.in_the_way_from_m.size(), hidden.cars.size());
   for (const double s_m : hidden.in_the_way_from_m) {
-    // The turn begins to leave the approach there; its lane is 3.5 m wide.
-    EXPECT_NEAR(world_.line.at(s_m).in_map.y(), -3.5, 2.0);
+    // A corner of the lane that turns, 1.75 m beside its middle, is at the edge of the other lane.
+    const ReferencePoint at = world_.line.at(s_m);
+    EXPECT_NEAR(at.in_map.y() - 1.75 * std::cos(at.heading_rad), -3.5, 0.05);
   }
 }
 

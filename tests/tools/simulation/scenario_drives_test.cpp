@@ -302,6 +302,19 @@ TEST(ScenarioDrives, PedestrianIsGivenRoomWhereThatHasToBeSeen) {
   for (const auto& row : d.drive.trajectory.points()) EXPECT_GE(row.acceleration_mps2, -3.0);
 }
 
+/// Scripts of walkers have all kinds of headings.
+TEST(ScenarioDrives, PedestrianIsGivenRoomWhereverHeLooks) {
+  for (const double heading_rad : {0.0, 0.5 * M_PI, M_PI, -0.5 * M_PI}) {
+    Scenario scenario = scenario_of("pedestrian");
+    auto& walk = std::get<ScriptedObstacle>(scenario.obstacles[0].motion);
+    for (TimedPose& at : walk.poses) at.pose.heading_rad = heading_rad;
+    const Driven d = driven(scenario);
+    EXPECT_EQ(d.drive.verdict.outcome, Outcome::goal_reached)
+        << heading_rad << ": " << d.drive.verdict.text;
+    EXPECT_GE(d.clearance_m(), 1.0) << heading_rad;
+  }
+}
+
 TEST(ScenarioDrives, OneStopsWithinWhatIsSeen) {
   for (const double range_m : {20.0, 40.0, 80.0}) {
     Scenario scenario = scenario_of("slower_lead");
@@ -345,6 +358,23 @@ TEST(ScenarioDrives, OutOfABlindCornerOneCreepsUntilMoreIsSeen) {
     }
   }
   EXPECT_GE(creeps, 8) << "of 18; else it remembers who is hidden";
+}
+
+/// Another hedge on the right, and who comes from the left does not brake for anybody.
+TEST(ScenarioDrives, OutOfACornerThatIsBlindToBothSidesNobodyIsTouched) {
+  for (double from_m = 480.0; from_m <= 600.0; from_m += 20.0) {
+    Scenario scenario = scenario_of("blind_corner");
+    ScenarioObstacle right = scenario.obstacles[0];
+    right.id = "hedge on the right";
+    std::get<geometry::Pose2>(std::get<ParkedObstacle>(right.motion).at).x_m = 926.0;
+    scenario.obstacles.push_back(right);
+    scenario.obstacles[1].motion = ScriptedObstacle{
+        {{0.0, {from_m, -1.75, 0.0}}, {(1200.0 - from_m) / 14.0, {1200.0, -1.75, 0.0}}}};
+    const Driven d = driven(scenario);
+    EXPECT_NE(d.drive.verdict.outcome, Outcome::collision)
+        << from_m << ": " << d.drive.verdict.text;
+    EXPECT_GT(d.clearance_m(), 0.25) << from_m;
+  }
 }
 
 TEST(ScenarioDrives, StopAndGoWithLostMeasurementsIsFollowed) {

@@ -76,6 +76,11 @@ function boundText({lower, upper, unit}) {
 function valueText(value, span) {
   if (value === null || value === undefined) return "–";
   const digits = Math.min(5, Math.max(1, 2 - Math.floor(Math.log10(Math.max(span, 1e-6)))));
+  return fixedText(value, digits);
+}
+
+/** Digits after the point; zero has no sign. */
+function fixedText(value, digits) {
   return value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1");
 }
 

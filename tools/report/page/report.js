@@ -20,8 +20,8 @@ function showState(page) {
   if (drive.t.length === 0) return void (hud.textContent = "No drive");
   const state = stateAt(drive, page.clock.t), list = document.createElement("dl");
   addReading(list, "speed", `${state.v.toFixed(2)} m/s (${(3.6 * state.v).toFixed(0)} km/h)`);
-  addReading(list, "acceleration", `${state.a.toFixed(2)} m/s²`);
-  addReading(list, "steering", `${(state.steering * 180 / Math.PI).toFixed(1)}°`);
+  addReading(list, "acceleration", `${fixedText(state.a, 2)} m/s²`);
+  addReading(list, "steering", `${fixedText(state.steering * 180 / Math.PI, 1)}°`);
   const plan = planAt(page.map.scene, page.clock.t);
   if (plan && plan.note !== "") addReading(list, "plan", plan.note);
   hud.append(list);
