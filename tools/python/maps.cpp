@@ -21,7 +21,7 @@
 #include "roadbed/map/validate_file.h"
 #include "roadbed/planning/route/route_network.h"
 #include "roadbed/planning/route/route_options.h"
-#include "roadbed/tools/commands/finding_reports.h"
+#include "roadbed/tools/commands/maps/finding_reports.h"
 #include "roadbed/tools/python/bindings.h"
 
 namespace roadbed::tools::inline python {

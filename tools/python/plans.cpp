@@ -7,7 +7,7 @@
 
 #include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/plan.h"
-#include "roadbed/tools/commands/audit_frames.h"
+#include "roadbed/tools/commands/audits/audit_frames.h"
 #include "roadbed/tools/python/occupancy.h"
 #include "roadbed/tools/python/routes.h"
 #include "roadbed/tools/report/plan_svg.h"

@@ -9,7 +9,7 @@
 #include "roadbed/planning/route/guidance.h"
 #include "roadbed/planning/route/route_area.h"
 #include "roadbed/planning/route/route_path.h"
-#include "roadbed/tools/commands/route_output.h"
+#include "roadbed/tools/commands/routes/route_output.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline python {

@@ -1,0 +1,256 @@
+#include "roadbed/tools/commands/audits/audit_outputs.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/map/occupancy/octree/occupancy_map.h"
+#include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/cli/build_id.h"
+#include "roadbed/tools/commands/audits/audit_frames.h"
+#include "roadbed/tools/commands/audits/audit_output.h"
+#include "roadbed/tools/files/drive_file.h"
+#include "roadbed/tools/files/obstacles_csv.h"
+#include "roadbed/tools/files/trajectory_csv.h"
+#include "roadbed/tools/report/audit_pages.h"
+#include "roadbed/tools/report/audit_pictures.h"
+#include "roadbed/tools/report/drive_mcap.h"
+#include "roadbed/tools/report/report.h"
+#include "roadbed/tools/report/surroundings.h"
+
+namespace roadbed::tools::inline commands::inline audits {
+namespace {
+
+// Lanes that a picture of a drive can show: it is wider or higher than the drive's box by less
+// than three times the box's longer side.
+std::vector<geometry::Ring> drawn_lanes(const AuditedDrive& audited, const AuditScene& scene) {
+  if (scene.road_map == nullptr) return {};
+  const map::Box2 box = drawn(audited, scene);
+  const double side_m = (box.max_in_source - box.min_in_source).maxCoeff();
+  const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(3.0 * side_m);
+  return drivable_rings(*scene.road_map,
+                        {box.min_in_source - margin_m, box.max_in_source + margin_m});
+}
+
+std::vector<map::Box2> boxes_in(const map::Box2& around, const AuditedDrive& audited,
+                                const AuditScene& scene) {
+  if (!scene.occupancy) return {};
+  return occupied_boxes(*scene.occupancy, scene.question.heights(audited.audit.ground), around);
+}
+
+// The surface that the drive has to stay on; else lanes.
+std::vector<geometry::Ring> drawn_ground(const AuditedDrive& audited, const AuditScene& scene) {
+  if (!audited.road) return drawn_lanes(audited, scene);
+  std::vector<geometry::Ring> rings;
+  for (const geometry::Polygon& polygon : audited.road->made->polygons_in_source) {
+    rings.push_back(polygon.outer);
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  }
+  return rings;
+}
+
+ReportInput page_of(const AuditedDrive& audited, const AuditScene& scene) {
+  return report_of_audit(audited.drive, audited.whole(), surroundings_of(audited, scene));
+}
+
+// Who checks a certificate hashes its files again.
+void refuse_certificate_of_streams(const AuditAsked& asked, const AuditSubjects& subjects) {
+  for (const auto& file : {asked.occupancy_file(), subjects.file(), asked.vehicle_file(),
+                           asked.map_file(), asked.obstacles_file()}) {
+    if (map::is_stream(file)) certified_file(file);  // says why not
+  }
+}
+
+// Who checks it gets the drive as it was audited, and needs no options to read it.
+void refuse_certificate_of_logs(const AuditSubjects& subjects) {
+  if (subjects.is_swept() || subjects.is_folder() || is_drive_table(subjects.file())) return;
+  throw map::InputError({.file = map::input_name(subjects.file()),
+                         .found = "is no .csv of a drive, which certificates are about",
+                         .needed = "--save-drive beside --certificate",
+                         .remedy = "give it"});
+}
+
+}  // namespace
+
+std::vector<Argument> AuditOutputs::declare(Arguments& arguments) {
+  const Argument svg =
+      arguments.add("--svg", svg_, "Draw the audit of one drive as a picture (.svg)")
+          .writes(".svg");
+  const Argument page =
+      arguments
+          .add("--report", report_,
+               "Write a page that plays the audit of one drive, or lists those of a folder, with "
+               "close-ups (.html)")
+          .writes(".html");
+  const Argument log =
+      arguments
+          .add("--mcap", mcap_,
+               "Write a log that plays the audit of one drive in Foxglove, Lichtblick and Rerun "
+               "(.mcap): poses, lanes, obstacles, occupied space, stretches by verdict")
+          .writes(".mcap");
+  const Argument certificate =
+      arguments
+          .add("--certificate", certificate_,
+               "Write the proof of one drive (.json): spans of time, what holds in them, "
+               "witnesses, hashes of the inputs")
+          .writes(".json");
+  const Argument junit =
+      arguments.add("--junit", junit_, "Write a test case per drive (.xml)").writes(".xml");
+  const Argument geojson =
+      arguments
+          .add("--geojson", geojson_,
+               "Write stretches, conflicts and witnesses (.geojson), in the occupancy's "
+               "coordinates")
+          .writes(".geojson");
+  const Argument saved = arguments
+                             .add("--save-drive", saved_drive_,
+                                  "Write the drive that was audited, poses of the rear axle (.csv)")
+                             .writes(".csv");
+  const Argument occupancy =
+      arguments
+          .add("--save-occupancy", saved_occupancy_,
+               "Write the occupancy that was audited, of clouds or of --log, as an octree (.bt)")
+          .writes(".bt");
+  const Argument obstacles =
+      arguments
+          .add("--save-obstacles", saved_obstacles_,
+               "Write the dynamic obstacles that were audited, as --obstacles reads them (.csv); a "
+               "header only where there are none")
+          .writes(".csv");
+  return {svg, page, log, certificate, junit, geojson, saved, occupancy, obstacles};
+}
+
+void AuditOutputs::declare_force(Arguments& arguments) {
+  arguments.flag("-f,--force", force_, "Replace outputs that exist");
+}
+
+void AuditOutputs::check(const AuditAsked& asked, const AuditSubjects& subjects) const {
+  for (const auto& output : {svg_, report_, mcap_, certificate_, junit_, geojson_, saved_drive_,
+                             saved_occupancy_, saved_obstacles_}) {
+    if (!output.empty()) map::check_writable(output, force_);
+  }
+  if (!certifies()) return;
+  refuse_certificate_of_streams(asked, subjects);
+  if (!saves_drive()) refuse_certificate_of_logs(subjects);
+}
+
+void AuditOutputs::check_for_folder() const {
+  if (svg_.empty() && mcap_.empty() && certificate_.empty() && !saves_drive() &&
+      !saves_occupancy() && !saves_obstacles()) {
+    return;
+  }
+  throw map::InputError({.file = "--svg, --mcap, --certificate or --save-…",
+                         .found = "is about one drive, and --trajectory is a folder",
+                         .remedy = "give one file"});
+}
+
+void AuditOutputs::write_one(const AuditedDrive& audited, const AuditScene& scene) const {
+  write_saved(audited, scene);
+  write_picture(audited, scene);
+  write_report(audited, scene);
+  write_log(audited, scene);
+  write_certificate(audited, scene);
+  write_lists({audited}, scene);
+}
+
+void AuditOutputs::write_saved(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (saves_drive()) {
+    map::write_output(saved_drive_, write_trajectory_csv(audited.drive), force_);
+  }
+  if (saves_occupancy()) {
+    const auto* octree = dynamic_cast<const map::OccupancyMap*>(scene.occupancy.get());
+    if (octree == nullptr) {
+      throw map::InputError({.file = map::input_name(scene.asked.occupancy_file()),
+                             .found = "is a folder of tiles, or none is given",
+                             .needed = "one octree for --save-occupancy",
+                             .remedy = "leave that out"});
+    }
+    map::write_output(saved_occupancy_, octree->to_bt(), force_);
+  }
+  if (saves_obstacles()) {
+    map::write_output(saved_obstacles_, write_obstacles_csv(scene.question.moving_in_source),
+                      force_);
+  }
+}
+
+void AuditOutputs::write_all(const std::vector<AuditedDrive>& audits,
+                             const AuditScene& scene) const {
+  write_index(audits, scene);
+  write_lists(audits, scene);
+}
+
+void AuditOutputs::write_picture(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (svg_.empty()) return;
+  const planning::AuditReport whole = audited.whole();
+  map::write_output(
+      svg_,
+      audit_svg({audited.drive, scene.question.inflated_parts(), whole,
+                 boxes_in(drawn(audited, scene), audited, scene), drawn_ground(audited, scene),
+                 scene.question.moving_in_source, !scene.occupancy}),
+      force_);
+}
+
+void AuditOutputs::write_report(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (report_.empty()) return;
+  map::write_output(report_, drive_report_html(page_of(audited, scene)), force_);
+}
+
+void AuditOutputs::write_log(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (mcap_.empty()) return;
+  map::write_output(mcap_, drive_mcap(page_of(audited, scene), space_of(audited, scene)), force_);
+}
+
+void AuditOutputs::write_index(const std::vector<AuditedDrive>& audits,
+                               const AuditScene& scene) const {
+  if (report_.empty()) return;
+  const std::vector<geometry::BodyPart> parts = scene.question.inflated_parts();
+  std::vector<IndexedAudit> index;
+  for (const AuditedDrive& audited : audits) {
+    index.push_back(indexed(audited));
+    if (!audited.fault.empty()) continue;
+    const auto occupied = [&](const map::Box2& shown) { return boxes_in(shown, audited, scene); };
+    const std::vector<geometry::Ring> lanes = drawn_ground(audited, scene);
+    index.back().pictures = close_ups(
+        audited.whole(), {audited.drive, parts, occupied, lanes, scene.question.moving_in_source});
+  }
+  map::write_output(report_, audit_index_html(index, scene.asked.suite(), name_and_version()),
+                    force_);
+}
+
+void AuditOutputs::write_certificate(const AuditedDrive& audited, const AuditScene& scene) const {
+  if (certificate_.empty()) return;
+  const std::filesystem::path& drive = saved_drive_.empty() ? scene.drive_file : saved_drive_;
+  CertificateFile file{.program = name_and_version(),
+                       .trajectory = certified_file(drive),
+                       .underside_m = scene.asked.from_height_m(),
+                       .ground = {scene.question.ground.kind, audited.audit.ground},
+                       .least_measured = scene.asked.options().least_measured,
+                       .parts = audited.audit.certificates};
+  if (saves_occupancy()) {
+    file.occupancy = certified_file(saved_occupancy_);
+  } else if (scene.occupancy) {
+    file.occupancy = hashed_once(scene, scene.asked.occupancy_file());
+  }
+  const auto& obstacles = saves_obstacles() ? saved_obstacles_ : scene.asked.obstacles_file();
+  const bool has_obstacles = !obstacles.empty() && !scene.question.moving_in_source.empty();
+  if (has_obstacles && scene.occupancy) {
+    file.obstacles = certified_obstacles(obstacles, scene.question.moving_in_source);
+  }
+  if (!scene.asked.vehicle_file().empty())
+    file.vehicle = certified_file(scene.asked.vehicle_file());
+  if (!scene.asked.map_file().empty()) file.roads = hashed_once(scene, scene.asked.map_file());
+  if (audited.road)
+    file.surface = certified_surface(*audited.road, scene.asked.options().inflate_m);
+  map::write_output(certificate_, write_certificate_json(file), force_);
+}
+
+void AuditOutputs::write_lists(const std::vector<AuditedDrive>& audits,
+                               const AuditScene& scene) const {
+  if (!junit_.empty()) map::write_output(junit_, audits_junit(audits, scene.asked.suite()), force_);
+  if (!geojson_.empty()) {
+    map::write_output(geojson_, audits_geojson(audits, scene.question, scene.crs()), force_);
+  }
+}
+
+}  // namespace roadbed::tools::commands::audits

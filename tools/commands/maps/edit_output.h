@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "roadbed/map/edit/edited.h"
+#include "roadbed/tools/cli/command.h"
+#include "roadbed/tools/files/json.h"
+
+namespace roadbed::tools::inline commands::inline maps {
+
+/// Where a command that edits a map writes it, and how it says what it did.
+class EditOutput {
+ public:
+  /// `-o`, `--force` and `--json`.
+  void declare(Arguments& arguments);
+
+  /// What is wrong with them together.
+  std::string fault() const;
+
+  /// Looks before the work begins whether the file can be written.
+  void check() const;
+
+  /// Writes the map, or says why there is none, and prints what was done.
+  /// @param kind  of the JSON document: "map_clip".
+  /// @param more  goes into it, too.
+  Exit finish(const map::Edited& edited, const std::string& kind, const Streams& streams,
+              const CommonOptions& common, const Json& more = Json::object()) const;
+
+  const std::filesystem::path& file() const { return file_; }
+  bool force() const { return force_; }
+  bool prints_json() const { return json_; }
+
+ private:
+  std::filesystem::path file_;
+  bool force_ = false, json_ = false;
+};
+
+}  // namespace roadbed::tools::commands::maps

@@ -1,0 +1,231 @@
+#include "roadbed/tools/commands/routes/route_batch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "roadbed/map/files/csv_field.h"
+#include "roadbed/map/files/in_threads.h"
+#include "roadbed/map/files/input_error.h"
+#include "roadbed/map/files/read_file.h"
+#include "roadbed/planning/route/hierarchy_search.h"
+#include "roadbed/planning/route/no_route_explanation.h"
+#include "roadbed/planning/route/route_solver.h"
+#include "roadbed/planning/route/router.h"
+#include "roadbed/tools/cli/place.h"
+#include "roadbed/tools/commands/routes/route_output.h"
+#include "roadbed/tools/files/json.h"
+#include "roadbed/tools/files/points_csv.h"
+
+namespace roadbed::tools::inline commands::inline routes {
+namespace {
+
+struct PairRow : OdRow {
+  std::optional<planning::RoutePlace> from_place, to_place;
+};
+
+struct Cell {
+  std::string csv, json;
+  bool found = false;
+};
+
+void place_row(const map::RoadMap& road_map, const planning::Router& router,
+               map::Participant participant, PairRow& row) {
+  try {
+    row.from_place = find_place(road_map, row.from, participant).for_route();
+    row.to_place = find_place(road_map, row.to, participant).for_route();
+  } catch (const map::InputError& error) {
+    row.fault = error.what();
+    return;
+  }
+  row.fault = router.unfit(*row.from_place, "start");
+  if (row.fault.empty()) row.fault = router.unfit(*row.to_place, "goal");
+}
+
+std::vector<PairRow> read_rows(const std::filesystem::path& file) {
+  std::vector<PairRow> rows;
+  for (OdRow& row : parse_od_csv(map::read_file(file), map::input_name(file))) {
+    rows.push_back({std::move(row), {}, {}});
+  }
+  return rows;
+}
+
+class Batch {
+ public:
+  Batch(const map::RoadMap& road_map, const planning::RouteOptions& rules,
+        const RouteBatchOptions& options)
+      : road_map_(road_map),
+        options_(options),
+        router_(road_map, rules),
+        solver_(router_.solver()) {
+    router_.prepare();
+  }
+
+  void place(std::vector<PairRow>& rows) const {
+    map::in_threads(rows.size(), options_.threads, [&](std::size_t i) {
+      if (rows[i].fault.empty()) {
+        place_row(road_map_, router_, router_.options().participant, rows[i]);
+      }
+    });
+  }
+
+  std::vector<Cell> answer_rows(const std::vector<PairRow>& rows) const {
+    std::vector<Cell> cells(rows.size());
+    map::in_threads(
+        rows.size(), options_.threads,
+        [&] {
+          return Own{planning::HierarchySearch(solver_.metric()), {}};
+        },
+        [&](Own& own, std::size_t i) { cells[i] = answer(own, rows[i]); });
+    return cells;
+  }
+
+  std::vector<Cell> answer_matrix(const std::vector<PairRow>& rows) const {
+    std::vector<planning::ClimbedSpace> goals(rows.size());
+    const auto make = [&] { return planning::HierarchySearch(solver_.metric()); };
+    map::in_threads(
+        rows.size(), options_.threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
+          if (!rows[i].fault.empty()) return;
+          const auto end = arrive_at(solver_.graph(), solver_.model(), *rows[i].to_place);
+          goals[i] = search.climb(end.seeds, true);
+        });
+    std::vector<Cell> cells(rows.size() * rows.size());
+    map::in_threads(
+        rows.size(), options_.threads, make, [&](planning::HierarchySearch& search, std::size_t i) {
+          if (!rows[i].fault.empty()) return;
+          const auto end = leave_from(solver_.graph(), solver_.model(), *rows[i].from_place);
+          const planning::ClimbedSpace start = search.climb(end.seeds, false);
+          for (std::size_t j = 0; j < rows.size(); ++j) {
+            if (!rows[j].fault.empty()) continue;
+            cells[i * rows.size() + j] = matrix_cell(rows[i], rows[j], start, goals[j]);
+          }
+        });
+    std::erase_if(cells, [](const Cell& cell) { return cell.csv.empty(); });
+    return cells;
+  }
+
+ private:
+  /// What each thread has for itself.
+  struct Own {
+    planning::HierarchySearch search;
+    std::optional<planning::NoRouteExplainer> obstacles;
+  };
+
+  Cell answer(Own& own, const PairRow& row) const {
+    if (!row.fault.empty()) return none(row, row.fault);
+    planning::RouteTask task = solver_.task(*row.from_place, *row.to_place);
+    const planning::GraphPath path = own.search.find(task.start.seeds, task.goal.seeds);
+    const auto way = solver_.answer(std::move(task), path);
+    if (!way) return no_route(own, row);
+    const planning::Route route = router_.route_along(*way);
+    std::string lanes;
+    for (const planning::RouteLeg& leg : route.legs) {
+      lanes += (lanes.empty() ? "" : " ") + road_map_.lane(leg.lane).name;
+    }
+    Cell cell;
+    cell.found = true;
+    cell.csv = fmt::format("{},{},{},1,{:.4f},{:.4f},{:.3f},{},{},\n", row.line,
+                           map::csv_field(row.from), map::csv_field(row.to), route.cost_s,
+                           route.cost_m, route.length_m, route.lane_changes, map::csv_field(lanes));
+    if (options_.json) cell.json = with_row(route_json(road_map_, route), row);
+    return cell;
+  }
+
+  Cell none(const PairRow& row, const std::string& reason) const {
+    Cell cell;
+    cell.csv = fmt::format("{},{},{},0,,,,,,{}\n", row.line, map::csv_field(row.from),
+                           map::csv_field(row.to), map::csv_field(reason));
+    if (options_.json) cell.json = with_row({{"found", false}, {"reason", reason}}, row);
+    return cell;
+  }
+
+  // The table says that there is none, the document why.
+  Cell no_route(Own& own, const PairRow& row) const {
+    const planning::RoutePlace from = *row.from_place, to = *row.to_place;
+    Cell cell =
+        none(row, fmt::format("no lane sequence leads from lane {} to lane {}",
+                              road_map_.lane(from.lane).name, road_map_.lane(to.lane).name));
+    if (!options_.json) return cell;
+    if (!own.obstacles) own.obstacles.emplace(road_map_, solver_);
+    planning::RouteAnswer answer;
+    answer.explanation = own.obstacles->find(from, to);
+    answer.reason = describe(road_map_, from, to, *answer.explanation);
+    cell.json = with_row(no_route_json(road_map_, answer), row);
+    return cell;
+  }
+
+  static std::string with_row(Json json, const PairRow& row) {
+    json["row"] = row.line;
+    return text_of(json, 1);
+  }
+
+  Cell matrix_cell(const PairRow& from, const PairRow& to, const planning::ClimbedSpace& start,
+                   const planning::ClimbedSpace& goal) const {
+    planning::Ticks ticks = cost_between(start, goal);
+    const auto direct = direct_way(solver_.model(), *from.from_place, *to.to_place);
+    if (direct) ticks = std::min(ticks, direct->cost);
+    const planning::RouteCost measure = solver_.options().cost;
+    const double cost = static_cast<double>(ticks) / planning::ticks_per_unit(measure);
+    Cell cell;
+    cell.found = ticks != planning::kNever;
+    cell.csv = fmt::format("{},{},{},{},{},{}\n", from.line, to.line, map::csv_field(from.from),
+                           map::csv_field(to.to), cell.found ? 1 : 0,
+                           cell.found ? fmt::format("{:.4f}", cost) : "");
+    if (!options_.json) return cell;
+    Json json = {{"from_row", from.line}, {"to_row", to.line}, {"found", cell.found}};
+    const char* key = measure == planning::RouteCost::time ? "cost_s" : "cost_m";
+    if (cell.found) json[key] = cost;
+    cell.json = text_of(json, 1);
+    return cell;
+  }
+
+  const map::RoadMap& road_map_;
+  const RouteBatchOptions& options_;
+  planning::Router router_;
+  const planning::RouteSolver& solver_;
+};
+
+// One more element of an array in a document that is indented by one space a level.
+void add_element(const std::string& json, std::string& array) {
+  array += array.empty() ? "\n  " : ",\n  ";
+  for (const char sign : json) {
+    array += sign;
+    if (sign == '\n') array += "  ";
+  }
+}
+
+std::string header(const planning::RouteOptions& rules, bool matrix) {
+  if (!matrix) return "row,from,to,found,cost_s,cost_m,length_m,lane_changes,lanes,reason\n";
+  return fmt::format("from_row,to_row,from,to,found,{}\n",
+                     rules.cost == planning::RouteCost::time ? "cost_s" : "cost_m");
+}
+
+}  // namespace
+
+BatchAnswer route_batch(const map::RoadMap& road_map, const std::filesystem::path& file,
+                        const planning::RouteOptions& rules, const RouteBatchOptions& options) {
+  std::vector<PairRow> rows = read_rows(file);
+  const Batch batch(road_map, rules, options);
+  batch.place(rows);
+  const std::vector<Cell> cells =
+      options.matrix ? batch.answer_matrix(rows) : batch.answer_rows(rows);
+  BatchAnswer answer;
+  answer.csv = header(rules, options.matrix);
+  std::string documents;
+  for (const Cell& cell : cells) {
+    answer.csv += cell.csv;
+    if (options.json) add_element(cell.json, documents);
+    ++(cell.found ? answer.found : answer.none);
+  }
+  for (const PairRow& row : rows) {
+    if (row.fault.empty()) continue;
+    answer.faults.push_back(fmt::format("{}:{}: {}", map::input_name(file), row.line, row.fault));
+  }
+  if (!options.matrix) answer.none -= answer.faults.size();
+  if (!documents.empty()) documents += "\n ";
+  if (options.json)
+    answer.json = "{\n \"roadbed_routes\": 1,\n \"answers\": [" + documents + "]\n}\n";
+  return answer;
+}
+
+}  // namespace roadbed::tools::commands::routes
