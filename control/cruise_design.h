@@ -24,8 +24,8 @@ struct CruiseOptions {
   double lead_acceleration_variance = 1.0;  ///< of a_p, the disturbance [m²/s⁴]
   double actuator_noise_variance = 1e-4;    ///< added to a_f in each step [m²/s⁴]
   double max_command_mps2 = geometry::kLongitudinal.max_command_mps2;
-  double max_jerk_mps3 = 4.0;  ///< that a command may ask of the actuator; nuPlan's bound is 4.13
-  double bridged_s = 0.5;      ///< a lead that is not measured for so long is still followed
+  double max_jerk_mps3 = geometry::kLongitudinal.max_jerk_mps3;
+  double bridged_s = 0.5;  ///< a lead that is not measured for so long is still followed
 };
 
 /// x_{k+1} = A x_k + B u_k + G a_p, x = [d_desire − d, v_p − v_f, a_f] (paper eq. 27–28).

@@ -10,7 +10,8 @@ struct Longitudinal {
   double actuator_lag_s = 0.45;           ///< T_L, in a = K_L / (T_L s + 1) u (paper eq. 25)
   double actuator_gain = 1.0;             ///< K_L
   double max_command_mps2 = 0.25 * 9.81;  ///< of |u|; paper: ¼ g
-  double cycle_s = 0.1;                   ///< T: a command u is held for so long
+  double max_jerk_mps3 = 4.0;  ///< of u, as the actuator turns it; nuPlan's bound is 4.13
+  double cycle_s = 0.1;        ///< T: a command u is held for so long
 };
 
 inline constexpr Longitudinal kLongitudinal{};

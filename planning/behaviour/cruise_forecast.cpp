@@ -12,7 +12,6 @@
 namespace roadbed::planning::inline behaviour {
 namespace {
 
-constexpr double kCruiseSpeedUp_mps2 = 1.0;
 constexpr double kAnswersIn_s = 0.5;  // to a speed that is missing or too much
 constexpr int kSpeedSteps = 3;        // over which the speed of others is taken
 
@@ -105,6 +104,8 @@ class Forecast {
   double wanted_mps(const SpeedState& at, int step) const {
     double wanted = std::min(q_.profile.wanted_mps[q_.profile.before(at.ahead_m)],
                              stopping_mps(q_.stop_m - at.ahead_m));
+    wanted = std::min(
+        wanted, speed_before_walkers(q_.walkers, at.ahead_m, options_.deceleration_mps2).speed_mps);
     if (q_.most_mps) wanted = std::min(wanted, *q_.most_mps);
     for (const StInterval& part : q_.occupancy.at(step)) {
       if (is_ignored(part) || crosses(part) || part.from_m < at.ahead_m) continue;
@@ -126,10 +127,10 @@ class Forecast {
     return stopping_speed(distance_m, options_.deceleration_mps2).speed_mps;
   }
 
-  static SpeedState after(const SpeedState& at, double wanted_mps) {
+  SpeedState after(const SpeedState& at, double wanted_mps) const {
     constexpr double kStep_s = StGraph::kStep_s;
     const double command = std::clamp((wanted_mps - at.speed_mps) / kAnswersIn_s,
-                                      -kMostCommand_mps2, kCruiseSpeedUp_mps2);
+                                      -kMostCommand_mps2, options_.acceleration_mps2);
     SpeedState next = at;
     next.t_s += kStep_s;
     next.command_mps2 = command;

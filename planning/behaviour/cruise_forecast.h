@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
@@ -19,6 +20,7 @@ struct CruiseForecastQuestion {
   const std::vector<bool>& no_matter;  ///< per obstacle: it follows, and keeps its distance itself
   const std::vector<bool>& crosses;    ///< per obstacle: it will have left the path, and is no lead
   std::optional<double> most_mps = {};
+  std::span<const HiddenWalker> walkers = {};  ///< who may step out beside the path
 };
 
 struct CruiseForecast {

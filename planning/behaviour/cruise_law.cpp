@@ -35,6 +35,7 @@ CruiseLaw::CruiseLaw(const PlannerSetup& setup)
     : vehicle_(setup.vehicle),
       task_(setup.task),
       right_of_way_(setup.vehicle, setup.driving, setup.task) {
+  decision_options_.acceleration_mps2 = setup.driving.comfort_acceleration_mps2;
   decision_options_.deceleration_mps2 = setup.driving.comfort_deceleration_mps2;
   decision_options_.headway_s = setup.driving.headway_s;
   decision_options_.standstill_gap_m = setup.driving.standstill_gap_m;
@@ -76,7 +77,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   explain(q, chosen, command);
   if (lead) ease(q, *lead, command);
   if (lead) brake_for(*lead, speed, command);
-  if (halt && halt->is_hard) brake_for(*halt, q, command);
+  if (halt) brake_for(*halt, q, command);
   brake_for_no_path(q, lead, command);
   if (q.passing.overtaking.overtaken) overtake(q, command);
   explain_passing(q, command);
@@ -180,11 +181,18 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .follows = follows_,
                                      .path_left_m = path_left_m(q, lead),
                                      .halt = halt,
-                                     .seen_ahead_m = seen_ahead_m(q)},
+                                     .seen_ahead_m = seen_ahead_m(q),
+                                     .walkers = q.walkers},
                                     decision_options_);
   const std::optional<double>& most_mps = q.passing.in_lane.most_mps;
   if (most_mps && *most_mps < answer.set.speed_mps) {
     answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
+  }
+  if (const auto creeping_mps = right_of_way_.most_mps();
+      creeping_mps && *creeping_mps < answer.set.speed_mps) {
+    answer = {.set = {.speed_mps = *creeping_mps, .acceleration_mps2 = 0.0},
+              .behaviour = Behaviour::yield,
+              .reason = "creeps, as somebody hidden may come"};
   }
   const Merging::Decision& merging = q.passing.merging;
   const bool slows = merging.most_mps && *merging.most_mps < answer.set.speed_mps;
@@ -283,12 +291,13 @@ void CruiseLaw::brake_for(const Lead& lead, double speed_mps, PlannerCommand& co
                   lead_name(lead), lead.gap_m, speed_mps - lead.speed_mps);
 }
 
-/// The cruise control cannot ask for what this halt takes.
+/// The cruise control cannot ask for what this halt takes, or takes by now.
 void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
                           PlannerCommand& command) const {
   const auto braking = emergency_stop_mps2(q.view.measured.speed_mps,
                                            halt.s_m + kBeforeHalt_m - q.replanner().s_m());
   if (!braking || -*braking > command.acceleration_mps2) return;
+  if (!halt.is_hard && *braking <= kMostCommand_mps2) return;
   command.acceleration_mps2 = -*braking;
   command.behaviour = Behaviour::emergency;
   command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);

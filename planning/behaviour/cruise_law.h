@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ class CruiseLaw {
     Maneuver maneuver = Maneuver::keep_lane;  ///< that the path is of
     std::vector<bool> no_lead;                ///< per obstacle: it crosses the path in time
     std::optional<StopConstraint> halt;       ///< by stations of the line
+    std::span<const HiddenWalker> walkers = {};
 
     const LateralReplanner& replanner() const { return on.replanner; }
   };

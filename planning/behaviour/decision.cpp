@@ -16,6 +16,7 @@ constexpr double kFollowSlack_mps = 2.0, kStillFollows_mps = 4.0;
 constexpr double kBeyondGap_m = 3.0;  // nearer than the gap: that one is the cruise control's
 constexpr double kBrakes_mps2 = 0.5;  // less is no braking
 constexpr double kNeedsNone_mps = 1.0;
+constexpr double kSpeedUpIn_s = 1.5;  // the cruise control speeds up by what is missing over this
 constexpr double kFar_m = 1e4;
 
 struct Option {
@@ -24,8 +25,9 @@ struct Option {
   std::string reason;
 };
 
-/// Distance driven until the actuator has answered.
+/// Distance driven until the actuator has answered; who speeds up has to give that up before.
 double preview_m(const SpeedQuestion& q, double preview_s) {
+  preview_s += std::max(0.0, q.acceleration_mps2) / geometry::kLongitudinal.max_jerk_mps3;
   return std::max(0.0, (q.speed_mps + 0.5 * q.acceleration_mps2 * preview_s) * preview_s);
 }
 
@@ -55,6 +57,19 @@ Option by_sight(const SpeedQuestion& q, double deceleration) {
           {most_mps, 0.0},
           Behaviour::cruise,
           fmt::format("at most {:.1f} m/s as {:.0f} m ahead are seen", most_mps, *q.seen_ahead_m)};
+}
+
+/// The one of them who counts is the one at whom the vehicle is slowest, named as the nearest.
+Option by_walkers(const SpeedQuestion& q, double ahead_m, double deceleration) {
+  const SpeedTarget now = speed_before_walkers(q.walkers, 0.0, deceleration);
+  const auto next = std::ranges::find_if(q.walkers, [&](const HiddenWalker& walker) {
+    return speed_before_walkers({&walker, 1}, 0.0, deceleration).speed_mps == now.speed_mps;
+  });
+  return {
+      now, speed_before_walkers(q.walkers, ahead_m, deceleration), Behaviour::cruise,
+      fmt::format("at most {:.1f} m/s {:.0f} m ahead, where somebody hidden may step out {:.1f} m "
+                  "beside the way",
+                  next->most_mps, next->ahead_m, next->aside_m)};
 }
 
 /// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
@@ -87,6 +102,7 @@ std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& op
   std::vector<Option> all{by_ceiling(q, ahead_m), by_goal(q, ahead_m, options.deceleration_mps2)};
   if (q.halt) all.push_back(by_halt(q, ahead_m));
   if (q.seen_ahead_m) all.push_back(by_sight(q, options.most_deceleration_mps2));
+  if (!q.walkers.empty()) all.push_back(by_walkers(q, ahead_m, options.deceleration_mps2));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;
@@ -146,7 +162,7 @@ SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& o
     answer.reason = all.back().reason;
   }
   answer.set.speed_mps =
-      std::min(answer.set.speed_mps, question.speed_mps + options.most_speed_up_mps);
+      std::min(answer.set.speed_mps, question.speed_mps + kSpeedUpIn_s * options.acceleration_mps2);
   return answer;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/behaviour.h"
+#include "roadbed/planning/behaviour/hidden_walkers.h"
 #include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/right_of_way.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -27,6 +29,7 @@ struct SpeedQuestion {
   std::optional<StopConstraint> halt = {};  ///< where a rule of the road asks to wait
   std::optional<double> seen_ahead_m =
       {};  ///< of the road, as far as is to be kept free; none: all
+  std::span<const HiddenWalker> walkers = {};  ///< who may step out
 };
 
 /// The set speed, and what it is due to.
@@ -45,7 +48,7 @@ struct DecisionOptions {
   double closing_s = 2.7;  ///< the cruise control closes a gap e at e / this [m/s]
   /// The actuator's lag: deceleration is asked for this much ahead.
   double preview_s = geometry::kLongitudinal.actuator_lag_s;
-  double most_speed_up_mps = 1.5;  ///< the set speed is at most this much above the speed
+  double acceleration_mps2 = 1.5;  ///< on a free road, by the cruise control's gain
 };
 
 /// What was driven since a lead was seen, and by how much the gap to it has closed.

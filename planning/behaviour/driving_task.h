@@ -50,6 +50,7 @@ struct DrivingTask {
 struct DrivingOptions {
   double desired_speed_mps = 130.0 / 3.6;
   double max_lateral_acceleration_mps2 = 2.5;  ///< sets the speed in bends
+  double comfort_acceleration_mps2 = 1.5;      ///< on a free road
   double comfort_deceleration_mps2 = 1.5;      ///< ahead of bends, limits, leads and the goal
   double clearance_m = 0.3;                    ///< to obstacles and occupied space
   double headway_s = 1.5;                      ///< kept behind a lead, besides the standstill gap

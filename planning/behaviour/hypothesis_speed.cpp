@@ -84,7 +84,8 @@ void HypothesisSpeed::forecast(const PlanningScene& scene, ManeuverHypothesis& h
                        .stop_m = end_m(scene, hypothesis),
                        .no_matter = scene.no_matter,
                        .crosses = scene.crosses,
-                       .most_mps = scene.most_mps},
+                       .most_mps = scene.most_mps,
+                       .walkers = scene.walkers},
                       cruise_);
   hypothesis.answer = std::move(forecast.drive);
   if (forecast.met) hypothesis.meeting = {*forecast.met, hypothesis.answer.free_until_s};

@@ -21,7 +21,8 @@ struct PlanningScene {
   TrafficBodies bodies = {};         ///< for steps(): where they will be
   std::optional<StopConstraint> halt = {};  ///< that a rule of the road asks for
   double last_command_mps2 = 0.0;
-  std::optional<double> most_mps = {};  ///< to come into a gap of the next lane
+  std::optional<double> most_mps = {};     ///< to come into a gap of the next lane
+  std::vector<HiddenWalker> walkers = {};  ///< who may step out beside the path that is kept
 };
 
 /// Finds the speed along the path of a hypothesis, among all that moves.

@@ -152,6 +152,7 @@ class Planner::Impl {
     scene.bodies =
         TrafficBodies(traffic_, view.t_s, speed_.steps(view.t_s), {scene.crosses, clearance_m_});
     if (task_.goal) return scene;
+    if (task_.sight_m) scene.walkers = hidden_walkers(view);
     scene.halt =
         cruise_.look(view, place_on(lines_.first(), view).s_m, lines_.driven(), traffic_, sight());
     if (scene.halt &&
@@ -162,6 +163,22 @@ class Planner::Impl {
       scene.halt = merging.halt;
     }
     return scene;
+  }
+
+  /// As far as the vehicle takes to stop comfortably, and a little more.
+  std::vector<HiddenWalker> hidden_walkers(const PlannerView& view) const {
+    constexpr double kMore_m = 10.0;
+    const GoalLine& on = lines_.driven();
+    const double speed_mps = view.measured.speed_mps;
+    const double stopping_m = 0.5 * speed_mps * speed_mps / cruise_.options().deceleration_mps2;
+    const PathProfile path = sample_path_profile(on.replanner.expected_path(), on.replanner.s_m(),
+                                                 stopping_m + kMore_m, on.ceiling, vehicle_);
+    return find_hidden_walkers({.path = path,
+                                .line = on.line,
+                                .vehicle = vehicle_,
+                                .task = task_,
+                                .traffic = traffic_,
+                                .t_s = view.t_s});
   }
 
   /// For a path to a goal in time only what stands for a while, as something that stands for ever:
@@ -228,7 +245,8 @@ class Planner::Impl {
                                               .passing = passing,
                                               .maneuver = best.maneuver,
                                               .no_lead = who_crosses_in_time(best, scene),
-                                              .halt = scene.halt});
+                                              .halt = scene.halt,
+                                              .walkers = scene.walkers});
     if (!best.by_cruise_law) give_way(best, command);
     return command;
   }

@@ -117,7 +117,10 @@ void RightOfWay::pass_places(const View& view) {
   if (next_ == 0) return;
   const StopPoint& last = places[next_ - 1];
   const bool is_crossing = view.s_m - vehicle_.rear_overhang_m < last.clear_s_m;
-  if (last.kind != StopKind::light && is_crossing) who_comes(last, view, kGapOnTheWay);
+  if (last.kind == StopKind::light || !is_crossing) return;
+  who_comes(last, view, kGapOnTheWay);
+  if (!view.sight) return;
+  creeps_ = who_hidden_is_met(next_ - 1, view).has_value();
 }
 
 /// The deceleration to stop with before a place; none: it is too late for that. The actuator's lag
@@ -159,6 +162,7 @@ std::optional<double> RightOfWay::stops_before_red_mps2(const StopPoint& place,
 std::optional<StopConstraint> RightOfWay::look(const View& view) {
   const std::vector<StopPoint>& places = task_.stop_points;
   crossing_.assign(view.traffic.obstacles.size(), false);
+  creeps_ = false;
   pass_places(view);
   for (std::size_t i = next_; i < places.size(); ++i) {
     if (left_m(places[i], view) > kLookAhead_m) break;
@@ -239,22 +243,40 @@ std::optional<std::string> RightOfWay::who_comes(const StopPoint& place, const V
   return std::nullopt;
 }
 
-/// Of the next place: the vehicle creeps to where it is not in anybody's way yet.
-std::optional<std::string> RightOfWay::who_may_come(const StopPoint& place, const View& view) {
-  if (!view.sight || !is_next(place)) return std::nullopt;
-  if (looks_since_s_ && view.t_s - *looks_since_s_ > kLooks_s) return std::nullopt;
-  const HiddenTraffic::MayCome hidden = hidden_.towards(next_, *view.sight, view.t_s);
-  const Crossing way = crossing_of(place, view, kGapToTake);
+/// The first of those who may come from where nothing is seen that would be met, driving on; not of
+/// those in whose way the vehicle is already.
+std::optional<RightOfWay::Hidden> RightOfWay::who_hidden_is_met(std::size_t stop_point,
+                                                                const View& view) {
+  HiddenTraffic::MayCome hidden = hidden_.towards(stop_point, *view.sight, view.t_s);
+  const double front_m = view.s_m + vehicle_.front_m();
+  for (std::size_t i = hidden.cars.size(); i-- > 0;) {
+    if (hidden.in_the_way_from_m[i] > front_m) continue;
+    hidden.cars.erase(hidden.cars.begin() + static_cast<std::ptrdiff_t>(i));
+    hidden.in_the_way_from_m.erase(hidden.in_the_way_from_m.begin() +
+                                   static_cast<std::ptrdiff_t>(i));
+  }
+  const Crossing way = crossing_of(task_.stop_points[stop_point], view, kGapToTake);
   const StGraph occupancy(way.profile, Traffic{hidden.cars}, view.t_s, way.steps_of_others,
                           kCrossingMargin_m);
   const std::vector<bool> nobody(hidden.cars.size(), false);
   const auto met = first_met(occupancy, {nobody, nobody}, way.ahead_m, kGapToTake);
   if (!met) return std::nullopt;
-  creeps_to_m_ = std::max(place.s_m, hidden.in_the_way_from_m[met->obstacle] - kBesideLane_m);
+  return Hidden{std::move(hidden.cars[met->obstacle]), hidden.in_the_way_from_m[met->obstacle]};
+}
+
+/// Of the next place: the vehicle creeps to where it is not in anybody's way yet.
+std::optional<std::string> RightOfWay::who_may_come(const StopPoint& place, const View& view) {
+  if (!view.sight || !is_next(place)) return std::nullopt;
+  const std::optional<Hidden> somebody = who_hidden_is_met(next_, view);
+  if (!somebody) return std::nullopt;
+  if (looks_since_s_ && view.t_s - *looks_since_s_ > kLooks_s) {
+    creeps_ = true;
+    return std::nullopt;
+  }
+  creeps_to_m_ = std::max(place.s_m, somebody->in_the_way_from_m - kBesideLane_m);
   const bool stands_there = view.speed_mps < kAtRest_mps && left_m(place, view) < kAtLine_m;
   if (stands_there && !looks_since_s_) looks_since_s_ = view.t_s;
-  const Obstacle& somebody = hidden.cars[met->obstacle];
-  return fmt::format("{}: {} may come {}", place.name, somebody.kind, somebody.id);
+  return fmt::format("{}: {} may come {}", place.name, somebody->car.kind, somebody->car.id);
 }
 
 }  // namespace roadbed::planning::behaviour

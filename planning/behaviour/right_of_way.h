@@ -26,7 +26,8 @@ struct StopConstraint {
 /// crosses 1 s after the vehicle before it and 1.5 s before the next one. Who drives along on the
 /// path already is the cruise control's lead, and not looked at here. Somebody may come from where
 /// nothing is seen (hidden_traffic.h): for that one the vehicle stops as late as it may, where more
-/// is seen, and drives on when for 3 s nobody has come.
+/// is seen, and creeps on when for 3 s nobody has come, until it is seen that nobody does, or until
+/// it is in the way.
 class RightOfWay {
  public:
   /// Time that has to be between two who cross, before and after the vehicle; in steps of 0.1 s.
@@ -59,8 +60,19 @@ class RightOfWay {
   /// no lead. Of the last look.
   const std::vector<bool>& crossing() const { return crossing_; }
 
+  /// Not to be driven faster, as somebody may come from where nothing is seen; of the last look.
+  std::optional<double> most_mps() const {
+    constexpr double kCreeps_mps = 2.0;
+    return creeps_ ? std::optional(kCreeps_mps) : std::nullopt;
+  }
+
  private:
   std::optional<std::string> why_wait(const StopPoint& place, const View& view);
+  struct Hidden {
+    Obstacle car;
+    double in_the_way_from_m;
+  };
+  std::optional<Hidden> who_hidden_is_met(std::size_t stop_point, const View& view);
   std::optional<std::string> who_may_come(const StopPoint& place, const View& view);
   static constexpr Gap kGapToTake{10, 15}, kGapOnTheWay{3, 3};
 
@@ -81,6 +93,7 @@ class RightOfWay {
   bool has_stopped_ = false;  ///< at that one
   std::vector<bool> crossing_;
   HiddenTraffic hidden_;
+  bool creeps_ = false;
   std::optional<double> creeps_to_m_;    ///< past the next place, where more is seen
   std::optional<double> looks_since_s_;  ///< standing there
   struct Kept {

@@ -367,7 +367,9 @@ class ClosedLoop {
     if (others_) drive_.tracking = others_->quality();
     take_road(judge_road(world_.road_map, scenario_.vehicle, drive_));
     if (!is_over_) run_out();
-    if (!options_.predicts && has_movers()) drive_.verdict.text += "; the others' future was known";
+    if (options_.predicts || !has_movers()) return;
+    drive_.verdict.text += "; the others' future was known";
+    if (scenario_.noise.is_of_others()) drive_.verdict.text += ", without their noise";
   }
 
   bool has_movers() const {

@@ -21,9 +21,10 @@ struct Limit {
   double DrivingOptions::*member;
   Range range;
 };
-constexpr std::array<Limit, 6> kLimits{
+constexpr std::array<Limit, 7> kLimits{
     {{"desired_speed_mps", &DrivingOptions::desired_speed_mps, {0.5, 100.0}},
      {"max_lateral_acceleration_mps2", &DrivingOptions::max_lateral_acceleration_mps2, {0.1, 10.0}},
+     {"comfort_acceleration_mps2", &DrivingOptions::comfort_acceleration_mps2, {0.1, 2.4}},
      {"comfort_deceleration_mps2", &DrivingOptions::comfort_deceleration_mps2, {0.1, 10.0}},
      {"clearance_m", &DrivingOptions::clearance_m, {0.0, 5.0}},
      {"headway_s", &DrivingOptions::headway_s, {0.5, 5.0}},
@@ -31,15 +32,17 @@ constexpr std::array<Limit, 6> kLimits{
 
 PlannerChanges style(const JsonNode& node) {
   const std::string name = node.text();
-  const auto of = [](double lateral_mps2, double deceleration_mps2, double headway_s) {
+  const auto of = [](double lateral_mps2, double acceleration_mps2, double deceleration_mps2,
+                     double headway_s) {
     return PlannerChanges{
         .limits = {{&DrivingOptions::max_lateral_acceleration_mps2, lateral_mps2},
+                   {&DrivingOptions::comfort_acceleration_mps2, acceleration_mps2},
                    {&DrivingOptions::comfort_deceleration_mps2, deceleration_mps2},
                    {&DrivingOptions::headway_s, headway_s}}};
   };
-  if (name == "gentle") return of(1.5, 1.0, 2.0);
-  if (name == "normal") return of(2.5, 1.5, 1.5);
-  if (name == "sporty") return of(3.5, 2.2, 1.2);
+  if (name == "gentle") return of(1.5, 1.0, 1.0, 2.0);
+  if (name == "normal") return of(2.5, 1.5, 1.5, 1.5);
+  if (name == "sporty") return of(3.5, 2.2, 2.2, 1.2);
   node.refuse(fmt::format("is \"{}\"", name), "gentle, normal or sporty", "choose one");
 }
 

@@ -86,6 +86,12 @@ struct ScenarioNoise {
   double object_range_m = 1000.0;                 ///< farther away nobody is measured
   std::vector<planning::TimeSpan> dropouts = {};  ///< in which nothing is measured of others
   double dropout_ratio = 0.0;  ///< of the other measurements of others, lost at random
+
+  /// Whether others are measured otherwise than they are.
+  bool is_of_others() const {
+    return object.position_m > 0.0 || object.heading_rad > 0.0 || object.speed_mps > 0.0 ||
+           dropout_ratio > 0.0;
+  }
 };
 
 struct Scenario {

@@ -32,7 +32,7 @@ TEST(Decision, FreeRoadIsDrivenAtTheCeiling) {
 }
 
 TEST(Decision, SetSpeedStaysNearTheSpeedSoThatSpeedingUpIsComfortable) {
-  EXPECT_EQ(ask(free_road(2.0)).set.speed_mps, 3.5);
+  EXPECT_EQ(ask(free_road(2.0)).set.speed_mps, 2.0 + 1.5 * 1.5);
 }
 
 TEST(Decision, StopsAtTheGoalAndHoldsThere) {

@@ -151,12 +151,12 @@ std::vector<double> behind_the_slower_car(const ScenarioNoise& noise, int seed) 
   scenario.seed = static_cast<std::uint64_t>(seed);
   scenario.duration_s = 42.0;
   World world = make_world(scenario);
-  return accelerations(tools::drive(scenario, world), 26.0, 42.0);
+  return accelerations(tools::drive(scenario, world), 28.0, 42.0);
 }
 
 TEST(QuietFollowing, TownDriveIsQuietBehindTheSlowerCar) {
   const auto quiet = behind_the_slower_car({}, 1);
-  ASSERT_EQ(quiet.size(), 161U);
+  ASSERT_EQ(quiet.size(), 141U);
   EXPECT_LE(jerk_rms_mps3(quiet), 0.1);
   EXPECT_LE(most_sign_changes(quiet), 2);
   for (int seed = 1; seed <= 3; ++seed) {

@@ -10,6 +10,7 @@
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/real_data.h"
+#include "roadbed/tools/cli/place.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
@@ -315,6 +316,40 @@ TEST(ScenarioDrives, PedestrianIsGivenRoomWhereverHeLooks) {
   }
 }
 
+/// Between two parked cars, 1 m and more beside the way, whenever he sets off.
+TEST(ScenarioDrives, WhoStepsOutFromBetweenParkedCarsIsNotDrivenInto) {
+  const Scenario base = scenario_of("parked_car");
+  const World world = make_world(base);
+  const auto beside = [&](double s_m, double d_m) {
+    const Place place = find_place(world.road_map, fmt::format("lane:1/3/1@{}", s_m));
+    return place.map_from_vehicle * geometry::Pose2{0.0, d_m, 0.0};
+  };
+  const auto parked = [](const char* id, double s_m) {
+    return ScenarioObstacle{
+        .id = id,
+        .motion = ParkedObstacle{ParkedObstacle::Beside{
+            {.text = fmt::format("lane:1/3/1@{}", s_m), .pointer = "/test"}, -2.7}}};
+  };
+  int slows = 0;
+  for (double from_s = 3.0; from_s <= 9.0; from_s += 0.25) {
+    Scenario scenario = base;
+    scenario.obstacles = {parked("first", 50.0), parked("second", 56.0)};
+    const double walk_s = 8.0 / 1.4;
+    scenario.obstacles.push_back(
+        {.id = "walker",
+         .kind = "pedestrian",
+         .length_m = 0.5,
+         .width_m = 0.5,
+         .motion = ScriptedObstacle{
+             {{from_s, beside(53.0, -4.0)}, {from_s + walk_s, beside(53.0, 4.0)}}}});
+    const Driven d = driven(scenario);
+    const std::optional<Collision>& collision = d.drive.collision;
+    EXPECT_FALSE(collision && collision->is_at_fault) << from_s << ": " << d.drive.verdict.text;
+    slows += d.first(planning::Behaviour::cruise, "somebody hidden may step out") ? 1 : 0;
+  }
+  EXPECT_GE(slows, 20) << "of 25";
+}
+
 TEST(ScenarioDrives, OneStopsWithinWhatIsSeen) {
   for (const double range_m : {20.0, 40.0, 80.0}) {
     Scenario scenario = scenario_of("slower_lead");
@@ -336,6 +371,10 @@ TEST(ScenarioDrives, TheVerdictSaysThatTheFutureWasKnown) {
   using testing::EndsWith;
   EXPECT_THAT(text_of("slower_lead", false), EndsWith("; the others' future was known"));
   EXPECT_THAT(text_of("slower_lead", true), testing::Not(EndsWith("known")));
+  Scenario noisy = scenario_of("slower_lead");
+  noisy.noise.object.position_m = 0.3;
+  EXPECT_THAT(driven(noisy, {.predicts = false}).drive.verdict.text,
+              EndsWith("; the others' future was known, without their noise"));
   EXPECT_THAT(text_of("parked_car", false), testing::Not(EndsWith("known"))) << "nobody moves";
 }
 
