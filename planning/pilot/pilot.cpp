@@ -167,6 +167,7 @@ class Pilot::Impl {
                                                       .line = std::move(drawn.line),
                                                       .line_options = drawn.options,
                                                       .obstacles = {},
+                                                      .sight_m = setup_.sight_m,
                                                       .lights = lights_});
     restart();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct PilotSetup {
   PlannerOptions planner = {};
   TrackerOptions tracker = {};
   std::shared_ptr<const map::ClearanceField> occupied = {};  ///< to be kept clear of; may be none
+  /// How far objects are measured, and only what others do not hide; none: all are.
+  std::optional<double> sight_m = {};
 };
 
 /// A light of the map as it is seen now.

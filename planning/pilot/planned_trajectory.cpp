@@ -34,6 +34,33 @@ std::vector<SpeedState> stop_from(double speed_mps, double braking_mps2) {
   return drive;
 }
 
+/// Between two states, on the cubic through their places and speeds.
+SpeedState between(const SpeedState& a, const SpeedState& b, double t_s) {
+  const double over_s = b.t_s - a.t_s, f = (t_s - a.t_s) / over_s, way_m = b.ahead_m - a.ahead_m;
+  const double bend_m = over_s * a.speed_mps - way_m, turn_m = way_m - over_s * b.speed_mps;
+  const double aside_m = f * (1.0 - f) * ((1.0 - f) * bend_m + f * turn_m);
+  const auto mixed = [f](double from, double to) { return from + f * (to - from); };
+  return {.t_s = t_s,
+          .ahead_m = mixed(a.ahead_m, b.ahead_m) + aside_m,
+          .speed_mps = mixed(a.speed_mps, b.speed_mps),
+          .acceleration_mps2 = mixed(a.acceleration_mps2, b.acceleration_mps2),
+          .command_mps2 = b.command_mps2};
+}
+
+/// A state every 0.1 s: a drive that was searched for has them farther apart.
+std::vector<SpeedState> in_steps(const std::vector<SpeedState>& drive) {
+  constexpr double kRounding_s = 1e-9;
+  std::vector<SpeedState> steps{drive.front()};
+  for (std::size_t i = 1; i < drive.size(); ++i) {
+    const SpeedState& next = drive[i];
+    while (steps.back().t_s + kStep_s < next.t_s - kRounding_s) {
+      steps.push_back(between(drive[i - 1], next, steps.back().t_s + kStep_s));
+    }
+    steps.push_back(next);
+  }
+  return steps;
+}
+
 std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerCommand& decision) {
   const double wanted_mps2 = decision.acceleration_mps2;
   const std::vector<SpeedState>& foreseen = decision.drive;
@@ -44,7 +71,7 @@ std::vector<SpeedState> whole_drive(const VehicleState& measured, const PlannerC
   if (decision.set_speed_mps <= 0.0) {  // what was foreseen is of a path that is given up
     return stop_from(measured.speed_mps, std::max(kLeast_mps2, -wanted_mps2));
   }
-  std::vector<SpeedState> drive = foreseen;
+  std::vector<SpeedState> drive = in_steps(foreseen);
   stop_after(drive, braking_after_mps2(foreseen, decision.lead));
   return drive;
 }

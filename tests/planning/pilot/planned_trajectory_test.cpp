@@ -57,6 +57,25 @@ TEST(PlannedTrajectory, DrivesThePathAtItsSpeeds) {
   EXPECT_NEAR(way_m, 18.0, 0.02);
 }
 
+/// As the search for a speed gives it: a state every 0.5 s, speeding up by 2 m/s².
+TEST(PlannedTrajectory, HasARowEveryTenthOfASecondWhateverTheDriveHas) {
+  const ReferenceLine line = bend();
+  const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });
+  std::vector<SpeedState> drive;
+  for (double t_s = 0.0; t_s <= 2.0; t_s += 0.5) {
+    drive.push_back({t_s, 4.0 * t_s + t_s * t_s, 4.0 + 2.0 * t_s, 2.0, 2.0});
+  }
+  const geometry::Trajectory driven = planned_trajectory({path, 0.0}, 0.0, {.speed_mps = 4.0},
+                                                         decision(drive), geometry::VehicleShape{});
+  for (std::size_t k = 1; k <= 20; ++k) {
+    const geometry::TrajectoryPoint &a = driven.points()[k - 1], &b = driven.points()[k];
+    EXPECT_NEAR(b.t_s, 0.1 * static_cast<double>(k), 1e-9);
+    EXPECT_NEAR(b.speed_mps, 4.0 + 2.0 * b.t_s, 1e-9);
+    EXPECT_NEAR((b.pose().position() - a.pose().position()).norm(),
+                0.05 * (a.speed_mps + b.speed_mps), 0.002);
+  }
+}
+
 TEST(PlannedTrajectory, EndsInAStop) {
   const ReferenceLine line = bend();
   const PlannedPath path(line, [](double s_m) { return LateralState{.s_m = s_m}; });

@@ -49,6 +49,11 @@ class PilotCommand : public Command {
              "Standard deviation of objects' measured speeds [m/s]")
         .within(0.0, 10.0)
         .with_default();
+    arguments
+        .add("--sight", sight_m_,
+             "How far objects are measured [m], where no other one hides them: somebody may come "
+             "from where nothing is seen; left out: all are measured")
+        .within(1.0, 10000.0);
     arguments.flag(
         "--tracks", tells_objects_,
         "Tell in each answer what is believed of the objects, too, and what they may do");
@@ -69,6 +74,7 @@ class PilotCommand : public Command {
       setup.occupied = common.inputs->field_of(occupancy_files_, setup.vehicle.height_m);
     }
     setup.tracker = tracker_;
+    if (sight_m_ > 0.0) setup.sight_m = sight_m_;
     planning::Pilot pilot(setup);
     const std::size_t refused =
         answer_lines(pilot, road_map, std::cin, streams.out, {.tells_objects = tells_objects_});
@@ -83,6 +89,7 @@ class PilotCommand : public Command {
   std::vector<std::filesystem::path> occupancy_files_;
   std::string goal_;
   planning::TrackerOptions tracker_;
+  double sight_m_ = 0.0;  ///< 0: all are measured
   bool tells_objects_ = false;
 };
 
