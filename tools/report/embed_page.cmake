@@ -18,7 +18,7 @@ endforeach()
 
 set(report_page ${CMAKE_CURRENT_LIST_DIR}/page)
 # In this order: what comes later uses what comes before.
-set(report_scripts decode.js motion.js clock.js scene.js hypotheses.js cycle.js draw.js map.js plots.js player.js report.js)
+set(report_scripts decode.js motion.js clock.js scene.js hypotheses.js cycle.js draw.js hidden.js map.js plots.js player.js report.js)
 list(TRANSFORM report_scripts PREPEND ${report_page}/)
 # What the page of a map draws with.
 set(map_scripts decode view map_data grid locate colours tiles paint things overlays canvas)

@@ -215,6 +215,7 @@ function drawEnds(pen) {
 
 // From the ground up. `pixels`: drawn in pixels, after all others.
 const LAYERS = [
+  {key: "hidden", label: "Hidden by others", shown: true, draw: drawHidden},
   {key: "footprints", label: "Footprints (1 s)", shown: false, draw: drawFootprints},
   {key: "drive", label: "Drive", shown: true, draw: drawDrive},
   {key: "candidates", label: "Candidates", shown: true, draw: drawCandidates},

@@ -91,7 +91,7 @@ function addLayer(key, text, shown, change) {
 /** Only what there is. */
 function listLayers(map) {
   const {scene, layers} = map, {plans, obstacles, drive} = scene;
-  const empty = {candidates: !plans.some((plan) => plan.grid), foreseen: !plans.some((plan) => plan.foreseen.length > 0),
+  const empty = {candidates: !plans.some((plan) => plan.grid), foreseen: !foresees(scene), hidden: !foresees(scene),
                  ahead: !obstacles.some(moves), obstacles: obstacles.length === 0, plan: plans.length === 0,
                  drive: drive.t.length === 0, footprints: drive.t.length === 0, vehicle: drive.t.length === 0};
   const isThere = (key) => (scene.map[key === "markings" || key === "arrows" ? "lanes" : key].count ?? scene.map[key].length) > 0;
