@@ -2,17 +2,19 @@
 """Drives with roadbed's planner in the traffic of SUMO, which answers.
 
 usage: sumo_drives.py ROADBED [--map MAP.xodr]... [--seeds N] [--density VEHICLES_PER_KM]...
-                      [--limit SECONDS] [--log DIR]
+                      [--limit SECONDS] [--style gentle|normal|sporty] [--log DIR]
 
 Each map is converted by netconvert, without an offset, so that both see the same coordinates. A drive
 is a random trip of at least 400 m among random trips of others; SUMO moves these every 0.1 s, `roadbed
 pilot` is told of those within 100 m and of the traffic lights, and the vehicle is put where its
-trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver.
+trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver,
+who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to others and does not slow down for bends of the
+road: the style of ours is sporty unless told otherwise.
     hits       collisions that SUMO reports of the vehicle
     brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
     red        stop lines passed while SUMO shows red
     time       of the trips that both finish, up to 50 m before the goal: roadbed's over SUMO's
-A row per map and density. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
+A row per map and density, and one of all. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
 import argparse
 import json
 import math
@@ -22,6 +24,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import libsumo
 import sumo
@@ -37,14 +40,42 @@ ARRIVED_M = 50.0
 DATA = Path(__file__).resolve().parents[2] / "data"
 
 
+def with_limits_of_lanes(map_file, folder):
+    """The map with the limits of its roads said of each lane, where netconvert looks for them."""
+    tree = ElementTree.parse(map_file)
+    for road in tree.getroot().iter("road"):
+        limits = [(float(part.get("s")), part.find("speed")) for part in road.iter("type")]
+        for section in road.iter("laneSection"):
+            here = [limit for s, limit in limits if s <= float(section.get("s")) + 1e-6]
+            if not here or here[-1] is None:
+                continue
+            for lane in section.iter("lane"):
+                if lane.get("id") != "0" and lane.find("speed") is None:
+                    ElementTree.SubElement(lane, "speed", sOffset="0", **here[-1].attrib)
+    written = folder / map_file.name
+    tree.write(written)
+    return written
+
+
 def net_of(map_file, folder):
     """The net that netconvert makes of a map."""
     net = folder / (map_file.stem + ".net.xml")
-    subprocess.run([str(Path(sumo.SUMO_HOME) / "bin" / "netconvert"), "--opendrive-files", str(map_file),
+    subprocess.run([str(Path(sumo.SUMO_HOME) / "bin" / "netconvert"),
+                    "--opendrive-files", str(with_limits_of_lanes(map_file, folder)),
                     "--offset.disable-normalization", "--opendrive.import-all-lanes", "false",
-                    "--no-warnings", "--output-file", str(net)],
+                    "--output.original-names", "--no-warnings", "--output-file", str(net)],
                    check=True, stdout=subprocess.DEVNULL)
     return net
+
+
+def roads_of_route(options, map_file, start, goal):
+    """Ids of the roads that roadbed's route leads along."""
+    done = subprocess.run([options.roadbed, "route", str(map_file), "--json",
+                           "--from={:.3f},{:.3f},{:.4f}".format(*start),
+                           "--to={:.3f},{:.3f},{:.4f}".format(*goal)],
+                          check=False, capture_output=True, text=True)
+    legs = json.loads(done.stdout).get("lanes", []) if done.returncode == 0 else []
+    return {leg["lane"].split("/")[0] for leg in legs}
 
 
 class Traffic:
@@ -125,8 +156,10 @@ def colour_of(state):
 class Lights:
     """Signals of the map by the links that SUMO switches, whose ids netconvert keeps."""
 
-    def __init__(self):
+    def __init__(self, roads):
+        self.roads = roads  # of the route
         self.links = []  # (traffic light, link, signal)
+        self.own = None  # traffic light and link that the vehicle takes
         self.by_lane = {}  # traffic light and link by the lane across the junction
         for light in libsumo.trafficlight.getIDList():
             for index in range(len(libsumo.trafficlight.getRedYellowGreenState(light))):
@@ -137,41 +170,46 @@ class Lights:
                 for connection in connections:
                     self.by_lane[connection[2]] = (light, index)
 
-    def now(self, way):
-        """The link that the vehicle takes counts for the signals that it shares with others."""
+    def now(self):
+        """The link that the vehicle takes counts for the signals that it shares with others, also
+        where it waits at the map's line, which may be within SUMO's junction."""
+        if not libsumo.vehicle.getLaneID("ego").startswith(":"):
+            self.own = self.by_lane.get(lane_across(self.roads))
         shown = {}
         for light, index, signal in self.links:
             state = libsumo.trafficlight.getRedYellowGreenState(light)[index]
             freer = ["red", "yellow", "green"]
             shown[signal] = max(shown.get(signal, "red"), colour_of(state), key=freer.index)
-        own = self.by_lane.get(lane_across(way))
         for light, index, signal in self.links:
-            if (light, index) == own:
+            if (light, index) == self.own:
                 shown[signal] = colour_of(libsumo.trafficlight.getRedYellowGreenState(light)[index])
         return [{"signal": signal, "colour": colour} for signal, colour in sorted(shown.items())]
 
 
-def lane_across(way):
-    """The lane across the next junction that a way of points follows; None if there is none."""
+def edge_of(lane):
+    return lane.rsplit("_", 1)[0]
+
+
+def lane_across(roads):
+    """The lane across the next junction that is of one of these roads; None if there is none."""
     lane = libsumo.vehicle.getLaneID("ego")
-    if not lane or lane.startswith(":") or not way:
+    if not lane or lane.startswith(":"):
         return None
     across = [link[4] for link in libsumo.lane.getLinks(lane) if link[4]]
-    middle = {name: libsumo.lane.getShape(name) for name in across}
-    return min(across, default=None, key=lambda name: min(
-        math.dist(point, middle[name][len(middle[name]) // 2]) for point in way))
+    return next((one for one in across
+                 if libsumo.lane.getParameter(one, "origId").rsplit("_", 1)[0] in roads), None)
 
 
 class Pilot:
     """`roadbed pilot`, and where its trajectory has the vehicle."""
 
-    def __init__(self, roadbed, map_file, start, speed_mps, goal, log):
+    def __init__(self, options, map_file, start, speed_mps, goal, log):
         x, y, heading = start
         self.state = [x, y, heading, speed_mps, 0.0, 0.0]
-        self.way = []
         self.log = open(log, "w", encoding="utf-8") if log else None
         self.process = subprocess.Popen(
-            [roadbed, "pilot", str(map_file), "--goal", "{:.3f},{:.3f},{:.4f}".format(*goal)],
+            [options.roadbed, "pilot", str(map_file), "--options", str(options.style_file),
+             "--goal", "{:.3f},{:.3f},{:.4f}".format(*goal)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def front(self):
@@ -194,7 +232,6 @@ class Pilot:
         rows = answer["trajectory"]
         later = next((row for row in rows if row[0] >= t_s + STEP_S - 1e-6), rows[-1])
         self.state = later[1:7]
-        self.way = [row[1:3] for row in rows]
         return answer
 
     def close(self):
@@ -227,17 +264,32 @@ def brakes_behind():
     return hard
 
 
-def red_passed(before, after, lights_before):
-    """Whether the vehicle has gone from an edge onto a link that shows red."""
-    if not before or before.startswith(":") or not after.startswith(":"):
-        return False
-    return any(via.startswith(after) and state in "ru" for via, state in lights_before)
+class RedLights:
+    """Counts links taken that showed red when they were entered, and 4 m on, still: netconvert ends
+    lanes before the lines of the map. Lanes across a junction overlap where they begin, so which one
+    it was is known on the edge behind it."""
+    PAST_LINE_M = 4.0
 
+    def __init__(self):
+        self.passed, self.before = 0, None
+        self.red_at_line, self.red_past_it = set(), None
 
-def links_ahead(lane):
-    if not lane or lane.startswith(":"):
-        return []
-    return [(link[4], link[5]) for link in libsumo.lane.getLinks(lane)]
+    def judge(self):
+        """After each step."""
+        lane = libsumo.vehicle.getLaneID("ego")
+        if not lane:
+            return
+        if not lane.startswith(":"):
+            if edge_of(lane) in self.red_at_line & (self.red_past_it or set()):
+                self.passed += 1
+            self.before, self.red_at_line, self.red_past_it = lane, self.red_now(lane), None
+        elif self.before and self.red_past_it is None and libsumo.vehicle.getLanePosition("ego") > self.PAST_LINE_M:
+            self.red_past_it = self.red_now(self.before)
+
+    @staticmethod
+    def red_now(lane):
+        """Edges that the links of a lane lead to while they show red."""
+        return {edge_of(link[0]) for link in libsumo.lane.getLinks(lane) if link[5] in "ru"}
 
 
 def run(options, net, map_file, density, seed, by_roadbed):
@@ -299,16 +351,14 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
     start = (x - FRONT_M * math.cos(heading), y - FRONT_M * math.sin(heading), heading)
     goal = lane_pose(net, edges[-1], True)
     log = options.log / (name + ".jsonl") if options.log else None
-    pilot = Pilot(options.roadbed, map_file, start, 0.0, goal, log)
-    lights = Lights()
+    pilot = Pilot(options, map_file, start, 0.0, goal, log)
+    lights, red = Lights(roads_of_route(options, map_file, start, goal)), RedLights()
     begin_s = libsumo.simulation.getTime()
     answer = {"reason": "never asked"}
     try:
         while libsumo.simulation.getTime() - begin_s < options.limit:
             now_s = libsumo.simulation.getTime()
-            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now(pilot.way))
-            lane = libsumo.vehicle.getLaneID("ego")
-            links = links_ahead(lane)
+            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now())
             front = pilot.front()
             libsumo.vehicle.moveToXY("ego", "", -1, *front, 90.0 - math.degrees(pilot.state[2]),
                                      keepRoute=2)
@@ -319,13 +369,58 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
             result["hits"] += sum("ego" in (hit.collider, hit.victim)
                                   for hit in libsumo.simulation.getCollisions())
             result["brakes"] |= brakes_behind()
-            result["red"] += red_passed(lane, libsumo.vehicle.getLaneID("ego"), links)
+            red.judge()
+            result["red"] = red.passed
             if has_arrived(edges, goal[:2]) or answer["at_goal"]:
                 result["time_s"] = libsumo.simulation.getTime() - begin_s
                 return
         result["why"] = answer["reason"]
     finally:
         pilot.close()
+
+
+HEADER = (f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'hours':>6} {'hits':>5} {'brakes':>6} "
+          f"{'red':>4} {'time':>6}")
+
+
+class Row:
+    """What became of the drives on a map at a density."""
+
+    def __init__(self, name, density):
+        self.name, self.density = name, density
+        self.drives = self.done = self.hits = self.brakes = self.red = 0
+        self.hours, self.ratios = 0.0, []
+
+    @staticmethod
+    def of_all(rows):
+        row = Row("together", "")
+        for name in ("drives", "done", "hits", "brakes", "red", "hours", "ratios"):
+            setattr(row, name, sum((getattr(one, name) for one in rows), getattr(row, name)))
+        return row
+
+    def add(self, seed, own, drive_theirs, limit_s):
+        if own is None:
+            return
+        self.drives += 1
+        self.done += own["time_s"] is not None
+        self.hours += (own["time_s"] or limit_s) / 3600.0
+        self.hits += own["hits"]
+        self.brakes += len(own["brakes"])
+        self.red += own["red"]
+        if own["why"] or own["hits"] or own["red"] or own["brakes"]:
+            print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, {own['red']} red, "
+                  f"{len(own['brakes'])} brakes; {own['why']}", file=sys.stderr, flush=True)
+        theirs = drive_theirs()
+        if own["time_s"] and theirs and theirs["time_s"]:
+            self.ratios.append(own["time_s"] / theirs["time_s"])
+
+    def is_good(self):
+        return self.hits == 0 and self.red == 0 and self.done == self.drives
+
+    def __str__(self):
+        ratio = f"{statistics.median(self.ratios):6.2f}" if self.ratios else "     -"
+        return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.hours:6.2f} "
+                f"{self.hits:5} {self.brakes:6} {self.red:4} {ratio}")
 
 
 def main():
@@ -335,39 +430,29 @@ def main():
     parser.add_argument("--density", type=float, action="append")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--limit", type=float, default=300.0)
+    parser.add_argument("--style", choices=["gentle", "normal", "sporty"], default="sporty")
     parser.add_argument("--log", type=Path)
     options = parser.parse_args()
     if options.log:
         options.log.mkdir(parents=True, exist_ok=True)
-    worst = 0
-    print(f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'hours':>6} {'hits':>5} {'brakes':>6} "
-          f"{'red':>4} {'time':>6}")
+    print(HEADER)
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for map_file in options.map or [DATA / "town.xodr"]:
+        options.style_file = Path(folder) / "style.json"
+        options.style_file.write_text(json.dumps({"style": options.style}), encoding="utf-8")
+        for map_file in options.map or [DATA / "town.xodr", DATA / "motorway.xodr"]:
             net = sumolib.net.readNet(str(net_of(map_file, Path(folder))))
             net.file = str(Path(folder) / (map_file.stem + ".net.xml"))
             for density in options.density or [2.0, 6.0, 12.0]:
-                drives, ratios, hours = [], [], 0.0
+                rows.append(Row(map_file.stem[:16], f"{density:g}"))
                 for seed in range(1, options.seeds + 1):
-                    own = run(options, net, map_file, density, seed, True)
-                    if own is None:
-                        continue
-                    drives.append(own)
-                    hours += (own["time_s"] or options.limit) / 3600.0
-                    if own["why"]:
-                        print(f"  seed {seed}: {own['why']}", file=sys.stderr)
-                    theirs = run(options, net, map_file, density, seed, False)
-                    if own["time_s"] and theirs and theirs["time_s"]:
-                        ratios.append(own["time_s"] / theirs["time_s"])
-                done = sum(drive["time_s"] is not None for drive in drives)
-                hits = sum(drive["hits"] for drive in drives)
-                brakes = sum(len(drive["brakes"]) for drive in drives)
-                red = sum(drive["red"] for drive in drives)
-                ratio = f"{statistics.median(ratios):6.2f}" if ratios else "     -"
-                print(f"{map_file.stem[:16]:16} {density:6g} {len(drives):6} {done:5} {hours:6.2f} {hits:5} "
-                      f"{brakes:6} {red:4} {ratio}", flush=True)
-                worst |= hits > 0 or red > 0 or done < len(drives)
-    return worst
+                    rows[-1].add(seed, run(options, net, map_file, density, seed, True),
+                                 lambda: run(options, net, map_file, density, seed, False),
+                                 options.limit)
+                print(rows[-1], flush=True)
+    together = Row.of_all(rows)
+    print(together)
+    return 0 if together.is_good() else 1
 
 
 if __name__ == "__main__":
