@@ -9,7 +9,7 @@ is a random trip of at least 400 m among random trips of others; SUMO moves thes
 pilot` is told of those within 100 m and of the traffic lights, and the vehicle is put where its
 trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver,
 who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to others and does not slow down for bends of the
-road: the style of ours is sporty unless told otherwise.
+road; --style sporty comes nearer to that than our normal style.
     hits       collisions that SUMO reports of the vehicle
     brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
     red        stop lines passed while SUMO shows red
@@ -430,7 +430,7 @@ def main():
     parser.add_argument("--density", type=float, action="append")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--limit", type=float, default=300.0)
-    parser.add_argument("--style", choices=["gentle", "normal", "sporty"], default="sporty")
+    parser.add_argument("--style", choices=["gentle", "normal", "sporty"], default="normal")
     parser.add_argument("--log", type=Path)
     options = parser.parse_args()
     if options.log:
