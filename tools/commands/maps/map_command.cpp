@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <array>
 #include <filesystem>
 #include <iostream>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "roadbed/map/load_map.h"
 #include "roadbed/map/page/diff_page.h"
 #include "roadbed/map/storage/output_file.h"
+#include "roadbed/tools/cli/command_group.h"
 #include "roadbed/tools/commands/maps/commands.h"
 #include "roadbed/tools/files/json.h"
 
@@ -111,58 +110,27 @@ class DiffCommand : public Command {
   bool json_ = false, force_ = false;
 };
 
-class MapCommand : public Command {
- public:
-  MapCommand() {
-    add("diff", std::make_unique<DiffCommand>("map diff"));
-    add("clip", make_map_clip_command());
-    add("merge", make_map_merge_command());
-    add("transform", make_map_transform_command());
-    add("tile", make_map_tile_command());
-    add("stats", make_map_stats_command());
-    add("query", make_map_query_command());
-    add("fix", make_map_fix_command());
-  }
-
-  void declare(Arguments& arguments) override {
-    arguments.description("Work on maps: compare, count, ask, edit, mend");
-    arguments.example(
-        "  roadbed map diff old.xodr new.xodr\n"
-        "  roadbed map stats town.xodr\n"
-        "  roadbed map query town.xodr 'type = driving and speed > 40'\n"
-        "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr\n"
-        "  roadbed map fix town.xodr -o mended.xodr");
-    for (Part& part : parts_) {
-      part.arguments = arguments.part(part.name);
-      part.command->declare(*part.arguments);
-    }
-  }
-
-  Exit run(const Streams& streams, const CommonOptions& common) override {
-    for (const Part& part : parts_) {
-      if (part.arguments->given()) return part.command->run(streams, common);
-    }
-    return Exit::usage;
-  }
-
- private:
-  struct Part {
-    std::string name;
-    std::unique_ptr<Command> command;
-    std::optional<Arguments> arguments;
-  };
-
-  void add(const std::string& name, std::unique_ptr<Command> command) {
-    parts_.push_back({name, std::move(command), {}});
-  }
-
-  std::vector<Part> parts_;
-};
-
 }  // namespace
 
 std::unique_ptr<Command> make_diff_command() { return std::make_unique<DiffCommand>("diff"); }
 
-std::unique_ptr<Command> make_map_command() { return std::make_unique<MapCommand>(); }
+std::unique_ptr<Command> make_map_command() {
+  auto group = std::make_unique<CommandGroup>(
+      "Work on maps: compare, count, ask, edit, mend",
+      "  roadbed map diff old.xodr new.xodr\n"
+      "  roadbed map stats town.xodr\n"
+      "  roadbed map query town.xodr 'type = driving and speed > 40'\n"
+      "  roadbed map clip town.xodr --bbox=0,0,200,300 -o part.xodr\n"
+      "  roadbed map fix town.xodr -o mended.xodr");
+  group->add("diff", std::make_unique<DiffCommand>("map diff"));
+  group->add("clip", make_map_clip_command());
+  group->add("merge", make_map_merge_command());
+  group->add("transform", make_map_transform_command());
+  group->add("tile", make_map_tile_command());
+  group->add("stats", make_map_stats_command());
+  group->add("query", make_map_query_command());
+  group->add("fix", make_map_fix_command());
+  return group;
+}
 
 }  // namespace roadbed::tools::commands::maps
