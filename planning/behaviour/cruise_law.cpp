@@ -182,17 +182,12 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .path_left_m = path_left_m(q, lead),
                                      .halt = halt,
                                      .seen_ahead_m = seen_ahead_m(q),
-                                     .walkers = q.walkers},
+                                     .walkers = q.walkers,
+                                     .creep_mps = right_of_way_.creep_mps()},
                                     decision_options_);
   const std::optional<double>& most_mps = q.passing.in_lane.most_mps;
   if (most_mps && *most_mps < answer.set.speed_mps) {
     answer.set = {.speed_mps = *most_mps, .acceleration_mps2 = 0.0};
-  }
-  if (const auto creeping_mps = right_of_way_.most_mps();
-      creeping_mps && *creeping_mps < answer.set.speed_mps) {
-    answer = {.set = {.speed_mps = *creeping_mps, .acceleration_mps2 = 0.0},
-              .behaviour = Behaviour::yield,
-              .reason = "creeps, as somebody hidden may come"};
   }
   const Merging::Decision& merging = q.passing.merging;
   const bool slows = merging.most_mps && *merging.most_mps < answer.set.speed_mps;

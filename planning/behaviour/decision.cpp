@@ -72,6 +72,13 @@ Option by_walkers(const SpeedQuestion& q, double ahead_m, double deceleration) {
                   next->most_mps, next->ahead_m, next->aside_m)};
 }
 
+Option by_creeping(const SpeedQuestion& q) {
+  return {{*q.creep_mps, 0.0},
+          {*q.creep_mps, 0.0},
+          Behaviour::yield,
+          "creeps, as somebody hidden may come"};
+}
+
 /// Nothing is feasible: stop before the last path ends. A cycle or two of it are hardly felt.
 Option by_path(const SpeedQuestion& q, double ahead_m, double deceleration) {
   const double left_m = *q.path_left_m;
@@ -103,6 +110,7 @@ std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& op
   if (q.halt) all.push_back(by_halt(q, ahead_m));
   if (q.seen_ahead_m) all.push_back(by_sight(q, options.most_deceleration_mps2));
   if (!q.walkers.empty()) all.push_back(by_walkers(q, ahead_m, options.deceleration_mps2));
+  if (q.creep_mps) all.push_back(by_creeping(q));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
   return all;

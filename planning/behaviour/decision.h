@@ -30,6 +30,7 @@ struct SpeedQuestion {
   std::optional<double> seen_ahead_m =
       {};  ///< of the road, as far as is to be kept free; none: all
   std::span<const HiddenWalker> walkers = {};  ///< who may step out
+  std::optional<double> creep_mps = {};  ///< not faster, as somebody may come from hidden space
 };
 
 /// The set speed, and what it is due to.

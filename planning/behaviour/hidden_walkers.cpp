@@ -16,6 +16,7 @@ constexpr double kWalks_mps = 1.4, kReacts_s = 0.5, kWalkingPace_mps = 2.8;
 constexpr double kNobodyWalks_mps = 61.0 / 3.6;  // limits above it
 constexpr double kFarthestAside_m = 4.0, kAsideStep_m = 0.25;
 constexpr double kWalkerRadius_m = 0.2;
+constexpr double kCoverWithin_m = 2.0 * kFarthestAside_m;  // farther away nothing hides anybody
 constexpr double kAllRange_m = 1e3;
 constexpr double kSmall_m = 1.0;  // what is no longer hides nobody
 
@@ -27,21 +28,14 @@ class Surroundings {
         standing_(standing_beside(path, traffic, t_s)),
         sight_(path.body.front(), kAllRange_m, standing_, task.field, task.road_map) {}
 
-  /// Whether something may hide somebody within reach of a point.
-  bool has_cover_near(const Eigen::Vector2d& point) const {
-    constexpr double kReach_m = 2.0 * kFarthestAside_m;
-    return (task_.field && to_cells_m(point) < kReach_m) ||
+  bool is_near(const Eigen::Vector2d& point, double within_m) const {
+    return (task_.field && to_cells_m(point) < within_m) ||
            std::ranges::any_of(standing_, [&](const geometry::Rectangle& body) {
-             return geometry::distance_m(body, point) < kReach_m;
+             return geometry::distance_m(body, point) < within_m;
            });
   }
 
-  bool is_taken(const Eigen::Vector2d& point) const {
-    return (task_.field && to_cells_m(point) < kWalkerRadius_m) ||
-           std::ranges::any_of(standing_, [&](const geometry::Rectangle& body) {
-             return geometry::distance_m(body, point) < kWalkerRadius_m;
-           });
-  }
+  bool is_taken(const Eigen::Vector2d& point) const { return is_near(point, kWalkerRadius_m); }
 
   bool sees(const Eigen::Vector2d& point) const { return sight_.sees(point); }
 
@@ -95,7 +89,7 @@ std::vector<HiddenWalker> find_hidden_walkers(const WalkerQuestion& q) {
   for (std::size_t i = 0; i < path.body.size(); ++i) {
     const geometry::Rectangle& body = path.body[i];
     const Eigen::Vector2d front = body.centre + body.half_length_m * body.axis;
-    if (!around.has_cover_near(front)) continue;
+    if (!around.is_near(front, kCoverWithin_m)) continue;
     if (around.is_taken(front)) break;  // no farther
     if (q.line.corridor_at(path.station_m[i]).speed_limit_mps > kNobodyWalks_mps) continue;
     const Eigen::Vector2d left(-body.axis.y(), body.axis.x());

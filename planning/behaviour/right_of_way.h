@@ -61,7 +61,7 @@ class RightOfWay {
   const std::vector<bool>& crossing() const { return crossing_; }
 
   /// Not to be driven faster, as somebody may come from where nothing is seen; of the last look.
-  std::optional<double> most_mps() const {
+  std::optional<double> creep_mps() const {
     constexpr double kCreeps_mps = 2.0;
     return creeps_ ? std::optional(kCreeps_mps) : std::nullopt;
   }

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "roadbed/control/cruise_design.h"
 
 namespace roadbed::tools {
@@ -33,6 +36,24 @@ TEST(Decision, FreeRoadIsDrivenAtTheCeiling) {
 
 TEST(Decision, SetSpeedStaysNearTheSpeedSoThatSpeedingUpIsComfortable) {
   EXPECT_EQ(ask(free_road(2.0)).set.speed_mps, 2.0 + 1.5 * 1.5);
+}
+
+TEST(Decision, CreepsWhereSomebodyHiddenMayCome) {
+  planning::SpeedQuestion question = free_road(1.5);
+  question.creep_mps = 2.0;
+  const planning::SpeedAnswer answer = ask(question);
+  EXPECT_EQ(answer.behaviour, planning::Behaviour::yield);
+  EXPECT_EQ(answer.set.speed_mps, 2.0);
+}
+
+TEST(Decision, NamesWhereSomebodyMayStepOut) {
+  const std::array<planning::HiddenWalker, 2> walkers{{{30.0, 1.0, 2.8}, {40.0, 2.0, 7.0}}};
+  planning::SpeedQuestion question = free_road(9.5);
+  question.walkers = walkers;
+  const planning::SpeedAnswer answer = ask(question);
+  EXPECT_NEAR(answer.set.speed_mps, std::sqrt(2.8 * 2.8 + 2.0 * 1.5 * 30.0), 1e-12);
+  EXPECT_EQ(answer.reason,
+            "at most 2.8 m/s 30 m ahead, where somebody hidden may step out 1.0 m beside the way");
 }
 
 TEST(Decision, StopsAtTheGoalAndHoldsThere) {

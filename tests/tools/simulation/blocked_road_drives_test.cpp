@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "roadbed/tests/support/real_data.h"
+#include "roadbed/tests/support/driven_scenario.h"
 #include "roadbed/tools/simulation/drive.h"
 
 namespace roadbed::tools {
@@ -16,10 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Driven {
-  World world;
-  Drive drive;
-
+struct Driven : tests::DrivenScenario {
   bool passes(const std::string& lane) const {
     return std::ranges::any_of(world.route.legs, [&](const planning::RouteLeg& leg) {
       return world.road_map.lane(leg.lane).name == lane;
@@ -36,15 +33,9 @@ struct Driven {
   }
 };
 
-Scenario closed_road() {
-  return read_scenario(tests::data_folder() / "scenarios" / "closed_road.json");
-}
+Scenario closed_road() { return tests::scenario_of("closed_road"); }
 
-Driven driven(const Scenario& scenario) {
-  World world = make_world(scenario);
-  Drive drive = tools::drive(scenario, world);
-  return {std::move(world), std::move(drive)};
-}
+Driven driven(const Scenario& scenario) { return {tests::driven(scenario)}; }
 
 ScenarioObstacle barrier(const std::string& id, const std::string& place, double width_m = 4.2) {
   return {.id = id,
@@ -172,7 +163,7 @@ TEST(BlockedRoadDrives, WhoStandsInTheLaneThatIsMergedIntoIsBrakedForInTime) {
 
 /// Two cars that wait at the light before the crossroads until it is green.
 TEST(BlockedRoadDrives, AQueueAtARedLightIsWaitedBehind) {
-  Scenario scenario = read_scenario(tests::data_folder() / "scenarios" / "red_light.json");
+  Scenario scenario = tests::scenario_of("red_light");
   const double leaves_s = 45.0;
   scenario.lights.front().phases.front().duration_s = leaves_s;  // red
   scenario.duration_s = 90.0;
