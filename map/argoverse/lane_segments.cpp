@@ -8,6 +8,7 @@
 
 #include "roadbed/map/argoverse/words.h"
 #include "roadbed/map/elements/lane_lines.h"
+#include "roadbed/map/elements/outside_links.h"
 #include "roadbed/map/elements/side.h"
 
 namespace roadbed::map::argoverse {
@@ -86,13 +87,16 @@ std::optional<LaneId> LaneSegments::find(std::int64_t id) const {
   return found->second;
 }
 
-std::vector<LaneLinks> LaneSegments::links(std::vector<ImportDiagnostic>& remarks) const {
+std::vector<LaneLinks> LaneSegments::links(std::vector<ImportDiagnostic>& remarks) {
   std::vector<LaneLinks> links(lanes_.size());
   std::size_t outside = 0;
   const auto inside = [&](std::int64_t id) {
     const std::optional<LaneId> lane = find(id);
     outside += lane ? 0 : 1;
     return lane;
+  };
+  const auto keep = [](Lane& lane, std::string_view key, std::int64_t id) {
+    lane.attributes.emplace_back(key, std::to_string(id));
   };
   const auto put_beside = [&](const Lane& lane, Side side, std::optional<std::int64_t> id) {
     const auto found = id ? inside(*id) : std::nullopt;
@@ -105,10 +109,11 @@ std::vector<LaneLinks> LaneSegments::links(std::vector<ImportDiagnostic>& remark
     }
     neighbour(links[lane.id.index], side) = Neighbour{other.id, same, std::move(windows)};
   };
-  for (const Lane& lane : lanes_) {
+  for (Lane& lane : lanes_) {
     const NamedLinks& named = named_[lane.id.index];
     for (const std::int64_t id : named.successors) {
       const auto to = inside(id);
+      if (!to) keep(lane, kSuccessorsOutside, id);
       if (!to) continue;
       links[lane.id.index].successors.push_back(*to);
       links[to->index].predecessors.push_back(lane.id);
@@ -122,9 +127,10 @@ std::vector<LaneLinks> LaneSegments::links(std::vector<ImportDiagnostic>& remark
       list->erase(std::unique(list->begin(), list->end()), list->end());
     }
   }
-  for (const Lane& lane : lanes_) {
+  for (Lane& lane : lanes_) {
     for (const std::int64_t id : named_[lane.id.index].predecessors) {
       const auto from = inside(id);
+      if (!from) keep(lane, kPredecessorsOutside, id);
       if (!from || std::ranges::binary_search(links[lane.id.index].predecessors, *from)) continue;
       remarks.push_back({"import.one-sided-link", true, "lane segment " + lane.name, 0,
                          fmt::format("names {} as its predecessor, which does not name it as its "

@@ -25,9 +25,10 @@ class LaneSegments {
   /// @throws InputError if a value is unusable.
   void add(const Entry& entry, Frame& frame, std::vector<ImportDiagnostic>& remarks);
 
-  /// Links as the file names them; lanes outside the file are counted. Lanes may be changed where
+  /// Links as the file names them; lanes outside the file are counted, and kept with the lane that
+  /// names them. Lanes may be changed where
   /// the marking can be crossed and the borders run within 1 m of each other.
-  std::vector<LaneLinks> links(std::vector<ImportDiagnostic>& remarks) const;
+  std::vector<LaneLinks> links(std::vector<ImportDiagnostic>& remarks);
 
   /// One junction for each group of lanes inside an intersection: those that lead to or from the
   /// same lane, lie side by side, or whose centrelines come within 2 m of each other. Named by the

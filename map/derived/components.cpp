@@ -32,20 +32,26 @@ std::vector<std::uint64_t> LaneGroups::sizes(const std::vector<bool>& counts) {
   return sizes;
 }
 
-std::vector<std::vector<LaneId>> drivable_components(const RoadMap& road_map) {
-  LaneGroups groups(road_map.lanes().size());
-  const auto wants = [&](LaneId id) { return is_drivable(road_map.lane(id).type); };
-  for (const Lane& lane : road_map.lanes()) {
-    if (wants(lane.id)) groups.join(lane.id, road_map.graph().of(lane.id), wants);
-  }
-  std::vector<std::vector<LaneId>> by_least(road_map.lanes().size());
-  for (const Lane& lane : road_map.lanes()) {
-    if (is_drivable(lane.type)) by_least[groups.find(lane.id.index)].push_back(lane.id);
+std::vector<std::vector<LaneId>> LaneGroups::lists(const std::vector<bool>& counts) {
+  std::vector<std::vector<LaneId>> by_least(parent_.size());
+  for (std::uint32_t lane = 0; lane < parent_.size(); ++lane) {
+    if (counts[lane]) by_least[find(lane)].push_back(LaneId{lane});
   }
   std::erase_if(by_least, [](const auto& group) { return group.empty(); });
   std::stable_sort(by_least.begin(), by_least.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return by_least;
+}
+
+std::vector<std::vector<LaneId>> drivable_components(const RoadMap& road_map) {
+  LaneGroups groups(road_map.lanes().size());
+  std::vector<bool> counts;
+  for (const Lane& lane : road_map.lanes()) counts.push_back(is_drivable(lane.type));
+  const auto wants = [&](LaneId id) { return counts[id.index]; };
+  for (const Lane& lane : road_map.lanes()) {
+    if (wants(lane.id)) groups.join(lane.id, road_map.graph().of(lane.id), wants);
+  }
+  return groups.lists(counts);
 }
 
 }  // namespace roadbed::map::derived

@@ -28,11 +28,17 @@ class LaneGroups {
     }
   }
 
+  void join(LaneId one, LaneId other) { join(one.index, other.index); }
+
   /// The group's least lane, which names it.
   std::uint32_t find(std::uint32_t lane);
 
   /// How many of the lanes that count each group has, groups of none left out, largest first.
   std::vector<std::uint64_t> sizes(const std::vector<bool>& counts);
+
+  /// These lanes themselves, groups of none left out: largest group first, equal ones by their
+  /// first lane; lanes in order of id.
+  std::vector<std::vector<LaneId>> lists(const std::vector<bool>& counts);
 
  private:
   void join(std::uint32_t one, std::uint32_t other);
@@ -40,8 +46,8 @@ class LaneGroups {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Drivable lanes in groups between which no link and no lane change leads, in either direction.
-/// Largest group first, equal ones by their first lane; lanes in order of id. O(lanes + links).
+/// Drivable lanes in groups between which no link and no lane change leads, in either direction, as
+/// LaneGroups lists them. O(lanes + links).
 std::vector<std::vector<LaneId>> drivable_components(const RoadMap& road_map);
 
 }  // namespace roadbed::map::derived

@@ -28,7 +28,7 @@ void remark_unknown_limits(const std::vector<Lane>& lanes, std::vector<ImportDia
   });
   if (unknown == 0) return;
   remarks.push_back({"import.speed-limit-unknown", false, "file", 0,
-                     fmt::format("{} drivable lanelets have no speed limit", unknown)});
+                     fmt::format("{} drivable lanelets have no speed limit", unknown), true});
 }
 
 }  // namespace

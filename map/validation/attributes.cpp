@@ -25,13 +25,22 @@ void missing_of_roads(const RoadMap& road_map, Report& report) {
 }
 
 void missing_of_lanes_without_road(const RoadMap& road_map, Report& report) {
+  const Lane* first = nullptr;
+  std::size_t lacking = 0, drivable = 0;
   for (const Lane& lane : road_map.lanes()) {
-    if (lane.road || !lacks_speed(lane)) continue;
-    report.add("lane " + lane.name, lane.pose_at(0.0).position(), "has no speed limit; add one");
+    if (lane.road || !is_drivable(lane.type)) continue;
+    ++drivable;
+    if (!lacks_speed(lane)) continue;
+    if (lacking++ == 0) first = &lane;
   }
+  if (first == nullptr) return;
+  report.add(
+      "lane " + first->name, first->pose_at(0.0).position(),
+      fmt::format("has no speed limit, as {} of {} drivable lanes; add one", lacking, drivable));
 }
 
-/// One finding for a map that says no speed at all, else one per road.
+/// One finding for a map that says no speed at all, else one per road, and one for all lanes that
+/// belong to none.
 void missing_speeds(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   const auto& lanes = road_map.lanes();
   if (std::any_of(lanes.begin(), lanes.end(), has_speed)) {
@@ -66,10 +75,19 @@ void lanes_for_nobody(const RoadMap& road_map, const ValidateOptions&, Report& r
   }
 }
 
+const char* place_for_crs(const std::string& format) {
+  if (format.starts_with("OpenDRIVE")) return "add a <geoReference> to its header";
+  if (format.starts_with("CommonRoad")) return "add a <geoTransformation> to its location";
+  return "say it with import --crs";
+}
+
 void missing_crs(const RoadMap& road_map, const ValidateOptions&, Report& report) {
-  if (!road_map.crs().empty()) return;
+  const auto& remarks = road_map.import_diagnostics();
+  const auto says_why = [](const ImportDiagnostic& d) { return d.rule == "import.crs-unknown"; };
+  if (!road_map.crs().empty() || std::any_of(remarks.begin(), remarks.end(), says_why)) return;
   report.add("map", std::nullopt,
-             "does not say its coordinate reference system; add it (OpenDRIVE: geoReference)");
+             fmt::format("does not say its coordinate reference system; {}",
+                         place_for_crs(road_map.format())));
 }
 
 /// Whether a text can be a PROJ string, an authority's code, WKT or PROJJSON.
@@ -92,7 +110,7 @@ constexpr std::array<MapRule, 5> kAttributeRules = {{
     {{"speed.missing",
       {},
       Severity::info,
-      "drivable lanes have no speed limit; once per road, or once per map that has none"},
+      "drivable lanes have no speed limit; once per road, or once per map without any or roads"},
      missing_speeds},
     {{"speed.absurd",
       {},

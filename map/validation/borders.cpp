@@ -110,15 +110,17 @@ void absurd_widths(const RoadMap& road_map, const ValidateOptions&, Report& repo
 }
 
 void folds(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  const char* why = road_map.format().starts_with("OpenDRIVE")
+                        ? "the bend is too tight for its distance from the reference line, or "
+                          "geometry records step back; widen the bend or mend the records"
+                        : "the bend is tighter than the lane is wide, or points are out of order; "
+                          "widen the bend or move the points";
   for (const Lane& lane : road_map.lanes()) {
     const Fold fold = longer_fold(lane);
     if (fold.length_m <= kFold) continue;
     report
         .add("lane " + lane.name, fold.in_map,
-             fmt::format("a border runs backwards over {:.3f} m: the bend is too tight for its "
-                         "distance from the reference line, or geometry records step back; widen "
-                         "the bend or mend the records",
-                         fold.length_m))
+             fmt::format("a border runs backwards over {:.3f} m: {}", fold.length_m, why))
         .severity = by_use(lane, Severity::warning);
   }
 }

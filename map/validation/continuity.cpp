@@ -25,38 +25,27 @@ double heading_rad(const Vector2d& from, const Vector2d& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
 }
 
-/// Direction at the end of a sampled curve: a chord has the curve's direction at its middle, so
-/// half a chord's turn is added, as the last two chords turn. Points are from the end inwards.
-double end_heading_rad(const Vector2d& end, const Vector2d& before, const Vector2d* third) {
-  const double last_rad = heading_rad(before, end);
-  if (third == nullptr) return last_rad;
-  const double last_m = (end - before).norm(), other_m = (before - *third).norm();
-  const double turn_rad = geometry::wrap_angle(last_rad - heading_rad(*third, before));
-  return last_rad + turn_rad * last_m / (last_m + other_m);
-}
+/// A greater turn is a corner, which no bend is drawn by.
+constexpr double kCorner = 0.3;  // [rad]
 
-/// Without points that are nearer than a millimetre to the one before.
-Points apart(const Points& points) {
-  Points kept;
-  for (const Vector2d& point : points) {
-    if (kept.empty() || (point - kept.back()).norm() > 1e-3) kept.push_back(point);
+/// Direction of a sampled curve at one of its ends, outwards: a chord has the curve's direction at
+/// its middle, so half a chord's turn is added, as the last two chords turn. Points that slipped
+/// less than 0.1 m from the one before them say nothing. None where there are no others.
+std::optional<double> outward_heading_rad(const LaneLine& line, bool at_end) {
+  constexpr double kSlip = 0.1;  // [m]
+  const Points& points = line.in_map.points();
+  Points apart;  // from the end inwards
+  for (std::size_t i = 0; i < points.size() && apart.size() < 3; ++i) {
+    const Vector2d& point = points[at_end ? points.size() - 1 - i : i];
+    if (apart.empty() || (point - apart.back()).norm() > kSlip) apart.push_back(point);
   }
-  return kept;
-}
-
-std::optional<double> final_heading_rad(const Lane& lane) {
-  const Points points = apart(lane.centre.in_map.points());
-  const std::size_t n = points.size();
-  if (n < 2) return std::nullopt;
-  return end_heading_rad(points[n - 1], points[n - 2], n > 2 ? &points[n - 3] : nullptr);
-}
-
-std::optional<double> first_heading_rad(const Lane& lane) {
-  const Points points = apart(lane.centre.in_map.points());
-  if (points.size() < 2) return std::nullopt;
-  const double backwards_rad =
-      end_heading_rad(points[0], points[1], points.size() > 2 ? &points[2] : nullptr);
-  return backwards_rad + std::numbers::pi;
+  if (apart.size() < 2) return std::nullopt;
+  const double last_rad = heading_rad(apart[1], apart[0]);
+  if (apart.size() < 3) return last_rad;
+  const double turn_rad = geometry::wrap_angle(last_rad - heading_rad(apart[2], apart[1]));
+  if (std::abs(turn_rad) > kCorner) return last_rad;
+  const double last_m = (apart[0] - apart[1]).norm(), other_m = (apart[1] - apart[2]).norm();
+  return last_rad + turn_rad * last_m / (last_m + other_m);
 }
 
 double border_gap_m(const LaneLine& from, const LaneLine& to) {
@@ -114,10 +103,21 @@ void for_each_drivable_link(const RoadMap& road_map, const Check& check) {
   });
 }
 
-/// Change of heading from one lane to the next, 0 where one has no direction.
+/// Change of heading from one line to the next, 0 where one has no direction.
+double turn_between(const LaneLine& from, const LaneLine& to) {
+  const auto end_rad = outward_heading_rad(from, true), back_rad = outward_heading_rad(to, false);
+  return end_rad && back_rad ? geometry::wrap_angle(*back_rad + std::numbers::pi - *end_rad) : 0.0;
+}
+
+/// Change of heading from one lane to the next: of the centreline, or that of both borders on
+/// average where it is less. A centreline between borders of few points has corners that the lane
+/// has not, and borders that part or close in do not turn the lane.
 double kink_between(const Lane& from, const Lane& to) {
-  const auto end_rad = final_heading_rad(from), start_rad = first_heading_rad(to);
-  return end_rad && start_rad ? geometry::wrap_angle(*start_rad - *end_rad) : 0.0;
+  const double centre_rad = turn_between(from.centre, to.centre);
+  const double borders_rad =
+      0.5 * (turn_between(from.left, to.left) + turn_between(from.right, to.right));
+  if (centre_rad * borders_rad <= 0.0) return 0.0;
+  return std::abs(borders_rad) < std::abs(centre_rad) ? borders_rad : centre_rad;
 }
 
 /// Whether one lane runs against the other where they meet. Over half a metre: the last centimetre
@@ -144,8 +144,7 @@ void gaps(const RoadMap& road_map, const ValidateOptions& options, Report& repor
 /// The greatest turn between two segments of a centreline near one of its ends: how coarsely it is
 /// drawn there. Corners that no bend is drawn by do not count.
 double corner_rad(const Lane& lane, bool at_end) {
-  constexpr double kNear = 10.0;     // [m]
-  constexpr double kCoarsest = 0.3;  // [rad]
+  constexpr double kNear = 10.0;  // [m]
   constexpr std::size_t kMost = 16;
   const Points& points = lane.centre.in_map.points();
   const auto point = [&](std::size_t i) { return points[at_end ? points.size() - 1 - i : i]; };
@@ -156,7 +155,7 @@ double corner_rad(const Lane& lane, bool at_end) {
                                                  heading_rad(point(i - 1), point(i)));
     greatest_rad = std::max(greatest_rad, std::abs(turn_rad));
   }
-  return std::min(greatest_rad, kCoarsest);
+  return std::min(greatest_rad, kCorner);
 }
 
 void kinks(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
@@ -259,7 +258,7 @@ constexpr std::array<MapRule, 6> kContinuityRules = {{
     {{"geometry.kink",
       {},
       Severity::warning,
-      "centrelines of linked drivable lanes meet at more than --max-kink"},
+      "linked drivable lanes meet at more than --max-kink, in their centrelines and borders"},
      kinks},
     {{"geometry.elevation-step",
       {},

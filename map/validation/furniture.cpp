@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "roadbed/map/validation/validate.h"
 
@@ -20,15 +22,23 @@ bool near_a_lane(const RoadMap& road_map, const Eigen::Vector2d& in_map, double 
 void signals_off_road(const RoadMap& road_map, const ValidateOptions& options, Report& report) {
   for (const Signal& signal : road_map.signals()) {
     if (near_a_lane(road_map, signal.in_map, options.max_signal_distance_m)) continue;
-    report.add("signal " + signal.source_id, signal.in_map,
-               fmt::format("is more than {:.0f} m from any lane; correct its place",
-                           options.max_signal_distance_m));
+    // Scenarios are cut from larger maps, and keep the signs of what is left.
+    const bool is_of_a_cut = road_map.format().starts_with("CommonRoad") && !signal.lanes.empty();
+    Finding& finding = report.add(
+        "signal " + signal.source_id, signal.in_map,
+        fmt::format("is more than {:.0f} m from any lane{}; correct its place",
+                    options.max_signal_distance_m,
+                    is_of_a_cut ? ", though lanes name it: if the map was not cut there" : ""));
+    if (is_of_a_cut) finding.severity = Severity::info;
   }
 }
 
+/// A light for those on foot, of OpenDRIVE's catalogue of signals.
+bool is_for_walkers(const Signal& signal) { return signal.type == "1000002"; }
+
 void lights_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Signal& signal : road_map.signals()) {
-    if (!signal.dynamic || !signal.lanes.empty()) continue;
+    if (!signal.dynamic || !signal.lanes.empty() || is_for_walkers(signal)) continue;
     report.add("signal " + signal.source_id, signal.in_map,
                "changes, but speaks to no lane; say for which lanes it holds");
   }
@@ -59,9 +69,23 @@ void stop_lines_beside(const RoadMap& road_map, const ValidateOptions&, Report& 
   }
 }
 
+/// The lines, by their source ids, that regulations with lanes name: a detection area's stops
+/// traffic now and then.
+std::set<std::string> lines_of_regulations(const RoadMap& road_map) {
+  std::set<std::string> lines;
+  for (const Regulation& regulation : road_map.regulations()) {
+    if (regulation.lanes.empty()) continue;
+    for (const RegulationMember& member : regulation.members) {
+      if (member.in_map.size() > 1) lines.insert(member.source_id);
+    }
+  }
+  return lines;
+}
+
 void stop_lines_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  const std::set<std::string> named = lines_of_regulations(road_map);
   for (const StopLine& line : road_map.stop_lines()) {
-    if (!line.lanes.empty() || line.in_map.empty()) continue;
+    if (!line.lanes.empty() || line.in_map.empty() || named.contains(line.source_id)) continue;
     report.add("stop line " + line.source_id, middle(line),
                "stops no lane; say which, or remove it");
   }
@@ -76,7 +100,9 @@ void objects_off_road(const RoadMap& road_map, const ValidateOptions& options, R
   }
 }
 
+/// Of Lanelet2 the rules about the text look at it, which know areas, too.
 void regulations_without_lane(const RoadMap& road_map, const ValidateOptions&, Report& report) {
+  if (road_map.format().starts_with("Lanelet2")) return;
   for (const Regulation& regulation : road_map.regulations()) {
     const auto names_lane = [](const RegulationMember& member) { return member.lane.has_value(); };
     if (!regulation.lanes.empty() ||

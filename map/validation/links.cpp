@@ -4,6 +4,7 @@
 #include <array>
 
 #include "roadbed/map/derived/components.h"
+#include "roadbed/map/elements/outside_links.h"
 #include "roadbed/map/validation/validate.h"
 
 namespace roadbed::map::validation {
@@ -68,9 +69,18 @@ void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& r
   }
 }
 
+/// Whether a lane's links lead to what is not in the file, which is a part of a larger map.
+bool leads_outside(const Lane& lane, std::string_view key) {
+  return std::ranges::any_of(lane.attributes,
+                             [&](const auto& entry) { return entry.first == key; });
+}
+
 void dead_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
-    if (!is_drivable(lane.type) || !road_map.graph().of(lane.id).successors.empty()) continue;
+    if (!is_drivable(lane.type) || !road_map.graph().of(lane.id).successors.empty() ||
+        leads_outside(lane, kSuccessorsOutside)) {
+      continue;
+    }
     Finding& finding =
         report.add("lane " + lane.name, lane.centre.in_map.points().back(),
                    lane.junction ? "leads into its junction but not out; link its end to a lane"
@@ -82,7 +92,10 @@ void dead_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) 
 void unreachable_lanes(const RoadMap& road_map, const ValidateOptions&, Report& report) {
   for (const Lane& lane : road_map.lanes()) {
     const LaneLinks& links = road_map.graph().of(lane.id);
-    if (!is_drivable(lane.type) || !links.predecessors.empty()) continue;
+    if (!is_drivable(lane.type) || !links.predecessors.empty() ||
+        leads_outside(lane, kPredecessorsOutside)) {
+      continue;
+    }
     const auto joins = [](const std::optional<Neighbour>& neighbour) {
       return neighbour && neighbour->same_direction;
     };
@@ -122,17 +135,41 @@ void self_links(const RoadMap& road_map, const ValidateOptions&, Report& report)
   }
 }
 
+/// Drivable lanes that links, lane changes, neighbours or a road join, the largest part first: a
+/// road's two directions are one part, though nobody turns round on it.
+std::vector<std::vector<LaneId>> parts_of(const RoadMap& road_map) {
+  LaneGroups groups(road_map.lanes().size());
+  std::vector<bool> counts(road_map.lanes().size());
+  for (const Lane& lane : road_map.lanes()) counts[lane.id.index] = is_drivable(lane.type);
+  const auto wanted = [&](LaneId lane) { return counts[lane.index]; };
+  for (const Lane& lane : road_map.lanes()) {
+    if (!wanted(lane.id)) continue;
+    const LaneLinks& links = road_map.graph().of(lane.id);
+    groups.join(lane.id, links, wanted);
+    for (const auto* neighbour : {&links.left, &links.right}) {
+      if (*neighbour && wanted((*neighbour)->lane)) groups.join(lane.id, (*neighbour)->lane);
+    }
+  }
+  for (const Road& road : road_map.roads()) {
+    const auto first = std::ranges::find_if(road.lanes, wanted);
+    for (auto lane = first; lane != road.lanes.end(); ++lane) {
+      if (wanted(*lane)) groups.join(*first, *lane);
+    }
+  }
+  return groups.lists(counts);
+}
+
 void separate_parts(const RoadMap& road_map, const ValidateOptions&, Report& report) {
-  const auto components = drivable_components(road_map);
+  const auto components = parts_of(road_map);
   for (std::size_t i = 1; i < components.size(); ++i) {
     const Lane& first = road_map.lane(components[i].front());
-    report.add(
-        "lane " + first.name, first.pose_at(0.5 * first.length_m()).position(),
-        fmt::format("{} with no link or lane change to the largest connected part; add links if it "
-                    "should be reached",
-                    components[i].size() == 1
-                        ? std::string("is one lane")
-                        : fmt::format("begins a part of {} lanes", components[i].size())));
+    report.add("lane " + first.name, first.pose_at(0.5 * first.length_m()).position(),
+               fmt::format(
+                   "{} that no link or neighbour joins to the largest part; add links if it should "
+                   "be reached",
+                   components[i].size() == 1
+                       ? std::string("is one lane")
+                       : fmt::format("begins a part of {} lanes", components[i].size())));
   }
 }
 
@@ -164,7 +201,7 @@ constexpr std::array<MapRule, 7> kLinkRules = {{
     {{"link.separate-part",
       {},
       Severity::info,
-      "no link or lane change joins drivable lanes to the largest part"},
+      "no link, neighbour or road joins drivable lanes to the largest part"},
      separate_parts},
 }};
 

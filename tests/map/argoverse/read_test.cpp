@@ -96,6 +96,17 @@ TEST(Argoverse, SuccessorsAreTheGraphAndOthersAreRemarked) {
   EXPECT_THAT(rules(road_map), ElementsAre("import.one-sided-link", "import.outside"));
 }
 
+TEST(Argoverse, LinksThatLeaveTheFileAreKeptWithTheirLane) {
+  const RoadMap road_map =
+      parse(made_argoverse({{.id = 1, .successors = "2,99", .predecessors = "98"},
+                            {.id = 2, .from_x_m = 10, .to_x_m = 20}}));
+  EXPECT_THAT(road_map.lanes()[0].attributes,
+              ::testing::IsSupersetOf(
+                  {Pair("successors_outside", "99"), Pair("predecessors_outside", "98")}));
+  EXPECT_EQ(road_map.lanes()[0].attributes.size(), 4u);
+  EXPECT_EQ(road_map.lanes()[1].attributes.size(), 2u);
+}
+
 struct MarkCase {
   const char* word;
   bool from_right_of_it;  ///< whether the lane to its right may be left across it, …

@@ -98,7 +98,10 @@ std::vector<Slip> slips() {
        }},
       {"geometry.kink",
        [](MadeMap& made) {
-         made.lane(kC).centre.in_map = geometry::Polyline({{50, 1.5}, {90, 6}});
+         Lane& lane = made.lane(kC);
+         lane.left.in_map = geometry::Polyline({{50, 3}, {90, 7.5}});
+         lane.centre.in_map = geometry::Polyline({{50, 1.5}, {90, 6}});
+         lane.right.in_map = geometry::Polyline({{50, 0}, {90, 4.5}});
        }},
       {"geometry.elevation-step",
        [](MadeMap& made) {
@@ -275,7 +278,120 @@ TEST(MapRules, TakeNoSlipOfTheLastCentimetreForAReversal) {
   first.centre.station_m = first.centre.in_map.stations_m();
   first.centre.z_m = {0, 0, 0, 0};
   EXPECT_TRUE(of_rule(made, "link.reversed").empty());
-  EXPECT_EQ(of_rule(made, "geometry.kink").size(), 1u);
+}
+
+TEST(MapRules, MeasureAKinkByBordersWhereTheCentrelineHasACornerOfItsOwn) {
+  // The second lane's lines begin at angles of their own, the first one's run eastwards.
+  const auto kink = [](double left_rad, double centre_rad, double right_rad) {
+    MadeMap made = faultless();
+    Lane& second = made.lane(kC);
+    const auto turned = [](double y_m, double angle_rad) {
+      return geometry::Polyline({{50, y_m}, {90, y_m + 40 * std::tan(angle_rad)}});
+    };
+    second.left.in_map = turned(3, left_rad);
+    second.centre.in_map = turned(1.5, centre_rad);
+    second.right.in_map = turned(0, right_rad);
+    return of_rule(made, "geometry.kink");
+  };
+  EXPECT_TRUE(kink(0.0, 0.8, 0.0).empty());
+  EXPECT_TRUE(kink(0.3, 0.4, -0.3).empty());
+  EXPECT_TRUE(kink(-0.1, 0.6, -0.1).empty());
+  const auto found = kink(0.2, 0.8, 0.4);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].severity, Severity::warning);
+  EXPECT_THAT(found[0].message, ::testing::HasSubstr("turned by 0.300 rad"));
+  EXPECT_THAT(kink(0.8, 0.6, 0.9)[0].message, ::testing::HasSubstr("turned by 0.600 rad"));
+}
+
+TEST(MapRules, TakeNoEdgeOfAPartOfAMapForADeadEnd) {
+  MadeMap made;
+  const LaneId lane = made.add_lane(made.add_road("1"), "-1", {{0, 3}, {50, 3}}, {{0, 0}, {50, 0}});
+  made.lane(lane).junction = made.add_junction("4");
+  EXPECT_EQ(of_rule(made, "link.dead-end").size(), 1u);
+  EXPECT_EQ(of_rule(made, "link.unreachable").size(), 1u);
+  made.lane(lane).attributes = {{"successors_outside", "7"}};
+  EXPECT_TRUE(of_rule(made, "link.dead-end").empty());
+  EXPECT_EQ(of_rule(made, "link.unreachable").size(), 1u);
+  made.lane(lane).attributes = {{"predecessors_outside", "8"}};
+  EXPECT_EQ(of_rule(made, "link.dead-end").size(), 1u);
+  EXPECT_TRUE(of_rule(made, "link.unreachable").empty());
+}
+
+TEST(MapRules, TakeTheTwoDirectionsOfARoadForOnePart) {
+  MadeMap made = tests::straight_two_lane_road();
+  EXPECT_TRUE(of_rule(made, "link.separate-part").empty());
+  // Without a road, as in Lanelet2, they are neighbours or not.
+  made.lane(kA).road.reset();
+  made.lane(kB).road.reset();
+  for (Road& road : made.parts.roads) road.lanes.clear();
+  for (LaneLinks& links : made.parts.links) links.left.reset();
+  EXPECT_EQ(of_rule(made, "link.separate-part").size(), 1u);
+  made.put_opposite(kA, kB);
+  EXPECT_TRUE(of_rule(made, "link.separate-part").empty());
+}
+
+TEST(MapRules, SayOnceHowManyLanesWithoutARoadHaveNoSpeedLimit) {
+  MadeMap made = faultless();
+  for (const LaneId lane : {kA, kB, kC}) made.lane(lane).road.reset();
+  for (Road& road : made.parts.roads) road.lanes.clear();
+  made.lane(kB).speed_limits.clear();
+  made.lane(kC).speed_limits.clear();
+  const auto found = of_rule(made, "speed.missing");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].element, "lane " + made.lane(kB).name);
+  EXPECT_THAT(found[0].message, ::testing::HasSubstr("as 2 of 3 drivable lanes"));
+}
+
+TEST(MapRules, SayWhereAFormatNamesItsCoordinateSystem) {
+  const auto message = [](const std::string& format) {
+    MadeMap made = faultless();
+    made.parts.crs.clear();
+    made.parts.format = format;
+    return of_rule(made, "crs.missing").at(0).message;
+  };
+  EXPECT_THAT(message("OpenDRIVE 1.6"), ::testing::HasSubstr("<geoReference>"));
+  EXPECT_THAT(message("CommonRoad 2020a"), ::testing::HasSubstr("<geoTransformation>"));
+  EXPECT_THAT(message("Argoverse 2"), ::testing::HasSubstr("--crs"));
+  MadeMap made = faultless();
+  made.parts.crs.clear();
+  made.parts.remarks = {{"import.crs-unknown", false, "file", 0, "its nodes say why"}};
+  EXPECT_TRUE(of_rule(made, "crs.missing").empty());
+}
+
+TEST(MapRules, NoteSignsFarFromWhatIsLeftOfACutScenario) {
+  MadeMap made = faultless();
+  made.parts.signals[0].in_map = {50, -90};
+  EXPECT_EQ(of_rule(made, "signal.off-road")[0].severity, Severity::warning);
+  made.parts.format = "CommonRoad 2020a";
+  EXPECT_EQ(of_rule(made, "signal.off-road")[0].severity, Severity::info);
+  made.parts.signals[0].lanes.clear();
+  EXPECT_EQ(of_rule(made, "signal.off-road")[0].severity, Severity::warning);
+}
+
+TEST(MapRules, ExpectNoLaneOfALightForThoseOnFoot) {
+  MadeMap made = faultless();
+  made.parts.signals[0].lanes.clear();
+  EXPECT_EQ(of_rule(made, "signal.no-lane").size(), 1u);
+  made.parts.signals[0].type = "1000002";
+  EXPECT_TRUE(of_rule(made, "signal.no-lane").empty());
+}
+
+TEST(MapRules, FindALaneForAStopLineThatARegulationNames) {
+  MadeMap made = faultless();
+  made.parts.stop_lines[0].lanes.clear();
+  EXPECT_EQ(of_rule(made, "stop-line.no-lane").size(), 1u);
+  made.parts.regulations[0].type = "detection_area";
+  made.parts.regulations[0].members = {{"ref_line", "6", {}, made.parts.stop_lines[0].in_map, {}}};
+  EXPECT_TRUE(of_rule(made, "stop-line.no-lane").empty());
+  made.parts.regulations[0].lanes.clear();
+  EXPECT_EQ(of_rule(made, "stop-line.no-lane").size(), 1u);
+}
+
+TEST(MapRules, LeaveRegulationsOfLanelet2ToTheRulesAboutItsText) {
+  MadeMap made = faultless();
+  made.parts.regulations[0].lanes.clear();
+  made.parts.format = "Lanelet2";
+  EXPECT_TRUE(of_rule(made, "regulation.no-lane").empty());
 }
 
 TEST(MapRules, TakeTheCornersOfALineDrawnByFewPointsForNoKink) {

@@ -180,9 +180,11 @@ TEST(Validate, WarnsOfDeadEndsInJunctionsAndNotesOthers) {
 }
 
 TEST(Validate, NotesPartsThatNothingLeadsTo) {
-  const auto findings = of_rule(tests::straight_two_lane_road().build(), "link.separate-part");
+  tests::MadeMap made = tests::straight_two_lane_road();
+  made.add_lane(made.add_road("9"), "-1", {{0, 103}, {50, 103}}, {{0, 100}, {50, 100}});
+  const auto findings = of_rule(made.build(), "link.separate-part");
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].element, "lane 1/0/1");
+  EXPECT_EQ(findings[0].element, "lane 9/0/-1");
 }
 
 TEST(Validate, NotesMissingSpeedsOncePerRoadOrOncePerMap) {
