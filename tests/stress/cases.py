@@ -224,6 +224,7 @@ CASES = [
     Case("pairs", inputs.pairs, 100, ROUTES),
     Case("way-points", inputs.way_points, 100, LINES),
     Case("vertices of a region", inputs.region_of_many_vertices, 1000, REGION),
+    Case("spikes of a region", inputs.star_region, 1000, REGION),
     Case("regions", inputs.many_regions, 40, REGION),
     Case("pairs to align by", inputs.pairs_to_align, 1000, ALIGN),
     Case("ground of a map", inputs.ground, 40_000, GROUND),

@@ -811,6 +811,18 @@ def region_of_many_vertices(folder: Path, n: int) -> Path:
     return region(folder, [ring + ring[:1]])
 
 
+def star_region(folder: Path, n: int) -> Path:
+    """Spikes of 100 m, whose boxes lie on each other, over parts of the town and of the crossing."""
+    ring = [
+        [
+            620 + (110 if i % 2 else 10) * math.cos(2 * math.pi * i / n),
+            300 + (110 if i % 2 else 10) * math.sin(2 * math.pi * i / n),
+        ]
+        for i in range(n)
+    ]
+    return region(folder, [ring + ring[:1]])
+
+
 def many_regions(folder: Path, n: int) -> Path:
     side = math.isqrt(n) + 1
     step = 300.0 / side

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <variant>
 
 #include "roadbed/map/edit/clipping/touching_spans.h"
@@ -93,15 +94,17 @@ class Search {
     if (road_.sections.empty()) return without_lanes(region);
     each_section([&](SectionExtent& extent, double from_m, double to_m) {
       touching_spans(
-          from_m, to_m,
-          [&](double a_m, double b_m) {
+          RegionPart(region), from_m, to_m,
+          [&](const RegionPart& around, double a_m, double b_m) {
             const Disc disc = disc_around(a_m, b_m);
-            return region.side_of_disc(disc.centre, disc.radius_m);
+            RegionPart part = around.within(disc.box());
+            const Region::Side side = part.side_of_disc(disc.centre, disc.radius_m);
+            return PartAndSide{std::move(part), side};
           },
           [](double a_m, double b_m) { return b_m - a_m <= kStepM; },
-          [&](double s_m) {
+          [&](const RegionPart& part, double s_m) {
             const auto [left, right] = extent.at(s_m);
-            return region.touches(origin_ + left, origin_ + right);
+            return part.touches(origin_ + left, origin_ + right);
           },
           found_);
     });
@@ -112,9 +115,7 @@ class Search {
     if (road_.sections.empty()) return geometry::Box(start());
     geometry::Box box;
     each_section([&](SectionExtent&, double from_m, double to_m) {
-      const Disc disc = disc_around(from_m, to_m);
-      const Vector2d reach = Vector2d::Constant(disc.radius_m);
-      box.extend(geometry::Box(disc.centre - reach, disc.centre + reach));
+      box.extend(disc_around(from_m, to_m).box());
     });
     return box;
   }
@@ -141,6 +142,11 @@ class Search {
   struct Disc {
     Vector2d centre;
     double radius_m;
+
+    geometry::Box box() const {
+      const Vector2d reach = Vector2d::Constant(radius_m);
+      return {centre - reach, centre + reach};
+    }
   };
 
   Vector2d start() const { return origin_ + plan_view_.at(0.0).pose.position(); }

@@ -99,14 +99,20 @@ std::vector<Span> LadderMap::spans_of(const Group& group, const Region& region) 
   std::vector<Span> spans;
   const double last = ladders_[group.front()].last_row();
   if (!ladders_[group.front()].is_regular()) {  // rows that do not correspond: whole or nothing
-    if (side_of(group, 0.0, last, region) != Region::Side::outside) spans.push_back({0.0, last});
+    const RegionPart part = RegionPart(region).within(box_of(group, 0.0, last));
+    if (side_of(group, 0.0, last, part) != Region::Side::outside) spans.push_back({0.0, last});
     return spans;
   }
   for (double row = 0.0; row < last; row += 1.0) {
     touching_spans(
-        row, row + 1.0, [&](double a, double b) { return side_of(group, a, b, region); },
+        RegionPart(region), row, row + 1.0,
+        [&](const RegionPart& around, double a, double b) {
+          RegionPart part = around.within(box_of(group, a, b));
+          const Region::Side side = side_of(group, a, b, part);
+          return PartAndSide{std::move(part), side};
+        },
         [&](double a, double b) { return length_m(group, a, b) <= kShortM; },
-        [&](double r) { return touches(group, r, region); }, spans);
+        [&](const RegionPart& part, double r) { return touches(group, r, part); }, spans);
   }
   for (Span& span : spans) {
     for (double* end : {&span.from, &span.to}) {
@@ -117,22 +123,31 @@ std::vector<Span> LadderMap::spans_of(const Group& group, const Region& region) 
   return spans;
 }
 
+geometry::Box LadderMap::box_of(const Ladder& ladder, double from, double to) {
+  geometry::Box box;
+  for (const Line* line : {&ladder.left, &ladder.right}) {
+    if (ladder.is_regular()) {
+      box.extend(at_row(*line, ladder.own_row(from)));
+      box.extend(at_row(*line, ladder.own_row(to)));
+    } else {
+      for (const Vector2d& point : *line) box.extend(point);
+    }
+  }
+  return box;
+}
+
+geometry::Box LadderMap::box_of(const Group& group, double from, double to) const {
+  geometry::Box box;
+  for (const std::size_t i : group) box.extend(box_of(ladders_[i], from, to));
+  const Vector2d margin = Vector2d::Constant(1e-6);  // of rounding
+  return {box.min() - margin, box.max() + margin};
+}
+
 Region::Side LadderMap::side_of(const Group& group, double from, double to,
-                                const Region& region) const {
+                                const RegionPart& region) const {
   bool all_outside = true;
   for (const std::size_t i : group) {
-    const Ladder& ladder = ladders_[i];
-    const double a = ladder.own_row(from), b = ladder.own_row(to);
-    geometry::Box box;
-    if (ladder.is_regular()) {
-      for (const Line* line : {&ladder.left, &ladder.right}) {
-        box.extend(at_row(*line, a));
-        box.extend(at_row(*line, b));
-      }
-    } else {
-      for (const Vector2d& point : ladder.left) box.extend(point);
-      for (const Vector2d& point : ladder.right) box.extend(point);
-    }
+    const geometry::Box box = box_of(ladders_[i], from, to);
     const auto side = region.side_of_disc(box.center(), 0.5 * box.diagonal().norm() + 1e-6);
     if (side == Region::Side::inside) return side;
     all_outside = all_outside && side == Region::Side::outside;
@@ -150,7 +165,7 @@ double LadderMap::length_m(const Group& group, double from, double to) const {
   return most_m;
 }
 
-bool LadderMap::touches(const Group& group, double row, const Region& region) const {
+bool LadderMap::touches(const Group& group, double row, const RegionPart& region) const {
   return std::any_of(group.begin(), group.end(), [&](std::size_t i) {
     const double own = ladders_[i].own_row(row);
     return region.touches(at_row(ladders_[i].left, own), at_row(ladders_[i].right, own));

@@ -52,9 +52,11 @@ class LadderMap {
   void make_groups();
   void add_neighbours(std::size_t index);
   std::vector<Span> spans_of(const Group& group, const Region& region) const;
-  Region::Side side_of(const Group& group, double from, double to, const Region& region) const;
+  static geometry::Box box_of(const Ladder& ladder, double from, double to);
+  geometry::Box box_of(const Group& group, double from, double to) const;
+  Region::Side side_of(const Group& group, double from, double to, const RegionPart& region) const;
   double length_m(const Group& group, double from, double to) const;
-  bool touches(const Group& group, double row, const Region& region) const;
+  bool touches(const Group& group, double row, const RegionPart& region) const;
 
   std::vector<Ladder> ladders_;
   std::vector<pugi::xml_node> unusable_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/map/edit/clipping/region_part.h"
+
 namespace roadbed::map::inline edit::inline clipping {
 namespace {
 
@@ -53,8 +55,13 @@ std::vector<LineSpan> spans_inside(std::span<const Vector2d> line, const Region&
   if (side == Region::Side::inside) return {{0.0, static_cast<double>(line.size() - 1)}};
   std::vector<LineSpan> spans;
   const std::vector<double> places = places_of_change(line, region);
+  std::vector<Vector2d> between;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    if (!region.contains(point_at(line, 0.5 * (places[i] + places[i + 1])))) continue;
+    between.push_back(point_at(line, 0.5 * (places[i] + places[i + 1])));
+  }
+  const std::vector<bool> inside = contains_each(region, between);
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    if (!inside[i]) continue;
     if (!spans.empty() && spans.back().to == places[i]) {
       spans.back().to = places[i + 1];
     } else {

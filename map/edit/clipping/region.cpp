@@ -24,26 +24,6 @@ std::vector<geometry::Ring> rings_of(const std::vector<geometry::Polygon>& polyg
   return rings;
 }
 
-double distance_m(const Vector2d& point, const Vector2d& from, const Vector2d& to) {
-  const Vector2d along = to - from;
-  const double length_2 = along.squaredNorm();
-  const double at =
-      length_2 > 0.0 ? std::clamp((point - from).dot(along) / length_2, 0.0, 1.0) : 0.0;
-  return (point - from - at * along).norm();
-}
-
-// Where a segment meets another: none where they are parallel or apart.
-std::optional<double> meeting(const Vector2d& from, const Vector2d& to, const Vector2d& edge_from,
-                              const Vector2d& edge_to) {
-  const Vector2d along = to - from, edge = edge_to - edge_from, between = edge_from - from;
-  const double turn = geometry::cross(along, edge);
-  if (turn == 0.0) return {};
-  const double at = geometry::cross(between, edge) / turn;
-  const double on_edge = geometry::cross(between, along) / turn;
-  if (!(at >= 0.0 && at <= 1.0 && on_edge >= 0.0 && on_edge <= 1.0)) return {};
-  return at;
-}
-
 geometry::Box box_of(const Vector2d& from, const Vector2d& to) {
   return {from.cwiseMin(to), from.cwiseMax(to)};
 }
@@ -65,6 +45,25 @@ geometry::Polygon capsule(const Vector2d& from, const Vector2d& to, double dista
 }
 
 }  // namespace
+
+double RegionEdge::distance_m(const Vector2d& point) const {
+  const Vector2d along = to - from;
+  const double length_2 = along.squaredNorm();
+  const double at =
+      length_2 > 0.0 ? std::clamp((point - from).dot(along) / length_2, 0.0, 1.0) : 0.0;
+  return (point - from - at * along).norm();
+}
+
+std::optional<double> RegionEdge::meeting(const Vector2d& segment_from,
+                                          const Vector2d& segment_to) const {
+  const Vector2d along = segment_to - segment_from, edge = to - from, between = from - segment_from;
+  const double turn = geometry::cross(along, edge);
+  if (turn == 0.0) return {};
+  const double at = geometry::cross(between, edge) / turn;
+  const double on_edge = geometry::cross(between, along) / turn;
+  if (!(at >= 0.0 && at <= 1.0 && on_edge >= 0.0 && on_edge <= 1.0)) return {};
+  return at;
+}
 
 Region::Region(const std::vector<geometry::Polygon>& polygons) : Region(rings_of(polygons)) {}
 
@@ -101,7 +100,7 @@ bool Region::touches(const Vector2d& from, const Vector2d& to) const {
 std::vector<double> Region::crossings(const Vector2d& from, const Vector2d& to) const {
   std::vector<double> found;
   tree_.visit(box_of(from, to), [&](std::size_t i) {
-    if (const auto at = meeting(from, to, edges_[i].from, edges_[i].to)) found.push_back(*at);
+    if (const auto at = edges_[i].meeting(from, to)) found.push_back(*at);
   });
   std::sort(found.begin(), found.end());
   return found;
@@ -110,9 +109,8 @@ std::vector<double> Region::crossings(const Vector2d& from, const Vector2d& to) 
 Region::Side Region::side_of_disc(const Vector2d& centre, double radius_m) const {
   const Vector2d reach = Vector2d::Constant(radius_m);
   bool met = false;
-  tree_.visit(geometry::Box(centre - reach, centre + reach), [&](std::size_t i) {
-    met = met || distance_m(centre, edges_[i].from, edges_[i].to) <= radius_m;
-  });
+  tree_.visit(geometry::Box(centre - reach, centre + reach),
+              [&](std::size_t i) { met = met || edges_[i].distance_m(centre) <= radius_m; });
   if (met) return Side::border;
   return contains(centre) ? Side::inside : Side::outside;
 }

@@ -1,12 +1,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "roadbed/geometry/index/box_tree.h"
 #include "roadbed/geometry/polygons/ring.h"
 
 namespace roadbed::map::inline edit::inline clipping {
+
+/// Of a ring, from one corner to the next.
+struct RegionEdge {
+  Eigen::Vector2d from, to;
+
+  double distance_m(const Eigen::Vector2d& point) const;
+
+  /// Where a segment meets it, as a fraction of the segment; none where they are parallel or apart.
+  std::optional<double> meeting(const Eigen::Vector2d& segment_from,
+                                const Eigen::Vector2d& segment_to) const;
+};
 
 /// A part of the plane that a map is cut to: what an odd number of rings encloses, their edges
 /// included. Coordinates are the source's. Immutable.
@@ -39,11 +51,9 @@ class Region {
   const std::vector<Eigen::Vector2d>& corners() const { return corners_; }
 
  private:
-  struct Edge {
-    Eigen::Vector2d from, to;
-  };
+  friend class RegionPart;
 
-  std::vector<Edge> edges_;
+  std::vector<RegionEdge> edges_;
   geometry::BoxTree tree_;
   geometry::Box bounds_;
   std::vector<Eigen::Vector2d> corners_;

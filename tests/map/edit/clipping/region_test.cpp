@@ -5,9 +5,11 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/map/edit/clipping/region_part.h"
 
 namespace roadbed::map {
 namespace {
@@ -31,6 +33,31 @@ TEST(Region, ContainsWhatItsRingContains) {
     const Vector2d point(place(random), place(random));
     EXPECT_EQ(region.contains(point), geometry::contains(star(), point)) << point.transpose();
   }
+}
+
+TEST(Region, ContainsEachOfManyPointsAsItContainsOne) {
+  geometry::Ring spikes;  // that pass corners of the grid of points, and run along its lines
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 0.10471975511966 * i, radius = i % 2 == 0 ? 11.0 : 1.5;
+    spikes.emplace_back(std::round(4 * radius * std::cos(angle)) / 4,
+                        std::round(4 * radius * std::sin(angle)) / 4);
+  }
+  const geometry::Ring bow = {{-6, -6}, {6, 6}, {6, -6}, {-6, 6}};  // crosses itself and the others
+  const Region region({spikes, bow, geometry::box_ring({-3, -3}, {3, 3})});
+  std::vector<Vector2d> points;
+  for (int y = -48; y <= 48; ++y) {
+    for (int x = -48; x <= 48; ++x) points.emplace_back(0.25 * (y % 2 == 0 ? x : -x), 0.25 * y);
+  }
+  const std::vector<bool> inside = contains_each(region, points);
+  ASSERT_EQ(inside.size(), points.size());
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(inside[i], region.contains(points[i])) << points[i].transpose();
+    count += inside[i] ? 1 : 0;
+  }
+  EXPECT_GT(count, 1000);
+  EXPECT_TRUE(contains_each(region, {}).empty());
+  EXPECT_EQ(contains_each(region, std::vector{Vector2d(-6, -6)}), std::vector{true});
 }
 
 TEST(Region, IsNotWhereAHoleIs) {
