@@ -19,6 +19,12 @@ std::string value_of(std::string_view tag, std::string_view name) {
   return value ? decode_xml(tag.substr(value->at, value->size)) : std::string();
 }
 
+bool is_plain(std::string_view value) {
+  return std::ranges::all_of(value, [](unsigned char c) {
+    return c > 0x20 && c < 0x7F && c != '&' && c != '<' && c != '>' && c != '"' && c != '\'';
+  });
+}
+
 }  // namespace
 
 OsmElement::OsmElement(std::string_view text) : name_(xml_tag_name(text, 0)) {
@@ -33,7 +39,7 @@ OsmElement::OsmElement(std::string_view text) : name_(xml_tag_name(text, 0)) {
   for (;;) {
     const std::size_t child = text.find('<', at);
     if (child == text.npos) break;
-    const std::string blanks(text.substr(at, child - at));
+    const std::string_view blanks = text.substr(at, child - at);
     if (text[child + 1] == '/') {
       before_end_ = blanks;
       break;
@@ -43,25 +49,29 @@ OsmElement::OsmElement(std::string_view text) : name_(xml_tag_name(text, 0)) {
     const std::string_view whole = is_comment
                                        ? text.substr(child, text.find("-->", child) + 3 - child)
                                        : xml_element_at(text, child);
-    const std::string name(is_comment ? std::string_view("!--") : xml_tag_name(text, child));
-    children_.push_back({name, name == "tag" ? value_of(whole, "k") : "", std::string(whole)});
+    const std::string_view name = is_comment ? "!--" : xml_tag_name(text, child);
+    children_.push_back({name, name == "tag" ? value_of(whole, "k") : "", whole});
     at = child + whole.size();
   }
 }
 
-std::string OsmElement::attribute(std::string_view name, std::string_view value) const {
-  std::string text = xml_text(value);
-  for (std::size_t at = text.find('\''); at != text.npos; at = text.find('\'', at + 1)) {
-    text.replace(at, 1, "&apos;");
+void OsmElement::add_attribute(std::string_view name, std::string_view value,
+                               std::string& text) const {
+  ((text += ' ') += name) += '=';
+  text += quote_;
+  if (is_plain(value)) {
+    text += value;
+  } else {
+    for (const char c : xml_text(value)) c == '\'' ? text += "&apos;" : text += c;
   }
-  return fmt::format(" {}={}{}{}", name, quote_, text, quote_);
+  text += quote_;
 }
 
 void OsmElement::set_attribute(std::string_view name, std::string_view value) {
   if (const auto found = xml_value_in(start_, name)) {
-    start_.replace(found->at, found->size, xml_text(value));
+    start_.replace(found->at, found->size, is_plain(value) ? value : xml_text(value));
   } else {
-    start_ += attribute(name, value);
+    add_attribute(name, value, start_);
   }
 }
 
@@ -74,7 +84,9 @@ void OsmElement::put_first(std::vector<Child> children, std::string_view in_plac
 void OsmElement::set_nodes(const std::vector<std::int64_t>& ids) {
   std::vector<Child> children;
   for (const std::int64_t id : ids) {
-    children.push_back({"nd", "", fmt::format("<nd{} />", attribute("ref", std::to_string(id)))});
+    std::string& text = made_.emplace_front("<nd");
+    add_attribute("ref", std::to_string(id), text);
+    children.push_back({"nd", "", text += " />"});
   }
   put_first(std::move(children), "nd");
 }
@@ -86,10 +98,11 @@ void OsmElement::set_members(const std::vector<lanelet2::Member>& members) {
     const char* kind = member.kind == MemberKind::node  ? "node"
                        : member.kind == MemberKind::way ? "way"
                                                         : "relation";
-    children.push_back(
-        {"member", "",
-         fmt::format("<member{}{}{} />", attribute("type", kind),
-                     attribute("ref", std::to_string(member.id)), attribute("role", member.role))});
+    std::string& text = made_.emplace_front("<member");
+    add_attribute("type", kind, text);
+    add_attribute("ref", std::to_string(member.id), text);
+    add_attribute("role", member.role, text);
+    children.push_back({"member", "", text += " />"});
   }
   put_first(std::move(children), "member");
 }
@@ -100,8 +113,10 @@ void OsmElement::remove_tag(std::string_view key) {
 
 void OsmElement::set_tag(std::string_view key, std::string_view value) {
   remove_tag(key);
-  children_.push_back({"tag", std::string(key),
-                       fmt::format("<tag{}{} />", attribute("k", key), attribute("v", value))});
+  std::string& text = made_.emplace_front("<tag");
+  add_attribute("k", key, text);
+  add_attribute("v", value, text);
+  children_.push_back({"tag", std::string(key), text += " />"});
 }
 
 std::string OsmElement::said() const {
@@ -115,9 +130,14 @@ std::string OsmElement::said() const {
 
 std::string OsmElement::text() const {
   if (children_.empty()) return start_ + " />";
-  std::string text = start_ + ">";
-  for (const Child& child : children_) text += before_child_ + child.text;
-  return text + before_end_ + "</" + name_ + ">";
+  std::size_t size = start_.size() + before_end_.size() + name_.size() + 4;
+  for (const Child& child : children_) size += before_child_.size() + child.text.size();
+  std::string text;
+  text.reserve(size);
+  (text += start_) += '>';
+  for (const Child& child : children_) (text += before_child_) += child.text;
+  (((text += before_end_) += "</") += name_) += '>';
+  return text;
 }
 
 void OsmEdit::add(lanelet2::MemberKind kind, const std::string& text) {
@@ -174,7 +194,8 @@ std::string OsmEdit::file() && {
 
 std::string with_root_attribute(std::string file, std::string_view name, std::string_view value) {
   const std::size_t at = file.find("<osm"), end = xml_tag_end(file, at);
-  OsmElement root(file.substr(at, end - at - 1) + "/>");
+  const std::string alone = file.substr(at, end - at - 1) + "/>";
+  OsmElement root(alone);
   root.set_attribute(name, value);
   const std::string tag = root.text();
   return file.replace(at, end - at, tag.substr(0, tag.size() - 3) + ">");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <forward_list>
 #include <map>
 #include <optional>
 #include <span>
@@ -22,7 +23,7 @@ inline constexpr std::string_view kClipKey = "roadbed:clip";
 /// children; what is not changed stays as it stands, byte by byte.
 class OsmElement {
  public:
-  /// @param text  of the element, from `<` of its start tag to `>` of its end.
+  /// @param text  of the element, from `<` of its start tag to `>` of its end; outlives it.
   explicit OsmElement(std::string_view text);
 
   void set_attribute(std::string_view name, std::string_view value);
@@ -42,17 +43,20 @@ class OsmElement {
 
  private:
   struct Child {
-    std::string name, key;  ///< key of a tag
-    std::string text;
+    std::string_view name;
+    std::string key;        ///< of a tag
+    std::string_view text;  ///< in the source, or made
   };
 
   void put_first(std::vector<Child> children, std::string_view in_place_of);
-  std::string attribute(std::string_view name, std::string_view value) const;
+  void add_attribute(std::string_view name, std::string_view value, std::string& text) const;
 
-  std::string name_, start_;  // start tag without its end, "<way id='5'"
-  std::string before_child_ = "\n    ", before_end_ = "\n  ";
+  std::string_view name_;
+  std::string start_;  // start tag without its end, "<way id='5'"
+  std::string_view before_child_ = "\n    ", before_end_ = "\n  ";
   char quote_ = '"';
   std::vector<Child> children_;
+  std::forward_list<std::string> made_;  // texts of children that the source does not have
 };
 
 /// A file of OpenStreetMap's XML in which elements are taken out, changed and added; all else stays

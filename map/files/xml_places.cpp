@@ -9,6 +9,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 
 /// Behind a comment, a section of characters or an instruction that begins here; else `at`.
 std::size_t behind_other(std::string_view text, std::size_t at) {
+  if (at + 1 >= text.size() || (text[at + 1] != '!' && text[at + 1] != '?')) return at;
   for (const auto& [begin, end] : {std::pair<std::string_view, std::string_view>{"<!--", "-->"},
                                    {"<![CDATA[", "]]>"},
                                    {"<?", "?>"}}) {
