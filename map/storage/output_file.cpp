@@ -83,6 +83,8 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
+  constexpr std::uint64_t kAhead = std::uint64_t{1} << 21;
+  const bool fills_a_piece = offset / kAhead != (offset + bytes.size()) / kAhead;
   while (!bytes.empty()) {
     const ssize_t written =
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -92,6 +94,8 @@ void OutputFile::write(std::uint64_t offset, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(written));
     offset += static_cast<std::uint64_t>(written);
   }
+  // On its way to the disk while the next piece is made, so that the end has less to wait for.
+  if (fills_a_piece) ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE);
 }
 
 void OutputFile::commit() {
