@@ -113,7 +113,7 @@ Line3 longer_part(const Line3& line, const Line3& other, bool ahead) {
   const Eigen::Vector2d along = (end - before).head<2>().normalized();
   Line3 part;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    const Eigen::Vector3d& point = ahead ? *(line.end() - 1 - i) : line[i];
+    const Eigen::Vector3d& point = line[ahead ? line.size() - 1 - i : i];
     const Eigen::Vector2d off = (point - end).head<2>();
     const double beyond_m = along.dot(off);
     if (beyond_m < longer_m || off.norm() > beyond_m + kSamePoint_m) break;

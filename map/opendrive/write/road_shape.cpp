@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 
 namespace roadbed::map::opendrive {
 namespace {
@@ -222,7 +221,7 @@ class RoadShaper {
   void fit_lane_offset(const std::array<std::vector<Strip>, 3>& strips) {
     std::vector<geometry::CubicRecord> records;
     bool is_needed = false;
-    for (const Strip& strip : strips | std::views::join) {
+    const auto fit = [&](const Strip& strip) {
       const auto samples = samples_of(along(strip, road_.sections[strip.section].left_lanes));
       for (const Sample& sample : samples) {
         is_needed = is_needed || std::abs(sample.value) > 0.6 * kBorderTolerance_m;
@@ -232,7 +231,8 @@ class RoadShaper {
                   std::abs(samples.back().value) > 1e-4;
       const auto fitted = fit_cubics(samples, kBorderTolerance_m, -1e300);
       records.insert(records.end(), fitted.begin(), fitted.end());
-    }
+    };
+    for (const std::vector<Strip>& some : strips) std::ranges::for_each(some, fit);
     if (is_needed) shape_.lane_offset = geometry::PiecewiseCubic(std::move(records));
   }
 
