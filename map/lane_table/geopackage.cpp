@@ -101,7 +101,9 @@ class ShapeReader {
 class Database {
  public:
   /// The bytes stay where they are while it is open.
-  explicit Database(std::string& bytes) : budget_(geometry::most_steps(bytes.size())) {
+  explicit Database(std::string& bytes)
+      : steps_(geometry::most_steps(bytes.size() / kLeastRow)),
+        memory_(geometry::most_bytes_read(bytes.size())) {
     sqlite3* opened = nullptr;
     const int status = sqlite3_open_v2(":memory:", &opened, SQLITE_OPEN_READWRITE, nullptr);
     database_.reset(opened);
@@ -114,7 +116,7 @@ class Database {
                               SQLITE_DESERIALIZE_READONLY));
     sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    sqlite3_progress_handler(opened, kSteps, spend, &budget_);
+    sqlite3_progress_handler(opened, kSteps, spend, &steps_);
   }
 
   /// Calls `row(statement)` for every row of an answer.
@@ -133,6 +135,7 @@ class Database {
       const int step = sqlite3_step(prepared);
       if (step == SQLITE_DONE) return;
       if (step != SQLITE_ROW) check(step);
+      count(prepared);
       row(prepared);
     }
   }
@@ -142,10 +145,23 @@ class Database {
     void operator()(sqlite3* database) const { sqlite3_close(database); }
   };
 
-  static constexpr int kSteps = 1000;  // of SQLite, between two looks at the budget
+  static constexpr int kSteps = 1000;           // of SQLite, between two looks at the budget
+  static constexpr std::size_t kLeastRow = 64;  // bytes, with its shape
 
   static int spend(void* budget) {
     return static_cast<geometry::WorkBudget*>(budget)->spend(kSteps) ? 0 : 1;
+  }
+
+  // Pages that several branches of a damaged tree name are rows without end.
+  void count(sqlite3_stmt* row) {
+    for (int i = 0; i < sqlite3_column_count(row); ++i) {
+      const int type = sqlite3_column_type(row, i);
+      std::size_t bytes = 1 + std::strlen(sqlite3_column_name(row, i));
+      if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
+        bytes += static_cast<std::size_t>(sqlite3_column_bytes(row, i));
+      }
+      if (!memory_.spend(bytes)) throw Refusal{"more rows than it can hold", "a whole GeoPackage"};
+    }
   }
 
   void check(int status) const {
@@ -154,7 +170,7 @@ class Database {
     throw Refusal{fmt::format("SQLite says: {}", one_line(why)), "a whole GeoPackage"};
   }
 
-  geometry::WorkBudget budget_;
+  geometry::WorkBudget steps_, memory_;
   std::unique_ptr<sqlite3, Close> database_;
 };
 
@@ -192,8 +208,7 @@ class GeopackageReader {
     Table table;
     table.in_degrees = layer.in_degrees;
     table.crs = layer.crs;
-    const std::string order = layer.key.empty() ? "" : " order by " + quoted(layer.key);
-    database_.ask("select * from " + quoted(layer.name) + order, "",
+    database_.ask("select * from " + quoted(layer.name), "",
                   [&](sqlite3_stmt* statement) { add(statement, layer, table); });
     return table;
   }

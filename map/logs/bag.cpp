@@ -2,11 +2,13 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <memory>
 #include <new>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/unpack.h"
 #include "roadbed/map/files/visible_text.h"
@@ -28,7 +30,12 @@ using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 class BagReader {
  public:
   BagReader(Database database, std::string name, std::uint64_t size, const LogVisitor& visitor)
-      : database_(std::move(database)), name_(std::move(name)), size_(size), visitor_(visitor) {
+      : database_(std::move(database)),
+        name_(std::move(name)),
+        size_(size),
+        steps_(geometry::most_steps(size / 64)),  // a row of few bytes takes fewer
+        unread_(size),
+        visitor_(visitor) {
     // A file of others may hold views, triggers and columns that compute; none of it is run.
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -36,18 +43,25 @@ class BagReader {
     const std::uint64_t most = std::min<std::uint64_t>(std::max<std::uint64_t>(size, 1 << 20),
                                                        std::numeric_limits<int>::max());
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(most));
+    constexpr int often = 1000;
+    const auto spend = [](void* steps) {
+      return static_cast<geometry::WorkBudget*>(steps)->spend(often) ? 0 : 1;
+    };
+    sqlite3_progress_handler(database_.get(), often, spend, &steps_);
   }
 
   void run() {
     std::map<std::int64_t, LogTopic> topics;
     const Statement of_topics = prepared("select id, name, type, serialization_format from topics");
     while (step(of_topics)) {
+      count({bytes_of(of_topics, 1), bytes_of(of_topics, 2), bytes_of(of_topics, 3)});
       const LogTopic topic{text(of_topics, 1), text(of_topics, 2), text(of_topics, 3)};
       if (visitor_.wants(topic)) topics[sqlite3_column_int64(of_topics.get(), 0)] = topic;
     }
     if (topics.empty()) return;
     const Statement messages = prepared("select topic_id, timestamp, id, data from messages");
     while (step(messages)) {
+      count({bytes_of(messages, 3)});
       const auto found = topics.find(sqlite3_column_int64(messages.get(), 0));
       if (found != topics.end()) take(found->second, messages);
     }
@@ -86,6 +100,14 @@ class BagReader {
     return one_line(std::string(bytes_of(row, column)));
   }
 
+  // Rows and what they hold are stored once each; pages that several of a damaged tree's branches
+  // name would be read without end.
+  void count(std::initializer_list<std::string_view> row) {
+    std::size_t bytes = 1;
+    for (const std::string_view cell : row) bytes += cell.size();
+    if (!unread_.spend(bytes)) refuse("", fmt::format("more rows than {} bytes can hold", size_));
+  }
+
   // Packed message by message where the bag says so; CDR never begins as Zstandard does.
   void take(const LogTopic& topic, const Statement& row) const {
     const std::string_view bytes = bytes_of(row, 3);
@@ -99,6 +121,7 @@ class BagReader {
   Database database_;
   std::string name_;
   std::uint64_t size_;
+  geometry::WorkBudget steps_, unread_;
   const LogVisitor& visitor_;
 };
 

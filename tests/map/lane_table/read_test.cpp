@@ -15,6 +15,7 @@
 #include "roadbed/map/gis/write.h"
 #include "roadbed/map/lane_table/table.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -173,6 +174,17 @@ TEST(LaneTable, AGeoPackageGivesTheLanesThatItHolds) {
   EXPECT_THAT(refusal(bytes, R"({"width_m":3,"layer":"x"})"), HasSubstr("the layer \"x\""));
   for (std::size_t cut : {17u, 4096u, 20'000u}) {
     EXPECT_THROW(read(bytes.substr(0, cut), mapping), InputError) << cut;
+  }
+}
+
+TEST(LaneTable, AGeoPackageWithMoreRowsThanItCanHoldIsRefused) {
+  const RoadMap ramp = load_map(tests::data_folder() / "ramp.xodr");
+  std::vector<Layer> layers{make_layer(ramp, "centrelines")};
+  layers[0].features.resize(3);
+  const std::string whole = write_geopackage(layers, "EPSG:25832");
+  for (const char* table : {"centrelines", "gpkg_geometry_columns", "sqlite_schema"}) {
+    const std::string bytes = tests::with_endless_rows(whole, table);
+    EXPECT_THROW(lane_table::read_geopackage(bytes, "f.gpkg", ""), InputError) << table;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "roadbed/map/files/input_error.h"
+#include "roadbed/tests/support/endless_rows.h"
 #include "roadbed/tests/support/log_bytes.h"
 
 namespace roadbed::map {
@@ -102,6 +103,16 @@ TEST(LogDrive, RefusesMessagesThatEndEarly) {
   std::vector<McapMessage> messages = odometry();
   messages[4].bytes.resize(60);
   EXPECT_NE(fault_of(bag_bytes("/odom", kOdometry, messages)).find("message 5"), std::string::npos);
+}
+
+TEST(LogDrive, RefusesBagsWithMoreRowsThanTheyCanHold) {
+  const std::string bag = bag_bytes("/odom", kOdometry, odometry());
+  const std::string fault = fault_of(tests::with_endless_rows(bag, "messages"));
+  EXPECT_NE(fault.find("more rows than"), std::string::npos) << fault;
+  const std::string of_topics = fault_of(tests::with_endless_rows(bag, "topics"));
+  EXPECT_NE(of_topics.find("more rows than"), std::string::npos) << of_topics;
+  const std::string of_tables = fault_of(tests::with_endless_rows(bag, "sqlite_schema"));
+  EXPECT_NE(of_tables, "");
 }
 
 TEST(LogDrive, ListsTopicsWhereNoneIsADrive) {

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace roadbed::tests {
+
+/// An SQLite file with the rows of a small table billions of times over: pages of its tree name one
+/// page many times, and are themselves named so.
+std::string with_endless_rows(std::string database, const std::string& table);
+
+}  // namespace roadbed::tests
