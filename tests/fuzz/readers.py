@@ -1,0 +1,78 @@
+"""What each fuzz target reads: its sources, its seeds and the words that it knows."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CORPUS = ROOT / "tests/fuzz/corpus"
+
+#: Sources that read the bytes of a target, as patterns of paths in the tree.
+SOURCES = {
+    "argoverse": r"map/argoverse/",
+    "autoware_vehicle": r"tools/files/(autoware_vehicle|vehicle_file)",
+    "bt": r"map/occupancy/octree/octree_file\.",
+    "certificate": r"tools/audit/certificate_json|planning/audit/certificate_check",
+    "cloud_message": r"map/logs/cloud_message"
+                     r"|map/occupancy/clouds/(message_points|point_time|sweep_poses)",
+    "common_road": r"map/commonroad/(document|intersections|lanes|links|read|scenario|traffic_rules"
+                   r"|values)\.",
+    "compiled_map": r"map/compiled/|map/storage/chunked_file",
+    "drive_file": r"tools/files/(drive_file|pose_lines|argoverse_drive|solution_drive)",
+    "drive_record": r"tools/report/drive_record",
+    "edit": r"map/edit/",
+    "feather": r"map/logs/(argoverse|feather|flat_tables|pose_columns|unpack_block)",
+    "geojson": r"map/geojson/",
+    "jobs": r"tools/batch/job(_lines|_result)?\.",
+    "json": r"map/files/parse_json|tools/files/json",
+    "kitti": r"map/occupancy/clouds/read_kitti",
+    "lane_table": r"map/lane_table/(geojson|geopackage|mapping|read|shapes)",
+    "lanelet2": r"map/lanelet2/(?!rules|write)",
+    "las": r"map/occupancy/clouds/read_las|map/occupancy/laz/",
+    "log": r"map/logs/(bag|cdr|log|mcap\.|pose_messages|protobuf|timed_pose|transform_tree)",
+    "obstacles_csv": r"tools/files/(obstacles_csv|csv)",
+    "od_csv": r"tools/files/(points_csv|csv)",
+    "open_drive": r"map/opendrive/(?!rules)",
+    "ot": r"map/occupancy/octree/octree_file\.",
+    "outside_plan": r"tools/simulation/outside_planner",
+    "pcd": r"map/occupancy/clouds/read_pcd",
+    "pilot_lines": r"tools/simulation/pilot_lines",
+    "planner_options": r"tools/simulation/planner_options",
+    "ply": r"map/occupancy/clouds/read_ply",
+    "points_csv": r"tools/files/(points_csv|csv)",
+    "route_network": r"planning/route/stored_network",
+    "scenario": r"tools/simulation/(scenario|traffic_flow)\.",
+    "sensor_poses": r"map/occupancy/clouds/sensor_poses",
+    "tiles_index": r"map/occupancy/octree/tiles_index",
+    "trajectory_csv": r"tools/files/(trajectory_csv|csv)",
+    "unpack": r"map/files/unpack",
+    "validate": r"map/((validation|opendrive/rules|lanelet2/rules|commonroad/rules)/|suppressions)",
+    "vehicle_json": r"tools/files/(vehicle_json|json)",
+    "xml_scanner": r"map/files/xml",
+    "xyz": r"map/occupancy/clouds/read_xyz",
+}
+
+
+def sources_of(name: str) -> list[Path]:
+    """Return the sources of a target, and the target itself, relative to the tree."""
+    files = (file.relative_to(ROOT) for folder in ("map", "planning", "tools")
+             for file in (ROOT / folder).rglob("*") if file.suffix in (".h", ".cpp"))  # fmt: skip
+    read = [file for file in files if re.match(SOURCES[name], str(file))]
+    return sorted(read) + [Path(f"tests/fuzz/{name}_fuzz.cpp")]
+
+
+def words_of(name: str) -> list[str]:
+    """Return the words that a target's sources look for: short literals, for libFuzzer."""
+    literal = re.compile(r'"((?:[ !#-\[\]-z|~]|\\[nt"\\])+)"')
+    words = {
+        word
+        for file in sources_of(name)
+        for line in (ROOT / file).read_text().splitlines() if not line.startswith("#include")
+        for word in literal.findall(line) if len(word) <= 32 and word.count(" ") < 2
+    }  # fmt: skip
+    return sorted(word.replace("\\n", "\\x0A").replace("\\t", "\\x09") for word in words)
+
+
+def seeds_of(name: str, build: Path) -> list[Path]:
+    """Return the folders that a target starts from, what it has found first."""
+    folders = [build / "found" / f"{name}_fuzz", CORPUS / name]
+    return [folder for folder in folders if folder.is_dir()]
