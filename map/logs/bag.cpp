@@ -35,6 +35,7 @@ class BagReader {
         size_(size),
         steps_(geometry::most_steps(size / 64)),  // a row of few bytes takes fewer
         unread_(size),
+        unpacked_(most_unpacked_in_all(size)),
         visitor_(visitor) {
     // A file of others may hold views, triggers and columns that compute; none of it is run.
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -109,19 +110,22 @@ class BagReader {
   }
 
   // Packed message by message where the bag says so; CDR never begins as Zstandard does.
-  void take(const LogTopic& topic, const Statement& row) const {
+  void take(const LogTopic& topic, const Statement& row) {
     const std::string_view bytes = bytes_of(row, 3);
     const std::string place = fmt::format("message {}", sqlite3_column_int64(row.get(), 2));
     const std::int64_t received_ns = sqlite3_column_int64(row.get(), 1);
     if (!is_packed(bytes)) return visitor_.take(topic, {received_ns, bytes, place});
     const std::string message = unpacked(bytes, name_ + ":" + place, most_unpacked(size_) / 2);
+    if (!unpacked_.spend(message.size())) {
+      refuse(place, fmt::format("messages of more than {} bytes", most_unpacked_in_all(size_)));
+    }
     visitor_.take(topic, {received_ns, message, place});
   }
 
   Database database_;
   std::string name_;
   std::uint64_t size_;
-  geometry::WorkBudget steps_, unread_;
+  geometry::WorkBudget steps_, unread_, unpacked_;
   const LogVisitor& visitor_;
 };
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/logs/flat_tables.h"
 #include "roadbed/map/logs/unpack_block.h"
@@ -35,7 +36,11 @@ struct Place {
 
 class FeatherReader {
  public:
-  FeatherReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  FeatherReader(std::string_view bytes, const std::string& name)
+      : bytes_(bytes),
+        name_(name),
+        unpacked_left_(most_unpacked(bytes.size())),
+        rows_left_(most_unpacked(bytes.size())) {}
 
   std::vector<FeatherColumn> read(std::vector<std::string> wanted,
                                   const std::vector<std::string>& texts) {
@@ -173,8 +178,13 @@ class FeatherReader {
     if (batch.number_of<std::int64_t>(field::nodes, place.node, kPairSize, 8) != 0) {
       refuse(element, "has rows without a value", "one in each row");
     }
-    if (rows > most_unpacked(bytes_.size()) / place.bytes) {
-      refuse(element, fmt::format("says that it has {} rows", rows), "fewer");
+    // Of all batches: the footer may name one of them many times.
+    const std::size_t row_bytes = place.kind == kTextType ? sizeof(std::string) : sizeof(double);
+    if (rows > most_unpacked(bytes_.size()) || !rows_left_.spend(rows * row_bytes)) {
+      refuse(
+          element,
+          fmt::format("has {} rows, with those before too many for {} bytes", rows, bytes_.size()),
+          "fewer");
     }
     if (place.kind == kTextType) return read_texts(batch, rows, c, element);
     const std::string_view values =
@@ -192,7 +202,7 @@ class FeatherReader {
     const std::string offsets(buffer_of(batch, buffer, (rows + 1) * step, element));
     const auto offset = [&](std::uint64_t row) { return at<std::int32_t>(&offsets[row * step]); };
     const auto size = static_cast<std::uint64_t>(std::max(0, offset(rows)));
-    if (size > most_unpacked(bytes_.size())) refuse(element, "has too many bytes", "fewer");
+    if (!rows_left_.spend(size)) refuse(element, "has too many bytes", "fewer");
     const std::string_view texts = buffer_of(batch, buffer + 1, size, element);
     for (std::uint64_t row = 0; row < rows; ++row) {
       const std::int32_t from = offset(row), to = offset(row + 1);
@@ -223,7 +233,7 @@ class FeatherReader {
       if (unpacked_size != -1) {  // -1: this one is not packed
         const auto codec = compression->number<std::uint8_t>(field::codec, 0);
         if (static_cast<std::uint64_t>(unpacked_size) < size || codec > 1 ||
-            static_cast<std::uint64_t>(unpacked_size) > most_unpacked(bytes_.size())) {
+            !unpacked_left_.spend(static_cast<std::uint64_t>(unpacked_size))) {
           refuse(element, fmt::format("unpacks to {} bytes", unpacked_size),
                  fmt::format("{} by LZ4 or Zstandard", size));
         }
@@ -270,7 +280,8 @@ class FeatherReader {
   std::string_view bytes_, body_;
   const std::string& name_;
   std::string unpacked_;
-  std::size_t numbers_ = 0;  // of the columns; texts are behind them
+  geometry::WorkBudget unpacked_left_, rows_left_;  // bytes
+  std::size_t numbers_ = 0;                         // of the columns; texts are behind them
   std::vector<FeatherColumn> columns_;
   std::vector<Place> places_;
 };

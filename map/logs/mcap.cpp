@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "roadbed/geometry/primitives/work_limit.h"
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/visible_text.h"
 #include "roadbed/map/logs/containers.h"
@@ -64,7 +65,8 @@ struct Channel {
 
 class McapReader {
  public:
-  McapReader(LogBytes& file, const LogVisitor& visitor) : file_(file), visitor_(visitor) {}
+  McapReader(LogBytes& file, const LogVisitor& visitor)
+      : file_(file), visitor_(visitor), unpacked_(most_unpacked_in_all(file.size())) {}
 
   void run() {
     take_bytes(kMcapStart.size());
@@ -181,6 +183,10 @@ class McapReader {
       fields.refuse(fmt::format("a chunk of {} bytes, packed in {}", size, packed.size()),
                     fmt::format("at most {}", most_unpacked(file_.size())));
     }
+    if (!unpacked_.spend(size)) {
+      fields.refuse(fmt::format("chunks of more than {} bytes", most_unpacked_in_all(file_.size())),
+                    "fewer");
+    }
     const auto kind = packing == "lz4" ? BlockPacking::lz4 : BlockPacking::zstandard;
     if (const std::string fault = unpack_block(packed, kind, size, chunk_); !fault.empty()) {
       fields.refuse(fmt::format("a chunk that cannot be unpacked as {}: {}", packing, fault),
@@ -191,6 +197,7 @@ class McapReader {
 
   LogBytes& file_;
   const LogVisitor& visitor_;
+  geometry::WorkBudget unpacked_;
   std::uint64_t offset_ = 0;
   std::uint32_t crc_ = 0;
   std::string chunk_;

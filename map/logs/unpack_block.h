@@ -21,4 +21,9 @@ constexpr std::uint64_t most_unpacked(std::uint64_t file_bytes) {
   return (std::uint64_t{128} << 20) + 4 * file_bytes;
 }
 
+/// The same of all blocks of a log, which are unpacked one after the other: time.
+constexpr std::uint64_t most_unpacked_in_all(std::uint64_t file_bytes) {
+  return most_unpacked(file_bytes) + 60 * file_bytes;
+}
+
 }  // namespace roadbed::map::logs

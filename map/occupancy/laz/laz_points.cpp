@@ -70,14 +70,15 @@ std::size_t layers_of(const LazLayout::Item& item) {
 }
 
 /// Bytes of chunks, in order, by the table that most files end with; empty where there is none.
-std::vector<std::size_t> chunk_table(std::string_view file, std::size_t begin) {
+/// @param most  as many as the points fill: a few bytes may be said to hold billions.
+std::vector<std::size_t> chunk_table(std::string_view file, std::size_t begin, std::uint64_t most) {
   std::vector<std::size_t> sizes;
   const auto table = integer_at<std::uint64_t>(file, begin);
   if (table > file.size() || file.size() - table < kChunkTablePlace) return sizes;
-  const auto chunks = integer_at<std::uint32_t>(file, table + 4);
+  const auto chunks = std::min<std::uint64_t>(integer_at<std::uint32_t>(file, table + 4), most);
   ArithmeticDecoder from(file.substr(table + kChunkTablePlace));
   IntegerDecoder<32> size(2);
-  for (std::uint32_t i = 0; i < chunks && !from.is_past_end(); ++i) {
+  for (std::uint64_t i = 0; i < chunks && !from.is_past_end(); ++i) {
     const std::int32_t last = sizes.empty() ? 0 : static_cast<std::int32_t>(sizes.back());
     sizes.push_back(static_cast<std::uint32_t>(size.decode(from, last, 1)));
   }
@@ -100,7 +101,9 @@ class Unpacking {
   void run() {
     if (layout_.packing != Packing::one_stream) {
       need(kChunkTablePlace);
-      if (layout_.packing == Packing::chunks) sizes_ = chunk_table(file_, at_);
+      if (layout_.packing == Packing::chunks) {
+        sizes_ = chunk_table(file_, at_, left_ / layout_.chunk_points + 1);
+      }
       at_ += kChunkTablePlace;
     }
     while (left_ > 0) take_chunks();

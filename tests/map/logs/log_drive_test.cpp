@@ -99,6 +99,17 @@ TEST(LogDrive, RefusesChunksThatClaimToBeHuge) {
   EXPECT_NE(fault_of(bytes).find("at most"), std::string::npos) << fault_of(bytes);
 }
 
+TEST(LogDrive, RefusesChunksThatTogetherUnpackToMoreThanItsBytesAreWorth) {
+  constexpr std::size_t head = 8 + 9 + 16, tail = 9 + 4 + 9 + 20 + 8;
+  const std::string zeros(60'000'000, '\0');
+  const std::string one = mcap_bytes("/blob", "std_msgs/msg/String", {{0, zeros}}, "zstd");
+  std::string many = one;
+  for (int i = 0; i < 200; ++i) {
+    many.insert(head, one.substr(head, one.size() - head - tail));
+  }
+  EXPECT_NE(fault_of(many).find("chunks of more than"), std::string::npos) << fault_of(many);
+}
+
 TEST(LogDrive, RefusesMessagesThatEndEarly) {
   std::vector<McapMessage> messages = odometry();
   messages[4].bytes.resize(60);

@@ -110,6 +110,16 @@ TEST(Laz, RefusesMorePointsThanItsBytesCanHold) {
   EXPECT_THAT(refusal(bytes), HasSubstr("4000000000 in"));
 }
 
+/// An endless chunk table in a few bytes: zeros are the likeliest sizes, soon for next to no bits.
+TEST(Laz, TakesNoMoreOfATableThanItsPointsHaveChunks) {
+  std::string bytes = packed(3, "chunks");
+  const std::size_t place = integer_at<std::uint32_t>(bytes, 96);
+  const std::size_t table = bytes.size();
+  for (std::size_t i = 0; i < 8; ++i) bytes[place + i] = static_cast<char>(table >> 8 * i);
+  bytes += std::string(4, '\0') + std::string(4, '\xff') + std::string(100'000, '\0');
+  expect_formula(parse_point_cloud(bytes, "a.laz"));
+}
+
 TEST(Laz, RefusesWhatLaszipDoesNotKnow) {
   const std::string bytes = packed(0);
   const std::size_t record = bytes.find("laszip encoded") - 2 + 54;
