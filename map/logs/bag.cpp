@@ -114,6 +114,7 @@ class BagReader {
     const std::string_view bytes = bytes_of(row, 3);
     const std::string place = fmt::format("message {}", sqlite3_column_int64(row.get(), 2));
     const std::int64_t received_ns = sqlite3_column_int64(row.get(), 1);
+    if (!is_usable_time(received_ns)) refuse(place, fmt::format("a time of {} ns", received_ns));
     if (!is_packed(bytes)) return visitor_.take(topic, {received_ns, bytes, place});
     const std::string message = unpacked(bytes, name_ + ":" + place, most_unpacked(size_) / 2);
     if (!unpacked_.spend(message.size())) {

@@ -9,6 +9,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kMetadata = "metadata.yaml";
+
 std::string_view trimmed(std::string_view text, std::string_view signs) {
   const std::size_t begin = std::min(text.find_first_not_of(signs), text.size());
   text.remove_prefix(begin);
@@ -24,12 +26,14 @@ std::string_view take_line(std::string_view& rest) {
 
 }  // namespace
 
-// Of YAML just the list that rosbag2 writes: "relative_file_paths:", then "- NAME" a line.
 std::vector<fs::path> files_of_bag(const fs::path& folder) {
-  const fs::path metadata = folder / "metadata.yaml";
-  const std::string text = read_file(metadata);
+  return files_in_metadata(read_file(folder / kMetadata), folder);
+}
+
+// Of YAML just the list that rosbag2 writes: "relative_file_paths:", then "- NAME" a line.
+std::vector<fs::path> files_in_metadata(std::string_view text, const fs::path& folder) {
   const auto refuse = [&](const std::string& found) {
-    throw InputError({.file = metadata.string(),
+    throw InputError({.file = (folder / kMetadata).string(),
                       .element = "relative_file_paths",
                       .found = found,
                       .needed = "names of files in the bag's folder, a line each",

@@ -23,5 +23,7 @@ void parse_bag(std::string_view bytes, const std::string& name, const LogVisitor
 
 /// The files of a bag's folder, in the order of its metadata.yaml.
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& folder);
+std::vector<std::filesystem::path> files_in_metadata(std::string_view text,
+                                                     const std::filesystem::path& folder);
 
 }  // namespace roadbed::map::logs

@@ -22,9 +22,9 @@ std::int64_t stamp_of(ProtoReader time, std::int64_t received_ns) {
     if (field->number == 1 && field->value) seconds = *field->value;
     if (field->number == 2 && field->value) nanos = *field->value;
   }
-  constexpr std::uint64_t most_s = 9'000'000'000, second_ns = 1'000'000'000;
+  constexpr std::uint64_t most_s = 4'600'000'000, second_ns = 1'000'000'000;
   if (seconds > most_s || nanos >= second_ns) {
-    time.refuse(fmt::format("a time of {} s and {} ns", seconds, nanos), "one after 1970");
+    time.refuse(fmt::format("a time of {} s and {} ns", seconds, nanos), "one from 1970 to 2115");
   }
   const auto stamp_ns = static_cast<std::int64_t>(seconds * second_ns + nanos);
   return stamp_ns == 0 ? received_ns : stamp_ns;

@@ -25,20 +25,24 @@ TopicContents contents_of(const LogTopic& topic, std::vector<std::int64_t> times
 }  // namespace
 
 std::vector<TopicContents> contents_of_log(const std::filesystem::path& path) {
+  return contents_of_log([&](const LogVisitor& visitor) { read_log(path, visitor); });
+}
+
+std::vector<TopicContents> contents_of_log(const GoThrough& go_through) {
   std::map<std::pair<std::string, std::string>, std::pair<LogTopic, std::vector<std::int64_t>>>
       seen;
   const auto of = [&](const LogTopic& topic) -> auto& {
     return seen.try_emplace({topic.name, topic.type}, topic, std::vector<std::int64_t>{})
         .first->second.second;
   };
-  read_log(path,
-           {.wants =
-                [&](const LogTopic& topic) {
-                  of(topic);
-                  return true;
-                },
-            .take = [&](const LogTopic& topic,
-                        const LogMessage& message) { of(topic).push_back(message.received_ns); }});
+  go_through(
+      {.wants =
+           [&](const LogTopic& topic) {
+             of(topic);
+             return true;
+           },
+       .take = [&](const LogTopic& topic,
+                   const LogMessage& message) { of(topic).push_back(message.received_ns); }});
   std::vector<TopicContents> contents;
   for (auto& [name, topic] : seen) {
     contents.push_back(contents_of(topic.first, std::move(topic.second)));
@@ -56,7 +60,7 @@ std::vector<LogGap> gaps_in(const std::vector<std::int64_t>& times_ns, std::int6
   median_ns = *middle;
   std::vector<LogGap> gaps;
   for (std::size_t i = 1; i < times_ns.size(); ++i) {
-    if (times_ns[i] - times_ns[i - 1] > 3 * median_ns) {
+    if ((times_ns[i] - times_ns[i - 1]) / 3 > median_ns) {
       gaps.push_back({times_ns[i - 1], times_ns[i]});
     }
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/logs/log.h"
+#include "roadbed/map/logs/log_drive.h"
 
 namespace roadbed::map::inline logs {
 
@@ -26,6 +27,7 @@ struct TopicContents {
 
 /// All topics, by name; 8 bytes of memory a message.
 /// @throws InputError as read_log does.
+std::vector<TopicContents> contents_of_log(const GoThrough& go_through);
 std::vector<TopicContents> contents_of_log(const std::filesystem::path& path);
 
 /// Gaps of times in order, longer than three times the median interval, which is left in

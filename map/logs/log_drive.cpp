@@ -154,7 +154,7 @@ class DriveSearch {
   }
 
   // Planners often leave the times 0: they follow from the way and the speeds.
-  static std::vector<TimedPose> timed(std::vector<TimedPose> points) {
+  std::vector<TimedPose> timed(std::vector<TimedPose> points) const {
     if (points.size() < 2 || points.back().stamp_ns != points.front().stamp_ns) return points;
     double t_s = 0.0;
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -167,6 +167,9 @@ class DriveSearch {
         break;
       }
       t_s += 2.0 * step.norm() / both_mps;
+      constexpr double longest_s = 1e9;  // 30 years
+      if (t_s > longest_s)
+        refuse(fmt::format("a trajectory of {:g} s", t_s), "a drive", "plan anew");
       points[i].stamp_ns = std::llround(1e9 * t_s);
     }
     sort_by_stamp(points);

@@ -14,6 +14,12 @@ struct LogTopic {
   std::string encoding;  ///< of the messages: "cdr"
 };
 
+/// Whether differences of such times fit in 64 bits: those from 1824 to 2116.
+constexpr bool is_usable_time(std::int64_t time_ns) {
+  constexpr std::int64_t farthest_ns = std::int64_t{1} << 62;
+  return time_ns > -farthest_ns && time_ns < farthest_ns;
+}
+
 /// A message as it was recorded.
 struct LogMessage {
   std::int64_t received_ns;  ///< when it was recorded

@@ -149,6 +149,9 @@ class McapReader {
     const auto received_ns = fields.number<std::int64_t>();
     fields.take(8);  // published
     if (!found->second.is_wanted) return;
+    if (!is_usable_time(received_ns)) {
+      fields.refuse(fmt::format("a message of {} ns", received_ns), "a time before 2116");
+    }
     visitor_.take(found->second.topic, {received_ns, fields.rest(), fields.place()});
   }
 

@@ -17,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const roadbed::map::InputError&) {
   }
   try {
-    roadbed::map::commonroad::write_common_road(roadbed::map::parse_map(bytes, "fuzz.xml"));
+    roadbed::map::commonroad::write_common_road(
+        roadbed::map::parse_map(bytes, "fuzz.xml", {.max_error_m = 0.1}));
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

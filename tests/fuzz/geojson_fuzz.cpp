@@ -11,7 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   if (!bytes.starts_with('{')) return -1;  // other formats have targets of their own
   try {
-    roadbed::map::road_centrelines(roadbed::map::parse_map(bytes, "fuzz.geojson"));
+    roadbed::map::road_centrelines(
+        roadbed::map::parse_map(bytes, "fuzz.geojson", {.max_error_m = 0.1}));
   } catch (const roadbed::map::InputError&) {
   }
   return 0;

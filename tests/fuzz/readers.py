@@ -1,5 +1,6 @@
 """What each fuzz target reads: its sources, its seeds and the words that it knows."""
 
+import os
 import re
 from pathlib import Path
 
@@ -10,7 +11,6 @@ CORPUS = ROOT / "tests/fuzz/corpus"
 SOURCES = {
     "argoverse": r"map/argoverse/",
     "autoware_vehicle": r"tools/files/(autoware_vehicle|vehicle_file)",
-    "bt": r"map/occupancy/octree/octree_file\.",
     "certificate": r"tools/audit/certificate_json|planning/audit/certificate_check",
     "cloud_message": r"map/logs/cloud_message"
                      r"|map/occupancy/clouds/(message_points|point_time|sweep_poses)",
@@ -28,11 +28,12 @@ SOURCES = {
     "lane_table": r"map/lane_table/(geojson|geopackage|mapping|read|shapes)",
     "lanelet2": r"map/lanelet2/(?!rules|write)",
     "las": r"map/occupancy/clouds/read_las|map/occupancy/laz/",
-    "log": r"map/logs/(bag|cdr|log|mcap\.|pose_messages|protobuf|timed_pose|transform_tree)",
+    "log": r"map/logs/(bag|cdr|foxglove_poses|log|mcap\.|pose_messages|protobuf|timed_pose"
+           r"|transform_tree)",
     "obstacles_csv": r"tools/files/(obstacles_csv|csv)",
+    "octree": r"map/occupancy/octree/octree_file\.",
     "od_csv": r"tools/files/(points_csv|csv)",
     "open_drive": r"map/opendrive/(?!rules)",
-    "ot": r"map/occupancy/octree/octree_file\.",
     "outside_plan": r"tools/simulation/outside_planner",
     "pcd": r"map/occupancy/clouds/read_pcd",
     "pilot_lines": r"tools/simulation/pilot_lines",
@@ -50,6 +51,21 @@ SOURCES = {
     "xml_scanner": r"map/files/xml",
     "xyz": r"map/occupancy/clouds/read_xyz",
 }
+
+#: Functions beside them that read nothing.
+WRITERS = re.compile(r"write_|json_of")
+
+#: Folders of tests whose files are seeds, too.
+FOLDERS = {"las": "tests/map/occupancy/laz"}
+
+#: Suffixes of files of others that are seeds, too, where ROADBED_REAL_DATA is set.
+SUFFIXES = {
+    "edit": (".osm", ".xodr"),
+    "lanelet2": (".osm",),
+    "open_drive": (".xodr",),
+    "validate": (".osm", ".xodr"),
+}
+MOST_BYTES = 16_384  # of such a file; larger ones are slow
 
 
 def sources_of(name: str) -> list[Path]:
@@ -72,7 +88,14 @@ def words_of(name: str) -> list[str]:
     return sorted(word.replace("\\n", "\\x0A").replace("\\t", "\\x09") for word in words)
 
 
-def seeds_of(name: str, build: Path) -> list[Path]:
-    """Return the folders that a target starts from, what it has found first."""
+def seeds_of(name: str, build: Path) -> list[str]:
+    """Return what a target starts from as its arguments: what it has found first."""
     folders = [build / "found" / f"{name}_fuzz", CORPUS / name]
-    return [folder for folder in folders if folder.is_dir()]
+    folders += [ROOT / FOLDERS[name]] if name in FOLDERS else []
+    words = [str(folder) for folder in folders if folder.is_dir()]
+    real = os.environ.get("ROADBED_REAL_DATA")
+    if real and name in SUFFIXES:
+        files = [str(file) for file in sorted(Path(real).rglob("*"))
+                 if file.suffix in SUFFIXES[name] and file.stat().st_size <= MOST_BYTES]  # fmt: skip
+        words.append("-seed_inputs=" + ",".join(files))
+    return words

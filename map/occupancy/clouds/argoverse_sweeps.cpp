@@ -65,7 +65,8 @@ SweepInLog::SweepInLog(const std::filesystem::path& file) {
   poses_file_ = log / kPoses;
   const std::optional<std::uint64_t> stamp_ns = parse_count(file.stem().string());
   std::error_code unreadable;
-  if (!stamp_ns || !std::filesystem::exists(poses_file_, unreadable)) return;
+  if (!stamp_ns || *stamp_ns >> 62 != 0 || !std::filesystem::exists(poses_file_, unreadable))
+    return;
   stamp_ns_ = static_cast<std::int64_t>(*stamp_ns);
   poses_ = read_ego_poses(read_file(poses_file_), poses_file_.string());
   sort_by_stamp(poses_);

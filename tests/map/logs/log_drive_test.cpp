@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/tests/support/endless_rows.h"
@@ -158,14 +159,15 @@ TEST(LogDrive, ChainsTransformsBetweenStamps) {
   }
 }
 
-std::string planned_message(int points, bool has_times) {
+std::string planned_message(int points, bool has_times, double step_m = 2.0,
+                            float speed_mps = 4.0F) {
   CdrWriter cdr;
   cdr.put(std::int32_t{5}).put(std::uint32_t{0}).text("map");
   cdr.put(static_cast<std::uint32_t>(points));
   for (int i = 0; i < points; ++i) {
     cdr.put(std::int32_t{0}).put(static_cast<std::uint32_t>(has_times ? 1'000'000 * i : 0));
-    cdr.put(2.0 * i).put(0.0).put(0.0).put(0.0).put(0.0).put(0.0).put(1.0);
-    for (const float value : {4.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F}) cdr.put(value);
+    cdr.put(step_m * i).put(0.0).put(0.0).put(0.0).put(0.0).put(0.0).put(1.0);
+    for (const float value : {speed_mps, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F}) cdr.put(value);
   }
   return cdr.bytes();
 }
@@ -179,6 +181,23 @@ TEST(LogDrive, TakesThePlannedTrajectoryThatIsNumbered) {
   const LogDrive without_times = drive_in(bytes, "/planning/trajectory#2");
   ASSERT_EQ(without_times.poses.size(), 7u);
   EXPECT_EQ(without_times.poses.back().stamp_ns, 3'000'000'000) << "12 m at 4 m/s";
+}
+
+TEST(LogDrive, RefusesPlansThatTakeLongerThanTimesReach) {
+  const std::string slow = planned_message(5, false, 1e8, 0.01F);
+  const std::string fault =
+      fault_of(bag_bytes("/plan", "autoware_planning_msgs/msg/Trajectory", {{1, slow}}));
+  EXPECT_NE(fault.find("a trajectory of 1e+10 s"), std::string::npos) << fault;
+}
+
+TEST(LogDrive, RefusesTimesWhoseDifferencesDoNotFit) {
+  std::vector<McapMessage> messages = odometry();
+  messages[3].time_ns = std::numeric_limits<std::int64_t>::max();
+  messages[7].time_ns = std::numeric_limits<std::int64_t>::min();
+  for (const std::string& bytes :
+       {mcap_bytes("/odom", kOdometry, messages, ""), bag_bytes("/odom", kOdometry, messages)}) {
+    EXPECT_NE(fault_of(bytes).find("9223372036854775807 ns"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// OctoMap .bt in, octree or InputError out.
+// OctoMap .bt or .ot in, octree or InputError out.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
-    roadbed::map::OccupancyMap::parse("# Octomap OcTree binary file\n" + bytes, "fuzz.bt");
+    roadbed::map::OccupancyMap::parse(bytes, "fuzz.bt");
   } catch (const roadbed::map::InputError&) {
   }
   return 0;
