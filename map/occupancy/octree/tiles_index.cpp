@@ -102,6 +102,7 @@ class IndexReader {
                        .nodes = static_cast<std::size_t>(whole(json, "nodes")),
                        .sha256 = text(json, "sha256"),
                        .bounds = {point(json, "min_m"), point(json, "max_m")}};
+    if (whole(json, "nodes") < 0) refuse_index(name_, "nodes", "is below 0", "0 or more");
     if (tile.file != tile_file_name(tile.x, tile.y)) {
       refuse_index(name_, "file", "\"" + tile.file + "\"", tile_file_name(tile.x, tile.y));
     }
