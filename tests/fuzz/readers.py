@@ -19,7 +19,7 @@ SOURCES = {
     "compiled_map": r"map/compiled/|map/storage/chunked_file",
     "drive_file": r"tools/files/(drive_file|pose_lines|argoverse_drive|solution_drive)",
     "drive_record": r"tools/report/drive_record",
-    "edit": r"map/edit/",
+    "edit": r"map/(edit/|files/xml_places)",
     "feather": r"map/logs/(argoverse|feather|flat_tables|pose_columns|unpack_block)",
     "geojson": r"map/geojson/",
     "jobs": r"tools/batch/job(_lines|_result)?\.",
@@ -48,7 +48,7 @@ SOURCES = {
     "unpack": r"map/files/unpack",
     "validate": r"map/((validation|opendrive/rules|lanelet2/rules|commonroad/rules)/|suppressions)",
     "vehicle_json": r"tools/files/(vehicle_json|json)",
-    "xml_scanner": r"map/files/xml",
+    "xml_scanner": r"map/files/xml(_characters|_scanner)?\.",
     "xyz": r"map/occupancy/clouds/read_xyz",
 }
 
