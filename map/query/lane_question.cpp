@@ -152,7 +152,10 @@ class Parser {
   Part comparison() {
     Part found;
     const std::size_t at = here();
-    const std::string name = next_ < tokens_.size() ? tokens_[next_++].text : std::string();
+    if (next_ == tokens_.size()) {
+      refuse(at, fmt::format("needs a field, found \"the end\"; there are {}", known_fields()));
+    }
+    const std::string name = tokens_[next_++].text;
     if (name.starts_with("tag.")) {
       found.key = name.substr(4);
     } else {

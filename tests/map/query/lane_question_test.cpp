@@ -121,7 +121,7 @@ TEST(LaneQuestion, SaysWhereItGoesWrong) {
   EXPECT_THAT(question_fault("lane = a b"), HasSubstr("\"b\" is too much"));
   EXPECT_THAT(question_fault("type = 'a"), HasSubstr("a quote that is not closed"));
   EXPECT_THAT(question_fault("lane in (a,)"), HasSubstr("needs a value, found \")\""));
-  EXPECT_THAT(question_fault(""), HasSubstr("is no field"));
+  EXPECT_THAT(question_fault(""), HasSubstr("at character 1: needs a field, found \"the end\""));
   EXPECT_THAT(question_fault(std::string(100'000, '(')), HasSubstr("nested too deeply"));
   std::string nots;
   for (int i = 0; i < 100'000; ++i) nots += "not ";
