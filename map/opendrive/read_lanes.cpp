@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "roadbed/map/elements/outside_links.h"
 #include "roadbed/map/opendrive/values.h"
 
 namespace roadbed::map::opendrive {
@@ -183,6 +184,27 @@ void mend_lane(LaneRecord& lane) {
   sort_by_station(lane.accesses);
 }
 
+// Where a clip cut a road, or took its link off, it says so (map/edit): lanes that end there lead
+// to what is not in the file.
+void mark_clipped_ends(pugi::xml_node node, RoadRecord& road) {
+  const auto memory = node.find_child_by_attribute("userData", "code", "roadbed.clip");
+  if (!memory || road.sections.empty()) return;
+  const auto cut = memory.child("cut");
+  const auto lost = [&](const char* link) {
+    return memory.child("link").child(link) && !node.child("link").child(link);
+  };
+  const auto mark = [](LaneSection& section) {
+    for (auto& [id, lane] : section.lanes) {
+      lane.attributes.emplace_back(kSuccessorsOutside, "clipped");
+      lane.attributes.emplace_back(kPredecessorsOutside, "clipped");
+    }
+  };
+  if (cut.attribute("from").as_double() > 0.0 || lost("predecessor")) mark(road.sections.front());
+  if (cut.attribute("to").as_double() < cut.attribute("length").as_double() || lost("successor")) {
+    mark(road.sections.back());
+  }
+}
+
 bool speaks_of(const LaneSection& section, int sign) {
   if (!section.single_side) return true;
   const auto& lanes = section.lanes;
@@ -228,6 +250,7 @@ void read_lanes(AttributeReader& in, pugi::xml_node lanes, RoadRecord& road, Doc
   const auto nodes = lanes.children("laneSection");
   road.sections.reserve(static_cast<std::size_t>(std::distance(nodes.begin(), nodes.end())));
   for (const auto node : nodes) read_section(in, node, road.sections.emplace_back(), document);
+  mark_clipped_ends(lanes.parent(), road);
   if (road.sections.empty()) {
     document.remarks.push_back({"import.no-lanes", true, "road " + road.id, road.line,
                                 "has no lane section and gives no lane"});

@@ -69,10 +69,12 @@ void zero_width_links(const RoadMap& road_map, const ValidateOptions&, Report& r
   }
 }
 
-/// Whether a lane's links lead to what is not in the file, which is a part of a larger map.
+/// Whether a lane's links lead to what is not in the file, which is a part of a larger map, or a
+/// clip has cut it (map/edit).
 bool leads_outside(const Lane& lane, std::string_view key) {
-  return std::ranges::any_of(lane.attributes,
-                             [&](const auto& entry) { return entry.first == key; });
+  return std::ranges::any_of(lane.attributes, [&](const auto& entry) {
+    return entry.first == key || entry.first == "roadbed:clip";
+  });
 }
 
 void dead_ends(const RoadMap& road_map, const ValidateOptions&, Report& report) {

@@ -232,6 +232,11 @@ void empty_junctions(const Source& source, const validation::ValidateOptions&,
   }
 }
 
+/// What leads to it may have been cut off with the rest of the map (map/edit).
+bool is_part_of_clip(const RoadSource& road) {
+  return !road.record.node.find_child_by_attribute("userData", "code", "roadbed.clip").empty();
+}
+
 void unused_connecting_roads(const Source& source, const validation::ValidateOptions&,
                              validation::Report& report) {
   std::set<const RoadSource*> used;
@@ -240,7 +245,7 @@ void unused_connecting_roads(const Source& source, const validation::ValidateOpt
   for (const RoadSource& road : source.roads) {
     const auto junction = source.junction_by_id.find(road.record.junction_id);
     if (used.contains(&road) || junction == source.junction_by_id.end()) continue;
-    if (needs_no_connection(*junction->second)) continue;
+    if (needs_no_connection(*junction->second) || is_part_of_clip(road)) continue;
     add_at(report, source, road, road.record.node,
            fmt::format("is in junction {}, but no connection of it leads over the road; add one or "
                        "remove the road",

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "roadbed/map/files/input_error.h"
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/load_map.h"
+#include "roadbed/map/validate_file.h"
 #include "roadbed/tests/support/real_data.h"
 
 namespace roadbed::map {
@@ -58,6 +60,30 @@ TEST(ClipOpenDrive, CutsARoadWhereTheEdgeCrossesItStraight) {
   }
   EXPECT_NEAR(least_m, 30.0, 2e-6);
   EXPECT_NEAR(most_m, 150.0, 2e-6);
+}
+
+std::size_t loose_ends(const std::string& bytes) {
+  const auto findings = validate_bytes(bytes, "part.xodr").findings;
+  return static_cast<std::size_t>(std::ranges::count_if(findings, [](const auto& finding) {
+    return finding.rule == "link.dead-end" || finding.rule == "link.unreachable";
+  }));
+}
+
+TEST(ClipOpenDrive, LeavesNoDeadEndsWhereItCuts) {
+  EXPECT_EQ(loose_ends(two_roads()), 4u);
+  EXPECT_EQ(loose_ends(clip(two_roads(), "two.xodr", box(-10, -50, 150, 50)).bytes), 2u);
+  EXPECT_EQ(loose_ends(clip(two_roads(), "two.xodr", box(30, -50, 150, 50)).bytes), 0u);
+  EXPECT_EQ(loose_ends(clip(two_roads(), "two.xodr", box(30, -50, 90, 50)).bytes), 0u);
+}
+
+TEST(ClipOpenDrive, OfATownWithoutFaultsHasNone) {
+  ROADBED_REAL_DATA_OR_SKIP(folder);
+  const auto file = folder / "opendrive/BerkeleyLearnVerify+Scenic/Town04.xodr";
+  const Edited part = clip(read_file(file), file, box(-200, -100, 200, 200));
+  for (const auto& finding : validate_bytes(part.bytes, "part.xodr").findings) {
+    EXPECT_EQ(finding.severity, validation::Severity::info)
+        << finding.element << ": " << finding.message;
+  }
 }
 
 TEST(ClipOpenDrive, KeepsWhatNobodyReads) {
