@@ -132,6 +132,10 @@ std::vector<MergePlace> merge_places(const map::RoadMap& road_map, const Route& 
 std::optional<MergeLines> merge_lines(const map::RoadMap& road_map, const Route& route,
                                       const MergePlace& place, ReferenceLineOptions options) {
   using At = PlacedChange::At;
+  const auto& window = route.legs[place.leg].change_window;
+  // Both places are inside of it, by more than a step.
+  const double least_m = kWorthChoosing_m + kPlaceStep_m;
+  if (!window || window->to_s_m - window->from_s_m < least_m) return std::nullopt;
   options.placed_change = {place.leg, At::window_start, options.lane_change_length_m};
   ReferenceLine next_lane = ReferenceLine::along(road_map, route, options);
   options.placed_change = {place.leg, At::window_end, kLastChange_m};

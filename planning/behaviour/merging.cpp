@@ -45,6 +45,7 @@ const MergePlace* Merging::next_place(const ViewOnLine& view) {
     has_entered_ = false;
     taken_.reset();
     lines_.reset();
+    has_no_lines_ = false;
     along_ = Along::route_line;
   }
   if (next_ == places_.size()) return nullptr;
@@ -89,8 +90,9 @@ bool Merging::has_entered(const Scene& scene) const {
 /// As long as that makes no difference to the path.
 void Merging::leave_route_line(const Scene& scene) {
   const double front_s_m = scene.view.at.s_m + vehicle_.front_m();
-  if (lines_ || front_s_m > scene.place.hold_s_m) return;
+  if (lines_ || has_no_lines_ || front_s_m > scene.place.hold_s_m) return;
   auto lines = merge_lines(task_.road_map, task_.route, scene.place, task_.line_options);
+  has_no_lines_ = !lines;
   if (!lines) return;
   lines_ = std::make_shared<const MergeLines>(*std::move(lines));
   along_ = Along::own_lane;

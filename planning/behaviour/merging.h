@@ -86,6 +86,7 @@ class Merging {
   std::vector<MergePlace> places_;
   std::size_t next_ = 0;  ///< the first place that is not behind
   std::shared_ptr<const MergeLines> lines_;
+  bool has_no_lines_ = false;  ///< the next place: not asked for again, as they take long to make
   Along along_ = Along::route_line;
   double begun_enter_m_ = 0.0;                ///< station of the next lane, of the change begun
   std::optional<MergeGap> taken_;             ///< of the last look
