@@ -10,6 +10,7 @@
 #include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/obstacles/reachable_set.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/route/route.h"
@@ -25,8 +26,10 @@ struct DrivingTask {
   geometry::Pose2 start;                             ///< of the ego's rear axle
   Route route;
   ReferenceLine line;
-  ReferenceLineOptions line_options = {};   ///< that a route's line is drawn with
-  std::vector<Obstacle> obstacles;          ///< motions last for the duration of the drive
+  ReferenceLineOptions line_options = {};  ///< that a route's line is drawn with
+  std::vector<Obstacle> obstacles;         ///< motions last for the duration of the drive
+  /// What is expected of others, who are measured; none: their future is known.
+  std::optional<MotionBounds> others_within = {};
   std::optional<double> sight_m = {};       ///< how far others are seen; none: all are known
   std::optional<TimedGoal> goal = {};       ///< none: to stand at the end of the route
   std::vector<LightCycle> lights = {};      ///< what the traffic lights show

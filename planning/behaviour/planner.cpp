@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/blocked_road.h"
+#include "roadbed/planning/behaviour/command_guard.h"
 #include "roadbed/planning/behaviour/cruise_law.h"
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypotheses.h"
@@ -46,7 +47,8 @@ class Planner::Impl {
         merging_(vehicle_, task_, lines_.first().ceiling),
         speed_(setup, cruise_.options()),
         hypotheses_(setup, lines_, speed_),
-        blocked_road_(vehicle_, setup.driving, task_) {}
+        blocked_road_(vehicle_, setup.driving, task_),
+        guard_(task_) {}
 
   const LateralReplanner& replanner() const { return lines_.driven().replanner; }
 
@@ -63,6 +65,7 @@ class Planner::Impl {
         task_.goal ? speed_.command_of(best, scene) : cruised(best, scene, passing);
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
+    guard_.look(best, scene, command);
     if (!task_.goal) look_at_blocked_road(view, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
@@ -328,6 +331,7 @@ class Planner::Impl {
   HypothesisSpeed speed_;
   Hypotheses hypotheses_;
   BlockedRoad blocked_road_;
+  CommandGuard guard_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;
 };

@@ -167,6 +167,7 @@ class Pilot::Impl {
                                                       .line = std::move(drawn.line),
                                                       .line_options = drawn.options,
                                                       .obstacles = {},
+                                                      .others_within = by_the_rules(),
                                                       .sight_m = setup_.sight_m,
                                                       .lights = lights_});
     restart();
