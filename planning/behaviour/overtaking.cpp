@@ -60,9 +60,9 @@ Overtaking::Overtaking(const geometry::VehicleShape& vehicle, const DrivingTask&
       ceiling_(ceiling),
       stretches_(oncoming_lane_segments(task.road_map, task.route, task.line)) {}
 
-/// The nearest one ahead in the vehicle's lane, if it moves.
-const MoverOnLine* Overtaking::slower_ahead(const std::vector<MoverOnLine>& movers,
-                                            const ViewOnLine& view) const {
+/// In the vehicle's lane.
+const MoverOnLine* Overtaking::nearest_ahead(const std::vector<MoverOnLine>& movers,
+                                             const ViewOnLine& view) const {
   const MoverOnLine* nearest = nullptr;
   const double front_m = view.at.s_m + vehicle_.front_m();
   for (const MoverOnLine& mover : movers) {
@@ -71,7 +71,25 @@ const MoverOnLine* Overtaking::slower_ahead(const std::vector<MoverOnLine>& move
       continue;
     if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
   }
-  return nearest && nearest->speed_mps > kMoves_mps ? nearest : nullptr;
+  return nearest;
+}
+
+/// Who brakes is about to turn off, or to stand in a queue.
+bool Overtaking::brakes(const MoverOnLine& mover, double t_s) const {
+  constexpr double kOver_s = 0.5, kBrakes_mps2 = 1.0;
+  const geometry::Trajectory& motion = task_.obstacles[mover.obstacle].motion;
+  return motion.at(t_s - kOver_s).speed_mps - motion.at(t_s).speed_mps > kBrakes_mps2 * kOver_s;
+}
+
+/// Whether it stands now and will not always: in a queue, at a light, to let somebody by. Of those
+/// who are measured who has stood for long is static.
+bool Overtaking::waits(const MoverOnLine& mover, double t_s) const {
+  constexpr double kWithin_s = 12.0, kSetsOff_m = 0.5;
+  if (std::abs(mover.speed_mps) > kMoves_mps) return false;
+  if (task_.others_within) return true;
+  const geometry::Trajectory& motion = task_.obstacles[mover.obstacle].motion;
+  const Eigen::Vector2d now = motion.at(t_s).pose().position();
+  return (motion.at(t_s + kWithin_s).pose().position() - now).norm() > kSetsOff_m;
 }
 
 double Overtaking::pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const {
@@ -235,7 +253,9 @@ const MoverOnLine* Overtaking::lead_of(const std::vector<MoverOnLine>& movers,
                                        const ViewOnLine& view) const {
   const auto found = std::ranges::find_if(
       movers, [&](const MoverOnLine& mover) { return overtaken_ == mover.obstacle; });
-  return found != movers.end() ? &*found : slower_ahead(movers, view);
+  if (found != movers.end()) return &*found;
+  const MoverOnLine* nearest = nearest_ahead(movers, view);
+  return nearest && nearest->speed_mps > kMoves_mps ? nearest : nullptr;
 }
 
 /// Whether it is over: past the other one, or behind it again.
@@ -254,12 +274,21 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
   const MoverOnLine* lead = lead_of(movers, view);
   const geometry::VehicleShape& vehicle = vehicle_;
   const double within_m = stretch ? stretch->own_edge_m - 0.5 * vehicle.width_m : 0.0;
+  if (const MoverOnLine* next = nearest_ahead(movers, view);
+      !lead && next && waits(*next, view.t_s)) {
+    overtaken_.reset();
+    return {
+        .keep_within_m = std::max(0.0, within_m),
+        .side = stretch->side,
+        .reason = fmt::format("{} is not overtaken: it waits", task_.obstacles[next->obstacle].id)};
+  }
   if (!lead || stretch->side * pass_at_m(*lead, *stretch) <= within_m + kNotInLane_m) {
     overtaken_.reset();
     return {};
   }
   const State now{0.0, view.at.s_m, view.speed_mps};
   std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
+  if (!why && !overtaken_ && brakes(*lead, view.t_s)) why = "it brakes";
   const bool is_free_as_seen = !why;
   std::vector<MoverOnLine> with_hidden = movers;
   if (is_free_as_seen) {

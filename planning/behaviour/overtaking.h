@@ -38,15 +38,16 @@ std::vector<OncomingLaneSegment> oncoming_lane_segments(const map::RoadMap& road
 ///       │   ╱●╱  ╱╱╱              ●  in the other lane, from the first to the second
 ///       └──────────────────────────▶ t
 ///
-/// It is begun if, accelerating as the cruise control does, the vehicle is back in its lane, with
+/// It is begun, past somebody who does not brake, if, accelerating as the cruise control does, the
+/// vehicle is back in its lane, with
 /// distance to the one overtaken and to whoever drives ahead of that one, before the nearest
 /// oncoming vehicle is there at its worst; and if it can be given up, by braking and falling back
 /// behind the one overtaken, until the front is beside that one's rear. Where nobody is seen to
 /// come, somebody may be where the other lane is first hidden; to see past the one ahead the
 /// vehicle drives at the edge of its lane. All of this is asked again in each cycle: what can no
 /// longer be ended in time is given up while that is possible. Where the vehicle may not, or does
-/// not want to, it keeps to its own lane as long as the one ahead moves; what stands is passed as
-/// the lateral planner chooses.
+/// not want to, it keeps to its own lane as long as the one ahead moves or waits, as in a queue;
+/// what stands for good is passed as the lateral planner chooses.
 class Overtaking {
  public:
   /// What the lateral planner is asked for.
@@ -68,8 +69,10 @@ class Overtaking {
 
  private:
   struct State;
-  const MoverOnLine* slower_ahead(const std::vector<MoverOnLine>& movers,
-                                  const ViewOnLine& view) const;
+  const MoverOnLine* nearest_ahead(const std::vector<MoverOnLine>& movers,
+                                   const ViewOnLine& view) const;
+  bool brakes(const MoverOnLine& mover, double t_s) const;
+  bool waits(const MoverOnLine& mover, double t_s) const;
   double pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const;
   const OncomingLaneSegment* stretch_at(double s_m) const;
   std::optional<std::string> why_not(const State& from, const MoverOnLine& lead,

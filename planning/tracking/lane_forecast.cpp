@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "roadbed/geometry/primitives/angle.h"
@@ -20,6 +21,9 @@ constexpr double kAtOnce_m = 1.0, kLeastUsual = 1e-4;
 constexpr double kLeastShare = 0.05;  // of the likeliest; what is less likely is left out
 constexpr double kReturns_s = 1.5;    // to the lane's middle
 constexpr double kWaitsFor_s = 15.0, kStays_s = 2.0, kSetsOff_mps = 0.5;
+constexpr double kQueuesFor_s = 90.0;  // as lights are red
+constexpr double kStopLine_m = 20.0;   // before a junction, of the centre of the first
+constexpr double kNextInQueue_m = 15.0, kBesideQueue_m = 1.5;  // of the centre of the next
 constexpr double kSpareWay_m = 100.0;  // that ways are longer than asked for
 
 bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
@@ -27,9 +31,22 @@ bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
 /// Who rides at the side of a lane goes on there: what is narrower than a car.
 bool keeps_beside(const Track& track) { return track.width_m < 1.2; }
 
-/// Who drove not long ago stands in a queue, at a light or a sign; a parked car never did.
-bool waits(const Track& track, const SeenMotion& seen) {
-  return seen.speed_mps == 0.0 && track.moved_s && seen.t_s - *track.moved_s < kWaitsFor_s;
+/// For how long it has stood since it drove last; none: it drives, or has never been seen to.
+std::optional<double> stands_since_s(const Track& track, const SeenMotion& seen) {
+  if (seen.speed_mps != 0.0 || !track.moved_s) return std::nullopt;
+  return seen.t_s - *track.moved_s;
+}
+
+bool stands_behind_another(LaneForecast::Tracks tracks, const SeenMotion& seen) {
+  return std::ranges::any_of(tracks, [&](const std::optional<Track>& other) {
+    if (!other) return false;
+    const SeenMotion there = other->filter.state();
+    const Eigen::Vector2d ahead = seen.pose.inverse() * there.pose.position();
+    const double turned_rad =
+        std::abs(geometry::wrap_angle(there.pose.heading_rad - seen.pose.heading_rad));
+    return there.speed_mps == 0.0 && turned_rad < kMostTurned_rad && ahead.x() > 0.0 &&
+           ahead.x() < kNextInQueue_m && std::abs(ahead.y()) < kBesideQueue_m;
+  });
 }
 
 /// Stays for a while, then moves on a little, so that it is followed and not passed.
@@ -84,11 +101,12 @@ geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline&
 
 }  // namespace
 
-std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_t slot) {
+std::vector<ForecastMotion> LaneForecast::motions(Tracks tracks, std::size_t slot) {
+  const Track& track = *tracks[slot];
   const SeenMotion seen = track.filter.state();
   std::vector<OnLane> on;
   if (follows_lanes(track) && seen.speed_mps > kLeastDriving_mps) on = lanes_at(seen);
-  if (waits(track, seen)) return {{.motion = setting_off(seen)}};
+  if (waits(tracks, track, seen)) return {{.motion = setting_off(seen)}};
   if (on.empty()) return {{.motion = foreseen_motion(seen)}};
 
   struct Choice {
@@ -118,6 +136,23 @@ std::vector<ForecastMotion> LaneForecast::motions(const Track& track, std::size_
          choice.weight / sum, way.ahead.lanes});
   }
   return found;
+}
+
+/// Who drove not long ago stands in a queue, at a light or a sign; a parked car never did.
+bool LaneForecast::waits(Tracks tracks, const Track& track, const SeenMotion& seen) const {
+  const std::optional<double> since_s = stands_since_s(track, seen);
+  if (!since_s) return false;
+  return *since_s < kWaitsFor_s ||
+         (*since_s < kQueuesFor_s && (stands_behind_another(tracks, seen) || is_at_junction(seen)));
+}
+
+bool LaneForecast::is_at_junction(const SeenMotion& seen) const {
+  return std::ranges::any_of(lanes_at(seen), [&](const OnLane& at) {
+    const map::LanePlace from{.lane = at.place.lane, .s_m = at.place.s_m};
+    const LanesAhead ahead = ways_ahead(road_map_, from, kStopLine_m, 1).front();
+    return std::ranges::any_of(
+        ahead.lanes, [&](map::LaneId lane) { return road_map_.lane(lane).junction.has_value(); });
+  });
 }
 
 std::vector<LaneForecast::OnLane> LaneForecast::lanes_at(const SeenMotion& seen) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "roadbed/geometry/motion/trajectory.h"
@@ -35,10 +37,12 @@ class LaneForecast {
 
   static constexpr std::size_t kMostMotions = 3;
 
-  /// The most likely motion first; their probabilities make 1. A body that stands has one motion of
-  /// one point.
-  /// @param slot  of the tracker: by which ways are kept.
-  std::vector<ForecastMotion> motions(const Track& track, std::size_t slot);
+  using Tracks = std::span<const std::optional<Track>>;
+
+  /// Of the track in a slot, by which its ways are kept. The most likely motion first; their
+  /// probabilities make 1. A body that stands has one motion of one point.
+  /// @param tracks  all slots of the tracker: who stands behind another one is in a queue.
+  std::vector<ForecastMotion> motions(Tracks tracks, std::size_t slot);
 
  private:
   struct OnLane {
@@ -57,6 +61,8 @@ class LaneForecast {
     std::vector<std::vector<Way>> ways;  ///< per lane of `from`
   };
 
+  bool waits(Tracks tracks, const Track& track, const SeenMotion& seen) const;
+  bool is_at_junction(const SeenMotion& seen) const;
   std::vector<OnLane> lanes_at(const SeenMotion& seen) const;
   const Kept& ways_from(std::size_t slot, const std::vector<OnLane>& on, double length_m);
   std::vector<Way> new_ways(map::LaneId from, double length_m) const;

@@ -39,7 +39,7 @@ void PerceivedTraffic::observe(double t_s, std::span<const Detection> detections
   const auto slots = tracker_.slots();
   forecasts_.assign(slots.size(), {});
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i]) forecasts_[i] = forecast_.motions(*slots[i], i);
+    if (slots[i]) forecasts_[i] = forecast_.motions(slots, i);
   }
 }
 

@@ -117,6 +117,24 @@ TEST(Overtaking, IsGivenUpWhereSomebodyComesMuchFasterThanAllowed) {
   }
 }
 
+// Brakes by 4 m/s², stands for 10 s, then drives as fast as one wants to.
+TEST(Overtaking, WhoWaitsInTheLaneIsNotPassed) {
+  Scenario scenario = overtake();
+  scenario.duration_s = 40.0;
+  ScriptedObstacle queue;
+  const auto drives_to = [&](double t_s, double x_m) {
+    queue.poses.push_back({t_s, {x_m, -1.75, 0.0}});
+  };
+  drives_to(0.0, 60.0);
+  for (int k = 0; k <= 40; ++k) drives_to(1.0 + 0.1 * k, 76.0 + 1.6 * k - 0.02 * k * k);
+  for (int k = 0; k <= 40; ++k) drives_to(15.0 + 0.1 * k, 108.0 + 0.02 * k * k);
+  drives_to(60.0, 140.0 + 41.0 * 16.0);
+  scenario.obstacles = {{.id = "queue", .motion = queue}};
+  const Passed result = passed(scenario);
+  EXPECT_LT(result.ends_s, 0.0) << "in the other lane from " << result.begins_s << " s";
+  EXPECT_GT(result.clearance_m, 2.0);
+}
+
 TEST(Overtaking, UsesTheOtherLaneWhereTheMarkingBetweenMayBeCrossed) {
   const auto stretches = [](const std::string& file, const std::string& from,
                             const std::string& to) {

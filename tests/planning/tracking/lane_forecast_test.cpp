@@ -26,7 +26,7 @@ class LaneForecasts : public testing::Test {
                                                      .centre = then,
                                                      .speed_mps = speed_mps}});
     }
-    return forecast_.motions(*tracker.slots()[0], 0);
+    return forecast_.motions(tracker.slots(), 0);
   }
 
   double length_of(const std::vector<map::LaneId>& lanes) const {
@@ -168,7 +168,7 @@ TEST_F(LaneForecasts, WhoDroveNotLongAgoWillSetOff) {
       tracker.observe(t_s,
                       std::vector{Detection{.id = "a", .centre = then, .speed_mps = speed_mps}});
     }
-    return LaneForecast(road_map_).motions(*tracker.slots()[0], 0).front().motion;
+    return LaneForecast(road_map_).motions(tracker.slots(), 0).front().motion;
   };
   EXPECT_EQ(after_standing(6.0, false).points().size(), 1U) << "parked";
   EXPECT_EQ(after_standing(20.0, true).points().size(), 1U) << "parked by now";
@@ -176,6 +176,27 @@ TEST_F(LaneForecasts, WhoDroveNotLongAgoWillSetOff) {
   const double now_s = waits.start_s();
   EXPECT_NEAR((waits.at(now_s + 2.0).pose().position() - stop.position()).norm(), 0.0, 0.1);
   EXPECT_NEAR((waits.at(now_s + 12.0).pose().position() - stop.position()).norm(), 5.0, 0.1);
+}
+
+// 20 s after both stopped: the second stands behind the first, with 40 m to the junction.
+TEST_F(LaneForecasts, WhoStandsBehindAnotherWaitsForAsLongAsALightIsRed) {
+  const geometry::Pose2 stop = road_map_.lane(*road_map_.find_lane("5/0/-1")).pose_at(60.0);
+  const auto second_sets_off = [&](double behind_m, double stood_s) {
+    Tracker tracker({.noise = {.position_m = 0.01, .heading_rad = 0.001, .speed_mps = 0.01}});
+    for (double t_s = -3.0; t_s <= stood_s; t_s += 0.1) {
+      const double driven_m = std::min(0.0, 2.0 * t_s), speed_mps = t_s < 0.0 ? 2.0 : 0.0;
+      const auto at = [&](const std::string& id, double back_m) {
+        return Detection{.id = id,
+                         .centre = stop * geometry::Pose2{driven_m - back_m, 0.0, 0.0},
+                         .speed_mps = speed_mps};
+      };
+      tracker.observe(t_s, std::vector{at("first", 0.0), at("second", behind_m)});
+    }
+    return LaneForecast(road_map_).motions(tracker.slots(), 1).front().motion.points().size() > 1;
+  };
+  EXPECT_TRUE(second_sets_off(8.0, 20.0));
+  EXPECT_FALSE(second_sets_off(30.0, 20.0)) << "parked by now";
+  EXPECT_FALSE(second_sets_off(8.0, 95.0)) << "parked by now";
 }
 
 TEST_F(LaneForecasts, WhoWalksOrDrivesAgainstTheLaneFollowsNone) {
