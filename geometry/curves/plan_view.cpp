@@ -74,7 +74,8 @@ PlanPoint point_on(const SpiralCurve& spiral, double ds, double length_m) {
   const double rate = (spiral.end_curvature_per_m - k0) / length_m;
   const auto heading = [&](double s) { return s * (k0 + 0.5 * rate * s); };
   const double turning = std::abs(ds) * std::max(std::abs(k0), std::abs(k0 + rate * ds));
-  const int parts = std::clamp(static_cast<int>(std::ceil(turning)), 1, 100'000);
+  // Also of endless turning, or none that is a number.
+  const int parts = static_cast<int>(std::fmin(std::fmax(std::ceil(turning), 1.0), 1e5));
   const double step = ds / parts;
   Eigen::Vector2d at = step * unit_spiral(k0 * step, rate * step * step);
   for (int i = 1; i < parts; ++i) {

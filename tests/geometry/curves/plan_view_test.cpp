@@ -43,6 +43,14 @@ TEST(PlanView, SpiralsAndArcsAreTheIntegralOfTheirHeading) {
   }
 }
 
+// Editors ask for places of curves that no reader would take; sanitizers look at what comes of it.
+TEST(PlanView, SpiralsOfAnyTurningAreFollowedInLimitedTime) {
+  for (const double k1 : {4294967296.0, 1e300, std::nan("")}) {
+    EXPECT_EQ(plan_point({0.0, 20.0, {}, SpiralCurve{0.0, k1}}, 0.0).pose.x_m == 0.0, k1 == k1);
+    plan_point({0.0, 20.0, {}, SpiralCurve{0.0, k1}}, 20.0);
+  }
+}
+
 TEST(PlanView, AnArcOfAlmostNoCurvatureIsAlmostALine) {
   const Pose2 pose = single(ArcCurve{1e-12}, 100.0).at(100.0).pose;
   EXPECT_NEAR(pose.x_m, 100.0, 1e-12);
