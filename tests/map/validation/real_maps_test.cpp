@@ -1,4 +1,4 @@
-// What is wrong with maps made by others: errors and warnings by rule, read one by one beside the
+// What is wrong with maps made by others: errors and warnings by rule, several of each looked up in the
 // files. A finding that is no fault of its file is a fault of the rule.
 
 #include <fmt/format.h>
