@@ -1,5 +1,5 @@
-// What is wrong with maps made by others: errors and warnings by rule, several of each looked up in the
-// files. A finding that is no fault of its file is a fault of the rule.
+// What is wrong with maps made by others: errors and warnings by rule, several of each looked up in
+// the files. A finding that is no fault of its file is a fault of the rule.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
