@@ -37,7 +37,7 @@ class LaneForecast {
 
   static constexpr std::size_t kMostMotions = 3;
 
-  using Tracks = std::span<const std::optional<Track>>;
+  using Tracks = std::span<const std::optional<Track>>;  ///< all slots of a tracker
 
   /// Of the track in a slot, by which its ways are kept. The most likely motion first; their
   /// probabilities make 1. A body that stands has one motion of one point.
