@@ -51,8 +51,9 @@ int wait_for(pid_t child) {
   return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
 }
 
-int status_of_roadbed(const std::vector<std::string>& arguments, const Redirections& redirections) {
-  std::vector<std::string> words{program_file().string()};
+int status_of(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+              const Redirections& redirections) {
+  std::vector<std::string> words{program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   std::transform(words.begin(), words.end(), std::back_inserter(argv),
@@ -66,10 +67,20 @@ int status_of_roadbed(const std::vector<std::string>& arguments, const Redirecti
   return wait_for(child);
 }
 
+ProgramRun run_reading(const std::filesystem::path& program, const std::string& input,
+                       const std::vector<std::string>& arguments) {
+  const TemporaryFolder streams;
+  const std::string out = streams / "out", err = streams / "err";
+  Redirections redirections(err, input);
+  redirections.print_to(out);
+  const int status = status_of(program, arguments, redirections);
+  return {.status = status, .out = bytes_of(out), .err = bytes_of(err)};
+}
+
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "roadbed.XXXXXX").string();
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& within) {
+  std::string pattern = (within / "roadbed.XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
   path_ = pattern;
 }
@@ -91,14 +102,14 @@ ProgramRun run_roadbed(const std::vector<std::string>& arguments) {
   return run_roadbed_reading("/dev/null", arguments);
 }
 
+ProgramRun run_program(const std::filesystem::path& program,
+                       const std::vector<std::string>& arguments) {
+  return run_reading(program, "/dev/null", arguments);
+}
+
 ProgramRun run_roadbed_reading(const std::string& input,
                                const std::vector<std::string>& arguments) {
-  const TemporaryFolder streams;
-  const std::string out = streams / "out", err = streams / "err";
-  Redirections redirections(err, input);
-  redirections.print_to(out);
-  const int status = status_of_roadbed(arguments, redirections);
-  return {.status = status, .out = bytes_of(out), .err = bytes_of(err)};
+  return run_reading(program_file(), input, arguments);
 }
 
 ProgramRun run_roadbed_into(int descriptor, const std::vector<std::string>& arguments) {
@@ -106,7 +117,7 @@ ProgramRun run_roadbed_into(int descriptor, const std::vector<std::string>& argu
   const std::string err = streams / "err";
   Redirections redirections(err);
   redirections.print_to(descriptor);
-  const int status = status_of_roadbed(arguments, redirections);
+  const int status = status_of(program_file(), arguments, redirections);
   return {.status = status, .out = {}, .err = bytes_of(err)};
 }
 

@@ -10,7 +10,8 @@ namespace roadbed::tests {
 /// A folder of its own for a test, empty at first, removed at the end.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
+  explicit TemporaryFolder(
+      const std::filesystem::path& within = std::filesystem::temp_directory_path());
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -37,6 +38,10 @@ std::filesystem::path program_file();
 
 /// Runs it.
 ProgramRun run_roadbed(const std::vector<std::string>& arguments);
+
+/// The same with another file of the program.
+ProgramRun run_program(const std::filesystem::path& program,
+                       const std::vector<std::string>& arguments);
 
 /// The same with a file, or a pipe that somebody writes to, as standard input.
 ProgramRun run_roadbed_reading(const std::string& input, const std::vector<std::string>& arguments);

@@ -162,14 +162,16 @@ TEST(LonLatAnswers, AreRefusedWithAReasonWhereTheSystemIsUnknown) {
   EXPECT_EQ(run.out, "");
 }
 
-// Modules are looked for beside the program.
+// Modules are looked for beside the program: a link to it that stands alone finds none.
 TEST(LonLatAnswers, AreRefusedWithAReasonWhereProjIsNotInstalled) {
-  const TemporaryFolder folder;
-  std::filesystem::copy_file(program_file(), folder / "roadbed");
-  const std::string err = folder / "err", program = folder / "roadbed";
-  const std::string words = " locate " + town() + " --at lonlat:9,48.5 > /dev/null 2> " + err;
-  EXPECT_NE(std::system((program + words).c_str()), 0);
-  EXPECT_THAT(bytes_of(err), HasSubstr("libroadbed_proj.so is not installed"));
+  const TemporaryFolder folder(program_file().parent_path());
+  const std::filesystem::path program = folder / "bin/roadbed";
+  std::filesystem::create_directory(folder / "bin");
+  std::filesystem::create_hard_link(program_file(), program);
+  const ProgramRun run = run_program(program, {"locate", town(), "--at", "lonlat:9,48.5"});
+  EXPECT_NE(run.status, 0);
+  EXPECT_THAT(run.err, HasSubstr("libroadbed_proj.so is not installed"));
+  EXPECT_EQ(run.out, "");
 }
 
 }  // namespace
