@@ -26,6 +26,13 @@ class OsmElement {
   /// @param text  of the element, from `<` of its start tag to `>` of its end; outlives it.
   explicit OsmElement(std::string_view text);
 
+  // Children are views of texts that it keeps.
+  OsmElement(const OsmElement&) = delete;
+  OsmElement& operator=(const OsmElement&) = delete;
+  OsmElement(OsmElement&&) = default;
+  OsmElement& operator=(OsmElement&&) = default;
+  ~OsmElement() = default;
+
   void set_attribute(std::string_view name, std::string_view value);
 
   /// Leaves tags, and puts these in place of `<nd>` or `<member>`.

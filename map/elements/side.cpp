@@ -2,18 +2,12 @@
 
 #include <algorithm>
 
+#include "roadbed/geometry/primitives/segment.h"
+
 namespace roadbed::map::inline elements {
 namespace {
 
 using Line = std::vector<Eigen::Vector2d>;
-
-double distance_to_segment(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const double squared = (b - a).squaredNorm();
-  const double fraction =
-      squared > 0.0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return (point - a - fraction * (b - a)).norm();
-}
 
 /// Distance of each point of a line to another line that runs beside it in the same direction; the
 /// nearest place moves only forward, so that it costs O(points of both).
@@ -21,9 +15,9 @@ std::vector<double> distances_m(const Line& line, const Line& other) {
   std::vector<double> found;
   std::size_t at = 0;
   for (const Eigen::Vector2d& point : line) {
-    double least = distance_to_segment(point, other[at], other[at + 1]);
+    double least = geometry::distance_to_segment_m(point, other[at], other[at + 1]);
     while (at + 2 < other.size()) {
-      const double next = distance_to_segment(point, other[at + 1], other[at + 2]);
+      const double next = geometry::distance_to_segment_m(point, other[at + 1], other[at + 2]);
       if (next > least) break;
       least = next;
       ++at;

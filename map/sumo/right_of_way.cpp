@@ -6,6 +6,7 @@
 
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/geometry/primitives/cross.h"
+#include "roadbed/geometry/primitives/segment.h"
 #include "roadbed/map/derived/lane_relations.h"
 
 namespace roadbed::map::sumo {
@@ -89,15 +90,6 @@ void add_known(const RoadMap& road_map, const Net& net, const ConnectionConflict
   }
 }
 
-double apart_m(const Eigen::Vector2d& point, const Eigen::Vector2d& from,
-               const Eigen::Vector2d& to) {
-  const Eigen::Vector2d step = to - from;
-  const double share = step.squaredNorm() > 0.0
-                           ? std::clamp((point - from).dot(step) / step.squaredNorm(), 0.0, 1.0)
-                           : 0.0;
-  return (point - from - share * step).norm();
-}
-
 double apart_m(const geometry::Polyline& a, const geometry::Polyline& b) {
   double least_m = 1e300;
   const auto &of_a = a.points(), &of_b = b.points();
@@ -108,8 +100,8 @@ double apart_m(const geometry::Polyline& a, const geometry::Polyline& b) {
       const double across = geometry::cross(one, other);
       const double t = geometry::cross(gap, other) / across, u = geometry::cross(gap, one) / across;
       if (across != 0.0 && t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0) return 0.0;
-      least_m = std::min({least_m, apart_m(of_a[i], of_b[k - 1], of_b[k]),
-                          apart_m(of_b[k], of_a[i - 1], of_a[i])});
+      least_m = std::min({least_m, geometry::distance_to_segment_m(of_a[i], of_b[k - 1], of_b[k]),
+                          geometry::distance_to_segment_m(of_b[k], of_a[i - 1], of_a[i])});
     }
   }
   return least_m;

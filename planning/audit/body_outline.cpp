@@ -4,17 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "roadbed/geometry/primitives/segment.h"
+
 namespace roadbed::planning::inline audit {
 namespace {
 
 using Corners = BodyOutline::Corners;
-
-double point_to_edge_m(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
-                       const Eigen::Vector2d& b) {
-  const Eigen::Vector2d along = b - a;
-  const double fraction = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - fraction * along).norm();
-}
 
 // Whether an edge of `a` has all of `b` strictly on its outer side; both are counter-clockwise.
 bool parts(const Corners& a, const Corners& b) {
@@ -33,8 +28,8 @@ double corners_distance_m(const Corners& a, const Corners& b) {
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t k = 0; k < 4; ++k) {
-      least_m = std::min({least_m, point_to_edge_m(a[i], b[k], b[(k + 1) % 4]),
-                          point_to_edge_m(b[i], a[k], a[(k + 1) % 4])});
+      least_m = std::min({least_m, geometry::distance_to_segment_m(a[i], b[k], b[(k + 1) % 4]),
+                          geometry::distance_to_segment_m(b[i], a[k], a[(k + 1) % 4])});
     }
   }
   return least_m;
@@ -48,7 +43,7 @@ double to_point_m(const Corners& from, const Eigen::Vector2d& point) {
     const Eigen::Vector2d &a = from[i], &b = from[(i + 1) % 4];
     const Eigen::Vector2d along = b - a, there = point - a;
     is_inside = is_inside && along.x() * there.y() - along.y() * there.x() >= 0.0;
-    least_m = std::min(least_m, point_to_edge_m(point, a, b));
+    least_m = std::min(least_m, geometry::distance_to_segment_m(point, a, b));
   }
   return is_inside ? 0.0 : least_m;
 }

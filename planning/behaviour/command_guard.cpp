@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "roadbed/planning/obstacles/reachable_set.h"
+#include "roadbed/planning/obstacles/traffic.h"
 #include "roadbed/planning/speed/safe_stop.h"
 
 namespace roadbed::planning::inline behaviour {
@@ -34,16 +34,11 @@ std::vector<MayBeMet> who_may_be_met(const ManeuverHypothesis& best, const Plann
   const double t_s = scene.view.t_s, own_m = scene.view.measured.speed_mps * within_s;
   const double sets_off_m = 0.5 * task.others_within->max_acceleration_mps2 * within_s * within_s;
   std::vector<MayBeMet> met;
-  std::optional<Eigen::Vector2d> before;
-  for (std::size_t i = 0; i < task.obstacles.size(); ++i) {
+  for (const auto& [i, there] : bodies_there(task.obstacles, t_s)) {
     const Obstacle& other = task.obstacles[i];
-    if (!other.is_there(t_s)) continue;
-    const geometry::Rectangle there = rectangle_at(other, t_s);
-    const bool is_again = before == there.centre;  // another motion of the same one
-    before = there.centre;
-    if (is_again || (i < scene.no_matter.size() && scene.no_matter[i])) continue;
+    if (i < scene.no_matter.size() && scene.no_matter[i]) continue;
     const Eigen::Vector2d apart = there.centre - body.centre;
-    if (apart.dot(body.axis) < 0.0) continue;
+    if (apart.dot(body.axis) < body.half_length_m) continue;
     const double his_m = (other.is_static() ? 0.0 : other.motion.at(t_s).speed_mps) * within_s;
     if (apart.norm() > own_m + his_m + sets_off_m + body.radius_m() + there.radius_m()) continue;
     const bool crosses = i < scene.crosses.size() && scene.crosses[i];

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/hypothesis_speed.h"
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/planner_types.h"
+#include "roadbed/planning/task/driving_task.h"
 
 namespace roadbed::planning::inline behaviour {
 
@@ -12,11 +12,10 @@ namespace roadbed::planning::inline behaviour {
 /// By ¼ g at most: braking harder is for what is foreseen, not for what may be. Where no command
 /// leaves such a stop, as when somebody cuts in, that is news.
 ///
-/// Looked at are those ahead and beside; who crosses only if he is foreseen to come into the way
-/// before the vehicle stands. Who follows, or is behind the middle of the vehicle, keeps his
-/// distance; overtaking has been judged by bounds of its own (overtaking.h). Drives to a goal in
-/// time are left as they are: recorded traffic does not react, and braking in it has a price of its
-/// own.
+/// Looked at is whose centre is ahead of the vehicle's front; who crosses only if he is foreseen to
+/// come into the way before the vehicle stands. Who is beside or behind keeps his distance himself.
+/// Overtaking has been judged by bounds of its own (overtaking.h). Drives to a goal in time are
+/// left as they are: recorded traffic does not react, and braking in it has a price of its own.
 class CommandGuard {
  public:
   /// @param task  outlives it.

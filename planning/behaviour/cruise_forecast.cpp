@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/speed/safe_way_on.h"
+#include "roadbed/planning/speed/speed_controller.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
-#include "roadbed/planning/behaviour/lane_passing.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
-#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
-#include "roadbed/planning/behaviour/merging.h"
-#include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/planner_types.h"
-#include "roadbed/planning/behaviour/right_of_way.h"
-#include "roadbed/planning/behaviour/within_lane_passing.h"
+#include "roadbed/planning/maneuvers/lane_passing.h"
+#include "roadbed/planning/maneuvers/merging.h"
+#include "roadbed/planning/maneuvers/overtaking.h"
+#include "roadbed/planning/maneuvers/within_lane_passing.h"
 #include "roadbed/planning/obstacles/traffic.h"
+#include "roadbed/planning/right_of_way/right_of_way.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -7,10 +7,10 @@
 
 #include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/planning/behaviour/behaviour.h"
-#include "roadbed/planning/behaviour/hidden_walkers.h"
-#include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/right_of_way.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
+#include "roadbed/planning/right_of_way/hidden_walkers.h"
+#include "roadbed/planning/right_of_way/right_of_way.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::planning::inline behaviour {
 

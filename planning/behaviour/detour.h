@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/route_line.h"
 #include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/route/route_options.h"
+#include "roadbed/planning/task/driving_task.h"
 
 namespace roadbed::planning::inline behaviour {
 

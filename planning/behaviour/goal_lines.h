@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/lateral_replanner.h"
-#include "roadbed/planning/behaviour/merging.h"
 #include "roadbed/planning/behaviour/planner_types.h"
-#include "roadbed/planning/behaviour/stop_points.h"
+#include "roadbed/planning/maneuvers/merging.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/speed/timed_goal.h"
+#include "roadbed/planning/task/stop_points.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -16,7 +16,8 @@ namespace roadbed::planning::inline behaviour {
 namespace {
 
 constexpr double kSearchEvery_s = 0.2;  // for a drive, while nothing else is any good
-constexpr SpeedSearchOptions kHardest{.least_mps2 = -8.0, .most_mps2 = 4.0};
+constexpr SpeedSearchOptions kHardest{.least_mps2 = -geometry::kLongitudinal.max_braking_mps2,
+                                      .most_mps2 = 4.0};
 constexpr BendLimits kFastBends{.max_lateral_acceleration_mps2 = 3.8};  // of 3.9 that are steered
 
 /// From the most careful on; for those who have to be at their goal in time, and for those who
@@ -27,7 +28,9 @@ constexpr std::array<RiskLevel, 3> kInTime{
      {.margin_m = 0.1, .speed = kHardest, .is_emergency = true, .bends = kFastBends}}};
 constexpr std::array<RiskLevel, 2> kOnRoute{
     {{.margin_m = 0.1, .speed = {}, .is_emergency = false},
-     {.margin_m = 0.1, .speed = {.least_mps2 = -8.0}, .is_emergency = true}}};
+     {.margin_m = 0.1,
+      .speed = {.least_mps2 = -geometry::kLongitudinal.max_braking_mps2},
+      .is_emergency = true}}};
 
 double ends_beside_m(const LateralReplanner::Proposal& proposal) {
   return std::abs(proposal.plan.chosen->end_d_m);

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "roadbed/planning/behaviour/decision.h"
-#include "roadbed/planning/behaviour/lights_ahead.h"
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/planner_types.h"
-#include "roadbed/planning/behaviour/right_of_way.h"
 #include "roadbed/planning/obstacles/traffic.h"
+#include "roadbed/planning/right_of_way/lights_ahead.h"
+#include "roadbed/planning/right_of_way/right_of_way.h"
 
 namespace roadbed::planning::inline behaviour {
 

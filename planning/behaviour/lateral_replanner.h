@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/lateral/knotted_offset.h"
 #include "roadbed/planning/lateral/plan_types.h"
 #include "roadbed/planning/lateral/planned_path.h"
 #include "roadbed/planning/plan.h"
+#include "roadbed/planning/task/driving_task.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -11,13 +11,13 @@
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
 #include "roadbed/planning/behaviour/lateral_replanner.h"
-#include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
 #include "roadbed/planning/speed/path_profile.h"
 #include "roadbed/planning/speed/speed_search.h"
 #include "roadbed/planning/speed/st_graph.h"
 #include "roadbed/planning/speed/timed_goal.h"
+#include "roadbed/planning/task/stop_points.h"
 
 namespace roadbed::planning::inline behaviour {
 

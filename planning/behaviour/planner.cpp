@@ -13,12 +13,12 @@
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypotheses.h"
 #include "roadbed/planning/behaviour/hypothesis_speed.h"
-#include "roadbed/planning/behaviour/lane_passing.h"
-#include "roadbed/planning/behaviour/lead.h"
-#include "roadbed/planning/behaviour/merging.h"
-#include "roadbed/planning/behaviour/overtaking.h"
 #include "roadbed/planning/behaviour/path_queries.h"
+#include "roadbed/planning/maneuvers/lane_passing.h"
+#include "roadbed/planning/maneuvers/merging.h"
+#include "roadbed/planning/maneuvers/overtaking.h"
 #include "roadbed/planning/obstacles/traffic.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::planning::inline behaviour {
 namespace {
@@ -90,11 +90,8 @@ class Planner::Impl {
 
   Visibility sight_at(const PlannerView& view) const {
     std::vector<geometry::Rectangle> bodies;
-    for (const Obstacle& other : task_.obstacles) {
-      if (!other.is_there(view.t_s)) continue;
-      const geometry::Rectangle body = rectangle_at(other, view.t_s);
-      const bool is_again = !bodies.empty() && bodies.back().centre == body.centre;
-      if (!is_again) bodies.push_back(body);  // another motion of the same one
+    for (const BodyThere& there : bodies_there(task_.obstacles, view.t_s)) {
+      bodies.push_back(there.body);
     }
     return {geometry::body_at(view.measured.map_from_vehicle, vehicle_), *task_.sight_m,
             std::move(bodies), task_.field, task_.road_map};

@@ -9,11 +9,11 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/planning/behaviour/behaviour.h"
 #include "roadbed/planning/behaviour/detour.h"
-#include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/hypothesis_outcome.h"
-#include "roadbed/planning/behaviour/speed_controller.h"
 #include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/speed/speed_controller.h"
 #include "roadbed/planning/speed/speed_question.h"
+#include "roadbed/planning/task/driving_task.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "roadbed/planning/behaviour/merge_places.h"
+#include "roadbed/planning/maneuvers/merge_places.h"
 
 namespace roadbed::planning::inline behaviour {
 

@@ -70,6 +70,12 @@ geometry::Polyline centre_of(const map::RoadMap& road_map, const LanesAhead& ahe
   return geometry::Polyline(std::move(points));
 }
 
+geometry::Pose2 pose_on(const geometry::Polyline& way, double s_m) {
+  const double within_m = std::clamp(s_m, 0.0, way.length_m());
+  const geometry::Pose2 pose = way.pose_at(within_m);
+  return within_m == s_m ? pose : pose * geometry::Pose2{s_m - within_m, 0.0, 0.0};
+}
+
 std::vector<LanesAhead> ways_ahead(const map::RoadMap& road_map, const map::LanePlace& from,
                                    double length_m, std::size_t most) {
   const auto length_of = [&](map::LaneId lane) {

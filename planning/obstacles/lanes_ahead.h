@@ -20,6 +20,9 @@ double turned_along_rad(const map::Lane& lane);
 /// Their centres as one line; joints that are wider than rounding stay.
 geometry::Polyline centre_of(const map::RoadMap& road_map, const LanesAhead& ahead);
 
+/// On such a line, which goes on straight past its ends.
+geometry::Pose2 pose_on(const geometry::Polyline& way, double s_m);
+
 /// All ways on along drivable lanes, each at least `length_m` long unless its lanes end before;
 /// those that turn least first. Of more than `most` the first are given, by that order at each
 /// fork.

@@ -5,13 +5,14 @@
 #include <limits>
 #include <utility>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/geometry/primitives/segment.h"
 #include "roadbed/planning/obstacles/lanes_ahead.h"
 
 namespace roadbed::planning::inline obstacles {
 namespace {
 
-using geometry::Pose2;
 using geometry::Rectangle;
 
 constexpr double kSlice_m = 2.5;
@@ -57,29 +58,9 @@ Room room_of_road(const map::RoadMap& road_map, const map::Lane& lane, double s_
   return {-beside_m(false), beside_m(true)};
 }
 
-/// Past its ends a way goes on straight.
-Pose2 pose_on(const geometry::Polyline& way, double s_m) {
-  const double within_m = std::clamp(s_m, 0.0, way.length_m());
-  return way.pose_at(within_m) * Pose2{s_m - within_m, 0.0, 0.0};
-}
-
 double braking_m(double speed_mps, double mps2, double after_s) {
   const double t_s = std::min(after_s, speed_mps / mps2);
   return speed_mps * t_s - 0.5 * mps2 * t_s * t_s;
-}
-
-double speeding_up_m(double speed_mps, double mps2, double most_mps, double after_s) {
-  const double gains_s = std::min(after_s, std::max(0.0, most_mps - speed_mps) / mps2);
-  const double then_mps = speed_mps + mps2 * gains_s;
-  return speed_mps * gains_s + 0.5 * mps2 * gains_s * gains_s + then_mps * (after_s - gains_s);
-}
-
-double distance_to_stretch_m(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                             const Eigen::Vector2d& point) {
-  const Eigen::Vector2d along = to - from;
-  const double share =
-      std::clamp(along.dot(point - from) / std::max(1e-12, along.squaredNorm()), 0.0, 1.0);
-  return (point - from - share * along).norm();
 }
 
 }  // namespace
@@ -90,7 +71,6 @@ MotionBounds by_the_rules() {
           .max_sideways_mps = 0.5,
           .max_off_road_mps = 0.5,
           .max_turned_sine = 0.05,
-          .max_walking_mps = 2.0,
           .keeps_lane = true};
 }
 
@@ -112,8 +92,9 @@ ReachableSet::ReachableSet(const map::RoadMap& road_map, const Obstacle& body, d
     is_inside = is_inside || match.distance_m == 0.0;
     const map::Lane& lane = road_map.lane(match.place.lane);
     const double length_m =
-        lane.length_m() + speeding_up_m(std::max(0.0, speed_mps) + bounds_.speed_error_mps,
-                                        bounds_.max_gain_mps2, kFastest_mps, horizon_s);
+        lane.length_m() +
+        geometry::speeding_up_m(std::max(0.0, speed_mps) + bounds_.speed_error_mps,
+                                bounds_.max_gain_mps2, kFastest_mps, horizon_s);
     for (const LanesAhead& way :
          ways_ahead(road_map, {match.place.lane, 0.0, 0.0}, length_m, kMostWays)) {
       add_way(road_map, way, match, horizon_s);
@@ -139,9 +120,10 @@ void ReachableSet::add_way(const map::RoadMap& road_map, const LanesAhead& lanes
     way.most_mps = std::max(
         way.most_mps, limit ? std::min(kFastest_mps, *limit * bounds_.max_speeding) : kFastest_mps);
   }
-  const double end_m = body_.radius_m() + bounds_.position_error_m +
-                       2.0 * speeding_up_m(way.along_mps + bounds_.speed_error_mps,
-                                           bounds_.max_gain_mps2, way.most_mps, horizon_s);
+  const double end_m =
+      body_.radius_m() + bounds_.position_error_m +
+      2.0 * geometry::speeding_up_m(way.along_mps + bounds_.speed_error_mps, bounds_.max_gain_mps2,
+                                    way.most_mps, horizon_s);
   std::size_t lane_at = 0;
   double lane_from_m = 0.0;
   for (double s_m = way.first_s_m; s_m < end_m + kSlice_m; s_m += kSlice_m) {
@@ -205,8 +187,8 @@ Rectangle ReachableSet::anywhere(double from_s, double to_s) const {
 }
 
 bool ReachableSet::is_out_of_reach(const Rectangle& place, double from_s, double to_s) const {
-  const double apart_m = distance_to_stretch_m(body_.centre + from_s * velocity_,
-                                               body_.centre + to_s * velocity_, place.centre);
+  const double apart_m = geometry::distance_to_segment_m(
+      place.centre, body_.centre + from_s * velocity_, body_.centre + to_s * velocity_);
   return apart_m > reach_m(to_s) + body_.radius_m() + place.radius_m();
 }
 
@@ -229,9 +211,9 @@ bool ReachableSet::any_of_way(const Way& way, double from_s, double to_s,
   const double half_m = body_.half_length_m + body_.half_width_m * way.turned_sine;
   const double rear_m =
       outside * braking_m(least_mps, b.max_acceleration_mps2, from_s) - b.position_error_m - half_m;
-  const double front_m =
-      inside * speeding_up_m(most_mps, b.max_gain_mps2, std::max(way.most_mps, most_mps), to_s) +
-      b.position_error_m + half_m;
+  const double front_m = inside * geometry::speeding_up_m(most_mps, b.max_gain_mps2,
+                                                          std::max(way.most_mps, most_mps), to_s) +
+                         b.position_error_m + half_m;
 
   const auto ends_at = [&](int side) {  // the centre's farthest place to one side
     const double own_mps = side * way.sideways_mps;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/obstacles/obstacle.h"
@@ -13,8 +14,8 @@ namespace roadbed::planning::inline obstacles {
 /// How somebody moves at most. By default whatever tyres and feet can do; `by_the_rules()` is what
 /// may be expected of those who keep to them.
 struct MotionBounds {
-  double max_acceleration_mps2 = 8.0;  ///< in any direction
-  double max_gain_mps2 = 8.0;          ///< of speed, along its way
+  double max_acceleration_mps2 = geometry::kLongitudinal.max_braking_mps2;  ///< in any direction
+  double max_gain_mps2 = 8.0;  ///< of speed, along its way
   /// Of the speed limit, up to 60 m/s; who is faster gets no faster.
   double max_speeding = std::numeric_limits<double>::infinity();
   double max_sideways_mps = 5.0;  ///< beside the middle of its way, on the road

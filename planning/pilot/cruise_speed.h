@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "roadbed/control/cruise_control.h"
-#include "roadbed/planning/behaviour/driving_task.h"
-#include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/speed/speed_controller.h"
+#include "roadbed/planning/task/driving_task.h"
 
 namespace roadbed::planning::inline pilot {
 

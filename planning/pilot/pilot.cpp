@@ -167,7 +167,7 @@ class Pilot::Impl {
                                                       .line = std::move(drawn.line),
                                                       .line_options = drawn.options,
                                                       .obstacles = {},
-                                                      .others_within = by_the_rules(),
+                                                      .others_within = others_.expected(),
                                                       .sight_m = setup_.sight_m,
                                                       .lights = lights_});
     restart();

@@ -9,9 +9,9 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
-#include "roadbed/planning/behaviour/driving_task.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/route/route_place.h"
+#include "roadbed/planning/task/driving_task.h"
 #include "roadbed/planning/tracking/perceived_traffic.h"
 #include "roadbed/planning/tracking/tracker.h"
 

@@ -8,7 +8,8 @@ namespace roadbed::planning::inline pilot {
 namespace {
 
 constexpr double kStep_s = 0.1;
-constexpr double kComfortable_mps2 = 3.0, kHardest_mps2 = 8.0;
+constexpr double kComfortable_mps2 = 3.0;
+constexpr double kHardest_mps2 = geometry::kLongitudinal.max_braking_mps2;
 constexpr double kLeast_mps2 = 1.0;   // to a stop that is wanted now
 constexpr double kHarder_mps2 = 0.5;  // than foreseen: brake at once
 constexpr double kStandoff_m = 1.0;

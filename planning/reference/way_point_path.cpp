@@ -12,6 +12,7 @@
 
 #include "roadbed/geometry/curves/quintic_bezier.h"
 #include "roadbed/geometry/curves/spline_curve.h"
+#include "roadbed/geometry/primitives/segment.h"
 
 namespace roadbed::planning::inline reference {
 namespace {
@@ -191,19 +192,12 @@ Points between(const Points& points, const Corner* before, const Corner* after) 
   return kept;
 }
 
-double to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
-                    const Eigen::Vector2d& b) {
-  const Eigen::Vector2d side = b - a;
-  const double fraction = std::clamp((point - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
-  return (a + fraction * side - point).norm();
-}
-
 // Goes along the way-points with the spline.
 void measure_swing(const Points& through, const Points& spline, WayPointPath& path) {
   std::size_t i = 0;
   for (const Eigen::Vector2d& point : spline) {
     const auto apart_m = [&](std::size_t k) {
-      return to_segment_m(point, through[k], through[k + 1]);
+      return geometry::distance_to_segment_m(point, through[k], through[k + 1]);
     };
     while (i + 2 < through.size() && apart_m(i + 1) <= apart_m(i)) ++i;
     if (apart_m(i) <= path.largest_swing_m) continue;

@@ -10,7 +10,7 @@
 #include "roadbed/geometry/motion/trajectory.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/audit/audit_report.h"
-#include "roadbed/planning/behaviour/stop_points.h"
+#include "roadbed/planning/task/stop_points.h"
 
 namespace roadbed::planning::inline rules {
 

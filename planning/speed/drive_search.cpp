@@ -15,7 +15,8 @@ namespace {
 constexpr double kDriveStep_s = TrafficBodies::kStep_s;
 constexpr int kStepsInLayer = 3;
 constexpr std::array<double, 5> kLateralShares{-1.0, -0.5, 0.0, 0.5, 1.0};
-constexpr std::array<double, 5> kCommands_mps2{-8.0, -3.0, 0.0, 2.0, 4.0};
+constexpr std::array<double, 5> kCommands_mps2{-geometry::kLongitudinal.max_braking_mps2, -3.0, 0.0,
+                                               2.0, 4.0};
 constexpr double kRounding_mps2 = 0.1;  // of the lateral acceleration, while the speed changes
 // States that are alike.
 constexpr double kAlike_m = 1.2, kAlike_rad = 0.05, kAlike_mps = 2.0, kAlikeLateral_mps2 = 2.0,

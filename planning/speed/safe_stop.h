@@ -21,19 +21,16 @@ struct StopQuestion {
   const PathProfile& profile;
   double speed_mps = 0.0, acceleration_mps2 = 0.0;
   std::span<const MayBeMet> others = {};
-  double braking_mps2 = 8.0;
-  double held_for_s = 0.1;  ///< of the command, until the next one
 };
 
-/// Time and way that such a stop takes, at least; for whom to look.
+/// Time until the vehicle stands that holds a command for a cycle and then brakes at 8 m/s², behind
+/// its actuator's lag [s].
 double stop_s(const StopQuestion& question, double command_mps2);
 
-/// Whom the vehicle may touch before it stands, as an index in `others`, if it holds a command
-/// until the next one and then brakes as hard as it can, behind its actuator's lag; none: nobody,
-/// whatever they do within their bounds [Pek, Manzinger, Koschi, Althoff 2020, "Using Online
-/// Verification to Prevent Autonomous Vehicles from Causing Accidents",
-/// doi:10.1038/s42256-020-0225-y]. Who touches it when it stands is not looked at.
-/// O(others × stopping time).
+/// Whom the vehicle may touch before it stands so, as an index in `others`; none: nobody, whatever
+/// they do within their bounds [Pek, Manzinger, Koschi, Althoff 2020, "Using Online Verification to
+/// Prevent Autonomous Vehicles from Causing Accidents", doi:10.1038/s42256-020-0225-y]. Who touches
+/// it when it stands is not looked at. O(others × stopping time).
 std::optional<std::size_t> who_may_bar_stop(const StopQuestion& question, double command_mps2);
 
 /// A command after which such a stop is free.

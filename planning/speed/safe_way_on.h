@@ -17,8 +17,9 @@ namespace roadbed::planning::inline speed {
 /// before.
 /// @param ignored  per obstacle: it is not looked at; none if empty.
 /// O(N) in the parts of two times.
-std::optional<std::size_t> who_bars_way_on(const SpeedState& last, const StGraph& occupancy,
-                                           double end_m, const std::vector<bool>& ignored = {},
-                                           double braking_mps2 = 8.0);
+std::optional<std::size_t> who_bars_way_on(
+    const SpeedState& last, const StGraph& occupancy, double end_m,
+    const std::vector<bool>& ignored = {},
+    double braking_mps2 = geometry::kLongitudinal.max_braking_mps2);
 
 }  // namespace roadbed::planning::speed

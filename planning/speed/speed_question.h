@@ -11,6 +11,17 @@
 
 namespace roadbed::planning::inline speed {
 
+/// State and command of a plan at one time.
+struct SpeedState {
+  double t_s = 0.0;  ///< from now
+  double ahead_m = 0.0, speed_mps = 0.0, acceleration_mps2 = 0.0, command_mps2 = 0.0;
+};
+
+/// The state after a command has been held for a while: the actuator follows it with a lag of the
+/// first order (paper eq. 25), integrated exactly. Who has come to rest by then stays where that
+/// was; a vehicle never reverses.
+SpeedState followed(const SpeedState& from, double command_mps2, double for_s);
+
 /// A goal as the search sees it: times from now, distances along the path.
 struct GoalAhead {
   Window time_s, speed_mps, ahead_m;
@@ -35,12 +46,6 @@ struct SpeedSearchOptions {
   double least_mps2 = -geometry::kLongitudinal.max_command_mps2;
   double most_mps2 = geometry::kLongitudinal.max_command_mps2;
   double actuator_lag_s = geometry::kLongitudinal.actuator_lag_s;
-};
-
-/// State and command of a plan at one time.
-struct SpeedState {
-  double t_s = 0.0;  ///< from now
-  double ahead_m = 0.0, speed_mps = 0.0, acceleration_mps2 = 0.0, command_mps2 = 0.0;
 };
 
 struct SpeedSearchAnswer {

@@ -63,13 +63,6 @@ geometry::Trajectory setting_off(const SeenMotion& seen) {
                                at(kForeseen_s, later, kSetsOff_mps)});
 }
 
-/// Past its end a way goes on straight.
-Pose2 pose_on(const geometry::Polyline& way, double s_m) {
-  const Pose2 pose = way.pose_at(s_m);
-  const double over_m = std::max(0.0, s_m - way.length_m());
-  return over_m > 0.0 ? pose * Pose2{over_m, 0.0, 0.0} : pose;
-}
-
 /// From beside a way to an offset from its middle, as a critically damped spring leads there.
 geometry::Trajectory along_way(const SeenMotion& seen, const geometry::Polyline& way,
                                const geometry::LinePosition& from, double to_d_m,

@@ -29,9 +29,17 @@ geometry::Trajectory joined(const Track& track, const geometry::Trajectory& ahea
 }  // namespace
 
 PerceivedTraffic::PerceivedTraffic(const map::RoadMap& road_map, const TrackerOptions& options)
-    : tracker_(options),
+    : noise_(options.noise),
+      tracker_(options),
       forecast_(road_map),
       across_oncoming_(map::drives_on_the_left(road_map) ? -1.0 : 1.0) {}
+
+MotionBounds PerceivedTraffic::expected() const {
+  MotionBounds bounds = by_the_rules();
+  bounds.position_error_m = 2.0 * noise_.position_m;
+  bounds.speed_error_mps = 2.0 * noise_.speed_mps;
+  return bounds;
+}
 
 void PerceivedTraffic::observe(double t_s, std::span<const Detection> detections,
                                const Tracker::IsHidden& is_hidden) {

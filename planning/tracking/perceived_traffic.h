@@ -6,6 +6,7 @@
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/model/road_map.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/obstacles/reachable_set.h"
 #include "roadbed/planning/tracking/lane_forecast.h"
 #include "roadbed/planning/tracking/tracker.h"
 
@@ -33,11 +34,15 @@ class PerceivedTraffic {
   /// first, then others that matter to the vehicle; a place without any is never there.
   std::vector<Obstacle> obstacles(const geometry::Pose2& map_from_vehicle) const;
 
+  /// How they may move by the rules of the road, who are known but for twice the noise.
+  MotionBounds expected() const;
+
   static constexpr std::size_t kPlacesPerSlot = LaneForecast::kMostMotions;
 
  private:
   bool is_planned_for(const ForecastMotion& motion, double vehicle_heading_rad) const;
 
+  ObjectNoise noise_;
   Tracker tracker_;
   LaneForecast forecast_;
   double across_oncoming_;  ///< sign of a turn across oncoming traffic: 1 left, −1 right

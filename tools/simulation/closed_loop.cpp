@@ -83,7 +83,7 @@ class ClosedLoop {
     if (drive_.believed) {
       others_.emplace(world, scenario);
       drive_.believed->sight_m = others_->range_m();
-      drive_.believed->others_within = planning::by_the_rules();
+      drive_.believed->others_within = others_->expected();
     }
     if (scenario.pedals) {
       foot_.emplace(GradeProfile(world.road_map, world.route, world.line));

@@ -10,8 +10,8 @@
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/primitives/angle.h"
 #include "roadbed/map/files/input_error.h"
-#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
 #include "roadbed/map/commonroad/scenario.h"
-#include "roadbed/planning/behaviour/stop_points.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/task/stop_points.h"
 #include "roadbed/tools/simulation/common_road_routes.h"
 
 namespace roadbed::tools::inline simulation {

@@ -13,8 +13,8 @@
 #include "roadbed/map/files/read_file.h"
 #include "roadbed/map/formats.h"
 #include "roadbed/map/load_map.h"
-#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/obstacles/recorded_obstacles.h"
+#include "roadbed/planning/speed/lead.h"
 #include "roadbed/tools/simulation/common_road_obstacles.h"
 #include "roadbed/tools/simulation/common_road_routes.h"
 

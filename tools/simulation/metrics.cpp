@@ -6,7 +6,7 @@
 
 #include "roadbed/geometry/motion/longitudinal.h"
 #include "roadbed/geometry/motion/rectangle.h"
-#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

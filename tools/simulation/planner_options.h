@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/task/driving_task.h"
 #include "roadbed/tools/files/json.h"
 
 namespace roadbed::tools::inline simulation {

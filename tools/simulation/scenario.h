@@ -10,7 +10,7 @@
 
 #include "roadbed/geometry/motion/vehicle_shape.h"
 #include "roadbed/geometry/primitives/pose2.h"
-#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/task/driving_task.h"
 #include "roadbed/planning/tracking/motion_filter.h"
 #include "roadbed/tools/simulation/planner_options.h"
 #include "roadbed/tools/simulation/recorded_obstacle.h"

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "roadbed/control/cruise_control.h"
-#include "roadbed/planning/behaviour/lead.h"
 #include "roadbed/planning/lateral/planned_path.h"
+#include "roadbed/planning/speed/lead.h"
 #include "roadbed/tools/simulation/scenario.h"
 
 namespace roadbed::tools::inline simulation {

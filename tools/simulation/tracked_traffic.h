@@ -28,6 +28,8 @@ class TrackedTraffic {
   std::vector<planning::Obstacle> look(double t_s, const geometry::Rectangle& body,
                                        const geometry::Pose2& vehicle);
 
+  planning::MotionBounds expected() const { return perceived_.expected(); }
+
   double range_m() const { return range_m_; }  ///< farther away nobody is measured
 
   /// Whom one of those that the planner takes was measured of last: its index in the world.

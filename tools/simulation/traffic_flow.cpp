@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/speed/lead.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "roadbed/geometry/motion/longitudinal.h"
-#include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/speed/speed_controller.h"
 
 namespace roadbed::tools::inline simulation {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roadbed/map/occupancy/octree/occupancy_map.h"
-#include "roadbed/planning/behaviour/driving_task.h"
+#include "roadbed/planning/task/driving_task.h"
 #include "roadbed/tools/cli/inputs.h"
 #include "roadbed/tools/simulation/scenario.h"
 #include "roadbed/tools/simulation/traffic_flow.h"

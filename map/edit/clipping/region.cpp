@@ -9,6 +9,7 @@
 #include "roadbed/geometry/polygons/polygon.h"
 #include "roadbed/geometry/primitives/cross.h"
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/geometry/primitives/segment.h"
 
 namespace roadbed::map::inline edit::inline clipping {
 namespace {
@@ -47,11 +48,7 @@ geometry::Polygon capsule(const Vector2d& from, const Vector2d& to, double dista
 }  // namespace
 
 double RegionEdge::distance_m(const Vector2d& point) const {
-  const Vector2d along = to - from;
-  const double length_2 = along.squaredNorm();
-  const double at =
-      length_2 > 0.0 ? std::clamp((point - from).dot(along) / length_2, 0.0, 1.0) : 0.0;
-  return (point - from - at * along).norm();
+  return geometry::distance_to_segment_m(point, from, to);
 }
 
 std::optional<double> RegionEdge::meeting(const Vector2d& segment_from,

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "roadbed/geometry/index/box_tree.h"
+#include "roadbed/geometry/primitives/segment.h"
 #include "roadbed/map/opendrive/write/road_lines.h"
 #include "roadbed/map/opendrive/write/written_borders.h"
 
@@ -12,14 +13,6 @@ namespace roadbed::map::opendrive {
 namespace {
 
 using LineSpan = std::span<const Eigen::Vector2d>;
-
-double distance_to_segment_m(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
-                             const Eigen::Vector2d& b) {
-  const Eigen::Vector2d along = b - a;
-  const double square = along.squaredNorm();
-  const double share = square > 0.0 ? std::clamp((point - a).dot(along) / square, 0.0, 1.0) : 0.0;
-  return (point - a - share * along).norm();
-}
 
 /// Lines, and how far a point is from the nearest one.
 class NearestLine {
@@ -42,7 +35,8 @@ class NearestLine {
       double nearest_m = 1e300;
       const LineSpan& chain = chains_[index];
       for (std::size_t i = 1; i < chain.size(); ++i) {
-        nearest_m = std::min(nearest_m, distance_to_segment_m(point, chain[i - 1], chain[i]));
+        nearest_m =
+            std::min(nearest_m, geometry::distance_to_segment_m(point, chain[i - 1], chain[i]));
       }
       least_m = std::min(least_m, nearest_m);
       return nearest_m;
@@ -79,7 +73,7 @@ class LineError {
     double least_m = 1e300;
     std::size_t best = at;
     for (std::size_t i = at; i < beside.size() && i <= best + ahead; ++i) {
-      const double off_m = distance_to_segment_m(point, beside[i - 1], beside[i]);
+      const double off_m = geometry::distance_to_segment_m(point, beside[i - 1], beside[i]);
       if (off_m < least_m) {
         least_m = off_m;
         best = i;

@@ -7,7 +7,7 @@
 #include "roadbed/control/cruise_design.h"
 #include "roadbed/control/lower_controller.h"
 #include "roadbed/planning/behaviour/decision.h"
-#include "roadbed/planning/behaviour/speed_controller.h"
+#include "roadbed/planning/speed/speed_controller.h"
 #include "roadbed/planning/speed/speed_search.h"
 
 namespace roadbed {

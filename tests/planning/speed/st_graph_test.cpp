@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "roadbed/planning/behaviour/lead.h"
+#include "roadbed/planning/speed/lead.h"
 #include "roadbed/planning/speed/path_speed_limits.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 
