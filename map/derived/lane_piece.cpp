@@ -6,16 +6,6 @@
 namespace roadbed::map::inline derived {
 namespace {
 
-double height_at(const LaneLine& line, double station_m) {
-  const auto& stations = line.station_m;
-  const auto after = std::upper_bound(stations.begin(), stations.end(), station_m);
-  if (after == stations.begin()) return line.z_m.front();
-  if (after == stations.end()) return line.z_m.back();
-  const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double fraction = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return line.z_m[i - 1] + fraction * (line.z_m[i] - line.z_m[i - 1]);
-}
-
 std::vector<double> cross_section_stations(const Lane& lane) {
   std::vector<double> stations = lane.left.station_m;
   stations.insert(stations.end(), lane.right.station_m.begin(), lane.right.station_m.end());
@@ -34,7 +24,7 @@ void add_pieces(const Lane& lane, std::vector<LanePiece>& pieces) {
                       Lane::point_at(lane.left, to_m),
                       Lane::point_at(lane.right, from_m),
                       Lane::point_at(lane.right, to_m),
-                      height_at(lane.centre, 0.5 * (from_m + to_m))});
+                      Lane::height_at(lane.centre, 0.5 * (from_m + to_m))});
   }
 }
 

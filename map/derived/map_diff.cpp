@@ -317,13 +317,7 @@ class Comparison {
   }
 
   static double height_at(const LaneLine& line, double fraction) {
-    const double s_m = fraction * line.station_m.back();
-    const auto after = std::upper_bound(line.station_m.begin(), line.station_m.end(), s_m);
-    if (after == line.station_m.end()) return line.z_m.back();
-    if (after == line.station_m.begin()) return line.z_m.front();
-    const auto i = static_cast<std::size_t>(after - line.station_m.begin());
-    const double step_m = line.station_m[i] - line.station_m[i - 1];
-    return std::lerp(line.z_m[i - 1], line.z_m[i], (s_m - line.station_m[i - 1]) / step_m);
+    return Lane::height_at(line, fraction * line.station_m.back());
   }
 
   // Heights at the same fractions of the lanes' lengths, at the vertices of both.

@@ -6,6 +6,21 @@
 #include <utility>
 
 namespace roadbed::map::inline elements {
+namespace {
+
+/// Between the values of vertices, by their stations; beyond the ends those of the ends.
+template <typename Value>
+Value value_at(const std::vector<double>& stations_m, const std::vector<Value>& values,
+               double station_m) {
+  const auto after = std::upper_bound(stations_m.begin(), stations_m.end(), station_m);
+  if (after == stations_m.begin()) return values.front();
+  if (after == stations_m.end()) return values.back();
+  const auto i = static_cast<std::size_t>(after - stations_m.begin());
+  const double fraction = (station_m - stations_m[i - 1]) / (stations_m[i] - stations_m[i - 1]);
+  return values[i - 1] + fraction * (values[i] - values[i - 1]);
+}
+
+}  // namespace
 
 std::string_view to_string(LaneType type) {
   static constexpr std::array<std::string_view, 23> names = {
@@ -62,14 +77,11 @@ std::optional<double> Lane::least_speed_limit_mps() const {
 }
 
 Eigen::Vector2d Lane::point_at(const LaneLine& line, double station_m) {
-  const auto& stations = line.station_m;
-  const auto& points = line.in_map.points();
-  const auto after = std::upper_bound(stations.begin(), stations.end(), station_m);
-  if (after == stations.begin()) return points.front();
-  if (after == stations.end()) return points.back();
-  const auto i = static_cast<std::size_t>(after - stations.begin());
-  const double fraction = (station_m - stations[i - 1]) / (stations[i] - stations[i - 1]);
-  return points[i - 1] + fraction * (points[i] - points[i - 1]);
+  return value_at(line.station_m, line.in_map.points(), station_m);
+}
+
+double Lane::height_at(const LaneLine& line, double station_m) {
+  return value_at(line.station_m, line.z_m, station_m);
 }
 
 geometry::Pose2 Lane::pose_at(double s_m) const {

@@ -116,6 +116,9 @@ struct Lane {
 
   /// Border's point at a lane station, interpolated between its vertices' stations.
   static Eigen::Vector2d point_at(const LaneLine& line, double station_m);
+
+  /// The elevation of a line at a lane station, likewise [m].
+  static double height_at(const LaneLine& line, double station_m);
 };
 
 /// The polygon between a lane's borders, counter-clockwise and simple: of a ring that folds over

@@ -150,6 +150,7 @@ void Detour::lead(DrivingTask& of) const {
   of.route = route;
   of.line = line.line;
   of.line_options = line.options;
+  of.other_levels = OtherLevels(of.road_map, route);
   of.stop_points = stop_points;
   of.blockers = blockers;
 }

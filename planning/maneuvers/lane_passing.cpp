@@ -21,6 +21,7 @@ constexpr double kPassedWithin_m = 120.0;
 constexpr double kLaneChange_s = 3.5;     // to change lanes in
 constexpr double kOwnSpeedUp_mps2 = 0.9;  // less than what the cruise control was seen to do
 constexpr double kPlatoon_m = 15.0, kPlatoon_s = 1.5;  // nearer cars are passed together
+constexpr double kQueue_mps = 4.0;                     // slower is who queues
 constexpr double kBeforeLaneEnd_m = 10.0;              // of the lane, to be back
 constexpr double kKeptAhead_m = 5.0,
                  kKeptAhead_s = 1.0;  // kept from who is ahead in the lane to enter
@@ -168,16 +169,18 @@ double LanePassing::gained_s(const Scene& scene, const MoverOnLine& lead) const 
   return (left_m - gap_m(scene, lead)) / lead_mps - left_m / scene.free_mps;
 }
 
-/// Room ahead to pass all who drive closely together, and to come back.
+/// Room ahead to pass all who drive closely together, and to come back; who is as slow as in a
+/// queue has all of it to pass that is seen, as its gaps close.
 std::optional<std::string> LanePassing::why_no_room(const Scene& scene,
                                                     const MoverOnLine& lead) const {
   double last_m = lead.front_m();
+  const bool queues = lead.speed_mps < kQueue_mps;
   for (bool grows = true; grows;) {
     grows = false;
     for (const MoverOnLine& mover : scene.movers) {
       const double near_m = last_m + kPlatoon_m + kPlatoon_s * lead.speed_mps;
-      if (!mover.shares_way(0.0, vehicle_) || mover.front_m() <= last_m || mover.rear_m() > near_m)
-        continue;
+      if (!mover.shares_way(0.0, vehicle_) || mover.front_m() <= last_m) continue;
+      if (mover.rear_m() > near_m && !(queues && mover.speed_mps < kQueue_mps)) continue;
       last_m = mover.front_m();
       grows = true;
     }

@@ -18,7 +18,8 @@ constexpr double kStaysBegun_m = 5.0;  // that may be missing of a gap that is d
 constexpr double kIsIn_m = 0.5, kInItsWay_m = 2.4;  // from the next lane's middle
 constexpr double kBeyondHold_m = 0.3;               // the vehicle is on its way
 constexpr double kWaits_mps2 = 1.5;
-constexpr double kDrivesThere_m = 1.6;  // from the middle of the lane
+constexpr double kDrivesThere_m = 1.6;         // from the middle of the lane
+constexpr double kOthersBrakeHard_mps2 = 4.0;  // from behind, at most
 // Of a change's length: until the body is in the way, and from there until it is in the next lane.
 constexpr double kUntilInTheWay = 0.46, kUntilIn = 0.35;
 
@@ -155,14 +156,17 @@ Merging::Decision Merging::choosing(const Scene& scene) {
   return approaching(gap, scene);
 }
 
-/// Who comes from behind in the next lane keeps its distance, once the vehicle is there.
+/// Who comes from behind in the next lane keeps its distance, once the vehicle is there; not who is
+/// too fast for that.
 Merging::Decision Merging::entering(const Scene& scene) const {
   Decision decision{.along = along_,
                     .comes_behind = std::vector<bool>(scene.view.traffic.obstacles.size(), false),
                     .merged_behind = merged_behind_};
   for (const MergeMover& mover : scene.movers) {
-    const bool is_behind = mover.behind_m - mover.half_length_m > vehicle_.length_m;
-    decision.comes_behind[mover.obstacle] = is_behind;
+    const double gap_m = mover.behind_m - mover.half_length_m - vehicle_.length_m;
+    const double closing_mps = std::max(0.0, mover.speed_mps - scene.view.speed_mps);
+    const double brakes_m = 0.5 * closing_mps * closing_mps / kOthersBrakeHard_mps2;
+    decision.comes_behind[mover.obstacle] = gap_m > brakes_m;
   }
   return decision;
 }

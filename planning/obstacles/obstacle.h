@@ -19,6 +19,7 @@ struct TimeSpan {
 
 inline constexpr TimeSpan kAlways{-std::numeric_limits<double>::infinity(),
                                   std::numeric_limits<double>::infinity()};
+inline constexpr TimeSpan kNever{kAlways.to_s, kAlways.from_s};
 
 /// What positions are told in: the map's own frame, or the coordinates of the files.
 enum class Frame { map, source };
@@ -40,9 +41,12 @@ struct ObstacleIn {
   double width_m = 1.8;
   Motion motion;                ///< where it is, or will be; one point: it stands
   TimeSpan validity = kAlways;  ///< when it is there
+  TimeSpan away = kNever;       ///< within that, when it is over or under the road
 
   bool is_static() const { return motion.points().size() == 1; }
-  bool is_there(double t_s) const { return validity.holds(t_s); }  ///< at a time
+  bool is_there(double t_s) const {  ///< at a time
+    return validity.holds(t_s) && !away.holds(t_s);
+  }
   /// Pose of the centre at a time, there or not.
   geometry::Pose2 pose_at(double t_s) const {
     if constexpr (requires { motion.at(t_s).pose(); }) {

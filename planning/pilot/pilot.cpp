@@ -101,6 +101,7 @@ class Pilot::Impl {
     keep_route(view);
     if (!planner_) return without_route(view);
     task_->obstacles = others_.obstacles(view.ego.map_from_vehicle);
+    task_->other_levels.leave_out(view.ego.map_from_vehicle, view.t_s, task_->obstacles);
     if (has_new_light) restart();
     return drive(view);
   }
@@ -159,6 +160,7 @@ class Pilot::Impl {
   void begin(Route route, const PilotView& view) {
     RouteLine drawn =
         line_along(*setup_.road_map, route, setup_.vehicle, setup_.driving.desired_speed_mps);
+    OtherLevels other_levels(*setup_.road_map, route);
     planner_.reset();
     task_ = std::make_unique<DrivingTask>(DrivingTask{.kept_map = setup_.road_map,
                                                       .field = setup_.occupied,
@@ -166,6 +168,7 @@ class Pilot::Impl {
                                                       .route = std::move(route),
                                                       .line = std::move(drawn.line),
                                                       .line_options = drawn.options,
+                                                      .other_levels = std::move(other_levels),
                                                       .obstacles = {},
                                                       .others_within = others_.expected(),
                                                       .sight_m = setup_.sight_m,

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kBeforeLine_m = 0.5;  // kept from a line
 constexpr double kPassed_m = 0.3;      // beyond it the vehicle is on its way
-constexpr double kLookAhead_m = 80.0;
+constexpr double kLookAhead_m = 80.0;  // at least, else what a comfortable stop takes
 constexpr double kSameHalt_m = 0.5;
 constexpr double kFractionOfBrakes = 0.9;  // the rest is left to the cruise control
 constexpr double kStopsShort_m = 0.1;      // of a line, at the latest
@@ -123,6 +123,11 @@ void RightOfWay::pass_places(const View& view) {
   creeps_ = who_hidden_is_met(next_ - 1, view).has_value();
 }
 
+double RightOfWay::look_ahead_m(double speed_mps) const {
+  const double brakes_m = 0.5 * speed_mps * speed_mps / comfort_deceleration_mps2_;
+  return std::max(kLookAhead_m, speed_mps * kActuatorLag_s + brakes_m + kBeforeLine_m);
+}
+
 /// The deceleration to stop with before a place; none: it is too late for that. The actuator's lag
 /// lets the vehicle drive on for a while at the speed that its acceleration still leads to.
 std::optional<double> RightOfWay::stops_with_mps2(const StopPoint& place, const View& view) const {
@@ -165,7 +170,7 @@ std::optional<StopConstraint> RightOfWay::look(const View& view) {
   creeps_ = false;
   pass_places(view);
   for (std::size_t i = next_; i < places.size(); ++i) {
-    if (left_m(places[i], view) > kLookAhead_m) break;
+    if (left_m(places[i], view) > look_ahead_m(view.speed_mps)) break;
     const std::optional<double> deceleration = stops_with_mps2(places[i], view);
     if (!deceleration) {
       if (places[i].kind != StopKind::light) who_comes(places[i], view, kGapOnTheWay);

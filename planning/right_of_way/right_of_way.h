@@ -82,6 +82,7 @@ class RightOfWay {
   void pass_places(const View& view);
   bool is_next(const StopPoint& place) const { return &place == &task_.stop_points[next_]; }
   double halt_m(const StopPoint& place) const;
+  double look_ahead_m(double speed_mps) const;
   double left_m(const StopPoint& place, const View& view) const;
   std::optional<double> stops_with_mps2(const StopPoint& place, const View& view) const;
   std::optional<double> stops_before_red_mps2(const StopPoint& place, const View& view) const;

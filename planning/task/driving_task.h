@@ -9,6 +9,7 @@
 #include "roadbed/map/occupancy/clearance/clearance_field.h"
 #include "roadbed/planning/lateral/cost_terms.h"
 #include "roadbed/planning/obstacles/obstacle.h"
+#include "roadbed/planning/obstacles/other_levels.h"
 #include "roadbed/planning/obstacles/reachable_set.h"
 #include "roadbed/planning/reference/reference_line.h"
 #include "roadbed/planning/reference/speed_ceiling.h"
@@ -27,6 +28,7 @@ struct DrivingTask {
   Route route;
   ReferenceLine line;
   ReferenceLineOptions line_options = {};  ///< that a route's line is drawn with
+  OtherLevels other_levels = {};           ///< roads over and under the route
   std::vector<Obstacle> obstacles;         ///< motions last for the duration of the drive
   /// What is expected of others, who are measured; none: their future is known.
   std::optional<MotionBounds> others_within = {};

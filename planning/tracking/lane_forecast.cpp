@@ -23,6 +23,7 @@ constexpr double kReturns_s = 1.5;    // to the lane's middle
 constexpr double kWaitsFor_s = 15.0, kStays_s = 2.0, kSetsOff_mps = 0.5;
 constexpr double kQueuesFor_s = 90.0;  // as lights are red
 constexpr double kStopLine_m = 20.0;   // before a junction, of the centre of the first
+constexpr double kMidLane_m = 0.4, kMidLane_rad = 0.1;         // farther from it one parks
 constexpr double kNextInQueue_m = 15.0, kBesideQueue_m = 1.5;  // of the centre of the next
 constexpr double kSpareWay_m = 100.0;  // that ways are longer than asked for
 
@@ -31,10 +32,10 @@ bool follows_lanes(const Track& track) { return track.kind != "pedestrian"; }
 /// Who rides at the side of a lane goes on there: what is narrower than a car.
 bool keeps_beside(const Track& track) { return track.width_m < 1.2; }
 
-/// For how long it has stood since it drove last; none: it drives, or has never been seen to.
+/// For how long it is known to have stood; none: it drives.
 std::optional<double> stands_since_s(const Track& track, const SeenMotion& seen) {
-  if (seen.speed_mps != 0.0 || !track.moved_s) return std::nullopt;
-  return seen.t_s - *track.moved_s;
+  if (seen.speed_mps != 0.0) return std::nullopt;
+  return seen.t_s - track.moved_s.value_or(track.first_s);
 }
 
 bool stands_behind_another(LaneForecast::Tracks tracks, const SeenMotion& seen) {
@@ -131,12 +132,20 @@ std::vector<ForecastMotion> LaneForecast::motions(Tracks tracks, std::size_t slo
   return found;
 }
 
-/// Who drove not long ago stands in a queue, at a light or a sign; a parked car never did.
+/// Who drove not long ago stands in a queue, at a light or a sign; a parked car has never been seen
+/// to drive, and stands at the side.
 bool LaneForecast::waits(Tracks tracks, const Track& track, const SeenMotion& seen) const {
   const std::optional<double> since_s = stands_since_s(track, seen);
-  if (!since_s) return false;
-  return *since_s < kWaitsFor_s ||
-         (*since_s < kQueuesFor_s && (stands_behind_another(tracks, seen) || is_at_junction(seen)));
+  if (!since_s || *since_s >= kQueuesFor_s) return false;
+  if (!track.moved_s && !is_in_mid_lane(seen)) return false;
+  return (track.moved_s && *since_s < kWaitsFor_s) || stands_behind_another(tracks, seen) ||
+         is_at_junction(seen);
+}
+
+bool LaneForecast::is_in_mid_lane(const SeenMotion& seen) const {
+  return std::ranges::any_of(lanes_at(seen), [](const OnLane& at) {
+    return std::abs(at.place.d_m) < kMidLane_m && std::abs(at.turned_rad) < kMidLane_rad;
+  });
 }
 
 bool LaneForecast::is_at_junction(const SeenMotion& seen) const {

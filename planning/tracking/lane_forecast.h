@@ -63,6 +63,7 @@ class LaneForecast {
 
   bool waits(Tracks tracks, const Track& track, const SeenMotion& seen) const;
   bool is_at_junction(const SeenMotion& seen) const;
+  bool is_in_mid_lane(const SeenMotion& seen) const;
   std::vector<OnLane> lanes_at(const SeenMotion& seen) const;
   const Kept& ways_from(std::size_t slot, const std::vector<OnLane>& on, double length_m);
   std::vector<Way> new_ways(map::LaneId from, double length_m) const;

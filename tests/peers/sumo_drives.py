@@ -6,7 +6,7 @@ usage: sumo_drives.py ROADBED [--map MAP.xodr]... [--seeds N] [--density VEHICLE
 
 Each map is converted by netconvert, without an offset, so that both see the same coordinates. A drive
 is a random trip of at least 400 m among random trips of others; SUMO moves these every 0.1 s, `roadbed
-pilot` is told of those within 100 m and of the traffic lights, and the vehicle is put where its
+pilot` is told of those within 200 m and of the traffic lights, and the vehicle is put where its
 trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver,
 who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to others and does not slow down for bends of the
 road; --style sporty comes nearer to that than our normal style.
@@ -31,7 +31,7 @@ import sumo
 import sumolib
 
 STEP_S = 0.1
-SEEN_M = 100.0
+SEEN_M = 200.0
 LENGTH_M, WIDTH_M, REAR_OVERHANG_M = 4.508, 1.610, 0.8312829  # the pilot's default vehicle
 FRONT_M = LENGTH_M - REAR_OVERHANG_M
 COMFORTABLE_MPS2 = 4.5

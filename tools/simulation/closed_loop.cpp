@@ -94,6 +94,7 @@ class ClosedLoop {
     const auto cycles = static_cast<int>(std::ceil(10.0 * scenario_.duration_s - 1e-9));
     for (int cycle = 0; cycle < cycles && !is_over_; ++cycle) {
       flow_.step({geometry::body_at(truth_.map_from_vehicle, scenario_.vehicle), truth_.speed_mps});
+      world_.other_levels.leave_out(truth_.map_from_vehicle, t_s(), world_.obstacles);
       plan_and_decide();
       record();
       if (is_last_cycle()) return left();
@@ -156,6 +157,7 @@ class ClosedLoop {
       drive_.believed->obstacles =
           others_->look(t_s(), geometry::body_at(truth_.map_from_vehicle, scenario_.vehicle),
                         measured.map_from_vehicle);
+      world_.other_levels.leave_out(measured.map_from_vehicle, t_s(), drive_.believed->obstacles);
     }
     command_ = planner_.decide({.t_s = t_s(),
                                 .measured = measured,

@@ -315,17 +315,20 @@ World make_world(const Scenario& scenario, const Inputs& inputs) {
   refuse_unknown_signals(scenario, road_map);
   std::vector<planning::StopPoint> places =
       planning::stop_points(road_map, course.route, course.line, scenario.lights);
+  planning::OtherLevels other_levels(road_map, course.route);
   World world{{.kept_map = std::move(kept_map),
                .field = std::move(field),
                .start = start.map_from_vehicle,
                .route = std::move(course.route),
                .line = std::move(course.line),
                .line_options = course.line_options,
+               .other_levels = std::move(other_levels),
                .obstacles = std::move(obstacles),
                .lights = scenario.lights,
                .stop_points = std::move(places)},
               std::move(occupancy),
               std::move(drivers)};
+  world.other_levels.leave_out(world.start, 0.0, world.obstacles);
   refuse_overlap(scenario, world);
   return world;
 }

@@ -18,31 +18,24 @@ using map::GroundPlace;
 
 constexpr double kSameRoad_m = 0.5;  // heights that differ by less belong to one surface
 
-double height_at(const map::LaneLine& line, double station_m) {
-  const auto after = std::ranges::upper_bound(line.station_m, station_m);
-  if (after == line.station_m.begin()) return line.z_m.front();
-  if (after == line.station_m.end()) return line.z_m.back();
-  const auto i = static_cast<std::size_t>(after - line.station_m.begin());
-  const double from_m = line.station_m[i - 1], fraction = (station_m - from_m) / (*after - from_m);
-  return line.z_m[i - 1] + fraction * (line.z_m[i] - line.z_m[i - 1]);
-}
-
 /// The plane that touches a lane's surface at a place of it.
 GroundPlace plane_of(const map::Lane& lane, const map::LaneMatch& match, const Vector2d& point) {
   constexpr double step_m = 0.5;
   const double s_m = match.place.s_m, length_m = lane.length_m();
   const double from_m = std::max(0.0, s_m - step_m), to_m = std::min(length_m, s_m + step_m);
   const Vector2d ahead(std::cos(match.heading_rad), std::sin(match.heading_rad));
-  GroundPlace plane{.in_source = point, .z_m = height_at(lane.centre, s_m)};
+  GroundPlace plane{.in_source = point, .z_m = map::Lane::height_at(lane.centre, s_m)};
   if (to_m > from_m) {
-    const double rise_m = height_at(lane.centre, to_m) - height_at(lane.centre, from_m);
+    const double rise_m =
+        map::Lane::height_at(lane.centre, to_m) - map::Lane::height_at(lane.centre, from_m);
     plane.slope += rise_m / (to_m - from_m) * ahead;
   }
   const Vector2d across =
       map::Lane::point_at(lane.left, s_m) - map::Lane::point_at(lane.right, s_m);
   constexpr double least_width_m = 0.1;
   if (across.norm() > least_width_m) {
-    const double rise_m = height_at(lane.left, s_m) - height_at(lane.right, s_m);
+    const double rise_m =
+        map::Lane::height_at(lane.left, s_m) - map::Lane::height_at(lane.right, s_m);
     const double fall = rise_m / across.norm();
     plane.slope += fall * Vector2d(-ahead.y(), ahead.x());
     plane.z_m += fall * match.place.d_m;

@@ -34,6 +34,7 @@ struct Scene {
   std::optional<double> fast_from_m = std::nullopt;     ///< a car at 20 m/s in the next lane
   std::optional<double> parked_at_m = std::nullopt;     ///< a car in the next lane
   std::optional<double> speeds_up_at_s = std::nullopt;  ///< the lead, to the desired speed
+  std::optional<double> queue_at_m = std::nullopt;  ///< a car that stands in the own lane, known
 };
 
 std::string lane(int id, bool may_cross) {
@@ -104,6 +105,9 @@ Driven drive_in(const Scene& scene) {
   if (scene.fast_from_m) {
     scenario.obstacles.push_back(car("fast", "-1", *scene.fast_from_m, {{0.0, 20.0}}));
   }
+  if (scene.queue_at_m) {
+    scenario.obstacles.push_back(car("queue", own, *scene.queue_at_m, {{0.0, 0.0}}));
+  }
   if (scene.parked_at_m) {
     scenario.obstacles.push_back(car("parked", "-1", *scene.parked_at_m, {{0.0, 0.0}}));
   }
@@ -114,7 +118,7 @@ Driven drive_in(const Scene& scene) {
             {{0.0, lead_mps}, {at_s, lead_mps}, {at_s + 4.0, scene.desired_mps}});
   }
   World world = make_world(scenario);
-  Driven driven{.drive = drive(scenario, world)};
+  Driven driven{.drive = drive(scenario, world, {.predicts = !scene.queue_at_m})};
   const geometry::TrajectoryPoint last = driven.drive.trajectory.points().back();
   const auto station = [&](const Eigen::Vector2d& in_map) {
     return world.line.project(in_map).s_m;
@@ -201,6 +205,20 @@ TEST(LanePassing, SaysWhoIsInTheWay) {
   EXPECT_NE(reasons({4.0, 12.0, NextLane::free, false, false})
                 .find("lead is not passed: the marking may not be crossed here"),
             std::string::npos);
+}
+
+TEST(LanePassing, AQueueIsPassedAsAWholeOrNotAtAll) {
+  const auto passes = [](double lead_mps, double queue_at_m) {
+    Scene scene{lead_mps, 12.0};
+    scene.queue_at_m = queue_at_m;
+    const Driven driven = drive_in(scene);
+    return std::ranges::any_of(driven.drive.cycles, [](const DriveCycle& cycle) {
+      return cycle.t_s < 5.0 && cycle.reason.find("passes lead") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(passes(3.0, 110.0));   // there is room before the goal to be back
+  EXPECT_FALSE(passes(3.0, 450.0));  // the lead is about to join it
+  EXPECT_TRUE(passes(6.0, 450.0));   // who drives does not queue
 }
 
 TEST(LanePassing, NobodyBehindHasToBrakeHard) {

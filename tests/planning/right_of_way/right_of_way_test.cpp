@@ -78,6 +78,21 @@ TEST_F(WaitingAtAPlace, LightThatTurnsYellowTooLateIsPassed) {
   EXPECT_FALSE(look(too_late, 0.0, 27.1, 10.0));
 }
 
+// 20 m/s are stopped comfortably, by 1.5 m/s², within 133 m, and 9 m of the actuator's lag before.
+TEST_F(WaitingAtAPlace, IsLookedForAsFarAsAComfortableStopTakes) {
+  world_.lights = {
+      {.signals = {"1"}, .pointer = "", .phases = {{planning::LightColour::red, 5.0}}}};
+  place(planning::StopKind::light);
+  const auto stops = [&](double left_m, double speed_mps) {
+    planning::RightOfWay rules(scenario_.vehicle, scenario_.options, world_);
+    return look(rules, 0.0, left_m, speed_mps).has_value();
+  };
+  EXPECT_TRUE(stops(140.0, 20.0));
+  EXPECT_FALSE(stops(145.0, 20.0));
+  EXPECT_TRUE(stops(79.0, 5.0));
+  EXPECT_FALSE(stops(81.0, 5.0));
+}
+
 TEST_F(WaitingAtAPlace, HaltOnceGivenStaysWithItsDeceleration) {
   world_.lights = {
       {.signals = {"1"}, .pointer = "", .phases = {{planning::LightColour::yellow, 5.0}}}};

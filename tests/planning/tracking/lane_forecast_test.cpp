@@ -199,6 +199,25 @@ TEST_F(LaneForecasts, WhoStandsBehindAnotherWaitsForAsLongAsALightIsRed) {
   EXPECT_FALSE(second_sets_off(8.0, 95.0)) << "parked by now";
 }
 
+TEST_F(LaneForecasts, WhoWasNeverSeenToDriveWaitsInTheMiddleOfALaneBeforeAJunction) {
+  const auto ends_at_junction = [&](const map::Lane& lane) {
+    const auto& next = road_map_.graph().of(lane.id).successors;
+    return map::is_drivable(lane.type) && !lane.junction && lane.length_m() > 60.0 &&
+           !next.empty() && road_map_.lane(next.front()).junction.has_value();
+  };
+  const auto found = std::ranges::find_if(road_map_.lanes(), ends_at_junction);
+  ASSERT_NE(found, road_map_.lanes().end());
+  const map::Lane& lane = *found;
+  const auto sets_off = [&](double before_end_m, double beside_m) {
+    const geometry::Pose2 there = lane.pose_at(lane.length_m() - before_end_m);
+    const auto foreseen = motions(there * geometry::Pose2{0.0, beside_m, 0.0}, 0.0);
+    return foreseen.front().motion.points().size() > 1;
+  };
+  EXPECT_TRUE(sets_off(8.0, 0.2));
+  EXPECT_FALSE(sets_off(8.0, -0.8)) << "parked at the side";
+  EXPECT_FALSE(sets_off(40.0, 0.2)) << "far from the junction";
+}
+
 TEST_F(LaneForecasts, WhoWalksOrDrivesAgainstTheLaneFollowsNone) {
   const map::LaneId id = *road_map_.find_lane("31/0/-2");
   const geometry::Pose2 on = road_map_.lane(id).pose_at(30.0);
