@@ -22,6 +22,7 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
+import scipy.spatial
 import shapely
 
 LARGEST_M = 0.01
@@ -158,15 +159,45 @@ def listed_borders(path, but=frozenset()):
     return lines
 
 
+def bounds(points, lines):
+    """Of each point the distance to the segments at the nearest vertex: no less than to all."""
+    vertices = np.concatenate(lines)
+    ends = np.cumsum([len(line) for line in lines])
+    before = np.arange(len(vertices)) - 1
+    before[np.concatenate([[0], ends[:-1]])] += 1
+    after = np.arange(len(vertices)) + 1
+    after[ends - 1] -= 1
+    nearest = scipy.spatial.KDTree(vertices).query(points)[1]
+
+    def to_segment(other):
+        start, along = vertices[nearest], vertices[other[nearest]] - vertices[nearest]
+        square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-300)
+        share = np.clip(np.einsum("ij,ij->i", points - start, along) / square, 0.0, 1.0)
+        return np.linalg.norm(points - start - share[:, None] * along, axis=1)
+
+    return np.minimum(to_segment(before), to_segment(after))
+
+
 def farthest(points, lines):
-    """The largest distance of points to the nearest of the lines."""
-    shapes = np.array([shapely.LineString(line) for line in lines])
+    """The largest distance of points to the nearest of the lines: measured of those that may be the
+    farthest, in the order of their bounds, until no other can be."""
+    points, together = np.concatenate(points), 1000
+    bound = bounds(points, lines)
+    order = np.argsort(-bound)
+    # Cut into parts of few segments, as the tree knows boxes only.
+    shapes = np.array([shapely.LineString(line[i:i + 9])
+                       for line in lines for i in range(0, len(line) - 1, 8)])
     tree = shapely.STRtree(shapes)
-    points = shapely.points(np.concatenate(points))
-    nearest = tree.nearest(points)
-    distance = shapely.distance(points, shapes[nearest])
-    worst = int(np.argmax(distance))
-    return float(distance[worst]), points[worst]
+    worst_m, at = 0.0, points[order[0]]
+    for first in range(0, len(order), together):
+        some = order[first:first + together]
+        if bound[some[0]] <= worst_m:
+            break
+        asked = shapely.points(points[some])
+        distance = shapely.distance(asked, shapes[tree.nearest(asked)])
+        if distance.max() > worst_m:
+            worst_m, at = float(distance.max()), points[some[np.argmax(distance)]]
+    return worst_m, at
 
 
 def link_gaps(roads, root, borders):
