@@ -13,7 +13,10 @@ road; --style sporty comes nearer to that than our normal style.
     hits       collisions that SUMO reports of the vehicle
     brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
     red        stop lines passed while SUMO shows red
-    time       of the trips that both finish, up to 50 m before the goal: roadbed's over SUMO's
+    time       of the trips that both finish, up to where roadbed slows down for the goal, at least 50 m
+               before it: roadbed's over SUMO's
+    alike      the same over that of SUMO's driver who is held to our style's lateral acceleration in bends:
+               left alone, SUMO drives through a town's bends at 8 to 10 m/s²
 A row per map and density, and one of all. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
 import argparse
 import json
@@ -27,6 +30,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import libsumo
+import numpy as np
 import sumo
 import sumolib
 
@@ -35,6 +39,8 @@ SEEN_M = 200.0
 LENGTH_M, WIDTH_M, REAR_OVERHANG_M = 4.508, 1.610, 0.8312829  # the pilot's default vehicle
 FRONT_M = LENGTH_M - REAR_OVERHANG_M
 COMFORTABLE_MPS2 = 4.5
+SLOWS_MPS2 = {"gentle": 1.0, "normal": 1.5, "sporty": 2.2}  # for the goal
+LATERAL_MPS2 = {"gentle": 1.5, "normal": 2.5, "sporty": 3.5}  # in bends; both as the styles
 LEAST_TRIP_M = 400.0
 ARRIVED_M = 50.0
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -252,6 +258,43 @@ def lane_pose(net, edge_id, at_end):
     return x, y, math.atan2(ahead[1] - y, ahead[0] - x)
 
 
+class Bends:
+    """How fast a driver is on a trip who knows what its bends allow, and brakes for them in time."""
+    STEP_M, OVER_M = 2.0, 6.0  # the net's lines are coarse: a bend is measured over some metres
+
+    def __init__(self, net, edges, lateral_mps2):
+        points = self.line_of(net, edges)
+        along_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        self.at_m = np.arange(0.0, along_m[-1], self.STEP_M)
+        place = [np.interp(self.at_m, along_m, points[:, axis]) for axis in (0, 1)]
+        self.points = np.stack(place, axis=1)
+        over = round(self.OVER_M / self.STEP_M)
+        before = self.points[over:-over] - self.points[:-2 * over]
+        after = self.points[2 * over:] - self.points[over:-over]
+        turned = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0],
+                            np.einsum("ij,ij->i", before, after))
+        bend = np.pad(np.abs(turned) / self.OVER_M, over)
+        self.most_mps = np.sqrt(lateral_mps2 / np.maximum(bend, 1e-6))
+
+    @staticmethod
+    def line_of(net, edges):
+        """Along the leftmost lanes, and those across junctions."""
+        points = []
+        for edge, following in zip(edges, [*edges[1:], None]):
+            lane = [one for one in net.getEdge(edge).getLanes() if one.allows("passenger")][-1]
+            points += lane.getShape()
+            across = [way.getViaLaneID() for way in net.getEdge(edge).getOutgoing().get(
+                net.getEdge(following), [])] if following else []
+            points += libsumo.lane.getShape(across[-1]) if across and across[-1] else []
+        kept = [points[0], *(b for a, b in zip(points, points[1:]) if math.dist(a, b) > 0.1)]
+        return np.array([point[:2] for point in kept])
+
+    def limit_mps(self, place):
+        here = int(np.argmin(np.linalg.norm(self.points - place, axis=1)))
+        ahead_m = self.at_m[here:] - self.at_m[here]
+        return float(np.min(np.sqrt(self.most_mps[here:] ** 2 + 2.0 * COMFORTABLE_MPS2 * ahead_m)))
+
+
 def brakes_behind():
     """Who brakes harder than is liked directly behind the vehicle."""
     hard = set()
@@ -292,7 +335,7 @@ class RedLights:
         return {edge_of(link[0]) for link in libsumo.lane.getLinks(lane) if link[5] in "ru"}
 
 
-def run(options, net, map_file, density, seed, by_roadbed):
+def run(options, net, map_file, density, seed, drive):
     """One drive. Returns what became of it."""
     traffic = Traffic(net, density, seed)
     result = {"hits": 0, "brakes": set(), "red": 0, "time_s": None, "why": ""}
@@ -311,7 +354,7 @@ def run(options, net, map_file, density, seed, by_roadbed):
                 break
         else:
             return None
-        (drive_by_roadbed if by_roadbed else drive_by_sumo)(
+        drive(
             options, net, map_file, traffic, edges, result, f"{map_file.stem}_{density:g}_{seed}")
         return result
     finally:
@@ -326,23 +369,33 @@ def is_on_road(options, map_file, place):
     return any(lane["distance_m"] == 0.0 for lane in json.loads(done.stdout)["points"][0]["lanes"])
 
 
-def has_arrived(edges, goal):
-    """Before either driver slows down for the goal."""
+def has_arrived(options, edges, goal):
+    """Before either driver slows down for the goal, where SUMO's takes the vehicle away."""
+    fastest_mps = libsumo.lane.getMaxSpeed(edges[-1] + "_0")
+    slows_m = 0.5 * fastest_mps * fastest_mps / SLOWS_MPS2[options.style]
     return (libsumo.vehicle.getRoadID("ego") == edges[-1]
-            and math.dist(libsumo.vehicle.getPosition("ego"), goal) < ARRIVED_M)
+            and math.dist(libsumo.vehicle.getPosition("ego"), goal) < max(ARRIVED_M, slows_m))
 
 
-def drive_by_sumo(options, net, map_file, traffic, edges, result, name):
+def drive_by_sumo(options, net, map_file, traffic, edges, result, name, bends=None):
     begin_s = libsumo.simulation.getTime()
     goal = lane_pose(net, edges[-1], True)[:2]
     while libsumo.simulation.getTime() - begin_s < options.limit:
+        if bends:
+            libsumo.vehicle.setMaxSpeed("ego", bends.limit_mps(libsumo.vehicle.getPosition("ego")))
         traffic.step()
         if "ego" not in libsumo.vehicle.getIDList():
             result["time_s"] = libsumo.simulation.getTime() - begin_s
             return
-        if has_arrived(edges, goal):
+        if has_arrived(options, edges, goal):
             result["time_s"] = libsumo.simulation.getTime() - begin_s
             return
+
+
+def drive_alike(options, net, map_file, traffic, edges, result, name):
+    """SUMO's driver with our style's lateral acceleration."""
+    bends = Bends(net, edges, LATERAL_MPS2[options.style])
+    drive_by_sumo(options, net, map_file, traffic, edges, result, name, bends)
 
 
 def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
@@ -371,7 +424,7 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
             result["brakes"] |= brakes_behind()
             red.judge()
             result["red"] = red.passed
-            if has_arrived(edges, goal[:2]) or answer["at_goal"]:
+            if has_arrived(options, edges, goal[:2]) or answer["at_goal"]:
                 result["time_s"] = libsumo.simulation.getTime() - begin_s
                 return
         result["why"] = answer["reason"]
@@ -380,7 +433,7 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
 
 
 HEADER = (f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'hours':>6} {'hits':>5} {'brakes':>6} "
-          f"{'red':>4} {'time':>6}")
+          f"{'red':>4} {'time':>6} {'alike':>6}")
 
 
 class Row:
@@ -389,16 +442,16 @@ class Row:
     def __init__(self, name, density):
         self.name, self.density = name, density
         self.drives = self.done = self.hits = self.brakes = self.red = 0
-        self.hours, self.ratios = 0.0, []
+        self.hours, self.ratios, self.alike = 0.0, [], []
 
     @staticmethod
     def of_all(rows):
         row = Row("together", "")
-        for name in ("drives", "done", "hits", "brakes", "red", "hours", "ratios"):
+        for name in ("drives", "done", "hits", "brakes", "red", "hours", "ratios", "alike"):
             setattr(row, name, sum((getattr(one, name) for one in rows), getattr(row, name)))
         return row
 
-    def add(self, seed, own, drive_theirs, limit_s):
+    def add(self, seed, own, drive, limit_s):
         if own is None:
             return
         self.drives += 1
@@ -410,17 +463,19 @@ class Row:
         if own["why"] or own["hits"] or own["red"] or own["brakes"]:
             print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, {own['red']} red, "
                   f"{len(own['brakes'])} brakes; {own['why']}", file=sys.stderr, flush=True)
-        theirs = drive_theirs()
-        if own["time_s"] and theirs and theirs["time_s"]:
-            self.ratios.append(own["time_s"] / theirs["time_s"])
+        for driver, ratios in ((drive_by_sumo, self.ratios), (drive_alike, self.alike)):
+            theirs = drive(driver)
+            if own["time_s"] and theirs and theirs["time_s"]:
+                ratios.append(own["time_s"] / theirs["time_s"])
 
     def is_good(self):
         return self.hits == 0 and self.red == 0 and self.done == self.drives
 
     def __str__(self):
-        ratio = f"{statistics.median(self.ratios):6.2f}" if self.ratios else "     -"
+        time, alike = (f"{statistics.median(ratios):6.2f}" if ratios else "     -"
+                       for ratios in (self.ratios, self.alike))
         return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.hours:6.2f} "
-                f"{self.hits:5} {self.brakes:6} {self.red:4} {ratio}")
+                f"{self.hits:5} {self.brakes:6} {self.red:4} {time} {alike}")
 
 
 def main():
@@ -446,9 +501,9 @@ def main():
             for density in options.density or [2.0, 6.0, 12.0]:
                 rows.append(Row(map_file.stem[:16], f"{density:g}"))
                 for seed in range(1, options.seeds + 1):
-                    rows[-1].add(seed, run(options, net, map_file, density, seed, True),
-                                 lambda: run(options, net, map_file, density, seed, False),
-                                 options.limit)
+                    def drive(driver):
+                        return run(options, net, map_file, density, seed, driver)
+                    rows[-1].add(seed, drive(drive_by_roadbed), drive, options.limit)
                 print(rows[-1], flush=True)
     together = Row.of_all(rows)
     print(together)
