@@ -15,8 +15,7 @@ road; --style sporty comes nearer to that than our normal style.
     red        stop lines passed while SUMO shows red
     time       of the trips that both finish, up to where roadbed slows down for the goal, at least 50 m
                before it: roadbed's over SUMO's
-    alike      the same over that of SUMO's driver who is held to our style's lateral acceleration in bends:
-               left alone, SUMO drives through a town's bends at 8 to 10 m/s²
+    alike      the same over that of SUMO's driver who is held to our style's lateral acceleration in bends
 A row per map and density, and one of all. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
 import argparse
 import json

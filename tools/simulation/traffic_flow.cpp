@@ -84,7 +84,8 @@ TrafficFlow::Ahead TrafficFlow::ahead_of(const Car& car, const DrivenBody& vehic
   };
   look_at(vehicle.body, vehicle.speed_mps);
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (i == car.obstacle || !obstacles_[i].is_there(t_s)) continue;
+    // Who is away from the vehicle's route is not away for others.
+    if (i == car.obstacle || !obstacles_[i].validity.holds(t_s)) continue;
     const double speed = obstacles_[i].is_static() ? 0.0 : obstacles_[i].motion.at(t_s).speed_mps;
     look_at(rectangle_at(obstacles_[i], t_s), speed);
   }
@@ -107,7 +108,7 @@ std::vector<TrafficFlow::Body> TrafficFlow::movers(const DrivenBody& vehicle) co
   std::vector<Body> all;
   const double t_s = kStep_s * steps_;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (obstacles_[i].is_static() || !obstacles_[i].is_there(t_s)) continue;
+    if (obstacles_[i].is_static() || !obstacles_[i].validity.holds(t_s)) continue;
     all.push_back({i, rectangle_at(obstacles_[i], t_s), obstacles_[i].motion.at(t_s).speed_mps});
   }
   all.push_back({obstacles_.size(), vehicle.body, vehicle.speed_mps});

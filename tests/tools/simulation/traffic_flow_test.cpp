@@ -103,6 +103,21 @@ TEST(TrafficFlow, WhoIsNotHinderedDrivesExactlyAsItsSpeedsSay) {
   }
 }
 
+// On a bridge over the vehicle's route, say: away for the vehicle, not for one another.
+TEST(TrafficFlow, WhoIsAwayFromTheRouteIsAheadOfOthers) {
+  std::vector<planning::Obstacle> obstacles{{.id = "slow", .motion = {}, .away = planning::kAlways},
+                                            {.id = "fast", .motion = {}}};
+  const std::vector<LaneDriver> drivers{on_x_axis("slow", 60.0, {{0.0, 5.0}}),
+                                        on_x_axis("fast", 0.0, {{0.0, 20.0}})};
+  TrafficFlow flow(drivers, obstacles, 20.0, {});
+  for (int k = 0; k < 200; ++k) {
+    obstacles.front().away = planning::kAlways;
+    flow.step(vehicle_at(-1000.0, 500.0, 0.0));
+  }
+  const auto x_m = [&](std::size_t car) { return obstacles[car].motion.at(20.0).x_m; };
+  EXPECT_GT(x_m(0) - x_m(1), kLength_m);
+}
+
 TEST(TrafficFlow, FollowerSettlesAtTheModelsEquilibrium) {
   Platoon cars{.drivers = {on_x_axis("a", 0.0, {{0.0, 20.0}})}, .obstacles = {}};
   double gap_m = 0.0;
