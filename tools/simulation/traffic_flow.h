@@ -61,6 +61,7 @@ class TrafficFlow {
   static constexpr double kForeseenFor_s = 20.0;
 
   /// Sets everybody to the start. Drivers whose obstacle is not there are left out.
+  /// @param drivers    outlive it.
   /// @param obstacles  kept by reference; the motions of drivers are replaced as they drive.
   TrafficFlow(const std::vector<LaneDriver>& drivers, std::vector<planning::Obstacle>& obstacles,
               double duration_s, const Options& options);
