@@ -89,10 +89,8 @@ std::optional<BlockedRoad::Decision> BlockedRoad::look(const View& view) {
 DetourAnswer BlockedRoad::ask(const View& view) const {
   if (task_.route.legs.empty()) return {{}, "a line of way-points is no route"};
   std::vector<std::size_t> blockers = queue_;
-  for (const std::size_t known : task_.blockers) {
-    if (is_standing(task_.obstacles[known], view.t_s) && std::ranges::count(blockers, known) == 0) {
-      blockers.push_back(known);
-    }
+  for (const std::size_t known : known_blockers(task_, view.t_s)) {
+    if (std::ranges::count(blockers, known) == 0) blockers.push_back(known);
   }
   return find_detour({.task = task_,
                       .vehicle = vehicle_,
@@ -107,10 +105,7 @@ std::string BlockedRoad::describe(const View& view, const DetourAnswer& answer) 
   const std::string who = fmt::format("the road is blocked: {} {} has not moved for {:.0f} s",
                                       first.kind, first.id, view.t_s - since_s_);
   if (!answer.detour) return who + "; no other route: " + answer.reason;
-  const Route& route = answer.detour->route;
-  return fmt::format("{}; another route by lane {} is taken, {:.0f} m ({:+.0f} m, {:+.0f} s)", who,
-                     task_.road_map.lane(answer.detour->by_lane).name, route.length_m,
-                     answer.detour->longer_m, answer.detour->longer_s);
+  return who + "; " + described(*answer.detour, task_.road_map);
 }
 
 }  // namespace roadbed::planning::behaviour

@@ -1,5 +1,7 @@
 #include "roadbed/planning/behaviour/detour.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,6 +67,7 @@ RoutePlace goal_of(const Route& route) {
 
 RouteOptions options_without(const DetourQuestion& q) {
   RouteOptions options;
+  options.avoid = q.closed;
   for (const std::size_t blocker : q.blockers) {
     const auto closed = stretches_closed_by(q.task.obstacles[blocker], q);
     options.blocked.insert(options.blocked.end(), closed.begin(), closed.end());
@@ -128,10 +131,22 @@ map::LaneId first_new_lane(const Route& route, const Route& other) {
   return found == route.legs.end() ? route.legs.front().lane : found->lane;
 }
 
-/// Compared with the route that there would be if nobody stood in the way.
+/// Along the route that is given up, at its usual speed.
+Route rest_of_route(const DetourQuestion& q) {
+  Route rest = q.task.route;
+  const double driven_m = q.task.line.project(q.measured.map_from_vehicle.position()).s_m;
+  const double left = std::clamp(1.0 - driven_m / q.task.line.goal_s_m(), 0.0, 1.0);
+  rest.cost_s *= left;
+  rest.length_m *= left;
+  return rest;
+}
+
+/// Compared with the route that there would be if nobody stood in the way, or what is left of the
+/// one that is given up where that can be had from there no more.
 Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::LaneId by_lane) {
   std::string reason;
-  const Route open = cheapest_route(q, {}, reason).value().route;
+  const std::optional<Found> without_blockers = cheapest_route(q, {}, reason);
+  const Route open = without_blockers ? without_blockers->route : rest_of_route(q);
   std::vector<StopPoint> places =
       stop_points(q.task.road_map, found.route, line.line, q.task.lights);
   Detour detour{.route = std::move(found.route),
@@ -153,6 +168,18 @@ void Detour::lead(DrivingTask& of) const {
   of.other_levels = OtherLevels(of.road_map, route);
   of.stop_points = stop_points;
   of.blockers = blockers;
+}
+
+std::string described(const Detour& detour, const map::RoadMap& road_map) {
+  return fmt::format("another route by lane {} is taken, {:.0f} m ({:+.0f} m, {:+.0f} s)",
+                     road_map.lane(detour.by_lane).name, detour.route.length_m, detour.longer_m,
+                     detour.longer_s);
+}
+
+std::vector<std::size_t> known_blockers(const DrivingTask& task, double t_s) {
+  std::vector<std::size_t> known = task.blockers;
+  std::erase_if(known, [&](std::size_t one) { return !is_standing(task.obstacles[one], t_s); });
+  return known;
 }
 
 bool is_standing(const Obstacle& obstacle, double t_s) {

@@ -18,7 +18,7 @@ struct Detour {
   std::vector<StopPoint> stop_points;
   std::vector<std::size_t> blockers;      ///< obstacles that it avoids
   map::LaneId by_lane;                    ///< its first that the blocked route does not use
-  double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is blocked, by the route's costs
+  double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is given up, by the route's costs
 
   /// Leads a task's vehicle along it.
   void lead(DrivingTask& of) const;
@@ -36,7 +36,8 @@ struct DetourQuestion {
   const DrivingOptions& driving;
   const VehicleState& measured;
   double t_s;
-  std::vector<std::size_t> blockers;  ///< obstacles that stand for ever
+  std::vector<std::size_t> blockers;     ///< obstacles that stand for ever
+  std::vector<map::LaneId> closed = {};  ///< lanes that cannot be come to
 };
 
 /// Whether an obstacle is there and does not move, now.
@@ -47,6 +48,12 @@ bool is_standing(const Obstacle& obstacle, double t_s);
 /// lanes of the route it is in the way wherever it is.
 std::vector<BlockedStretch> stretches_closed_by(const Obstacle& obstacle,
                                                 const DetourQuestion& question);
+
+/// What is said of a way that is taken: by which lane, and how much longer it is.
+std::string described(const Detour& detour, const map::RoadMap& road_map);
+
+/// Obstacles that ways of a task are known to be blocked by, still.
+std::vector<std::size_t> known_blockers(const DrivingTask& task, double t_s);
 
 /// The cheapest route to the task's goal that passes none of the blockers and that the vehicle can
 /// join by driving on: from any lane that it stands on and along (lanes that part overlap at

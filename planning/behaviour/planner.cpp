@@ -13,6 +13,7 @@
 #include "roadbed/planning/behaviour/goal_lines.h"
 #include "roadbed/planning/behaviour/hypotheses.h"
 #include "roadbed/planning/behaviour/hypothesis_speed.h"
+#include "roadbed/planning/behaviour/missed_lane_change.h"
 #include "roadbed/planning/behaviour/path_queries.h"
 #include "roadbed/planning/maneuvers/lane_passing.h"
 #include "roadbed/planning/maneuvers/merging.h"
@@ -48,6 +49,7 @@ class Planner::Impl {
         speed_(setup, cruise_.options()),
         hypotheses_(setup, lines_, speed_),
         blocked_road_(vehicle_, setup.driving, task_),
+        missed_change_(vehicle_, setup.driving, task_),
         guard_(task_) {}
 
   const LateralReplanner& replanner() const { return lines_.driven().replanner; }
@@ -66,7 +68,7 @@ class Planner::Impl {
     command.hypotheses = hypotheses_.take_outcomes();
     command.drive = last_plan_;
     guard_.look(best, scene, command);
-    if (!task_.goal) look_at_blocked_road(view, command);
+    if (!task_.goal) look_for_detour(view, passing.merging, command);
     view.speed_controller.sent(command.acceleration_mps2);
     last_command_mps2_ = command.acceleration_mps2;
     last_set_speed_mps_ = command.set_speed_mps;
@@ -281,6 +283,19 @@ class Planner::Impl {
                         : fmt::format(", and {:.1f} s is free at best", best.answer.free_until_s));
   }
 
+  void look_for_detour(const PlannerView& view, const Merging::Decision& merging,
+                       PlannerCommand& command) {
+    auto missed =
+        missed_change_.look({.t_s = view.t_s,
+                             .measured = view.measured,
+                             .no_gap = merging.no_gap,
+                             .free_mps = lines_.driven().ceiling.at(replanner().s_m()).speed_mps});
+    if (!missed) return look_at_blocked_road(view, command);
+    command.reason = std::move(missed->reason);
+    command.is_news = true;
+    command.detour = std::move(missed->detour);
+  }
+
   void look_at_blocked_road(const PlannerView& view, PlannerCommand& command) {
     std::optional<BlockedRoad::Decision> blocked =
         blocked_road_.look({.t_s = view.t_s,
@@ -328,6 +343,7 @@ class Planner::Impl {
   HypothesisSpeed speed_;
   Hypotheses hypotheses_;
   BlockedRoad blocked_road_;
+  MissedLaneChange missed_change_;
   CommandGuard guard_;
   double last_command_mps2_ = 0.0, last_set_speed_mps_ = 0.0;
   std::vector<SpeedState> last_plan_;

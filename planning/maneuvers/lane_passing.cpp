@@ -21,7 +21,6 @@ constexpr double kPassedWithin_m = 120.0;
 constexpr double kLaneChange_s = 3.5;     // to change lanes in
 constexpr double kOwnSpeedUp_mps2 = 0.9;  // less than what the cruise control was seen to do
 constexpr double kPlatoon_m = 15.0, kPlatoon_s = 1.5;  // nearer cars are passed together
-constexpr double kQueue_mps = 4.0;                     // slower is who queues
 constexpr double kBeforeLaneEnd_m = 10.0;              // of the lane, to be back
 constexpr double kKeptAhead_m = 5.0,
                  kKeptAhead_s = 1.0;  // kept from who is ahead in the lane to enter

@@ -208,7 +208,9 @@ Merging::Decision Merging::waiting(const MergeGap& gap, const Scene& scene) cons
   const double needed_mps2 = 0.5 * speed_mps * speed_mps / std::max(0.5, way_m);
   halt.deceleration_mps2 = std::clamp(needed_mps2, kWaits_mps2, SafetyOptions{}.most_mps2);
   halt.is_hard = halt.deceleration_mps2 > kMostCommand_mps2;
-  return {.along = along_, .halt = std::move(halt)};
+  return {.along = along_,
+          .halt = std::move(halt),
+          .no_gap = NoGap{.leg = scene.place.leg, .braking_mps2 = needed_mps2}};
 }
 
 std::string Merging::name_of(std::size_t obstacle) const {

@@ -33,9 +33,15 @@ class Merging {
     own_lane,    ///< MergeLines::own_lane
     next_lane,   ///< MergeLines::next_lane: the gap is there, the vehicle changes lanes
   };
+  /// A change for which there is no gap so far.
+  struct NoGap {
+    std::size_t leg;      ///< of the route, that it leaves
+    double braking_mps2;  ///< that waiting at its end takes from now on
+  };
   struct Decision {
     Along along = Along::route_line;
     std::optional<StopConstraint> halt = {};  ///< no gap so far; of the line that is driven along
+    std::optional<NoGap> no_gap = {};         ///< with a halt
     std::optional<double> most_mps = {};      ///< up to the place, to come into the gap
     std::vector<bool> comes_behind = {};      ///< per obstacle: it will follow; empty: nobody
     /// Obstacle in whose lane the vehicle has come: it is fallen back from gently.

@@ -72,13 +72,6 @@ const MoverOnLine* Overtaking::nearest_ahead(const std::vector<MoverOnLine>& mov
   return nearest;
 }
 
-/// Who brakes is about to turn off, or to stand in a queue.
-bool Overtaking::brakes(const MoverOnLine& mover, double t_s) const {
-  constexpr double kOver_s = 0.5, kBrakes_mps2 = 1.0;
-  const geometry::Trajectory& motion = task_.obstacles[mover.obstacle].motion;
-  return motion.at(t_s - kOver_s).speed_mps - motion.at(t_s).speed_mps > kBrakes_mps2 * kOver_s;
-}
-
 /// Whether it stands now and will not always: in a queue, at a light, to let somebody by. Of those
 /// who are measured who has stood for long is static.
 bool Overtaking::waits(const MoverOnLine& mover, double t_s) const {
@@ -286,7 +279,8 @@ Overtaking::Decision Overtaking::look(const ViewOnLine& view) {
   }
   const State now{0.0, view.at.s_m, view.speed_mps};
   std::optional<std::string> why = why_not(now, *lead, movers, *stretch);
-  if (!why && !overtaken_ && brakes(*lead, view.t_s)) why = "it brakes";
+  if (!why && !overtaken_ && is_braking(task_.obstacles[lead->obstacle], view.t_s))
+    why = "it brakes";
   const bool is_free_as_seen = !why;
   std::vector<MoverOnLine> with_hidden = movers;
   if (is_free_as_seen) {

@@ -71,7 +71,6 @@ class Overtaking {
   struct State;
   const MoverOnLine* nearest_ahead(const std::vector<MoverOnLine>& movers,
                                    const ViewOnLine& view) const;
-  bool brakes(const MoverOnLine& mover, double t_s) const;
   bool waits(const MoverOnLine& mover, double t_s) const;
   double pass_at_m(const MoverOnLine& lead, const OncomingLaneSegment& stretch) const;
   const OncomingLaneSegment* stretch_at(double s_m) const;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 #include <vector>
 
 namespace roadbed::planning::inline maneuvers {
@@ -11,6 +13,7 @@ namespace {
 constexpr double kBesideCyclist_m = 1.5;
 constexpr double kRidesAlong = 0.8;  // cosine, of who rides as the vehicle does
 constexpr double kReach_m = 25.0;    // of a path that begins to pass
+constexpr double kQueueGap_m = 15.0;
 constexpr double kSlowerBy_mps = 1.0, kBehindWithin_s = 8.0, kMovesAlong_mps = 0.3;
 
 bool is_cyclist(const Obstacle& obstacle) { return obstacle.kind == "bicycle"; }
@@ -28,6 +31,19 @@ const MoverOnLine* slower_ahead(const WithinLaneQuestion& q,
   const double slower_mps = q.free_mps - nearest->speed_mps;
   const bool is_soon = gap_m < std::min(kReach_m, kBehindWithin_s * slower_mps);
   return slower_mps >= kSlowerBy_mps && is_soon ? nearest : nullptr;
+}
+
+/// Whether somebody slow drives behind somebody slow. Cyclists ride behind one another everywhere.
+bool queues(const WithinLaneQuestion& q, const std::vector<MoverOnLine>& movers,
+            const MoverOnLine& mover) {
+  const std::span<const Obstacle> obstacles = q.view.traffic.obstacles;
+  if (mover.speed_mps > kQueue_mps || is_cyclist(obstacles[mover.obstacle])) return false;
+  return std::ranges::any_of(movers, [&](const MoverOnLine& other) {
+    const double gap_m = other.rear_m() - mover.front_m();
+    const double apart_m = std::abs(other.d_m - mover.d_m);
+    return gap_m > 0.0 && gap_m < kQueueGap_m && other.speed_mps < kQueue_mps &&
+           apart_m < other.half_width_m + mover.half_width_m;
+  });
 }
 
 /// Metres that are missing beside it, on the side where fewer are.
@@ -65,9 +81,14 @@ WithinLanePassing look_within_lane(const WithinLaneQuestion& question) {
       movers_on_line(question.line, question.view.traffic, question.view.t_s);
   const MoverOnLine* slower = slower_ahead(question, movers);
   if (slower == nullptr) return {};
-  const double missing = missing_m(question, *slower);
-  if (missing <= 0.0) return {.passed = slower->obstacle};
   const Obstacle& obstacle = question.view.traffic.obstacles[slower->obstacle];
+  const auto because = [&](const char* why) {
+    return WithinLanePassing{.reason = fmt::format("{} is not passed: {}", obstacle.id, why)};
+  };
+  if (is_braking(obstacle, question.view.t_s)) return because("it brakes");
+  const double missing = missing_m(question, *slower);
+  if (missing <= 0.0 && queues(question, movers, *slower)) return because("it queues");
+  if (missing <= 0.0) return {.passed = slower->obstacle};
   return {.reason = fmt::format("{} is not passed: {:.1f} m of room are missing beside it",
                                 obstacle.id, missing)};
 }

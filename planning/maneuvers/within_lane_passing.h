@@ -40,6 +40,7 @@ struct WithinLaneQuestion {
 
 /// The nearest one that moves ahead on the line and is 1 m/s slower than the road allows, if the
 /// vehicle is 25 m behind it, or 8 s: whether the corridor is wide enough on one of its sides.
+/// Nobody is passed who brakes, or queues behind somebody.
 WithinLanePassing look_within_lane(const WithinLaneQuestion& question);
 
 }  // namespace roadbed::planning::maneuvers

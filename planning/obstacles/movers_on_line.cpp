@@ -1,5 +1,6 @@
 #include "roadbed/planning/obstacles/movers_on_line.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadbed::planning::inline obstacles {
@@ -29,6 +30,14 @@ std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic
          .stands = obstacle.is_static()});
   }
   return movers;
+}
+
+bool is_braking(const Obstacle& obstacle, double t_s) {
+  constexpr double kOver_s = 0.5, kLeast_mps2 = 1.0;
+  const auto speed_mps = [&](double at_s) { return obstacle.motion.at(at_s).speed_mps; };
+  const double now_mps = speed_mps(t_s);
+  return std::max(speed_mps(t_s - kOver_s) - now_mps, now_mps - speed_mps(t_s + kOver_s)) >
+         kLeast_mps2 * kOver_s;
 }
 
 }  // namespace roadbed::planning::obstacles

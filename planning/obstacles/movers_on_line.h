@@ -39,4 +39,10 @@ struct MoverOnLine {
 std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
                                         double t_s, bool with_standing = false);
 
+inline constexpr double kQueue_mps = 4.0;  ///< slower is who may be in a queue
+
+/// Whether an obstacle brakes, by 1 m/s² and more over half a second before or behind a time: it is
+/// about to turn off, or to stand in a queue. Of who is measured only what is foreseen is known.
+bool is_braking(const Obstacle& obstacle, double t_s);
+
 }  // namespace roadbed::planning::obstacles

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "roadbed/planning/maneuvers/within_lane_passing.h"
 #include "roadbed/tests/support/straight_world.h"
 #include "roadbed/tools/simulation/drive.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
@@ -76,6 +79,45 @@ TEST(WithinLanePassing, OthersNeedOnlyTheClearanceThatIsAskedFor) {
   EXPECT_TRUE(passed.is_passed) << passed.reason;
   EXPECT_GE(passed.beside_m, 0.29);
   EXPECT_LT(passed.beside_m, 1.0);
+}
+
+/// A car in the right half of a road 7 m wide, at 3 m/s and an acceleration, seen from 10 s on.
+planning::Obstacle slow_car(double x_m, double acceleration_mps2) {
+  planning::Obstacle car{.id = "slow", .kind = "car", .motion = {}};
+  std::vector<geometry::TrajectoryPoint> points;
+  for (double after_s = 0.0; after_s < 1.01; after_s += 0.1) {
+    const double way_m = 3.0 * after_s + 0.5 * acceleration_mps2 * after_s * after_s;
+    points.push_back({.t_s = 10.0 + after_s,
+                      .x_m = x_m + way_m,
+                      .y_m = -2.0,
+                      .speed_mps = 3.0 + acceleration_mps2 * after_s});
+  }
+  car.motion = geometry::Trajectory(std::move(points));
+  return car;
+}
+
+/// What becomes of the first of them, 15 m behind it.
+planning::WithinLanePassing behind(std::vector<planning::Obstacle> others) {
+  const World world = tests::straight_world({.width_m = 7.0}, std::move(others));
+  const Scenario scenario;
+  const planning::ViewOnLine view{
+      .t_s = 10.0, .at = {.s_m = 30.0, .d_m = 0.0}, .speed_mps = 5.0, .traffic = {world.obstacles}};
+  return planning::look_within_lane({.view = view,
+                                     .line = world.line,
+                                     .vehicle = scenario.vehicle,
+                                     .free_mps = 12.0,
+                                     .clearance_m = 0.3,
+                                     .most_left_m = 3.0,
+                                     .most_right_m = 3.0});
+}
+
+TEST(WithinLanePassing, NobodyIsPassedWhoBrakesOrQueues) {
+  EXPECT_TRUE(behind({slow_car(60.0, 0.0)}).passed);
+  EXPECT_TRUE(behind({slow_car(60.0, -0.9)}).passed);
+  EXPECT_EQ(behind({slow_car(60.0, -1.1)}).reason, "slow is not passed: it brakes");
+  EXPECT_EQ(behind({slow_car(60.0, 0.0), slow_car(79.0, 0.0)}).reason,
+            "slow is not passed: it queues");
+  EXPECT_TRUE(behind({slow_car(60.0, 0.0), slow_car(80.0, 0.0)}).passed) << "15.5 m between them";
 }
 
 }  // namespace
