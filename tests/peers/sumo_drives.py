@@ -10,13 +10,17 @@ pilot` is told of those within 200 m and of the traffic lights, and the vehicle 
 trajectory has it 0.1 s later. The same trip in the same traffic is then driven by SUMO's own driver,
 who speeds up by 2.6 m/s², brakes by 4.5, keeps 1 s to others and does not slow down for bends of the
 road; --style sporty comes nearer to that than our normal style.
-    hits       collisions that SUMO reports of the vehicle
+    jams       of the drives that are not done in time, those that SUMO's own driver does not do either
+    hits       collisions that SUMO reports of the vehicle, each 0.1 s; nearer than 2.5 m to who is ahead on
+               the lane that SUMO has it on is one
+    touches    vehicles whose body meets its body
     brakes     vehicles directly behind it that brake harder than they like to (4.5 m/s²), for 0.1 s or more
     red        stop lines passed while SUMO shows red
     time       of the trips that both finish, up to where roadbed slows down for the goal, at least 50 m
                before it: roadbed's over SUMO's
     alike      the same over that of SUMO's driver who is held to our style's lateral acceleration in bends
-A row per map and density, and one of all. Exit status 1 if there is a hit, a red light, or a trip not finished in time."""
+A row per map and density, and one of all. Exit status 1 if there is a hit, a touch, a red light, or a trip not
+finished in time that SUMO's own driver finishes."""
 import argparse
 import json
 import math
@@ -41,6 +45,7 @@ COMFORTABLE_MPS2 = 4.5
 SLOWS_MPS2 = {"gentle": 1.0, "normal": 1.5, "sporty": 2.2}  # for the goal
 LATERAL_MPS2 = {"gentle": 1.5, "normal": 2.5, "sporty": 3.5}  # in bends; both as the styles
 LEAST_TRIP_M = 400.0
+NOT_ADDED_WITHIN_M = 50.0  # of where the ego is
 ARRIVED_M = 50.0
 DATA = Path(__file__).resolve().parents[2] / "data"
 
@@ -90,6 +95,7 @@ class Traffic:
         self.random = random.Random(seed)
         self.edges = [edge for edge in net.getEdges()
                       if edge.allows("passenger") and edge.getLength() > 20.0]
+        self.boxes = {edge.getID(): edge.getBoundingBox() for edge in self.edges}
         length_km = sum(edge.getLength() * edge.getLaneNumber() for edge in self.edges) / 1000.0
         self.wanted = max(1, round(density * length_km))
         libsumo.start(["sumo", "--net-file", net.file, "--step-length", str(STEP_S), "--seed", str(seed),
@@ -114,13 +120,24 @@ class Traffic:
                 return list(found.edges)
         return None
 
+    def is_near_ego(self, edge_id):
+        """SUMO looks for a free place on an edge before it moves who is on the way to it."""
+        if "ego" not in libsumo.vehicle.getIDList():
+            return False
+        x, y = libsumo.vehicle.getPosition("ego")
+        left, below, right, above = self.boxes[edge_id]
+        return (left - NOT_ADDED_WITHIN_M < x < right + NOT_ADDED_WITHIN_M
+                and below - NOT_ADDED_WITHIN_M < y < above + NOT_ADDED_WITHIN_M)
+
     def fill(self):
-        """As many others as there are to be, a few more each time."""
+        """As many others as there are to be, a few more each time; nobody appears beside the ego."""
         others = libsumo.vehicle.getIDCount() + len(libsumo.simulation.getPendingVehicles())
         for _ in range(min(5, self.wanted - others)):
             edges = self.trip()
             if edges is None:
                 return
+            if self.is_near_ego(edges[0]):
+                continue
             name = f"other{self.added}"
             self.added += 1
             libsumo.route.add("route" + name, edges)
@@ -152,6 +169,32 @@ def seen_objects(ego_front):
                         "speed_mps": libsumo.vehicle.getSpeed(name), "length_m": length,
                         "width_m": libsumo.vehicle.getWidth(name)})
     return objects
+
+
+def body_of(x, y, heading, length, width):
+    """Corners of a body with this centre."""
+    along, across = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading),
+                                                                                  math.cos(heading)])
+    return np.array([[x, y] + 0.5 * (i * length * along + j * width * across)
+                     for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))])
+
+
+def are_apart(one, other):
+    """Whether the direction of a side parts two rectangles."""
+    sides = np.array([corners[i] - corners[i + 1] for corners in (one, other) for i in (0, 1)])
+    first, second = one @ sides.T, other @ sides.T
+    return bool(np.any((first.max(0) < second.min(0)) | (second.max(0) < first.min(0))))
+
+
+def touched_by(ego, objects):
+    """Names of the objects that the vehicle touches."""
+    x, y, heading = ego[:3]
+    middle_m = 0.5 * LENGTH_M - REAR_OVERHANG_M
+    own = body_of(x + middle_m * math.cos(heading), y + middle_m * math.sin(heading), heading,
+                  LENGTH_M, WIDTH_M)
+    return {one["id"] for one in objects if math.dist((one["x_m"], one["y_m"]), (x, y)) < 20.0
+            and not are_apart(own, body_of(one["x_m"], one["y_m"], one["heading_rad"],
+                                           one["length_m"], one["width_m"]))}
 
 
 def colour_of(state):
@@ -337,7 +380,7 @@ class RedLights:
 def run(options, net, map_file, density, seed, drive):
     """One drive. Returns what became of it."""
     traffic = Traffic(net, density, seed)
-    result = {"hits": 0, "brakes": set(), "red": 0, "time_s": None, "why": ""}
+    result = {"hits": 0, "touches": set(), "brakes": set(), "red": 0, "time_s": None, "why": ""}
     try:
         for _ in range(round(20.0 / STEP_S)):
             traffic.step()
@@ -410,7 +453,9 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
     try:
         while libsumo.simulation.getTime() - begin_s < options.limit:
             now_s = libsumo.simulation.getTime()
-            answer = pilot.drive(round(now_s - begin_s, 3), seen_objects(pilot.front()), lights.now())
+            objects = seen_objects(pilot.front())
+            result["touches"] |= touched_by(pilot.state, objects)
+            answer = pilot.drive(round(now_s - begin_s, 3), objects, lights.now())
             front = pilot.front()
             libsumo.vehicle.moveToXY("ego", "", -1, *front, 90.0 - math.degrees(pilot.state[2]),
                                      keepRoute=2)
@@ -431,7 +476,8 @@ def drive_by_roadbed(options, net, map_file, traffic, edges, result, name):
         pilot.close()
 
 
-HEADER = (f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'hours':>6} {'hits':>5} {'brakes':>6} "
+HEADER = (f"{'map':16} {'veh/km':>6} {'drives':>6} {'done':>5} {'jams':>5} {'hours':>6} {'hits':>5} {'touches':>7} "
+          f"{'brakes':>6} "
           f"{'red':>4} {'time':>6} {'alike':>6}")
 
 
@@ -440,13 +486,14 @@ class Row:
 
     def __init__(self, name, density):
         self.name, self.density = name, density
-        self.drives = self.done = self.hits = self.brakes = self.red = 0
+        self.drives = self.done = self.jams = 0
+        self.hits = self.touches = self.brakes = self.red = 0
         self.hours, self.ratios, self.alike = 0.0, [], []
 
     @staticmethod
     def of_all(rows):
         row = Row("together", "")
-        for name in ("drives", "done", "hits", "brakes", "red", "hours", "ratios", "alike"):
+        for name in ("drives", "done", "jams", "hits", "touches", "brakes", "red", "hours", "ratios", "alike"):
             setattr(row, name, sum((getattr(one, name) for one in rows), getattr(row, name)))
         return row
 
@@ -457,24 +504,28 @@ class Row:
         self.done += own["time_s"] is not None
         self.hours += (own["time_s"] or limit_s) / 3600.0
         self.hits += own["hits"]
+        self.touches += len(own["touches"])
         self.brakes += len(own["brakes"])
         self.red += own["red"]
         if own["why"] or own["hits"] or own["red"] or own["brakes"]:
-            print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, {own['red']} red, "
+            print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, "
+                  f"{len(own['touches'])} touches, {own['red']} red, "
                   f"{len(own['brakes'])} brakes; {own['why']}", file=sys.stderr, flush=True)
         for driver, ratios in ((drive_by_sumo, self.ratios), (drive_alike, self.alike)):
             theirs = drive(driver)
+            if driver is drive_by_sumo and theirs and not own["time_s"] and not theirs["time_s"]:
+                self.jams += 1
             if own["time_s"] and theirs and theirs["time_s"]:
                 ratios.append(own["time_s"] / theirs["time_s"])
 
     def is_good(self):
-        return self.hits == 0 and self.red == 0 and self.done == self.drives
+        return self.hits == self.touches == self.red == 0 and self.done + self.jams == self.drives
 
     def __str__(self):
         time, alike = (f"{statistics.median(ratios):6.2f}" if ratios else "     -"
                        for ratios in (self.ratios, self.alike))
-        return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.hours:6.2f} "
-                f"{self.hits:5} {self.brakes:6} {self.red:4} {time} {alike}")
+        return (f"{self.name:16} {self.density:>6} {self.drives:6} {self.done:5} {self.jams:5} {self.hours:6.2f} "
+                f"{self.hits:5} {self.touches:7} {self.brakes:6} {self.red:4} {time} {alike}")
 
 
 def main():
