@@ -16,6 +16,8 @@ constexpr double kTurnAcceleration_radps2 = 0.5;
 constexpr double kFirstAcceleration_mps2 = 2.0, kFirstTurnRate_radps = 0.3;
 constexpr double kStands_mps = 0.1;        // slower is noise
 constexpr double kMostStanding_mps = 1.0;  // who is not measured for long still drives
+constexpr double kDrivesAgain_m = 0.5, kDrivesAgainDeviations = 4.0;
+constexpr double kFirstDrivesDeviations = 3.0;  // when it is first measured
 constexpr double kLeastTurning_mps = 0.5;
 
 }  // namespace
@@ -29,6 +31,7 @@ MotionFilter::MotionFilter(const MeasuredMotion& first, const ObjectNoise& noise
           .cwiseAbs2();
   covariance_.diagonal() << noise_variance_, kFirstAcceleration_mps2 * kFirstAcceleration_mps2,
       kFirstTurnRate_radps * kFirstTurnRate_radps;
+  stand(std::abs(first.speed_mps) < kFirstDrivesDeviations * speed_deviation_mps());
 }
 
 void MotionFilter::predict(double to_s) {
@@ -98,14 +101,34 @@ void MotionFilter::update(const MeasuredMotion& measured) {
   left.leftCols<4>() -= gain;
   covariance_ = left * covariance_ * left.transpose() +
                 gain * noise_variance_.asDiagonal() * gain.transpose();
+  tell_whether_it_stands();
+}
+
+/// Not less than what is noise.
+double MotionFilter::speed_deviation_mps() const {
+  return std::clamp(std::sqrt(covariance_(kSpeed, kSpeed)), kStands_mps, kMostStanding_mps);
+}
+
+void MotionFilter::stand(bool stands) {
+  stands_ = stands;
+  stands_at_ = state_.head<2>();
+  stands_at_deviation_m_ = position_deviation_m();
+}
+
+void MotionFilter::tell_whether_it_stands() {
+  const double speed_mps = std::abs(state_[kSpeed]), deviation_mps = speed_deviation_mps();
+  if (!stands_) return stand(speed_mps < deviation_mps);
+  const double away_m = (state_.head<2>() - stands_at_).norm();
+  const double deviation_m = std::hypot(position_deviation_m(), stands_at_deviation_m_);
+  stands_ = speed_mps < std::min(kDrivesAgainDeviations * deviation_mps, kMostStanding_mps) &&
+            away_m < std::max(kDrivesAgain_m, kDrivesAgainDeviations * deviation_m);
 }
 
 SeenMotion MotionFilter::state() const {
   SeenMotion seen{.t_s = t_s_,
                   .pose = {state_[kX], state_[kY], geometry::wrap_angle(state_[kHeading])},
                   .speed_mps = state_[kSpeed]};
-  const double deviation_mps = std::sqrt(covariance_(kSpeed, kSpeed));
-  if (std::abs(seen.speed_mps) < std::clamp(deviation_mps, kStands_mps, kMostStanding_mps)) {
+  if (stands_ || std::abs(seen.speed_mps) < speed_deviation_mps()) {
     seen.speed_mps = 0.0;
     return seen;
   }

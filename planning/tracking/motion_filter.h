@@ -39,8 +39,8 @@ class MotionFilter {
   /// Takes a measurement at the filter's time.
   void update(const MeasuredMotion& measured);
 
-  /// What is believed at the filter's time. Who is slower than its speed is known, and
-  /// than 1 m/s, stands.
+  /// What is believed at the filter's time. Who becomes slower than its speed is known, and than
+  /// 1 m/s, stands; it drives again when it is four times as fast, or half a metre away.
   SeenMotion state() const;
 
   /// Standard deviation of a coordinate, the larger one [m].
@@ -53,11 +53,17 @@ class MotionFilter {
 
   Eigen::Vector4d innovation(const MeasuredMotion& measured) const;
   Eigen::Matrix4d innovation_covariance() const;
+  double speed_deviation_mps() const;
+  void stand(bool stands);
+  void tell_whether_it_stands();
 
   double t_s_;
   State state_;
   Covariance covariance_;
   Eigen::Vector4d noise_variance_;
+  bool stands_;
+  Eigen::Vector2d stands_at_;  ///< where it came to stand, as far as that was known
+  double stands_at_deviation_m_;
 };
 
 }  // namespace roadbed::planning::tracking

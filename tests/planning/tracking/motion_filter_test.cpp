@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <vector>
 
 #include "roadbed/geometry/primitives/angle.h"
 
@@ -116,20 +119,54 @@ TEST(MotionFilter, KnowsPlacesBetterThanTheyAreMeasured) {
   EXPECT_LT(squared_m2, believed_m2);  // it moves more quietly than the filter is ready for
 }
 
-TEST(MotionFilter, WhoIsSlowerThanItsSpeedIsKnownStands) {
-  const ObjectNoise noise{.position_m = 0.1, .heading_rad = 0.02, .speed_mps = 0.2};
-  std::mt19937_64 random(5);
+/// Every 0.1 s of somebody at a speed, from a time on an acceleration, how fast it is believed to
+/// be.
+std::vector<double> believed_mps(const ObjectNoise& noise, double speed_mps, double speeds_up_mps2,
+                                 unsigned seed) {
+  std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  MotionFilter filter({0.0, {5, 5, 1}, 0.0}, noise);
-  int stands = 0;
-  for (int k = 1; k <= 200; ++k) {
-    filter.predict(kStep_s * k);
-    filter.update({kStep_s * k,
-                   {5 + 0.1 * normal(random), 5 + 0.1 * normal(random), 1 + 0.02 * normal(random)},
-                   0.2 * normal(random)});
-    stands += filter.state().speed_mps == 0.0 ? 1 : 0;
+  std::optional<MotionFilter> filter;
+  std::vector<double> believed;
+  double x_m = 5.0;
+  for (int k = 0; k <= 300; ++k) {
+    const double t_s = kStep_s * k;
+    const MeasuredMotion measured{
+        t_s,
+        {x_m + noise.position_m * normal(random), 5.0 + noise.position_m * normal(random),
+         noise.heading_rad * normal(random)},
+        speed_mps + noise.speed_mps * normal(random)};
+    if (filter) {
+      filter->predict(t_s);
+      filter->update(measured);
+    } else {
+      filter.emplace(measured, noise);
+    }
+    believed.push_back(filter->state().speed_mps);
+    x_m += kStep_s * speed_mps;
+    if (t_s >= 20.0) speed_mps += kStep_s * speeds_up_mps2;
   }
-  EXPECT_GT(stands, 140);
+  return believed;
+}
+
+TEST(MotionFilter, WhoStandsDoesSoInAllNoiseUntilItSetsOff) {
+  for (const double times : {0.1, 1.0, 2.0}) {
+    const ObjectNoise noise{0.1 * times, 0.02 * times, 0.2 * times};
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      SCOPED_TRACE(testing::Message() << times << " times the noise, seed " << seed);
+      const std::vector<double> parked = believed_mps(noise, 0.0, 0.0, seed);
+      // At first 3 deviations are passed by 1 of 370, until it is less than one.
+      const auto drives = [](double mps) { return mps != 0.0; };
+      EXPECT_TRUE(std::none_of(parked.begin() + 10, parked.end(), drives));
+      const std::vector<double> leaves = believed_mps(noise, 0.0, 1.0, seed);
+      EXPECT_GT(leaves[215], 0.7) << "1.5 s after it began to move";
+    }
+  }
+}
+
+TEST(MotionFilter, WhoWalksDoesNotStand) {
+  const ObjectNoise noise{.position_m = 0.1, .heading_rad = 0.02, .speed_mps = 0.2};
+  const std::vector<double> walks = believed_mps(noise, 1.0, 0.0, 3);
+  EXPECT_GT(*std::min_element(walks.begin() + 20, walks.end()), 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -86,6 +87,35 @@ TEST(SightDrives, OneStopsWithinWhatIsSeen) {
     EXPECT_NE(d.drive.verdict.outcome, Outcome::collision)
         << range_m << ": " << d.drive.verdict.text;
     EXPECT_GT(d.clearance_m(), 0.25) << range_m;
+  }
+}
+
+/// As sensors measure, and twice that.
+ScenarioNoise noise_of_all(double times) {
+  return {
+      .gap_m = 0.25 * times,
+      .relative_speed_mps = 0.1 * times,
+      .acceleration_mps2 = 0.05 * times,
+      .position_m = 0.02 * times,
+      .heading_rad = 0.002 * times,
+      .speed_mps = 0.05 * times,
+      .object = {.position_m = 0.1 * times, .heading_rad = 0.02 * times, .speed_mps = 0.2 * times}};
+}
+
+TEST(SightDrives, NoiseAndTwiceTheNoiseCostNoGoal) {
+  for (const char* name : {"closed_road", "cut_in", "narrowing", "overtake", "way_points"}) {
+    for (const double times : {1.0, 2.0}) {
+      for (const std::uint64_t seed : {1, 3}) {
+        Scenario scenario = scenario_of(name);
+        scenario.noise = noise_of_all(times);
+        scenario.seed = seed;
+        const Driven d = driven(scenario);
+        SCOPED_TRACE(
+            fmt::format("{}, {} times, seed {}: {}", name, times, seed, d.drive.verdict.text));
+        EXPECT_THAT(d.drive.verdict.text, testing::StartsWith("goal reached"));
+        EXPECT_LT(d.off_road_m(), 0.02 * times) << "the deviation of where it is";
+      }
+    }
   }
 }
 
