@@ -46,6 +46,7 @@ SLOWS_MPS2 = {"gentle": 1.0, "normal": 1.5, "sporty": 2.2}  # for the goal
 LATERAL_MPS2 = {"gentle": 1.5, "normal": 2.5, "sporty": 3.5}  # in bends; both as the styles
 LEAST_TRIP_M = 400.0
 NOT_ADDED_WITHIN_M = 50.0  # of where the ego is
+LEVEL_M = 2.5
 ARRIVED_M = 50.0
 DATA = Path(__file__).resolve().parents[2] / "data"
 
@@ -187,12 +188,14 @@ def are_apart(one, other):
 
 
 def touched_by(ego, objects):
-    """Names of the objects that the vehicle touches."""
+    """Names of the objects that the vehicle touches; not of those on a road over or under it."""
     x, y, heading = ego[:3]
     middle_m = 0.5 * LENGTH_M - REAR_OVERHANG_M
     own = body_of(x + middle_m * math.cos(heading), y + middle_m * math.sin(heading), heading,
                   LENGTH_M, WIDTH_M)
+    own_z = libsumo.vehicle.getPosition3D("ego")[2]
     return {one["id"] for one in objects if math.dist((one["x_m"], one["y_m"]), (x, y)) < 20.0
+            and abs(libsumo.vehicle.getPosition3D(one["id"])[2] - own_z) < LEVEL_M
             and not are_apart(own, body_of(one["x_m"], one["y_m"], one["heading_rad"],
                                            one["length_m"], one["width_m"]))}
 
@@ -507,7 +510,7 @@ class Row:
         self.touches += len(own["touches"])
         self.brakes += len(own["brakes"])
         self.red += own["red"]
-        if own["why"] or own["hits"] or own["red"] or own["brakes"]:
+        if any(own[name] for name in ("why", "hits", "touches", "red", "brakes")):
             print(f"  {self.name} {self.density} seed {seed}: {own['hits']} hits, "
                   f"{len(own['touches'])} touches, {own['red']} red, "
                   f"{len(own['brakes'])} brakes; {own['why']}", file=sys.stderr, flush=True)
