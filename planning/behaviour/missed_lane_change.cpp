@@ -6,7 +6,7 @@ namespace roadbed::planning::inline behaviour {
 namespace {
 
 constexpr double kMustBrake_mps2 = 1.0;  // more than this: the vehicle would have to brake now
-constexpr double kWaitsBelow_mps = 0.3, kWaitsForGap_s = 20.0;
+constexpr double kWaitsBelow_mps = 0.3, kWaitsForGap_s = 60.0;
 constexpr double kLonger_s = 30.0, kFast_mps = 60.0 / 3.6;
 
 }  // namespace

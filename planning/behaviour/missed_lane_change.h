@@ -17,8 +17,8 @@ namespace roadbed::planning::inline behaviour {
 ///
 /// Asked for when the vehicle would have to brake, once a change. The other route is taken if it
 /// takes no more than 30 s longer, or where the own lane is driven at more than 60 km/h, so that
-/// nobody expects somebody to wait on it. Else the vehicle waits; whenever it has stood for 20 s it
-/// asks again, and takes what there is.
+/// nobody expects somebody to wait on it. Else the vehicle waits; whenever it has stood for 60 s,
+/// as long as lights are red, it asks again, and takes what there is.
 class MissedLaneChange {
  public:
   struct View {
