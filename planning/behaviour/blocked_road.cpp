@@ -12,17 +12,15 @@ namespace {
 
 constexpr double kHasStopped_mps = 0.3;  // of the vehicle, measured
 constexpr double kPatience_s = 10.0, kPatienceAtLine_s = 60.0;
-constexpr double kQueueGap_m = 15.0;  // between two of a queue, and before a line
+constexpr double kBeforeLine_m = 15.0;  // of a queue's first
 constexpr double kBeforeLight_m = 30.0;
 
-/// Who stands next before a place of a queue, beside that one's middle.
+/// Who stands next before somebody in a queue.
 const MoverOnLine* next_ahead(const std::vector<MoverOnLine>& movers, const MoverOnLine& last,
                               const Traffic& traffic, double t_s) {
   const MoverOnLine* nearest = nullptr;
   for (const MoverOnLine& mover : movers) {
-    const bool is_ahead = mover.s_m > last.s_m && mover.rear_m() < last.front_m() + kQueueGap_m;
-    const double apart_m = std::abs(mover.d_m - last.d_m);
-    if (!is_ahead || apart_m > mover.half_width_m + last.half_width_m) continue;
+    if (!mover.is_closely_ahead_of(last)) continue;
     if (!is_standing(traffic.obstacles[mover.obstacle], t_s)) continue;
     if (nearest == nullptr || mover.s_m < nearest->s_m) nearest = &mover;
   }
@@ -65,7 +63,7 @@ bool BlockedRoad::stands_at_light(const View& view, double queue_front_s_m) cons
 double BlockedRoad::patience_s(double queue_front_s_m) const {
   const bool is_at_line = std::ranges::any_of(task_.stop_points, [&](const StopPoint& place) {
     return place.kind != StopKind::light && place.s_m > queue_front_s_m - vehicle_.length_m &&
-           place.s_m < queue_front_s_m + kQueueGap_m;
+           place.s_m < queue_front_s_m + kBeforeLine_m;
   });
   return is_at_line ? kPatienceAtLine_s : kPatience_s;
 }

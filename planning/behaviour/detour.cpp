@@ -131,22 +131,23 @@ map::LaneId first_new_lane(const Route& route, const Route& other) {
   return found == route.legs.end() ? route.legs.front().lane : found->lane;
 }
 
-/// Along the route that is given up, at its usual speed.
-Route rest_of_route(const DetourQuestion& q) {
-  Route rest = q.task.route;
+struct Effort {
+  double cost_s, length_m;
+};
+
+/// Of the way that there would be if nothing was closed; where there is none from here any more, of
+/// what is left of the route.
+Effort effort_given_up(const DetourQuestion& q) {
+  std::string reason;
+  if (const auto open = cheapest_route(q, {}, reason))
+    return {open->route.cost_s, open->route.length_m};
   const double driven_m = q.task.line.project(q.measured.map_from_vehicle.position()).s_m;
   const double left = std::clamp(1.0 - driven_m / q.task.line.goal_s_m(), 0.0, 1.0);
-  rest.cost_s *= left;
-  rest.length_m *= left;
-  return rest;
+  return {left * q.task.route.cost_s, left * q.task.route.length_m};
 }
 
-/// Compared with the route that there would be if nobody stood in the way, or what is left of the
-/// one that is given up where that can be had from there no more.
 Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::LaneId by_lane) {
-  std::string reason;
-  const std::optional<Found> without_blockers = cheapest_route(q, {}, reason);
-  const Route open = without_blockers ? without_blockers->route : rest_of_route(q);
+  const Effort given_up = effort_given_up(q);
   std::vector<StopPoint> places =
       stop_points(q.task.road_map, found.route, line.line, q.task.lights);
   Detour detour{.route = std::move(found.route),
@@ -154,8 +155,8 @@ Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::L
                 .stop_points = std::move(places),
                 .blockers = q.blockers,
                 .by_lane = by_lane};
-  detour.longer_s = detour.route.cost_s - open.cost_s;
-  detour.longer_m = detour.route.length_m - open.length_m;
+  detour.longer_s = detour.route.cost_s - given_up.cost_s;
+  detour.longer_m = detour.route.length_m - given_up.length_m;
   return detour;
 }
 

@@ -43,7 +43,7 @@ std::optional<MissedLaneChange::Decision> MissedLaneChange::look(const View& vie
   DetourAnswer answer = ask(view);
   if (!answer.detour) return std::nullopt;
   const bool is_worth_it = waited || answer.detour->longer_s <= kLonger_s;
-  if (!is_worth_it && view.free_mps <= kFast_mps) return std::nullopt;
+  if (!is_worth_it && view.limit_mps <= kFast_mps) return std::nullopt;
   return Decision{
       "nobody leaves a gap for the lane change; " + described(*answer.detour, task_.road_map),
       *std::move(answer.detour)};

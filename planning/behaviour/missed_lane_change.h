@@ -16,8 +16,8 @@ namespace roadbed::planning::inline behaviour {
 ///          ▭▶ ─────────────────╎─────────▶   another route, instead of waiting at ╎
 ///
 /// Asked for when the vehicle would have to brake, once a change. The other route is taken if it
-/// takes no more than 30 s longer, or where the own lane is driven at more than 60 km/h, so that
-/// nobody expects somebody to wait on it. Else the vehicle waits; whenever it has stood for 60 s,
+/// takes no more than 30 s longer, or where more than 60 km/h are allowed, so that nobody expects
+/// somebody to wait there. Else the vehicle waits; whenever it has stood for 60 s,
 /// as long as lights are red, it asks again, and takes what there is.
 class MissedLaneChange {
  public:
@@ -25,7 +25,7 @@ class MissedLaneChange {
     double t_s;
     const VehicleState& measured;
     const std::optional<Merging::NoGap>& no_gap;
-    double free_mps;  ///< of the own lane, here
+    double limit_mps;  ///< that the map gives here
   };
 
   struct Decision {

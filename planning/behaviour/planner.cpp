@@ -285,11 +285,11 @@ class Planner::Impl {
 
   void look_for_detour(const PlannerView& view, const Merging::Decision& merging,
                        PlannerCommand& command) {
-    auto missed =
-        missed_change_.look({.t_s = view.t_s,
-                             .measured = view.measured,
-                             .no_gap = merging.no_gap,
-                             .free_mps = lines_.driven().ceiling.at(replanner().s_m()).speed_mps});
+    auto missed = missed_change_.look(
+        {.t_s = view.t_s,
+         .measured = view.measured,
+         .no_gap = merging.no_gap,
+         .limit_mps = lines_.driven().line.corridor_at(replanner().s_m()).speed_limit_mps});
     if (!missed) return look_at_blocked_road(view, command);
     command.reason = std::move(missed->reason);
     command.is_news = true;

@@ -13,7 +13,6 @@ namespace {
 constexpr double kBesideCyclist_m = 1.5;
 constexpr double kRidesAlong = 0.8;  // cosine, of who rides as the vehicle does
 constexpr double kReach_m = 25.0;    // of a path that begins to pass
-constexpr double kQueueGap_m = 15.0;
 constexpr double kSlowerBy_mps = 1.0, kBehindWithin_s = 8.0, kMovesAlong_mps = 0.3;
 
 bool is_cyclist(const Obstacle& obstacle) { return obstacle.kind == "bicycle"; }
@@ -39,10 +38,7 @@ bool queues(const WithinLaneQuestion& q, const std::vector<MoverOnLine>& movers,
   const std::span<const Obstacle> obstacles = q.view.traffic.obstacles;
   if (mover.speed_mps > kQueue_mps || is_cyclist(obstacles[mover.obstacle])) return false;
   return std::ranges::any_of(movers, [&](const MoverOnLine& other) {
-    const double gap_m = other.rear_m() - mover.front_m();
-    const double apart_m = std::abs(other.d_m - mover.d_m);
-    return gap_m > 0.0 && gap_m < kQueueGap_m && other.speed_mps < kQueue_mps &&
-           apart_m < other.half_width_m + mover.half_width_m;
+    return other.speed_mps < kQueue_mps && other.is_closely_ahead_of(mover);
   });
 }
 

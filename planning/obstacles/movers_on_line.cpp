@@ -10,6 +10,12 @@ bool MoverOnLine::shares_way(double at_d_m, const geometry::VehicleShape& vehicl
   return std::abs(d_m - at_d_m) < half_width_m + 0.5 * vehicle.width_m + kApart_m;
 }
 
+bool MoverOnLine::is_closely_ahead_of(const MoverOnLine& other) const {
+  constexpr double kQueueGap_m = 15.0;
+  return s_m > other.s_m && rear_m() < other.front_m() + kQueueGap_m &&
+         std::abs(d_m - other.d_m) <= half_width_m + other.half_width_m;
+}
+
 std::vector<MoverOnLine> movers_on_line(const ReferenceLine& line, const Traffic& traffic,
                                         double t_s, bool with_standing) {
   std::vector<MoverOnLine> movers;

@@ -30,6 +30,10 @@ struct MoverOnLine {
   double rear_m() const { return s_m - half_length_m; }
   double front_m() const { return s_m + half_length_m; }
 
+  /// Whether it is ahead of another one on the same part of the line, with no more than 15 m
+  /// between them, as in a queue.
+  bool is_closely_ahead_of(const MoverOnLine& other) const;
+
   /// Whether a vehicle whose middle is `d_m` beside the line would get into its way.
   bool shares_way(double d_m, const geometry::VehicleShape& vehicle) const;
 };

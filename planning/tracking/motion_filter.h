@@ -40,7 +40,8 @@ class MotionFilter {
   void update(const MeasuredMotion& measured);
 
   /// What is believed at the filter's time. Who becomes slower than its speed is known, and than
-  /// 1 m/s, stands; it drives again when it is four times as fast, or half a metre away.
+  /// 1 m/s, stands; it drives again when it is four
+  /// deviations as fast, or 1 m/s, or farther away than four deviations and half a metre.
   SeenMotion state() const;
 
   /// Standard deviation of a coordinate, the larger one [m].

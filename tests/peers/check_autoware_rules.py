@@ -23,8 +23,8 @@ class Element:
     nodes: list
     members: list  # (kind, id, role)
 
-    def of_role(self, *roles):
-        return [ref for _, ref, role in self.members if role in roles]
+    def of_role(self, wanted):
+        return [ref for _, ref, role in self.members if role == wanted]
 
 
 def read(file):

@@ -46,7 +46,7 @@ SLOWS_MPS2 = {"gentle": 1.0, "normal": 1.5, "sporty": 2.2}  # for the goal
 LATERAL_MPS2 = {"gentle": 1.5, "normal": 2.5, "sporty": 3.5}  # in bends; both as the styles
 LEAST_TRIP_M = 400.0
 NOT_ADDED_WITHIN_M = 50.0  # of where the ego is
-LEVEL_M = 2.5
+LEVEL_M = 2.5  # roads over one another are farther apart
 ARRIVED_M = 50.0
 DATA = Path(__file__).resolve().parents[2] / "data"
 
