@@ -73,6 +73,7 @@ PlannerCommand CruiseLaw::command(const Question& q) {
   if (ahead) {
     command.lead = {task_.obstacles[ahead->obstacle].id, ahead->gap_m, ahead->speed_mps};
   }
+  if (halt) command.halt_m = halt->s_m - q.replanner().s_m();
   follows_ = chosen.behaviour == Behaviour::follow;
   explain(q, chosen, command);
   if (lead) ease(q, *lead, command);
@@ -178,6 +179,8 @@ SpeedAnswer CruiseLaw::answer(const Question& q, const std::optional<Lead>& lead
                                      .acceleration_mps2 = q.view.measured.acceleration_mps2,
                                      .lead = lead,
                                      .lead_name = lead ? lead_name(*lead) : "",
+                                     .let_in = q.passing.letting_in.behind,
+                                     .let_in_reason = q.passing.letting_in.reason,
                                      .follows = follows_,
                                      .path_left_m = path_left_m(q, lead),
                                      .halt = halt,
@@ -298,18 +301,21 @@ void CruiseLaw::brake_for(const StopConstraint& halt, const Question& q,
   command.reason = fmt::format("braking at {:.1f} m/s²: {}", *braking, halt.reason);
 }
 
-/// Of a path that is kept nothing is known to be free, and what is in the way is no lead.
+/// Of a path that is kept nothing is known to be free beyond its end, and what is there is no lead.
 void CruiseLaw::brake_for_no_path(const Question& q, const std::optional<Lead>& lead,
                                   PlannerCommand& command) {
-  const bool is_blocked = path_left_m(q, lead) == 0.0;
+  const std::optional<double> left_m = path_left_m(q, lead);
+  const auto braking =
+      left_m ? emergency_stop_mps2(q.view.measured.speed_mps, *left_m) : std::nullopt;
+  const bool is_blocked = braking && *braking > kMostCommand_mps2;
   blocked_cycles_ = is_blocked ? blocked_cycles_ + 1 : 0;
   if (blocked_cycles_ < kBlockedCycles || q.view.measured.speed_mps < kCreeps_mps) return;
-  const auto braking = emergency_stop_mps2(q.view.measured.speed_mps, 0.0);
-  if (!braking || -*braking > command.acceleration_mps2) return;
+  if (-*braking > command.acceleration_mps2) return;
   command.acceleration_mps2 = -*braking;
   command.behaviour = Behaviour::emergency;
   command.reason =
-      fmt::format("braking at {:.1f} m/s²: no path is clear of what is in the way", *braking);
+      fmt::format("braking at {:.1f} m/s²: no path is clear of what is in the way{}", *braking,
+                  *left_m > 0.0 ? fmt::format(" {:.1f} m ahead", *left_m) : "");
 }
 
 void CruiseLaw::overtake(const Question& q, PlannerCommand& command) const {

@@ -10,6 +10,7 @@
 #include "roadbed/planning/behaviour/maneuver_hypothesis.h"
 #include "roadbed/planning/behaviour/planner_types.h"
 #include "roadbed/planning/maneuvers/lane_passing.h"
+#include "roadbed/planning/maneuvers/letting_in.h"
 #include "roadbed/planning/maneuvers/merging.h"
 #include "roadbed/planning/maneuvers/overtaking.h"
 #include "roadbed/planning/maneuvers/within_lane_passing.h"
@@ -19,12 +20,13 @@
 
 namespace roadbed::planning::inline behaviour {
 
-/// Who may be passed at one cycle, and whose gap is merged into, and how.
+/// Who may be passed at one cycle, whose gap is merged into, and how, and who is let in.
 struct PassingDecision {
   Overtaking::Decision overtaking = {};
   LanePassing::Decision in_lane = {};
   WithinLanePassing within_lane = {};
   Merging::Decision merging = {};
+  LettingIn::Decision letting_in = {};
 };
 
 /// The speed of a vehicle that follows its path to a place: set speed, speed controller behind

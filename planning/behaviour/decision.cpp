@@ -93,15 +93,28 @@ double stopping_way_m(const Lead& lead) {
   return 0.5 * lead.speed_mps * lead.speed_mps / -lead.acceleration_mps2;
 }
 
-Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
-  const double lead_mps = std::max(0.0, q.lead->speed_mps);
+Option by_approach(const SpeedQuestion& q, const Lead& lead, const DecisionOptions& options) {
+  const double lead_mps = std::max(0.0, lead.speed_mps);
   const double driven_m = preview_m(q, options.preview_s);
   const double closing_m = std::max(0.0, driven_m - lead_mps * options.preview_s);
-  return {approach_speed(*q.lead, {}, options),
-          approach_speed(*q.lead, {.driven_m = driven_m, .closed_m = closing_m}, options),
+  return {approach_speed(lead, {}, options),
+          approach_speed(lead, {.driven_m = driven_m, .closed_m = closing_m}, options),
           Behaviour::follow,
-          fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
-                      q.lead->speed_mps)};
+          {}};
+}
+
+Option by_lead(const SpeedQuestion& q, const DecisionOptions& options) {
+  Option option = by_approach(q, *q.lead, options);
+  option.reason = fmt::format("{} is {:.1f} m ahead at {:.1f} m/s", q.lead_name, q.lead->gap_m,
+                              q.lead->speed_mps);
+  return option;
+}
+
+Option by_letting_in(const SpeedQuestion& q, const DecisionOptions& options) {
+  Option option = by_approach(q, *q.let_in, options);
+  option.behaviour = Behaviour::yield;
+  option.reason = q.let_in_reason;
+  return option;
 }
 
 std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& options) {
@@ -113,6 +126,7 @@ std::vector<Option> options_of(const SpeedQuestion& q, const DecisionOptions& op
   if (q.creep_mps) all.push_back(by_creeping(q));
   if (q.path_left_m) all.push_back(by_path(q, ahead_m, options.most_deceleration_mps2));
   if (q.lead) all.push_back(by_lead(q, options));
+  if (q.let_in) all.push_back(by_letting_in(q, options));
   return all;
 }
 
@@ -132,13 +146,17 @@ double feed_forward_mps2(const std::vector<Option>& options, double speed_mps) {
   return least;
 }
 
+bool is_close_to(const std::optional<Lead>& lead, const DecisionOptions& options) {
+  return lead && lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
+         lead->speed_mps < kStands_mps;
+}
+
 bool is_at_rest(const SpeedQuestion& q, const DecisionOptions& options) {
   if (q.speed_mps > kStands_mps) return false;
   if (q.goal_s_m - q.s_m < kStopping_m) return true;
   if (q.halt && q.halt->s_m - q.s_m < kStopping_m) return true;
   if (q.path_left_m && *q.path_left_m < kStopping_m) return true;
-  return q.lead && q.lead->gap_m < options.standstill_gap_m + kMoveOffGap_m &&
-         q.lead->speed_mps < kStands_mps;
+  return is_close_to(q.lead, options) || is_close_to(q.let_in, options);
 }
 
 }  // namespace

@@ -22,8 +22,10 @@ struct SpeedQuestion {
   double speed_mps = 0.0;
   double acceleration_mps2 = 0.0;
   std::optional<Lead> lead;
-  std::string lead_name;  ///< for the reason
-  bool follows = false;   ///< in the cycle before: who follows is not said to cruise for a moment
+  std::string lead_name;            ///< for the reason
+  std::optional<Lead> let_in = {};  ///< who is not in the lane yet, and is let in
+  std::string let_in_reason = {};
+  bool follows = false;  ///< in the cycle before: who follows is not said to cruise for a moment
   /// Set if the planner found nothing: the last path is still good for so far; stop on it.
   std::optional<double> path_left_m;
   std::optional<StopConstraint> halt = {};  ///< where a rule of the road asks to wait
@@ -64,8 +66,8 @@ SpeedTarget approach_speed(const Lead& lead, const Approached& since,
                            const DecisionOptions& options);
 
 /// The least of: the ceiling, the stop at the goal, the halt that a rule asks for, the stop on a
-/// path that ends, and the approach to the lead, which closes up at a comfortable deceleration to
-/// the gap that the cruise control then keeps.
+/// path that ends, and the approaches to the lead and to who is let in, which close up at a
+/// comfortable deceleration to the gap that the cruise control then keeps.
 SpeedAnswer choose_speed(const SpeedQuestion& question, const DecisionOptions& options);
 
 }  // namespace roadbed::planning::behaviour

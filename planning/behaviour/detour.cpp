@@ -67,7 +67,7 @@ RoutePlace goal_of(const Route& route) {
 
 RouteOptions options_without(const DetourQuestion& q) {
   RouteOptions options;
-  options.avoid = q.closed;
+  options.avoid = q.missed;
   for (const std::size_t blocker : q.blockers) {
     const auto closed = stretches_closed_by(q.task.obstacles[blocker], q);
     options.blocked.insert(options.blocked.end(), closed.begin(), closed.end());
@@ -154,6 +154,7 @@ Detour detour_along(const DetourQuestion& q, Found found, RouteLine line, map::L
                 .line = std::move(line),
                 .stop_points = std::move(places),
                 .blockers = q.blockers,
+                .missed = q.missed,
                 .by_lane = by_lane};
   detour.longer_s = detour.route.cost_s - given_up.cost_s;
   detour.longer_m = detour.route.length_m - given_up.length_m;
@@ -169,6 +170,7 @@ void Detour::lead(DrivingTask& of) const {
   of.other_levels = OtherLevels(of.road_map, route);
   of.stop_points = stop_points;
   of.blockers = blockers;
+  of.missed = missed;
 }
 
 std::string described(const Detour& detour, const map::RoadMap& road_map) {

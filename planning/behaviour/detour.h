@@ -17,6 +17,7 @@ struct Detour {
   RouteLine line;
   std::vector<StopPoint> stop_points;
   std::vector<std::size_t> blockers;      ///< obstacles that it avoids
+  std::vector<map::LaneId> missed;        ///< lanes that it avoids
   map::LaneId by_lane;                    ///< its first that the blocked route does not use
   double longer_s = 0.0, longer_m = 0.0;  ///< than the way that is given up, by the route's costs
 
@@ -37,7 +38,7 @@ struct DetourQuestion {
   const VehicleState& measured;
   double t_s;
   std::vector<std::size_t> blockers;     ///< obstacles that stand for ever
-  std::vector<map::LaneId> closed = {};  ///< lanes that cannot be come to
+  std::vector<map::LaneId> missed = {};  ///< lanes that cannot be come to
 };
 
 /// Whether an obstacle is there and does not move, now.

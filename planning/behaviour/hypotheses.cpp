@@ -181,17 +181,14 @@ ManeuverHypothesis Hypotheses::hypothesis_on(const PlanningScene& scene, GoalLin
           .on_road_m = on_road};
 }
 
-/// Overtaking has been judged in space and time before it was begun, and without a candidate
-/// the vehicle stops on the path that it has.
+/// Overtaking has been judged in space and time before it was begun.
 void Hypotheses::set_first_speed(const PlanningScene& scene, ManeuverHypothesis& hypothesis) const {
   if (task_.goal) {
     speed_.search(scene, kInTime.front(), hypothesis);
     return;
   }
   speed_.forecast(scene, hypothesis);
-  if (hypothesis.maneuver == Maneuver::overtake || !hypothesis.has_candidate()) {
-    hypothesis.answer.is_free = true;
-  }
+  if (hypothesis.maneuver == Maneuver::overtake) hypothesis.answer.is_free = true;
 }
 
 }  // namespace roadbed::planning::behaviour

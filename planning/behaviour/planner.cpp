@@ -16,6 +16,7 @@
 #include "roadbed/planning/behaviour/missed_lane_change.h"
 #include "roadbed/planning/behaviour/path_queries.h"
 #include "roadbed/planning/maneuvers/lane_passing.h"
+#include "roadbed/planning/maneuvers/letting_in.h"
 #include "roadbed/planning/maneuvers/merging.h"
 #include "roadbed/planning/maneuvers/overtaking.h"
 #include "roadbed/planning/obstacles/traffic.h"
@@ -28,9 +29,17 @@ constexpr double kStillFor_s = 3.0, kStill_m = 0.5;  // what counts as standing
 constexpr double kLookForPath_s = 3.0;               // the speed plan that lateral planning is told
 
 /// The slower, the nearer: a bend of a few metres wants paths that are no longer.
-LateralReplanner::Ends ends_at(double speed_mps) {
+LateralReplanner::Ends ends_before_goal(double speed_mps) {
   const double least_m = std::clamp(2.0 * speed_mps, 7.0, PlanOptions{}.min_l_m);
   return {.least_m = least_m, .most_m = 2.0 * least_m};
+}
+
+/// The faster, the farther: the paper's 30 m are a second of a motorway, in which nothing beside
+/// the line's middle is worth the lateral acceleration of coming back.
+LateralReplanner::Ends ends_on_route(double speed_mps) {
+  constexpr double kFrom_mps = 12.0;
+  const double farther = std::max(1.0, speed_mps / kFrom_mps);
+  return {.least_m = farther * PlanOptions{}.min_l_m, .most_m = farther * PlanOptions{}.max_l_m};
 }
 
 }  // namespace
@@ -46,6 +55,7 @@ class Planner::Impl {
         overtaking_(vehicle_, task_, lines_.first().ceiling),
         lane_passing_(vehicle_, task_, lines_.first().ceiling),
         merging_(vehicle_, task_, lines_.first().ceiling),
+        letting_in_(vehicle_, task_),
         speed_(setup, cruise_.options()),
         hypotheses_(setup, lines_, speed_),
         blocked_road_(vehicle_, setup.driving, task_),
@@ -59,7 +69,7 @@ class Planner::Impl {
     lines_.driven().replanner.locate(view.measured);
     const PassingDecision passing = passing_at(view);
     if (!task_.goal) lines_.drive_along(merging_, passing.merging.along, view.measured);
-    const PlanningScene scene = scene_at(view, passing.merging);
+    const PlanningScene scene = scene_at(view, passing);
     const std::vector<Obstacle> obstacles = obstacles_to_plan_for(scene);
     const ManeuverHypothesis best = hypotheses_.best(scene, question_at(view, obstacles), passing);
     take(best);
@@ -110,7 +120,10 @@ class Planner::Impl {
     const geometry::LinePosition at = place_on(lines_.driven(), view);
     const VehicleOnLine vehicle{lines_.driven().line, at.s_m, at.d_m, vehicle_.width_m};
     for (const Obstacle& other : traffic_.obstacles) {
-      scene.no_matter.push_back(!other.is_static() && is_following(other, view.t_s, vehicle));
+      scene.no_matter.push_back(
+          !other.is_static() &&
+          (is_following(other, view.t_s, vehicle) ||
+           comes_behind(other, view.t_s, vehicle, view.measured.speed_mps, vehicle_)));
       scene.crosses.push_back(is_crossing(other, view.t_s, vehicle.line));
     }
   }
@@ -122,6 +135,7 @@ class Planner::Impl {
     PassingDecision passing;
     passing.merging = merging_.look(on_line, replanner().s_m());
     if (passing.merging.along != Merging::Along::route_line) return passing;
+    passing.letting_in = letting_in_.look(on_line);
     passing.overtaking = overtaking_.look(on_line);
     if (!passing.overtaking.overtaken && !passing.merging.is_near()) {
       passing.in_lane = lane_passing_.look(on_line);
@@ -142,11 +156,16 @@ class Planner::Impl {
                              .most_right_m = -offsets.least_m});
   }
 
-  PlanningScene scene_at(const PlannerView& view, const Merging::Decision& merging) {
+  PlanningScene scene_at(const PlannerView& view, const PassingDecision& passing) {
+    const Merging::Decision& merging = passing.merging;
     PlanningScene scene{.view = view,
                         .traffic = traffic_,
                         .last_command_mps2 = last_command_mps2_,
                         .most_mps = merging.most_mps};
+    if (const std::optional<Lead>& behind = passing.letting_in.behind) {
+      const double most_mps = approach_speed(*behind, {}, cruise_.options()).speed_mps;
+      scene.most_mps = std::min(most_mps, scene.most_mps.value_or(most_mps));
+    }
     tell_others_apart(scene);
     for (std::size_t i = 0; i < merging.comes_behind.size(); ++i) {
       if (merging.comes_behind[i]) scene.no_matter[i] = true;
@@ -212,7 +231,8 @@ class Planner::Impl {
                                         .speed = speed_plan(view.measured),
                                         .obstacles = obstacles,
                                         .explains = view.explains};
-    if (task_.goal) question.ends = ends_at(view.measured.speed_mps);
+    const double speed_mps = view.measured.speed_mps;
+    question.ends = task_.goal ? ends_before_goal(speed_mps) : ends_on_route(speed_mps);
     return question;
   }
 
@@ -340,6 +360,7 @@ class Planner::Impl {
   Overtaking overtaking_;
   LanePassing lane_passing_;
   Merging merging_;
+  LettingIn letting_in_;
   HypothesisSpeed speed_;
   Hypotheses hypotheses_;
   BlockedRoad blocked_road_;

@@ -32,7 +32,8 @@ struct PlannerCommand {
   Behaviour behaviour = Behaviour::cruise;
   std::string reason;
   std::optional<DriveLead> lead;
-  bool saturated = false;                          ///< the cruise control asked for all it may
+  std::optional<double> halt_m = {};  ///< along the line, to where a rule of the road asks to wait
+  bool saturated = false;             ///< the cruise control asked for all it may
   std::vector<HypothesisOutcome> hypotheses = {};  ///< by the order in which they were looked at
   /// What is foreseen to be driven along the path, from its state now; not empty.
   std::vector<SpeedState> drive = {};

@@ -18,6 +18,8 @@ constexpr double kLanesJoined_m = 5.0, kSameOffset_m = 0.6;  // of lanes that fo
 constexpr double kLeastGain_s = 4.0;
 constexpr double kFaster_mps = 1.0;  // than who is passed, at least
 constexpr double kPassedWithin_m = 120.0;
+constexpr double kPassedBeside_m = 0.3,
+                 kPassedBeside_s = 0.05;  // to both sides of who passes within the lane
 constexpr double kLaneChange_s = 3.5;     // to change lanes in
 constexpr double kOwnSpeedUp_mps2 = 0.9;  // less than what the cruise control was seen to do
 constexpr double kPlatoon_m = 15.0, kPlatoon_s = 1.5;  // nearer cars are passed together
@@ -144,12 +146,21 @@ LanePassing::LanePassing(const geometry::VehicleShape& vehicle, const DrivingTas
       lanes_(lanes_beside(task.road_map, task.route, task.line, side_)),
       lanes_on_wrong_side_(lanes_beside(task.road_map, task.route, task.line, -side_)) {}
 
-/// The nearest one that drives ahead in the route's lane.
+/// Whether who stands leaves too little of the route's lane to pass within it at speed.
+bool LanePassing::closes_lane(const Scene& scene, const MoverOnLine& standing) const {
+  const double half_m = 0.5 * std::abs(scene.lane.offset_m);
+  const double room_m = half_m + std::abs(standing.d_m) - standing.half_width_m;
+  const double beside_m = std::max(kPassedBeside_m, kPassedBeside_s * scene.free_mps);
+  return room_m < vehicle_.width_m + 2.0 * beside_m;
+}
+
+/// The nearest one that drives ahead in the route's lane, or stands there and closes it.
 const MoverOnLine* LanePassing::lead_of(const Scene& scene) const {
   const MoverOnLine* nearest = nullptr;
   for (const MoverOnLine& mover : scene.movers) {
-    if (mover.stands || !mover.shares_way(0.0, vehicle_)) continue;
-    if (mover.s_m < scene.view.at.s_m || gap_m(scene, mover) > kPassedWithin_m) continue;
+    if (!mover.shares_way(0.0, vehicle_) || mover.s_m < scene.view.at.s_m) continue;
+    if (mover.stands && !closes_lane(scene, mover)) continue;
+    if (gap_m(scene, mover) > std::max(kPassedWithin_m, soon_m(scene, mover))) continue;
     if (!nearest || mover.s_m < nearest->s_m) nearest = &mover;
   }
   return nearest;
@@ -309,7 +320,7 @@ LanePassing::Decision LanePassing::look(const ViewOnLine& view) {
                     ceiling_.at(view.at.s_m).speed_mps};
   const MoverOnLine* lead = lead_of(scene);
   Decision decision{.side = side_};
-  if (lead != nullptr) {
+  if (lead != nullptr && !lead->stands) {
     if (lane != nullptr) decision.keep_within_m = keeps_out_of_m(*lane, vehicle_);
     if (on_wrong_side != nullptr) {
       decision.keep_within_on_wrong_side_m = keeps_out_of_m(*on_wrong_side, vehicle_);

@@ -69,6 +69,7 @@ class LanePassing {
 
  private:
   struct Scene;
+  bool closes_lane(const Scene& scene, const MoverOnLine& standing) const;
   const MoverOnLine* lead_of(const Scene& scene) const;
   double gap_m(const Scene& scene, const MoverOnLine& lead) const;
   double gained_s(const Scene& scene, const MoverOnLine& lead) const;

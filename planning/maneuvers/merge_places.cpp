@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "roadbed/geometry/primitives/angle.h"
+#include "roadbed/planning/maneuvers/lane_course.h"
 
 namespace roadbed::planning::inline maneuvers {
 namespace {
@@ -20,45 +20,19 @@ constexpr double kLongestWindow_m = 1000.0;
 constexpr double kLastChange_m = 30.0;     // where the lane ends, it is slow
 constexpr double kWorthChoosing_m = 40.0;  // between the first and the last place
 
-double turn_over(const map::Lane& lane) {
-  const double from = lane.pose_at(0.0).heading_rad;
-  return std::abs(geometry::wrap_angle(lane.pose_at(lane.length_m()).heading_rad - from));
-}
-
-std::optional<LaneId> straightest(const map::RoadMap& road_map, const std::vector<LaneId>& lanes) {
-  std::optional<LaneId> best;
-  for (const LaneId id : lanes) {
-    if (!map::is_drivable(road_map.lane(id).type)) continue;
-    if (!best || turn_over(road_map.lane(id)) < turn_over(road_map.lane(*best))) best = id;
-  }
-  return best;
-}
-
 /// The lane of a leg, what leads to it, and what the route goes on with.
 geometry::Polyline lane_merged_into(const map::RoadMap& road_map, const Route& route,
                                     std::size_t leg) {
-  std::vector<LaneId> lanes{route.legs[leg].lane};
-  double back_m = route.legs[leg].from_s_m;
-  while (back_m < kLaneBack_m && lanes.size() < 50) {
-    const auto before = straightest(road_map, road_map.graph().of(lanes.front()).predecessors);
-    if (!before) break;
-    lanes.insert(lanes.begin(), *before);
-    back_m += road_map.lane(*before).length_m();
-  }
-  double on_m = road_map.lane(route.legs[leg].lane).length_m() - route.legs[leg].from_s_m;
+  const double from_s_m = route.legs[leg].from_s_m;
+  std::vector<LaneId> lanes =
+      with_lanes_before(road_map, route.legs[leg].lane, kLaneBack_m - from_s_m);
+  double on_m = road_map.lane(route.legs[leg].lane).length_m() - from_s_m;
   for (std::size_t i = leg; i + 1 < route.legs.size() && on_m < kLaneOn_m; ++i) {
     if (route.legs[i].exit != LegExit::successor) break;
     lanes.push_back(route.legs[i + 1].lane);
     on_m += road_map.lane(lanes.back()).length_m();
   }
-  std::vector<Eigen::Vector2d> points;
-  for (const LaneId id : lanes) {
-    for (const Eigen::Vector2d& point : road_map.lane(id).centre.in_map.points()) {
-      constexpr double kJoint_m = 0.05;
-      if (points.empty() || (point - points.back()).norm() > kJoint_m) points.push_back(point);
-    }
-  }
-  return geometry::Polyline(std::move(points));
+  return middle_of(road_map, lanes);
 }
 
 bool changes_lane(const RouteLeg& leg) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadbed/planning/maneuvers/lane_course.h"
 #include "roadbed/planning/speed/lead.h"
 #include "roadbed/planning/speed/speed_controller.h"
 
@@ -62,18 +63,12 @@ Merging::Scene Merging::scene_at(const MergePlace& place, const ViewOnLine& view
   const Eigen::Vector2d left(-std::sin(foot.heading_rad), std::cos(foot.heading_rad));
   const geometry::LinePosition own = place.lane.project(foot.in_map + view.at.d_m * left);
   Scene scene{view, place, driven_s_m, own.s_m + vehicle_.front_m(), std::abs(own.d_m), {}};
-  for (std::size_t i = 0; i < view.traffic.obstacles.size(); ++i) {
-    const Obstacle& obstacle = view.traffic.obstacles[i];
-    if (!obstacle.is_there(view.t_s)) continue;
-    const geometry::TrajectoryPoint now = obstacle.motion.at(view.t_s);
-    const geometry::LinePosition at = place.lane.project(now.pose().position());
-    if (std::abs(at.d_m) > kDrivesThere_m) continue;
-    const double turned = now.heading_rad - place.lane.pose_at(at.s_m).heading_rad;
-    scene.movers.push_back(
-        {.obstacle = i,
-         .behind_m = scene.front_m - at.s_m,
-         .half_length_m = 0.5 * obstacle.length_m,
-         .speed_mps = obstacle.is_static() ? 0.0 : now.speed_mps * std::cos(turned)});
+  for (const MoverOnLane& mover :
+       movers_on_lane(place.lane, view.traffic, view.t_s, kDrivesThere_m)) {
+    scene.movers.push_back({.obstacle = mover.obstacle,
+                            .behind_m = scene.front_m - mover.s_m,
+                            .half_length_m = mover.half_length_m,
+                            .speed_mps = mover.speed_mps});
   }
   std::ranges::sort(scene.movers, {}, &MergeMover::behind_m);
   return scene;

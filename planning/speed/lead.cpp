@@ -59,6 +59,11 @@ std::optional<double> first_touch_m(const Sweep& sweep, double s_m, double look_
   return std::nullopt;
 }
 
+double stopping_mps2(double speed_mps, double within_m) {
+  constexpr double kLeast_m = 0.1;
+  return 0.5 * speed_mps * speed_mps / std::max(kLeast_m, within_m);
+}
+
 }  // namespace
 
 std::optional<Lead> find_lead(const PlannedPath& path, double s_m, double look_ahead_m,
@@ -100,6 +105,30 @@ bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& veh
          std::cos(now.heading_rad - foot.heading_rad) > kLeastAlongLine;
 }
 
+bool comes_behind(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle,
+                  double speed_mps, const geometry::VehicleShape& shape) {
+  constexpr double kWithin_s = 10.0, kStepOfMotion_s = 0.5, kInLane_m = 1.2, kBrakes_mps2 = 4.0;
+  const auto on_line_m = [&](double at_s) -> std::optional<double> {
+    const geometry::TrajectoryPoint at = obstacle.motion.at(at_s);
+    const geometry::LinePosition place = vehicle.line.project(at.pose().position());
+    const ReferencePoint foot = vehicle.line.at(place.s_m);
+    const bool is_there = (foot.in_map - at.pose().position()).norm() < kInLane_m &&
+                          std::cos(at.heading_rad - foot.heading_rad) > kLeastAlongLine;
+    return is_there ? std::optional(place.s_m) : std::nullopt;
+  };
+  if (on_line_m(t_s)) return false;
+  for (double ahead_s = kStepOfMotion_s; ahead_s <= kWithin_s; ahead_s += kStepOfMotion_s) {
+    const auto s_m = on_line_m(t_s + ahead_s);
+    if (!s_m) continue;
+    const double gap_m =
+        vehicle.s_m + speed_mps * ahead_s - shape.rear_overhang_m - *s_m - 0.5 * obstacle.length_m;
+    const double closing_mps =
+        std::max(0.0, obstacle.motion.at(t_s + ahead_s).speed_mps - speed_mps);
+    return gap_m > 0.0 && closing_mps * closing_mps <= 2.0 * kBrakes_mps2 * gap_m;
+  }
+  return false;
+}
+
 bool is_crossing(const Obstacle& obstacle, double t_s, const ReferenceLine& line) {
   if (obstacle.is_static()) return false;
   const geometry::TrajectoryPoint now = obstacle.motion.at(t_s);
@@ -112,19 +141,21 @@ std::optional<double> emergency_deceleration_mps2(double speed_mps, const Lead& 
                                                   const SafetyOptions& options) {
   const double closing = speed_mps - lead.speed_mps;
   if (closing <= 0.0 || speed_mps <= 0.0) return std::nullopt;
-  constexpr double kLeast_m = 0.1;
-  const double free_m = lead.gap_m - options.standoff_m - closing * options.reaction_s;
-  const double needed = closing * closing / (2.0 * std::max(kLeast_m, free_m));
+  const double room_m = lead.gap_m - options.standoff_m;
+  double needed = stopping_mps2(closing, room_m - closing * options.reaction_s);
+  if (lead.acceleration_mps2 < -options.lead_brakes_mps2 && lead.speed_mps > 0.0) {
+    const double stands_m = 0.5 * lead.speed_mps * lead.speed_mps / -lead.acceleration_mps2;
+    needed = std::max(needed,
+                      stopping_mps2(speed_mps, room_m + stands_m - speed_mps * options.reaction_s));
+  }
   if (needed <= options.cruise_limit_mps2) return std::nullopt;
   return std::min(needed, options.most_mps2);
 }
 
 std::optional<double> emergency_stop_mps2(double speed_mps, double distance_m,
                                           const SafetyOptions& options) {
-  constexpr double kLeast_m = 0.1;
   if (speed_mps <= 0.0) return std::nullopt;
-  const double needed = 0.5 * speed_mps * speed_mps / std::max(kLeast_m, distance_m);
-  return std::min(needed, options.most_mps2);
+  return std::min(stopping_mps2(speed_mps, distance_m), options.most_mps2);
 }
 
 }  // namespace roadbed::planning::speed

@@ -43,6 +43,13 @@ struct VehicleOnLine {
 /// to 37 degrees). O(N) in the line's points.
 bool is_following(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle);
 
+/// Whether an obstacle, as it is foreseen, comes onto the line from beside within 10 s and is
+/// behind the vehicle then, which keeps its speed, so that it has to keep its distance as who
+/// follows does: who drives on in a roundabout that the vehicle has entered. Braking by 4 m/s² has
+/// to do for it. Up to twenty projections, O(N) each.
+bool comes_behind(const Obstacle& obstacle, double t_s, const VehicleOnLine& vehicle,
+                  double speed_mps, const geometry::VehicleShape& shape);
+
 /// Whether an obstacle moves across a line (more than 37 degrees from it, either way along).
 /// O(N) in the line's points.
 bool is_crossing(const Obstacle& obstacle, double t_s, const ReferenceLine& line);
@@ -55,10 +62,12 @@ struct SafetyOptions {
   double standoff_m = 1.0;                                      ///< gap to come to rest at
   /// The actuator's lag, driven before it bites.
   double reaction_s = geometry::kLongitudinal.actuator_lag_s;
+  double lead_brakes_mps2 = 2.0;  ///< more than that: it is taken to brake on until it stands
 };
 
 /// Deceleration [m/s²] that stops the closing in time, if the cruise control's authority cannot:
-/// c² / (2 (gap − standoff − c · reaction)), c the closing speed. None: no need.
+/// c² / (2 (gap − standoff − c · reaction)), c the closing speed; behind a lead that brakes, the
+/// one that stops the vehicle where that will stand, if it is more. None: no need.
 std::optional<double> emergency_deceleration_mps2(double speed_mps, const Lead& lead,
                                                   const SafetyOptions& options = {});
 

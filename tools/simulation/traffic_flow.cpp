@@ -13,6 +13,8 @@ namespace {
 
 using geometry::Rectangle;
 using geometry::TrajectoryPoint;
+using planning::ZipBody;
+using planning::ZipMerge;
 
 constexpr double kNear_m = 120.0;  // beyond it nobody is followed
 constexpr double kLeastGap_m = 0.01;
@@ -109,9 +111,10 @@ std::vector<TrafficFlow::Body> TrafficFlow::movers(const DrivenBody& vehicle) co
   const double t_s = kStep_s * steps_;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     if (obstacles_[i].is_static() || !obstacles_[i].validity.holds(t_s)) continue;
-    all.push_back({i, rectangle_at(obstacles_[i], t_s), obstacles_[i].motion.at(t_s).speed_mps});
+    all.push_back({obstacles_[i].id, rectangle_at(obstacles_[i], t_s),
+                   obstacles_[i].motion.at(t_s).speed_mps});
   }
-  all.push_back({obstacles_.size(), vehicle.body, vehicle.speed_mps});
+  all.push_back({{}, vehicle.body, vehicle.speed_mps});
   return all;
 }
 
@@ -150,7 +153,7 @@ void TrafficFlow::take_turns(const std::vector<Body>& movers) {
       if (left_m < 0.0 || left_m > ZipMerge::kSeenFrom_m) continue;
       Queue& queue = queues.try_emplace(beside.end, Queue{car, beside, {}}).first->second;
       queue.drivers.push_back(
-          {car.obstacle, left_m, obstacles_[car.obstacle].length_m, car.speed_mps});
+          {obstacles_[car.obstacle].id, left_m, obstacles_[car.obstacle].length_m, car.speed_mps});
     }
   }
   for (auto& [end, queue] : queues) {
@@ -162,7 +165,7 @@ void TrafficFlow::take_turns(const std::vector<Body>& movers) {
 /// As braking_mps2(), behind who is let in and is not in the own lane yet.
 double TrafficFlow::letting_in_mps2(const Car& car, const std::vector<Body>& movers) const {
   for (const LaneEndBeside& beside : car.driver->lane_ends) {
-    const auto who = zip_.let_in(beside.end, car.obstacle);
+    const auto who = zip_.let_in(beside.end, obstacles_[car.obstacle].id);
     if (!who) continue;
     for (const ZipBody& waits : waiting_at(car, beside, movers)) {
       if (waits.id != *who) continue;

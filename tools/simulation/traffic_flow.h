@@ -7,10 +7,10 @@
 
 #include "roadbed/geometry/motion/rectangle.h"
 #include "roadbed/geometry/primitives/polyline.h"
+#include "roadbed/planning/maneuvers/zip_merge.h"
 #include "roadbed/planning/obstacles/obstacle.h"
 #include "roadbed/tools/simulation/obstacle_motion.h"
 #include "roadbed/tools/simulation/scenario.h"
-#include "roadbed/tools/simulation/zip_merge.h"
 
 namespace roadbed::tools::inline simulation {
 
@@ -79,7 +79,7 @@ class TrafficFlow {
   };
   /// Everybody who moves, the vehicle last.
   struct Body {
-    std::size_t id;
+    std::string id;  ///< of the obstacle; the vehicle's is empty
     geometry::Rectangle body;
     double speed_mps;
   };
@@ -91,8 +91,8 @@ class TrafficFlow {
   double braking_mps2(const Car& car, const Ahead& ahead) const;
   std::vector<Body> movers(const DrivenBody& vehicle) const;
   double to_end_m(const Car& car, const LaneEndBeside& beside) const;
-  std::vector<ZipBody> waiting_at(const Car& car, const LaneEndBeside& beside,
-                                  const std::vector<Body>& movers) const;
+  std::vector<planning::ZipBody> waiting_at(const Car& car, const LaneEndBeside& beside,
+                                            const std::vector<Body>& movers) const;
   void take_turns(const std::vector<Body>& movers);
   double letting_in_mps2(const Car& car, const std::vector<Body>& movers) const;
   void drive(Car& car, double braking_mps2);
@@ -101,7 +101,7 @@ class TrafficFlow {
   std::vector<planning::Obstacle>& obstacles_;
   Options options_;
   std::vector<Car> cars_;
-  ZipMerge zip_;
+  planning::ZipMerge zip_;
   int steps_ = 0;
 };
 

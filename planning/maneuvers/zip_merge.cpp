@@ -1,9 +1,9 @@
-#include "roadbed/tools/simulation/zip_merge.h"
+#include "roadbed/planning/maneuvers/zip_merge.h"
 
 #include <algorithm>
 #include <array>
 
-namespace roadbed::tools::inline simulation {
+namespace roadbed::planning::inline maneuvers {
 namespace {
 
 constexpr int kPatience = 80;  // steps
@@ -24,24 +24,32 @@ bool can_let_in(const ZipBody& driver, const ZipBody& waits) {
 
 }  // namespace
 
+bool ends_beside(const map::RoadMap& road_map, map::LaneId lane, map::LaneId other) {
+  if (!map::is_drivable(road_map.lane(lane).type) || goes_on(road_map, lane)) return false;
+  const map::LaneLinks& links = road_map.graph().of(lane);
+  return goes_on(road_map, other) &&
+         std::ranges::any_of(
+             std::array{links.left, links.right}, [&](const std::optional<map::Neighbour>& next) {
+               return next && next->lane == other && next->same_direction && next->change_allowed();
+             });
+}
+
 std::vector<geometry::Pose2> lane_ends(const map::RoadMap& road_map) {
   std::vector<geometry::Pose2> ends;
   for (std::uint32_t i = 0; i < road_map.lanes().size(); ++i) {
-    const map::LaneId id{i};
-    const map::Lane& lane = road_map.lane(id);
-    const map::LaneLinks& links = road_map.graph().of(id);
-    if (!map::is_drivable(lane.type) || goes_on(road_map, id)) continue;
+    const map::LaneLinks& links = road_map.graph().of(map::LaneId{i});
     const bool may_leave = std::ranges::any_of(
         std::array{links.left, links.right}, [&](const std::optional<map::Neighbour>& next) {
-          return next && next->same_direction && next->change_allowed() &&
-                 goes_on(road_map, next->lane);
+          return next && ends_beside(road_map, map::LaneId{i}, next->lane);
         });
-    if (may_leave) ends.push_back(lane.pose_at(lane.length_m()));
+    if (!may_leave) continue;
+    const map::Lane& lane = road_map.lane(map::LaneId{i});
+    ends.push_back(lane.pose_at(lane.length_m()));
   }
   return ends;
 }
 
-bool ZipMerge::is_let_in(std::size_t end, std::size_t body) const {
+bool ZipMerge::is_let_in(std::size_t end, const std::string& body) const {
   return std::ranges::any_of(turns_, [&](const auto& turn) {
     return turn.first.first == end && turn.second.let_in == body && !turn.second.is_over;
   });
@@ -57,6 +65,10 @@ void ZipMerge::go_on(Turn& turn, const ZipBody& driver, const ZipBody& waits) co
 
 void ZipMerge::update(std::size_t end, const std::vector<ZipBody>& drivers,
                       const std::vector<ZipBody>& waiting) {
+  std::erase_if(turns_, [&](const auto& turn) {
+    const auto& [at_end, driver] = turn.first;
+    return at_end == end && std::ranges::find(drivers, driver, &ZipBody::id) == drivers.end();
+  });
   for (const ZipBody& waits : waiting) {
     for (const ZipBody& driver : drivers) {
       const auto turn = turns_.find({end, driver.id});
@@ -70,10 +82,10 @@ void ZipMerge::update(std::size_t end, const std::vector<ZipBody>& drivers,
   }
 }
 
-std::optional<std::size_t> ZipMerge::let_in(std::size_t end, std::size_t driver) const {
+std::optional<std::string> ZipMerge::let_in(std::size_t end, const std::string& driver) const {
   const auto turn = turns_.find({end, driver});
   if (turn == turns_.end() || turn->second.is_over) return std::nullopt;
   return turn->second.let_in;
 }
 
-}  // namespace roadbed::tools::simulation
+}  // namespace roadbed::planning::maneuvers
